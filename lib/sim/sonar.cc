@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/per_thread.h"
 #include "base/simd.h"
 #include "sim/robot_sensors.h"
 #include "sim/sonar_vicinity.h"
@@ -138,7 +139,8 @@ ISPACE_SIMD_CLONES float leastOf(const RayBounds& bounds) {
 /// Bounds by the surfaces of a vicinity that lie in a sector; all 0 without a vicinity.
 class ConeBounds {
   public:
-    ConeBounds(const FlatCone& rays, const Sector& sector) : rays_(rays), sector_(sector) {}
+    ConeBounds(const FlatCone& rays, const Sector& sector, RayBounds& bounds)
+        : rays_(rays), sector_(sector), bounds_(bounds) {}
 
     void addLines(const SonarVicinity* near) {
         if (near == nullptr || near->is_within_solid) return addAll();
@@ -158,7 +160,6 @@ class ConeBounds {
                 add(sector_.local(body.middle), {dot(axis, body.ahead), cross(axis, body.ahead)},
                     body.half_length, body.half_width);
     }
-    [[nodiscard]] float operator[](std::size_t ray) const { return bounds_[ray]; }
     [[nodiscard]] float least() const { return is_empty_ ? kNoReturn : leastOf(bounds_); }
 
   private:
@@ -180,54 +181,103 @@ class ConeBounds {
     const FlatCone& rays_;
     const Sector& sector_;
     bool is_empty_ = true;
-    RayBounds bounds_;  // unless it is empty
+    RayBounds& bounds_;  // unset while it is empty
 };
 
-/// Casts rays of sonars of a ring, one sonar after the other.
-class EchoSearch {
-  public:
-    explicit EchoSearch(const Cone& rays) : cone_(rays) {}
+/// Rays of a robot's sonars that are cast together; kept to reuse its memory.
+struct SonarRays {
+    std::vector<std::size_t> sonars;  ///< of each ray
+    std::vector<Point3> origins;
+    Directions directions;
+    std::vector<float> ranges;
 
-    void begin(CosSin axis) {
-        axis_ = axis;
-        nearest_ = kNoReturn;
+    void clear() {
+        sonars.clear();
+        origins.clear();
+        directions.resize(0);
+        ranges.clear();
     }
-    [[nodiscard]] float nearest() const { return nearest_; }
+};
 
-    /// Finds a nearer echo of some surfaces. \param cast sets ranges of rays
-    template <typename Cast>
-    void add(const ConeBounds& bounds, Cast cast) {
-        const float least = bounds.least();
-        if (least >= nearest_) return;
-        // Most echoes are about as near as the least bound, and spare all other rays.
-        const float first = std::min(nearest_, least + static_cast<float>(2 * kEchoSlack));
-        castSome(bounds, 0, first, cast);
-        if (nearest_ > first) castSome(bounds, first, nearest_, cast);
+/// Searches the nearest echo of each sonar of a robot.
+class RingSearch {
+  public:
+    RingSearch(const RobotModel& model, const Pose2& pose)
+        : cone_(coneOf(model.sonar.fov)),
+          flat_(cone_),
+          height_(kSonarHeight * model.height),
+          rays_(perThread<SonarRays, struct RaysOfRing>()) {
+        sonars_.reserve(model.sonar.places.size());
+        const CosSin half = cosSin(0.5 * model.sonar.fov);
+        const auto [c, s] = cosSin(pose.heading);
+        for (const Pose2& place : model.sonar.places) {
+            const auto& [x, y] = place.position;
+            sonars_.push_back(
+                {{pose.position + Vec2{c * x - s * y, s * x + c * y},
+                  cosSin(pose.heading + place.heading), half, model.sonar.max_range}});
+        }
+    }
+    [[nodiscard]] std::size_t size() const { return sonars_.size(); }
+    [[nodiscard]] float nearest(std::size_t sonar) const { return sonars_[sonar].nearest; }
+
+    /// Finds nearer echoes of some surfaces.
+    /// \param add_bounds sets the bounds of a cone's rays
+    /// \param cast shortens the ranges of SonarRays, or sets them
+    template <typename AddBounds, typename Cast>
+    void search(AddBounds add_bounds, Cast cast) {
+        for (Sonar& sonar : sonars_) {
+            ConeBounds bounds(flat_, sonar.sector, sonar.bounds);
+            add_bounds(bounds);
+            sonar.from = bounds.least();
+            // Most echoes are about as near as the least bound, and spare all other rays.
+            sonar.to = std::min(sonar.nearest, sonar.from + static_cast<float>(2 * kEchoSlack));
+        }
+        castSome(cast);
+        for (Sonar& sonar : sonars_) sonar.from = std::exchange(sonar.to, sonar.nearest);
+        castSome(cast);
     }
 
   private:
-    /// Casts the rays with bounds from the first value to below the second.
+    struct Sonar {
+        Sector sector;
+        float nearest = kNoReturn;
+        float from = 0, to = 0;  ///< bounds of the rays that are cast: from the first to below this
+        RayBounds bounds = {};
+    };
+
     template <typename Cast>
-    void castSome(const ConeBounds& bounds, float from, float to, Cast cast) {
-        rays_.resize(kSonarRays);
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < kSonarRays; ++i) {
-            if (bounds[i] < from || bounds[i] >= to) continue;
-            const auto& [x, y, z] = cone_[i];
-            rays_.set(count++, {x * axis_.cos - y * axis_.sin, x * axis_.sin + y * axis_.cos, z});
+    void castSome(Cast cast) {
+        rays_.clear();
+        for (std::size_t k = 0; k < sonars_.size(); ++k)
+            if (sonars_[k].from < sonars_[k].to) addRays(k);
+        if (rays_.sonars.empty()) return;
+        cast(rays_);
+        for (std::size_t i = 0; i < rays_.sonars.size(); ++i) {
+            float& nearest = sonars_[rays_.sonars[i]].nearest;
+            nearest = std::min(nearest, rays_.ranges[i]);
         }
-        if (count == 0) return;
-        rays_.resize(count);
-        ranges_.assign(count, kNoReturn);
-        cast(rays_, ranges_);
-        nearest_ = std::min(nearest_, *std::min_element(ranges_.begin(), ranges_.end()));
     }
 
-    const Cone& cone_;
-    CosSin axis_{1, 0};
-    float nearest_ = kNoReturn;
-    Directions rays_;
-    std::vector<float> ranges_;
+    void addRays(std::size_t k) {
+        const Sonar& sonar = sonars_[k];
+        const auto [origin, axis] = std::pair(sonar.sector.origin, sonar.sector.axis);
+        for (std::size_t i = 0; i < kSonarRays; ++i) {
+            if (sonar.bounds[i] < sonar.from || sonar.bounds[i] >= sonar.to) continue;
+            const auto& [x, y, z] = cone_[i];
+            rays_.directions.x.push_back(x * axis.cos - y * axis.sin);
+            rays_.directions.y.push_back(x * axis.sin + y * axis.cos);
+            rays_.directions.z.push_back(z);
+            rays_.origins.push_back({origin.x, origin.y, height_});
+            rays_.ranges.push_back(sonar.nearest);
+            rays_.sonars.push_back(k);
+        }
+    }
+
+    Cone cone_;
+    FlatCone flat_;
+    double height_;
+    SonarRays& rays_;
+    std::vector<Sonar> sonars_;
 };
 
 }  // namespace
@@ -267,31 +317,27 @@ std::vector<float> sonarRangesNear(const SonarVicinity* vicinity, const RobotMod
     const SonarRing& ring = model.sonar;
     std::vector<float> ranges;
     if (ring.places.empty()) return ranges;
-    const Cone cone = coneOf(ring.fov);
-    const FlatCone flat(cone);
-    const CosSin half = cosSin(0.5 * ring.fov);
     // The triangles of wider cones are too large.
     if (ring.fov > Angle::degrees(150)) vicinity = nullptr;
-    EchoSearch search(cone);
-    for (const Pose2& place : ring.places) {
-        const Point2 at = pose * place.position;
-        const Point3 origin{at.x, at.y, kSonarHeight * model.height};
-        const Sector sector{at, cosSin(pose.heading + place.heading), half, ring.max_range};
-        ConeBounds of_bodies(flat, sector), of_lines(flat, sector);
-        of_bodies.addBodies(vicinity);
-        of_lines.addLines(vicinity);
-        search.begin(sector.axis);
-        search.add(of_bodies, [&](const Directions& rays, std::span<float> echoes) {
-            bodies.shorten(origin, rays, ring.max_range, own, echoes);
-        });
-        search.add(of_lines, [&](const Directions& rays, std::span<float> echoes) {
-            environment.cast(origin, rays, ring.max_range, echoes);
+    RingSearch search(model, pose);
+    search.search([vicinity](ConeBounds& bounds) { bounds.addBodies(vicinity); },
+                  [&](SonarRays& rays) {
+                      bodies.shorten(rays.origins, rays.directions, 0, rays.ranges.size(),
+                                     ring.max_range, own, rays.ranges);
+                  });
+    search.search(
+        [vicinity](ConeBounds& bounds) { bounds.addLines(vicinity); },
+        [&](SonarRays& rays) {
+            std::vector<float>& echoes = rays.ranges;
+            environment.cast(rays.origins, rays.directions, ring.max_range, echoes);
             for (std::size_t i = 0; i < echoes.size(); ++i)
-                if (origin.z + static_cast<double>(echoes[i]) * rays.z[i] < kFloor)
+                if (rays.origins[i].z + static_cast<double>(echoes[i]) * rays.directions.z[i] <
+                    kFloor)
                     echoes[i] = kNoReturn;
         });
-        ranges.push_back(std::max(search.nearest(), static_cast<float>(ring.min_range)));
-    }
+    ranges.reserve(search.size());
+    for (std::size_t k = 0; k < search.size(); ++k)
+        ranges.push_back(std::max(search.nearest(k), static_cast<float>(ring.min_range)));
     return ranges;
 }
 

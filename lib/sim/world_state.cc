@@ -211,8 +211,9 @@ SonarVicinity World::Data::sonarVicinity(std::size_t robot, const FloorGrid& gri
     const Vec2 margin{reach, reach};
     grid.forEachNear({place - margin, place + margin}, [&](std::size_t k) {
         const MovingBody& body = bodies[k];
-        if (body.owner == robot) return;
         const double radius = body.reach() + body.sway();
+        const Vec2 way = body.pose.position - place;
+        if (body.owner == robot || dot(way, way) > (reach + radius) * (reach + radius)) return;
         const bool is_box = body.radius <= 0;
         near.bodies.push_back({body.pose.position, unitVector(body.pose.heading),
                                is_box ? body.half_length : radius,

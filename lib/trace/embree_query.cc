@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/simd.h"
 #include "trace/rays.h"
@@ -42,19 +43,24 @@ void passUnmet(const RTCFilterFunctionNArguments* args) {
 
 }  // namespace
 
-IgnoredSurfaces::IgnoredSurfaces(RTCScene scene, const TriangleSet& set, double ray_epsilon,
-                                 Point3 origin)
-    : IgnoredSurfaces(set, ray_epsilon) {
+std::vector<std::size_t> surfacesNear(RTCScene scene, const TriangleSet& set, double distance,
+                                      Point3 middle) {
     RTCPointQuery query{};
-    query.x = static_cast<float>(origin.x);
-    query.y = static_cast<float>(origin.y);
-    query.z = static_cast<float>(origin.z);
-    query.radius = static_cast<float>(ray_epsilon + set.tolerance());
+    query.x = static_cast<float>(middle.x);
+    query.y = static_cast<float>(middle.y);
+    query.z = static_cast<float>(middle.z);
+    query.radius = static_cast<float>(distance + set.tolerance());
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     NearSurfaces near{set.triangles()};
     rtcPointQuery(scene, &query, &context, collect, &near);
-    for (const std::size_t surface : near.found)
+    return std::move(near.found);
+}
+
+IgnoredSurfaces::IgnoredSurfaces(RTCScene scene, const TriangleSet& set, double ray_epsilon,
+                                 Point3 origin)
+    : IgnoredSurfaces(set, ray_epsilon) {
+    for (const std::size_t surface : surfacesNear(scene, set, ray_epsilon, origin))
         set.addTouched(surface, origin, ray_epsilon, normals_);
 }
 

@@ -228,6 +228,10 @@ inline void traceShadows(EmbreeQuery& query, RTCScene scene, std::size_t width, 
     }
 }
 
+/// Returns all surfaces within a distance of a point, and some farther away.
+std::vector<std::size_t> surfacesNear(RTCScene scene, const TriangleSet& set, double distance,
+                                      Point3 middle);
+
 /// The surfaces ignored by rays of one origin: those within `ray_epsilon` of it, those that
 /// continue the plane of such a surface within that distance, and those seen exactly edge-on.
 class IgnoredSurfaces {

@@ -270,19 +270,24 @@ void EmbreeScene::cast(std::span<const Point3> origins, const Directions& direct
                        const Results& results) const {
     if (set_.size() == 0 || origins.empty()) return cast(Point3{}, directions, most, results);
     const IgnoredSurfaces nothing(set_, ray_epsilon_);
-    const bool may_touch = mayTouch(origins);
+    const bool may_touch = !surfacesAbout(origins).empty();
     Caster caster(*this, nothing, origins.front(), most);
     caster.is_alike = caster.query.rays.have_one_origin = false;
     caster.needs_slopes = !results.cosines.empty();
     for (std::size_t first = 0; first < directions.size(); first += kLanes) {
         const std::size_t lanes = std::min(kLanes, directions.size() - first);
-        if (may_touch && mayTouch(origins.subspan(first, lanes))) {
-            // Each ray ignores other surfaces.
-            for (std::size_t i = first; i < first + lanes; ++i) {
-                const Directions one{{directions.x[i]}, {directions.y[i]}, {directions.z[i]}};
-                cast(origins[i], one, most,
-                     {results.ranges.subspan(i, 1),
-                      results.cosines.empty() ? results.cosines : results.cosines.subspan(i, 1)});
+        if (may_touch && touches(origins.subspan(first, lanes))) {
+            // The rays of each origin ignore other surfaces.
+            for (std::size_t i = first, end = i; i < first + lanes; i = end) {
+                while (end < first + lanes && origins[end] == origins[i]) ++end;
+                const auto part = [i, end](const std::vector<double>& all) {
+                    const double* const begin = all.data();
+                    return std::vector<double>(begin + i, begin + end);
+                };
+                cast(origins[i], {part(directions.x), part(directions.y), part(directions.z)}, most,
+                     {results.ranges.subspan(i, end - i),
+                      results.cosines.empty() ? results.cosines
+                                              : results.cosines.subspan(i, end - i)});
             }
         } else {
             caster.keep(lanes);
@@ -294,11 +299,22 @@ void EmbreeScene::cast(std::span<const Point3> origins, const Directions& direct
     }
 }
 
-bool EmbreeScene::mayTouch(std::span<const Point3> origins) const {
+std::vector<std::size_t> EmbreeScene::surfacesAbout(std::span<const Point3> origins) const {
     const Point3 middle = origins[origins.size() / 2];
     double reach = 0;
     for (const Point3& origin : origins) reach = std::max(reach, length(origin - middle));
-    return IgnoredSurfaces(scene_.get(), set_, reach + ray_epsilon_, middle).touches();
+    return surfacesNear(scene_.get(), set_, reach + ray_epsilon_, middle);
+}
+
+bool EmbreeScene::touches(std::span<const Point3> origins) const {
+    const std::vector<std::size_t> near = surfacesAbout(origins);
+    std::vector<Vec3> touched;
+    for (std::size_t i = 0; i < origins.size() && touched.empty(); ++i) {
+        if (i > 0 && origins[i] == origins[i - 1]) continue;
+        for (const std::size_t surface : near)
+            set_.addTouched(surface, origins[i], ray_epsilon_, touched);
+    }
+    return !touched.empty();
 }
 
 void EmbreeScene::cast(Point3 origin, const RayGrid& grid, double most,

@@ -52,8 +52,10 @@ class EmbreeScene {
 
   private:
     struct Caster;
-    /// True if an origin may lie within ray_epsilon_ of a surface.
-    [[nodiscard]] bool mayTouch(std::span<const Point3> origins) const;
+    /// Returns all surfaces within ray_epsilon_ of an origin, and others near them.
+    [[nodiscard]] std::vector<std::size_t> surfacesAbout(std::span<const Point3> origins) const;
+    /// True if an origin lies within ray_epsilon_ of a surface. Fastest for runs of equal origins.
+    [[nodiscard]] bool touches(std::span<const Point3> origins) const;
 
     TriangleSet set_;
     double ray_epsilon_;

@@ -182,16 +182,19 @@ TEST(EmbreeScene, OriginsOfEachRay) {
     const EmbreeScene scene(soup, kTouching, 0);
     std::mt19937_64 random(34);
     std::uniform_real_distribution<double> any(-1, 1);
-    for (int i = 0; i < 30; ++i) {
-        // Free, along a wall at its contact distance, and from one side of it to the other.
+    for (int i = 0; i < 40; ++i) {
+        // Free, along a wall at its contact distance, from one side of it to the other, and in
+        // runs of equal origins, of which one touches it.
         const Point3 begin =
-            i % 3 == 0 ? Point3{2 * any(random), 0, 1} : Point3{-4, any(random), 1};
-        const Vec3 step{i % 3 == 2 ? 2e-6 : 0, 1e-4 * any(random), 0};
+            i % 4 == 0 ? Point3{2 * any(random), 0, 1} : Point3{-4, any(random), 1};
+        const int run = i % 4 == 3 ? 5 : 1;
+        const Vec3 step{i % 4 == 2 ? 2e-6 : i % 4 == 3 ? 0.01 : 0, 1e-4 * any(random), 0};
         Beams moving(211), still(1);
         aimAll(moving, soup, begin, 0, random);
         std::vector<Point3> origins;
         origins.reserve(211);
-        for (int k = 0; k < 211; ++k) origins.push_back(begin + (k - 105.0) * step);
+        for (int k = 0; k < 211; ++k)
+            origins.push_back(begin + static_cast<double>((k - 105) / run) * step);
         scene.cast(origins, moving.directions, 60, {moving.ranges, moving.cosines});
         for (std::size_t k = 0; k < origins.size(); ++k) {
             still.directions.set(0, moving.directions[k]);
