@@ -13,6 +13,7 @@
 #include "base/number.h"
 #include "base/run_files.h"
 #include "cli/common_options.h"
+#include "cli/progress_bar.h"
 #include "coverage/run_coverage.h"
 #include "report/page/coverage_page.h"
 #include "report/suggestion_report.h"
