@@ -86,5 +86,5 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     } catch (const FormatError&) {
         // As one of several worlds it may lack moments.
     }
-    replay(Replay(scratchFolder(), std::chrono::milliseconds(5)));
+    replay(Replay(scratchFolder(), SimTime(std::chrono::milliseconds(5))));
 }
