@@ -357,16 +357,18 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
     return goOnWalking(world, mover, doer);
 }
 
-/// Looks whether a walk has ended.
+/// Looks whether a walk has ended. One whose end is unknown was cut short between steps, by a
+/// client's command or a change of the world.
 void ActivityDirector::arrive(World& world, std::size_t mover, Doer& doer) const {
-    for (const CommandEnd& end : world.ends()) {
-        if (end.robot != mover || end.id != doer.command) continue;
-        if (end.outcome == Outcome::Done && !doer.rest.empty() && goOnWalking(world, mover, doer))
-            return;
-        doer.command = 0;
-        doer.walks = end.outcome != Outcome::Done;
-        doer.until = world.time() + (doer.walks ? kPause : actionOf(doer).lasts);
-    }
+    if (world.running(mover) == doer.command) return;
+    const auto ends = world.ends();
+    const bool is_done = std::any_of(ends.begin(), ends.end(), [&](const CommandEnd& end) {
+        return end.robot == mover && end.id == doer.command && end.outcome == Outcome::Done;
+    });
+    if (is_done && !doer.rest.empty() && goOnWalking(world, mover, doer)) return;
+    doer.command = 0;
+    doer.walks = !is_done;
+    doer.until = world.time() + (doer.walks ? kPause : actionOf(doer).lasts);
 }
 
 void ActivityDirector::tell(Simulation& simulation, const Doer& doer, bool begins) const {

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -20,7 +22,7 @@ using std::chrono::minutes;
 using std::chrono::seconds;
 
 /// Two rooms behind each other; the door between them is in the middle.
-Scene home(const std::string& door = "open=yes") {
+Scene home(const std::string& door = "open=yes", const std::string& ann = "at=-4,2") {
     return testing::scene(
         "fence id=f path=-5,-3;5,-3;5,3;-5,3 closed=yes\n"
         "fence id=w path=0,-3;0,3\n"
@@ -29,7 +31,7 @@ Scene home(const std::string& door = "open=yes") {
             "\ninside at=-2,0\ninside at=2,0\n"
             "zone id=left at=-2.5,0 size=5,6\nzone id=right at=2.5,0 size=5,6\n"
             "cube id=box at=4.5,2.5 size=0.6,0.6,0.6\nlamp id=l at=1,1\n",
-        "human id=a at=-4,2\nhuman id=b at=3,-2\n");
+        "human id=a " + ann + "\nhuman id=b at=3,-2\n");
 }
 
 TEST(DayPlan, ReadsTimesNamesAndActions) {
@@ -127,6 +129,35 @@ TEST(ActivityDirector, GivesUpWithoutAWay) {
     const EventLog& log = day.simulation.events();
     EXPECT_GE(log.at(1).time - log.at(0).time, seconds(4)) << "tries again";
     EXPECT_EQ(day.world.status(0).pose.position, (Point2{-4, 2}));
+}
+
+TEST(ActivityDirector, GoesOnWhenAnotherTakesOver) {
+    const std::vector<std::pair<std::string, std::function<void(World&)>>> cases = {
+        {"RESET", [](World& world) { world.restart(Scene(*world.sharedStart())); }},
+        {"LOAD", [](World& world) { world.restart(home("open=yes", "at=-3,1")); }},
+        {"SET a.at", [](World& world) { world.change(home("open=yes", "at=-3,1")); }},
+        {"SET a.path",
+         [](World& world) { world.change(home("open=yes", "at=-4,2 path=-4,-2;-4,2 loop=yes")); }},
+        {"STOP",
+         [](World& world) {
+             world.command(0, {Verb::Stop, 0});
+         }},
+        {"FORWARD",
+         [](World& world) {
+             world.command(0, {Verb::Forward, 0.1});
+         }},
+        {"SPEED", [](World& world) {
+             world.command(0, {Verb::Speed, 0.1});
+         }}};
+    for (const auto& [name, meddle] : cases) {
+        Lived day("at 00:00 a goes right; stays 1s\n");
+        day.run(6);
+        ASSERT_NE(day.world.status(0).pose.position, (Point2{-4, 2})) << "under way";
+        meddle(day.world);
+        day.run(120);
+        EXPECT_EQ(day.events().size(), 4U) << name;
+        EXPECT_LT(distance(day.world.status(0).pose.position, Point2{2.5, 0}), 0.1) << name;
+    }
 }
 
 TEST(ActivityDirector, AsksForChanges) {

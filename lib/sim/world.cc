@@ -242,6 +242,8 @@ int World::command(std::size_t mover, const Command& command) {
     return state.running;
 }
 
+int World::running(std::size_t mover) const { return data_->states[mover].running; }
+
 void World::steer(std::size_t robot, const WheelOrder& order) {
     Data& data = *data_;
     MoverState& state = data.states[robot];

@@ -177,6 +177,8 @@ class World {
     /// Sidespeed keep the goals set by the others. \returns for a command that comes to an end its
     /// id, counting from 1 for each mover; else 0. \pre refusal() is empty
     int command(std::size_t mover, const Command& command);
+    /// Returns the id of the command under way that comes to an end, 0 without one.
+    [[nodiscard]] int running(std::size_t mover) const;
     /// Gives an order to a robot's wheels; a running command ends as Replaced. The stall flag stays
     /// unless the order has a goal for the drive. \pre speeds and accelerations are not negative
     void steer(std::size_t robot, const WheelOrder& order);
@@ -206,10 +208,11 @@ class World {
 
     /// Continues in another scene, between steps. Records with the same id in both keep their
     /// state: robots keep pose, motion, command and stall, unless `at` or `heading` of their record
-    /// differs, which puts them there at rest; sensors keep their last reading, and new ones take
-    /// their first. Indices are those of the new scene. Time goes on. Commands of removed robots do
-    /// not end. \param placed ids of movers that are set to the pose of their record in any case
-    /// \throws FormatError as the constructor does; the world is then unchanged
+    /// differs, which puts them there at rest, or another path of theirs takes over; sensors keep
+    /// their last reading, and new ones take their first. Indices are those of the new scene. Time
+    /// goes on. Commands of removed robots do not end. \param placed ids of movers that are set to
+    /// the pose of their record in any case \throws FormatError as the constructor does; the world
+    /// is then unchanged
     void change(Scene scene, std::span<const std::string> placed = {});
     /// Likewise, but everything restarts as the scene has it; running commands are Stopped. A
     /// robot's command ids go on counting.
