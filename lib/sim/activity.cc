@@ -11,6 +11,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "record/edit.h"
+#include "record/schema.h"
 #include "scene/bodies.h"
 #include "scene/room_state.h"
 #include "sim/goal_ways.h"
@@ -173,8 +174,12 @@ DayLine DayLineReader::read() {
     }
     ++next_;
     if (word(next_).ends_with(':') && word(next_).size() > 1) {
-        line.name = word(next_++);
+        line.name = word(next_);
         line.name.pop_back();
+        if (!isWord(line.name))
+            fail(next_, excerpt(line.name) +
+                            " is no name of an activity: letters, digits and _-./+:@ are wanted");
+        ++next_;
     }
     if (next_ >= words_.size()) fail(next_, "an action is missing, like goes kitchen");
     std::string_view rest = line_.substr(static_cast<std::size_t>(words_[next_].column) - 1);

@@ -59,6 +59,20 @@ TEST(DayPlan, ReadsTimesNamesAndActions) {
     EXPECT_EQ(readScript("at 00:00 a goes left\n0 a FORWARD 1\n", "s.txt", world).size(), 1U);
 }
 
+TEST(DayPlan, NamesAreWords) {
+    const Scene room = home();
+    const World world(room, seconds(1));
+    try {
+        readDayPlan("at 00:00 a tea: goes right\nat 00:00:02 a cook,\"eat: goes right\n", "s.txt",
+                    world);
+        FAIL() << "a name with a comma";
+    } catch (const FormatError& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  "s.txt:2:15: error: `cook,\"eat` is no name of an activity: letters, digits and "
+                  "_-./+:@ are wanted");
+    }
+}
+
 TEST(GoalWays, GoesThroughOpenDoorsAlone) {
     const Point2 from{-4, 2};
     const GoalWays open(home(), 0.25, 1.7), shut(home(""), 0.25, 1.7);

@@ -53,8 +53,8 @@ std::string_view eventTableHead() { return "t,kind,id,other,x,y,value,text\n"; }
 
 void appendEventRow(std::string& out, const Event& event) {
     out.append(formatSimTime(event.time)).append(",").append(nameOf(event.kind));
-    out.append(",").append(event.id).append(",").append(
-        event.other);  // words that require no quotes
+    out.append(",").append(event.id).append(",");  // a word, which requires no quotes
+    appendCsvField(out, event.other);
     out += ',';
     if (event.place) appendDouble(out, event.place->x);
     out += ',';

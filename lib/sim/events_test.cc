@@ -52,6 +52,13 @@ TEST(Events, ARowQuotesItsText) {
     appendEventRow(row,
                    {.kind = EventKind::Mark, .time = milliseconds(1500), .text = "say \"a,b\""});
     EXPECT_EQ(row, "1.5,mark,,,,,,\"say \"\"a,b\"\"\"\n");
+    row.clear();
+    appendEventRow(row, {.kind = EventKind::Activity,
+                         .time = milliseconds(2000),
+                         .id = "h1",
+                         .other = "cook,\"eat",
+                         .text = "goes far"});
+    EXPECT_EQ(row, "2,activity,h1,\"cook,\"\"eat\",,,0,goes far\n");
     const std::string_view head = eventTableHead();
     EXPECT_EQ(std::count(head.begin(), head.end(), ','), 7);
 }

@@ -316,8 +316,11 @@ void Recorder::Data::appendDay(const Event& event) {
         return;
     }
     activities.pending.append(formatSimTime(since)).append(",").append(formatSimTime(event.time));
-    activities.pending.append(",").append(event.id).append(",").append(event.other).append(",");
-    activities.pending.append(event.text).append("\n");
+    activities.pending.append(",").append(event.id).append(",");
+    appendCsvField(activities.pending, event.other);
+    activities.pending += ',';
+    appendCsvField(activities.pending, event.text);
+    activities.pending += '\n';
 }
 
 void Recorder::Data::append(World& world) {
