@@ -131,7 +131,6 @@ void Session::odometry(Words /*words*/) {
 
 void Session::takeWorld(Words /*words*/) {
     role_ = Role::World;
-    if (rooms() != nullptr) state_ = rooms()->states.front();
     const Clock& clock = state_->simulation().clock();
     out_.append("OK WORLD t=").append(formatMilliseconds(world().time()));
     out_.append(" dt=").append(formatSimTime(world().stepLength())).append(" clock=");
@@ -163,7 +162,7 @@ void Session::list(Words /*words*/) {
 }
 
 void Session::states(Words words) {
-    std::vector<RoomState> states = statesOf(world());
+    std::vector<RoomState> states = statesOfAll();
     if (words.size() > 1) {
         std::erase_if(states, [&](const RoomState& state) { return state.id != words[1]; });
         if (states.empty())

@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "server/session.h"
 #include "sim/joined_worlds.h"
+#include "sim/state_watch.h"
 
 namespace ispace {
 
@@ -67,6 +68,17 @@ std::vector<std::string> Session::idsOfAll(Role role) const {
         for (std::string& id : of_world(all[i].simulation->world()))
             ids.push_back(id.find('/') == std::string::npos ? all[i].id + '/' + id : std::move(id));
     return ids;
+}
+
+std::vector<RoomState> Session::statesOfAll() const {
+    if (rooms() == nullptr) return statesOf(world());
+    std::vector<RoomState> states;
+    for (const JoinedRoom& room : rooms()->worlds->rooms())
+        for (RoomState& state : statesOf(room.simulation->world())) {
+            if (state.id.find('/') == std::string::npos) state.id = room.id + '/' + state.id;
+            states.push_back(std::move(state));
+        }
+    return states;
 }
 
 std::string Session::whereText() const {

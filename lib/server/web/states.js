@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The states of the room: what sensors and actuators report, with a button for each that is on or off.
-import {complaint, keysOf} from './link.js';
+import {Link, complaint, keysOf} from './link.js';
 
-/** The states of the answer to STATE, as [id, key, value]. */
+/** The states of the answer to STATE, as [id, key, value]; in a building those of the room that is shown. */
 function statesOf(answer) {
-  return answer.split(' ').slice(3).map(word => {
-    const equals = word.indexOf('='), name = word.slice(0, equals), dot = name.lastIndexOf('.');
+  const room = Link.room && `${Link.room}/`;
+  return answer.split(' ').slice(3).filter(word => word.startsWith(room)).map(word => {
+    const equals = word.indexOf('='), name = word.slice(room.length, equals), dot = name.lastIndexOf('.');
     return [name.slice(0, dot), name.slice(dot + 1), word.slice(equals + 1)];
   });
 }
