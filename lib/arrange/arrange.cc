@@ -351,7 +351,12 @@ Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
     Record result(*sceneSchemas().find("result"));
     result.set("coverage", Value(roundSignificant(arrangement.coverage)));
     result.set("area", Value(roundSignificant(arrangement.area)));
-    if (arrangement.value) result.set("value", Value(roundSignificant(*arrangement.value)));
+    // A bound over all poses is one of the exact area, as is the value beside it.
+    const auto value =
+        arrangement.poses_bound
+            ? std::optional(arrangement.poses_bound->found / arrangement.poses_bound->floor)
+            : arrangement.value;
+    if (value) result.set("value", Value(roundSignificant(*value)));
     result.set("bound", Value(roundSignificant(arrangement.bound)));
     if (arrangement.is_refined)
         result.set("candidates_bound", Value(roundSignificant(arrangement.candidate_bound)));

@@ -94,7 +94,10 @@ TEST(OverPoses, BoundsTheCoverageOfAnyPoses) {
     EXPECT_NEAR(found.bound, 2 * sector / 96, 1e-9);
     const Document layout =
         layoutDocument({{}, "", scene.digest(), "all", "swap"}, nullptr, groups, found);
-    EXPECT_EQ(layout.records.back().text("proof"), "poses");
+    const Record& result = layout.records.back();
+    EXPECT_EQ(result.text("proof"), "poses");
+    EXPECT_NEAR(result.number("value"), found.poses_bound->found / 96, 1e-9);
+    EXPECT_GE(result.number("bound"), result.number("value"));
 }
 
 TEST(OverPoses, ChecksTheCertificateForALayout) {

@@ -291,7 +291,7 @@ Schema resultSchema() {
              .lower = 0},
             share("value",
                   "weighted share of the required floor (zones, weights, redundancy), if that is "
-                  "not the coverage"),
+                  "not the coverage; with proof=poses the share of exact area"),
             share("bound",
                   "upper bound on the value, or on the coverage without a value: of layouts of the "
                   "candidates or, after refinement, of any poses"),
