@@ -281,8 +281,9 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
             continue;
         }
         if (!doer.is_begun) {
-            tell(simulation, doer, true);
+            tell(simulation, doer, 1);
             doer.is_begun = true;
+            doer.gave_up = false;
             doer.tries = 0;
             doer.until = world.time();
             if (!begin(simulation, doer)) return;
@@ -292,7 +293,7 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
             !depart(simulation, *mover, doer))
             doer.walks = false;
         if (doer.walks || world.time() < doer.until) return;
-        tell(simulation, doer, false);
+        tell(simulation, doer, doer.gave_up ? -1 : 0);
         doer.is_begun = false;
         if (++doer.action == plan_.lines[*doer.line].actions.size()) doer.line.reset();
     }
@@ -329,20 +330,28 @@ bool ActivityDirector::goOnWalking(World& world, std::size_t mover, Doer& doer) 
     return true;
 }
 
+/// Returns the ways of people of a height: doors that are low for one are high enough for another.
+const GoalWays& ActivityDirector::waysOf(const World& world, double height) {
+    constexpr std::size_t kMostHeights = 16;  // bounds memory
+    if (std::exchange(ways_of_, world.changes()) != world.changes()) ways_.clear();
+    if (ways_.size() >= kMostHeights && !ways_.contains(height)) ways_.clear();
+    auto& ways = ways_[height];
+    if (!ways) ways = std::make_shared<const GoalWays>(world.scene(), humanRadius(height), height);
+    return *ways;
+}
+
 /// Sends a person on the way. \returns false if there is none, or the person has arrived
 bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& doer) {
     const DayAction& action = actionOf(doer);
     World& world = simulation.world();
-    if (doer.tries++ >= kMostTries) return false;
-    const PlacedPerson& person = world.people()[mover - world.robots().size()];
-    if (std::exchange(ways_of_, world.changes()) != world.changes() || !ways_)
-        ways_ =
-            std::make_shared<GoalWays>(world.scene(), humanRadius(person.height), person.height);
+    doer.gave_up = doer.tries++ >= kMostTries;
+    if (doer.gave_up) return false;
+    const double height = world.people()[mover - world.robots().size()].height;
     const Point2 from = world.status(mover).pose.position;
-    std::vector<Point2> way = ways_->way(from, action.target);
+    std::vector<Point2> way = waysOf(world, height).way(from, action.target);
     if (way.empty()) {
         doer.until = world.time() + kPause;
-        return doer.tries < kMostTries;
+        return true;
     }
     constexpr double kThere = 0.05;
     if (way.size() == 1 && distance(way.front(), from) < kThere) {
@@ -359,7 +368,8 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
         course.path = std::move(way);
         doer.rest = {pathCommand(std::move(course))};
     }
-    return goOnWalking(world, mover, doer);
+    doer.gave_up = !goOnWalking(world, mover, doer);
+    return !doer.gave_up;
 }
 
 /// Looks whether a walk has ended. One whose end is unknown was cut short between steps, by a
@@ -376,12 +386,12 @@ void ActivityDirector::arrive(World& world, std::size_t mover, Doer& doer) const
     doer.until = world.time() + (doer.walks ? kPause : actionOf(doer).lasts);
 }
 
-void ActivityDirector::tell(Simulation& simulation, const Doer& doer, bool begins) const {
+void ActivityDirector::tell(Simulation& simulation, const Doer& doer, int value) const {
     const DayLine& line = plan_.lines[*doer.line];
     simulation.events().tell({.kind = EventKind::Activity,
                               .id = line.person,
                               .other = line.name,
-                              .value = begins ? 1 : 0,
+                              .value = value,
                               .text = line.actions[doer.action].text});
 }
 

@@ -73,7 +73,7 @@ class ActivityDirector {
         std::vector<std::size_t> waiting;  // lines, in order
         std::optional<std::size_t> line;   // under way
         std::size_t action = 0;
-        bool is_begun = false, walks = false;
+        bool is_begun = false, walks = false, gave_up = false;
         int command = 0;            // of the way
         std::vector<Command> rest;  // of it, the next one last
         int tries = 0;
@@ -85,7 +85,8 @@ class ActivityDirector {
     static bool goOnWalking(World& world, std::size_t mover, Doer& doer);
     bool depart(Simulation& simulation, std::size_t mover, Doer& doer);
     void arrive(World& world, std::size_t mover, Doer& doer) const;
-    void tell(Simulation& simulation, const Doer& doer, bool begins) const;
+    const GoalWays& waysOf(const World& world, double height);
+    void tell(Simulation& simulation, const Doer& doer, int value) const;
     [[nodiscard]] const DayAction& actionOf(const Doer& doer) const {
         return plan_.lines[*doer.line].actions[doer.action];
     }
@@ -94,8 +95,8 @@ class ActivityDirector {
     std::vector<SimTime> next_;  // of each line; kMaxTime: never again
     SimTime due_{};              // the earliest of them
     std::map<std::string, Doer> doers_;
-    std::shared_ptr<GoalWays> ways_;  // through the room of the person who asked last
-    std::int64_t ways_of_ = -1;       // changes of the world then
+    std::map<double, std::shared_ptr<const GoalWays>> ways_;  // by the height of people
+    std::int64_t ways_of_ = -1;                               // changes of the world then
 };
 
 }  // namespace ispace

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -112,9 +113,11 @@ struct Lived {
     [[nodiscard]] std::vector<std::string> events() const {
         std::vector<std::string> rows;
         const EventLog& log = simulation.events();
+        constexpr std::string_view kSigns = "!-+";
         for (std::int64_t i = log.first(); i < log.next(); ++i)
-            rows.push_back((log.at(i).value == 1 ? "+" : "-") + log.at(i).id + ' ' +
-                           log.at(i).other + ": " + log.at(i).text);
+            rows.push_back(
+                std::string(kSigns.substr(static_cast<std::size_t>(log.at(i).value + 1), 1)) +
+                log.at(i).id + ' ' + log.at(i).other + ": " + log.at(i).text);
         return rows;
     }
 
@@ -139,7 +142,9 @@ TEST(ActivityDirector, DoesOneActionAfterAnother) {
 TEST(ActivityDirector, GivesUpWithoutAWay) {
     Lived day("at 00:00 a goes right; stays 1s\n", home(""));
     day.run(40);
-    EXPECT_EQ(day.events().size(), 4U);
+    EXPECT_EQ(day.events(),
+              (std::vector<std::string>{"+a goes_right: goes right", "!a goes_right: goes right",
+                                        "+a goes_right: stays 1s", "-a goes_right: stays 1s"}));
     const EventLog& log = day.simulation.events();
     EXPECT_GE(log.at(1).time - log.at(0).time, seconds(4)) << "tries again";
     EXPECT_EQ(day.world.status(0).pose.position, (Point2{-4, 2}));
@@ -171,6 +176,29 @@ TEST(ActivityDirector, GoesOnWhenAnotherTakesOver) {
         day.run(120);
         EXPECT_EQ(day.events().size(), 4U) << name;
         EXPECT_LT(distance(day.world.status(0).pose.position, Point2{2.5, 0}), 0.1) << name;
+    }
+}
+
+TEST(ActivityDirector, TallPeopleTakeHighDoors) {
+    // The low door is nearer to both, whoever departs first.
+    const Scene room = testing::scene(
+        "fence id=shell path=-5,-2;5,-2;5,2;-5,2 closed=yes height=2.5\n"
+        "wall id=w1 from=0,-2 to=0,2 height=2.5\n"
+        "door id=low wall=w1 at=0,-1 size=0.9 height=1.2 open=yes\n"
+        "door id=high wall=w1 at=0,1.3 size=0.9 height=2.1 open=yes\n"
+        "inside at=-4,0\nzone id=far at=3.5,-1 size=2,1\nzone id=near at=2,-0.5 size=1,1\n",
+        "human id=child at=-4,0 height=1.1\nhuman id=tall at=-4,-1 height=1.8\n");
+    for (const bool is_child_first : {true, false}) {
+        const std::string second = is_child_first ? "tall goes far" : "child goes near";
+        Lived day("at 00:00 " + std::string(is_child_first ? "child goes near" : "tall goes far") +
+                      "\nat 00:00:20 " + second + '\n',
+                  room);
+        day.run(80);
+        const EventLog& log = day.simulation.events();
+        ASSERT_EQ(log.next(), 4) << second;
+        EXPECT_EQ(log.at(1).value, 0);
+        EXPECT_EQ(log.at(3).value, 0) << second;
+        EXPECT_LE(log.at(3).time - log.at(2).time, seconds(15)) << second;
     }
 }
 

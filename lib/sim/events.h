@@ -27,7 +27,8 @@ enum class EventKind {
     Seen,   ///< `id` comes into the sight of `value` sensors, after zero
     Lost,   ///< no sensor sees `id` any more
     State,  ///< the state `other` of the sensor or actuator `id` has become `text`
-    /// The person `id` begins (value 1) or ends (0) the action `text` of the activity `other`.
+    /// The person `id` begins (value 1), has done (0) or gives up (-1) the action `text` of the
+    /// activity `other`.
     Activity,
     Mark,    ///< a client wrote `text`
     Change,  ///< the request `text` changed the world; `other`: file of the scene after it

@@ -186,7 +186,7 @@ void Recorder::Data::begin() {
     events.pending = eventTableHead();
     if (!events.pending.ends_with('\n')) events.pending += '\n';
     states.pending = "t,id,state,value\n";
-    activities.pending = "begin,end,id,activity,action\n";
+    activities.pending = "begin,end,id,activity,action,done\n";
     timing.pending = "t,wall,steps\n";
     scene.pending = options.scene;
     scene.flush();
@@ -320,7 +320,7 @@ void Recorder::Data::appendDay(const Event& event) {
     appendCsvField(activities.pending, event.other);
     activities.pending += ',';
     appendCsvField(activities.pending, event.text);
-    activities.pending += '\n';
+    activities.pending.append(event.value == 0 ? ",1\n" : ",0\n");
 }
 
 void Recorder::Data::append(World& world) {
