@@ -14,7 +14,6 @@
 #include "record/schema.h"
 #include "scene/bodies.h"
 #include "scene/room_state.h"
-#include "sim/goal_ways.h"
 #include "sim/simulation.h"
 
 namespace ispace {
@@ -340,15 +339,36 @@ const GoalWays& ActivityDirector::waysOf(const World& world, double height) {
     return *ways;
 }
 
+/// Returns the spots where other movers stand or to which a plan sends them.
+std::vector<GoalWays::Spot> ActivityDirector::spotsOfOthers(const World& world,
+                                                            std::size_t mover) const {
+    std::vector<GoalWays::Spot> spots;
+    for (std::size_t i = 0; i < world.movers().size(); ++i) {
+        if (i == mover) continue;
+        const double radius = world.movers()[i].model.radius;
+        const RobotStatus status = world.status(i);
+        if (status.speed == 0 && status.sidespeed == 0)
+            spots.push_back({status.pose.position, radius});
+        const auto doer = doers_.find(world.movers()[i].id);
+        if (doer != doers_.end() && doer->second.line && doer->second.command > 0)
+            spots.push_back({doer->second.goal, radius});
+    }
+    return spots;
+}
+
 /// Sends a person on the way. \returns false if there is none, or the person has arrived
 bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& doer) {
     const DayAction& action = actionOf(doer);
     World& world = simulation.world();
-    doer.gave_up = doer.tries++ >= kMostTries;
-    if (doer.gave_up) return false;
-    const double height = world.people()[mover - world.robots().size()].height;
+    const GoalWays& ways = waysOf(world, world.people()[mover - world.robots().size()].height);
     const Point2 from = world.status(mover).pose.position;
-    std::vector<Point2> way = waysOf(world, height).way(from, action.target);
+    if (doer.tries++ >= kMostTries) {
+        // A crowd may leave no point of a zone free: in it is there.
+        doer.gave_up = !ways.isIn(from, action.target);
+        if (!doer.gave_up) doer.until = world.time() + action.lasts;
+        return false;
+    }
+    std::vector<Point2> way = ways.way(from, action.target, spotsOfOthers(world, mover));
     if (way.empty()) {
         doer.until = world.time() + kPause;
         return true;
@@ -358,6 +378,7 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
         doer.until = world.time() + action.lasts;
         return false;
     }
+    doer.goal = way.back();
     // Steering round others needs short steps; turns and straight lines are exact in any. Where
     // these run into somebody, every other try steers.
     constexpr SimTime kShortStep = std::chrono::milliseconds(100);

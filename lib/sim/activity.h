@@ -9,14 +9,15 @@
 #include <string_view>
 #include <vector>
 
+#include "geom/point.h"
 #include "sim/command.h"
+#include "sim/goal_ways.h"
 #include "sim/sim_time.h"
 
 namespace ispace {
 
 class Simulation;
 class World;
-class GoalWays;
 
 /// A piece of an activity.
 struct DayAction {
@@ -75,6 +76,7 @@ class ActivityDirector {
         std::size_t action = 0;
         bool is_begun = false, walks = false, gave_up = false;
         int command = 0;            // of the way
+        Point2 goal;                // likewise
         std::vector<Command> rest;  // of it, the next one last
         int tries = 0;
         SimTime until{};
@@ -85,6 +87,8 @@ class ActivityDirector {
     static bool goOnWalking(World& world, std::size_t mover, Doer& doer);
     bool depart(Simulation& simulation, std::size_t mover, Doer& doer);
     void arrive(World& world, std::size_t mover, Doer& doer) const;
+    [[nodiscard]] std::vector<GoalWays::Spot> spotsOfOthers(const World& world,
+                                                            std::size_t mover) const;
     const GoalWays& waysOf(const World& world, double height);
     void tell(Simulation& simulation, const Doer& doer, int value) const;
     [[nodiscard]] const DayAction& actionOf(const Doer& doer) const {

@@ -19,6 +19,7 @@ namespace ispace {
 namespace {
 
 using std::chrono::hours;
+using std::chrono::milliseconds;
 using std::chrono::minutes;
 using std::chrono::seconds;
 
@@ -98,10 +99,9 @@ TEST(GoalWays, GoesThroughOpenDoorsAlone) {
 }
 
 struct Lived {
-    explicit Lived(const std::string& script, const Scene& scene = home())
-        : room(scene),
-          world(room, std::chrono::milliseconds(500)),
-          simulation(world, {}, {Clock::Kind::Step, 1}, {}) {
+    explicit Lived(const std::string& script, const Scene& scene = home(),
+                   SimTime step = milliseconds(500))
+        : room(scene), world(room, step), simulation(world, {}, {Clock::Kind::Step, 1}, {}) {
         simulation.events().want({EventKind::Activity});
         simulation.follow(readDayPlan(script, "s.txt", world));
     }
@@ -186,7 +186,7 @@ TEST(ActivityDirector, TallPeopleTakeHighDoors) {
         "wall id=w1 from=0,-2 to=0,2 height=2.5\n"
         "door id=low wall=w1 at=0,-1 size=0.9 height=1.2 open=yes\n"
         "door id=high wall=w1 at=0,1.3 size=0.9 height=2.1 open=yes\n"
-        "inside at=-4,0\nzone id=far at=3.5,-1 size=2,1\nzone id=near at=2,-0.5 size=1,1\n",
+        "inside at=-4,0\nzone id=far at=3.5,-1 size=2,1\nzone id=near at=1,-1.4 size=1,0.8\n",
         "human id=child at=-4,0 height=1.1\nhuman id=tall at=-4,-1 height=1.8\n");
     for (const bool is_child_first : {true, false}) {
         const std::string second = is_child_first ? "tall goes far" : "child goes near";
@@ -200,6 +200,41 @@ TEST(ActivityDirector, TallPeopleTakeHighDoors) {
         EXPECT_EQ(log.at(3).value, 0) << second;
         EXPECT_LE(log.at(3).time - log.at(2).time, seconds(15)) << second;
     }
+}
+
+TEST(ActivityDirector, PeopleStandBesideEachOther) {
+    // One after another, both at once, beside a robot that stands there, and long steps.
+    for (const auto step : {milliseconds(50), milliseconds(1000)})
+        for (const std::string when : {"00:00", "00:00:15"}) {
+            Lived day(
+                "at 00:00 a goes right; stays 1h\nat " + when + " c goes right; stays 1h\n",
+                testing::scene("ispace size=12,6\nzone id=right at=3,0 size=3,3\n",
+                               "robot id=r at=3,0\nhuman id=a at=-4,1\nhuman id=c at=-4,-1\n"),
+                step);
+            day.run(static_cast<int>(seconds(40) / step));
+            const EventLog& log = day.simulation.events();
+            ASSERT_EQ(log.next(), 6);
+            const SimTime begun = when == "00:00" ? SimTime(0) : seconds(15);
+            for (std::int64_t i = 0; i < log.next(); ++i) {
+                const SimTime since = log.at(i).id == "a" ? SimTime(0) : begun;
+                if (log.at(i).value == 1) continue;
+                EXPECT_EQ(log.at(i).value, 0) << when << ' ' << log.at(i).id;
+                EXPECT_LT(log.at(i).time - since, seconds(16)) << when << ' ' << log.at(i).id;
+            }
+            for (const std::size_t person : {1U, 2U})
+                EXPECT_LT(distance(day.world.status(person).pose.position, Point2{3, 0}), 1.3);
+        }
+}
+
+TEST(ActivityDirector, InAFullZoneIsThere) {
+    // The robot beside it leaves no free point: one person is in it, the other comes too late.
+    Lived day("at 00:00 a goes spot\nat 00:00 c goes spot\n",
+              testing::scene("ispace size=8,6\nzone id=spot at=2,0 size=0.4,0.4\n",
+                             "robot id=r at=2.42,0\nhuman id=a at=1.85,0\nhuman id=c at=-3,0\n"));
+    day.run(200);
+    EXPECT_EQ(day.events(),
+              (std::vector<std::string>{"+a goes_spot: goes spot", "+c goes_spot: goes spot",
+                                        "-a goes_spot: goes spot", "!c goes_spot: goes spot"}));
 }
 
 TEST(ActivityDirector, AsksForChanges) {

@@ -2,7 +2,7 @@
 // Private to lib/sim: ways of people to zones and things.
 #pragma once
 
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,12 +23,22 @@ class GoalWays {
     GoalWays(const GoalWays&) = delete;
     GoalWays& operator=(const GoalWays&) = delete;
 
+    /// A circle on the floor that somebody takes up.
+    struct Spot {
+        Point2 center;
+        double radius = 0;
+    };
     /// Returns the points of a way to the zone or element `id`, without the start: to the free
     /// point of a zone that is nearest to the middle of its limits; to the free point nearest to an
-    /// element's middle. Empty if the id is unknown or no way leads there.
-    [[nodiscard]] std::vector<Point2> way(Point2 from, const std::string& id) const;
+    /// element's middle. Points that are too near to others are not free. Empty if the
+    /// id is unknown or no way leads there.
+    [[nodiscard]] std::vector<Point2> way(Point2 from, const std::string& id,
+                                          std::span<const Spot> others = {}) const;
+    /// Returns true if a point is in the zone `id`.
+    [[nodiscard]] bool isIn(Point2 p, const std::string& id) const;
 
   private:
+    double radius_;
     Environment environment_;
     Obstacles obstacles_;
     WayFinder wide_, narrow_;

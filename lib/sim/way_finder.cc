@@ -152,16 +152,15 @@ std::optional<double> WayFinder::length(const Field& field, Point2 to) const {
     return field.cost[*cell] * (grid_.limits.width() / grid_.columns) / kSide;
 }
 
-std::optional<Point2> WayFinder::nearestReached(const Field& field, Point2 to,
-                                                const Polygon& within) const {
+std::optional<Point2> WayFinder::nearestReached(
+    const Field& field, Point2 to, const std::function<bool(Point2)>& is_suitable) const {
     std::optional<Point2> best;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t cell = 0; cell < field.cost.size(); ++cell) {
         if (field.cost[cell] == kNoWay) continue;
         const Point2 center = centerOf(cell);
         const double apart = distance(center, to);
-        if (apart >= least || (!within.empty() && locate(within, center) == Side::Outside))
-            continue;
+        if (apart >= least || !is_suitable(center)) continue;
         least = apart;
         best = center;
     }

@@ -3,11 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "geom/point.h"
-#include "geom/polygon.h"
 #include "raster/grid.h"
 #include "sim/collision.h"
 
@@ -42,10 +42,9 @@ class WayFinder {
     [[nodiscard]] std::optional<double> length(const Field& field, Point2 to) const;
     /// Returns the points of the way after its first, up to `to`; empty without a way.
     [[nodiscard]] std::vector<Point2> way(const Field& field, Point2 to) const;
-    /// Returns the free point with a way that is nearest to a point, of a polygon unless it is
-    /// empty. O(cells)
-    [[nodiscard]] std::optional<Point2> nearestReached(const Field& field, Point2 to,
-                                                       const Polygon& within) const;
+    /// Returns the suitable free point with a way that is nearest to a point. O(cells)
+    [[nodiscard]] std::optional<Point2> nearestReached(
+        const Field& field, Point2 to, const std::function<bool(Point2)>& is_suitable) const;
     /// Returns true if the circle with the margin is free at that point.
     [[nodiscard]] bool isFree(Point2 p) const;
     /// Returns true if it is free on the straight way.
