@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/number.h"
-#include "server/session.h"
 #include "server/change_request.h"
+#include "server/session.h"
 #include "sim/run_limits.h"
 
 namespace ispace {

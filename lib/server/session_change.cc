@@ -9,9 +9,9 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "scene/room_state.h"
+#include "server/change_request.h"
 #include "server/network.h"
 #include "server/session.h"
-#include "server/change_request.h"
 
 namespace ispace {
 
