@@ -226,7 +226,7 @@ TEST(Building, ItsRoomsShareOneBudget) {
 }
 
 TEST(Building, PaysForFilesThatConfinedProgramsRead) {
-    const TemporaryFolder folder;
+    const RoomFolder folder;
     const std::string ifc =
         "ISO-10303-21;\nFILE_SCHEMA(('IFC4'));\n" + std::string(8000, ' ') + "\n";
     std::string storeys = "#env 1\n";
