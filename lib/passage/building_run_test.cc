@@ -280,9 +280,9 @@ TEST(BuildingRun, ARiderWhoseLandingIsOccupiedTurnsBack) {
     EXPECT_EQ(run.roomOf("ground/r1"), 0U);
     // The lift serves others once the landing is free.
     ASSERT_EQ(run.travel("upper/parked", {{1, {9, 7}}}, 0).refusal, "");
-    ASSERT_TRUE(await(run, "upper/parked", 60));
+    ASSERT_TRUE(await(run, "upper/parked", 400));
     ASSERT_EQ(run.travel("ground/r2", {{1, {9, 2}}}, 0).refusal, "");
-    const auto second = await(run, "ground/r2", 200);
+    const auto second = await(run, "ground/r2", 600);
     ASSERT_TRUE(second);
     EXPECT_EQ(second->outcome, Outcome::Done);
     EXPECT_EQ(run.roomOf("ground/r2"), 1U);

@@ -2,6 +2,7 @@
 #include "sim/state_watch.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "base/number.h"
@@ -78,6 +79,11 @@ void StateWatch::learnActuators(std::vector<RoomState>* changed) {
     reporting_.clear();
     for (std::size_t i = 0; i < world_->sensors().size(); ++i)
         if (reports(world_->sensors()[i])) reporting_.push_back(i);
+    if (changed == nullptr) return;
+    // A thing that is gone and comes again has a new state.
+    std::set<std::string> present;
+    for (const RoomState& state : statesOf(*world_)) present.insert(state.id + '.' + state.key);
+    std::erase_if(known_, [&](const auto& known) { return !present.contains(known.first); });
 }
 
 void StateWatch::learnSensor(std::size_t sensor, std::vector<RoomState>* changed) {
