@@ -147,6 +147,7 @@ TEST(PlaneCells, AWindowLeavesOutOtherCells) {
     Worlds worlds(room.scene.environment);
     const VisibleArea sight(room.scene.environment, 0, &worlds);
     const Sensor sensor = rangerAt(poseAt({0, 0, 3}, 0, -60), 90, 60, 20);
+    sight.prepare(sensor);
     const std::vector<FieldOfView> views = {*fieldOfView(sensor)};
     const RayWorld& mesh = sight.meshFor(sensor.model);
     CellParts all, part, none;
