@@ -38,6 +38,7 @@ constexpr std::array<double, 3> kSharesInside{0.01, 0.501, 0.99};
 constexpr double kManyCrossings = 20;
 constexpr double kFewCrossings = 200'000;
 
+constexpr double kFreeCrossings = 2;      // of each line: walls meet at both ends
 constexpr double kUnitsPerCrossing = 24;  // of Budget
 constexpr double kUnitsPerRoom = 8;       // that a crossing makes
 
@@ -343,7 +344,7 @@ bool crossTooOften(std::span<const Segment2> lines, double crossings) {
 
 bool payForCrossings(double crossings, std::size_t lines, RoomChoice rooms, Budget& budget) {
     const double each = kUnitsPerCrossing + (rooms == RoomChoice::All ? kUnitsPerRoom : 0);
-    const double units = each * (crossings - static_cast<double>(lines));
+    const double units = each * (crossings - kFreeCrossings * static_cast<double>(lines));
     return budget.take(static_cast<std::uint64_t>(std::max(0.0, units)));
 }
 

@@ -93,7 +93,7 @@ inline bool crossTooOften(std::span<const Segment2> lines) {
     return crossTooOften(lines, sampledCrossings(lines));
 }
 
-/// Takes units of work for crossings beyond one a line; as many are the corners of outlines.
+/// Takes units of work for crossings beyond two a line, as walls meet others at both ends.
 /// \param rooms All: a room that each of them makes costs, too
 /// \return false if fewer are left
 bool payForCrossings(double crossings, std::size_t lines, RoomChoice rooms, Budget& budget);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "base/budget.h"
 #include "io/importers.h"
 #include "support/test_import.h"
 
@@ -208,6 +209,18 @@ TEST(PlanRooms, HomeIsTheRoom) {
     // Without an enclosing room the largest is taken, as by default.
     plan.home = Point2{-9, 50};
     EXPECT_DOUBLE_EQ(choose(plan).area(), 20);
+}
+
+TEST(PlanRooms, WallsOfALargeBuildingMayMeet) {
+    constexpr std::size_t kBytesALine = 60;
+    constexpr double kMeetings = 2.2;  // of each wall
+    for (const std::size_t lines : {1'000U, 100'000U, 1'000'000U}) {
+        Budget budget(kBytesALine * lines);
+        const double crossings = kMeetings * static_cast<double>(lines);
+        EXPECT_TRUE(payForCrossings(crossings, lines, RoomChoice::Largest, budget)) << lines;
+        EXPECT_FALSE(payForCrossings(20 * crossings, lines, RoomChoice::Largest, budget) &&
+                     lines == 1'000'000U);
+    }
 }
 
 /// Areas that a person would mean; `options` where a person has to say something.
