@@ -288,6 +288,18 @@ TEST(BuildingRun, ARiderWhoseLandingIsOccupiedTurnsBack) {
     EXPECT_EQ(run.roomOf("ground/r2"), 1U);
 }
 
+TEST(BuildingRun, AMoverKeptFromTheLandingLeavesTheQueue) {
+    for (const char* at : {"2.6,4", "2.9,4"}) {
+        const BuildingScene building = buildingOf(
+            std::string("robot id=ground/r1 at=6,4\nrobot id=ground/parked at=") + at + '\n');
+        BuildingRun run(building, optionsOf());
+        ASSERT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).refusal, "");
+        const auto end = await(run, "ground/r1", 300);
+        ASSERT_TRUE(end) << at;
+        EXPECT_EQ(end->outcome, Outcome::Unreached) << at;
+    }
+}
+
 /// Returns the findings of a script, or "" without any.
 std::string scriptFindings(const BuildingRun& run, const std::string& text) {
     return testing::findings([&] { (void)BuildingScript(text, "s.txt", run); });

@@ -239,6 +239,7 @@ const Landing* BuildingRun::Data::landingUnder(const Traveller& who) const {
 void BuildingRun::Data::giveUp(Traveller& who, BuildingTrip& trip, Outcome outcome) {
     if (trip.ending || landingUnder(who) == nullptr)
         return finish(who.id, trip.ending.value_or(outcome));
+    release(who.id);
     trip.ending = outcome;
     trip.attempts = 0;
     trip.state = TripState::Setting;
