@@ -15,7 +15,7 @@ laser id=in at=2,2
 laser id=low at=4,3,-0.1
 robot id=r at=10,3
 human id=h at=6,3 path=6,3;9,3
-laser id=todo
+laser id=pending
 END
 
 out="layout.3dm:2:1: laser out stands outside the room at (9.0, 3.0); move it in"
@@ -23,7 +23,7 @@ in="layout.3dm:3:1: laser in stands inside cube c at (2.0, 2.0); move it, or rai
 low="layout.3dm:4:1: laser low stands below the floor at (4.0, 3.0); raise it by 0.10 m"
 robot="layout.3dm:5:1: robot r stands outside the room at (10.0, 3.0); move it in"
 path="layout.3dm:6:1: human h has a path that leaves the room at (9.0, 3.0); move that point in"
-todo="layout.3dm:7:1: laser todo has no position and takes no readings; give it \`at\` or \`on\`, or let arrange place it"
+pending="layout.3dm:7:1: laser pending has no position and takes no readings; give it \`at\` or \`on\`, or let arrange place it"
 
 # findings TOOL SENTENCE…: ./err holds these findings and no others, in any order.
 findings() {
@@ -36,7 +36,7 @@ findings() {
 }
 
 expect_status 1 envc room.env layout.3dm --check
-findings envc "$out" "$in" "$low" "$robot" "$path" "$todo"
+findings envc "$out" "$in" "$low" "$robot" "$path" "$pending"
 
 # Each command of --suggest resolves the findings that it tells; the sensor without a position is a sixth.
 expect_status 1 envc room.env layout.3dm --check --suggest 9
@@ -54,13 +54,13 @@ expect_status 1 envc room.env layout.3dm --check --suggest 1
 expect_error 2 envc room.env layout.3dm --suggest
 
 expect_status 0 scan room.env layout.3dm
-findings scan "$out" "$in" "$low" "$robot" "$todo"
+findings scan "$out" "$in" "$low" "$robot" "$pending"
 expect_status 0 scan room.env layout.3dm --select 'o*'
 findings scan "$out"
 expect_status 0 coverage room.env layout.3dm
-findings coverage "$out" "$in" "$low" "$robot" "$todo"
+findings coverage "$out" "$in" "$low" "$robot" "$pending"
 expect_status 0 simrun room.env layout.3dm --listen 127.0.0.1:0 --clock fast --until 0.1
-findings simrun "$out" "$in" "$low" "$robot" "$path" "$todo"
+findings simrun "$out" "$in" "$low" "$robot" "$path" "$pending"
 expect_status 0 arrange room.env layout.3dm
 findings arrange "$out" "$in" "$low" "$robot"
 for tool in scan coverage; do

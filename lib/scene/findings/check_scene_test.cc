@@ -213,17 +213,17 @@ TEST(CheckScene, PathsThatLeaveTheRoom) {
 TEST(CheckScene, FiltersChecksAndIds) {
     const Scene made =
         scene("ispace id=room at=4,3 size=8,6\ncube id=c at=2,2 size=1\ncube at=2.2,2 size=1\n",
-              "laser id=in at=2,2\nlaser id=out at=9,3\nrobot id=r at=10,3\nlaser id=todo\n");
+              "laser id=in at=2,2\nlaser id=out at=9,3\nrobot id=r at=10,3\nlaser id=spare\n");
     const auto found = [&made](const FindingFilter& filter) {
         std::string ids;
         for (const Finding& finding : checkScene(made, filter)) ids += finding.element + ' ';
         return ids;
     };
-    EXPECT_EQ(found({}), "c in in out r todo ");
+    EXPECT_EQ(found({}), "c in in out r spare ");
     EXPECT_EQ(found({.checks = {"outside"}}), "out r ");
-    EXPECT_EQ(found({.checks = {"unplaced", "buried"}}), "in in todo ");
-    const auto is_laser = [](const std::string& id) { return id == "out" || id == "todo"; };
-    EXPECT_EQ(found({.ids = is_laser}), "out todo ");
+    EXPECT_EQ(found({.checks = {"unplaced", "buried"}}), "in in spare ");
+    const auto is_laser = [](const std::string& id) { return id == "out" || id == "spare"; };
+    EXPECT_EQ(found({.ids = is_laser}), "out spare ");
     EXPECT_EQ(found({.checks = {"outside"}, .ids = is_laser}), "out ");
     for (const Diagnostic& warning : sceneWarnings(made, {.checks = {"outside"}}))
         EXPECT_EQ(warning.severity, Severity::Warning);

@@ -32,7 +32,7 @@ TEST(Remedies, MoveRecordsIntoTheRoomAndApart) {
         "cube id=b at=2.9,2 size=1\n"
         "laser id=out at=39,3\n"
         "laser id=low at=6,5,-0.1\n"
-        "laser id=todo\n"
+        "laser id=spare\n"
         "robot id=r at=6,2\n"
         "human id=h at=6.2,2\n");
     const std::vector<Remedy> remedies = remediesIn(scene);
@@ -51,7 +51,7 @@ TEST(Remedies, AreNoneWhereAllIsWellOrNoMoveHelps) {
     // Walls have no position of their own, and no mounted sensor moves without its carrier.
     EXPECT_TRUE(remediesIn(sceneOf("#env 1\nispace id=room at=0,0 size=8,6\n"
                                    "wall id=a from=-2,0 to=2,0\nwall id=b from=0,-2 to=0,2\n"
-                                   "laser id=todo\n"))
+                                   "laser id=spare\n"))
                     .empty());
     // A cube as large as the room shares space with its walls wherever it stands.
     const Scene full = sceneOf("#env 1\nispace size=2,2\ncube id=c at=0,0 size=2.5\n");
