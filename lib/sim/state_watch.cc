@@ -2,7 +2,6 @@
 #include "sim/state_watch.h"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "base/number.h"
@@ -29,6 +28,8 @@ struct StateText {
         return "";
     }
 };
+
+std::string nameOf(const RoomState& state) { return state.id + '.' + state.key; }
 
 bool isState(const ReadingField& field) { return (field.uses & kIsState) != 0; }
 
@@ -75,15 +76,19 @@ std::vector<RoomState> StateWatch::changed() {
 /// Reads the records, of which a change may have made others.
 void StateWatch::learnActuators(std::vector<RoomState>* changed) {
     changes_ = world_->changes();
-    for (RoomState& state : roomStates(world_->scene())) learn(std::move(state), changed);
+    // A thing that is gone is forgotten: if it comes again, its state is new.
+    auto before = std::exchange(known_, {});
+    const auto keep = [&](const RoomState& state) { known_.insert(before.extract(nameOf(state))); };
+    for (RoomState& state : roomStates(world_->scene())) {
+        keep(state);
+        learn(std::move(state), changed);
+    }
     reporting_.clear();
-    for (std::size_t i = 0; i < world_->sensors().size(); ++i)
-        if (reports(world_->sensors()[i])) reporting_.push_back(i);
-    if (changed == nullptr) return;
-    // A thing that is gone and comes again has a new state.
-    std::set<std::string> present;
-    for (const RoomState& state : statesOf(*world_)) present.insert(state.id + '.' + state.key);
-    std::erase_if(known_, [&](const auto& known) { return !present.contains(known.first); });
+    for (std::size_t i = 0; i < world_->sensors().size(); ++i) {
+        if (!reports(world_->sensors()[i])) continue;
+        reporting_.push_back(i);
+        forEachState(*world_, i, keep);
+    }
 }
 
 void StateWatch::learnSensor(std::size_t sensor, std::vector<RoomState>* changed) {
@@ -91,7 +96,7 @@ void StateWatch::learnSensor(std::size_t sensor, std::vector<RoomState>* changed
 }
 
 void StateWatch::learn(RoomState state, std::vector<RoomState>* changed) {
-    std::string& known = known_[state.id + '.' + state.key];
+    std::string& known = known_[nameOf(state)];
     if (known == state.value) return;
     known = state.value;
     if (changed != nullptr) changed->push_back(std::move(state));
