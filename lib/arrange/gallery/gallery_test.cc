@@ -5,7 +5,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -13,6 +12,7 @@
 #include "arrange/gallery/witness_sets.h"
 #include "geom/arrangement.h"
 #include "geom/visibility/visibility.h"
+#include "support/test_problems.h"
 
 namespace ispace {
 namespace {
@@ -179,23 +179,10 @@ TEST(Gallery, SameForAnyNumberOfThreads) {
     EXPECT_EQ(one.witnesses, two.witnesses);
 }
 
-/// Says stop after this number of queries.
-class StopAfter final : public Progress {
-  public:
-    explicit StopAfter(int queries) : left_(queries) {}
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
-    void advance(std::int64_t /*count*/) override {}
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return left_-- <= 0; }
-
-  private:
-    mutable std::atomic<int> left_;
-};
-
 TEST(Gallery, StoppedKeepsAnHonestInterval) {
     const std::vector<Region> floor{{comb(6), {}}};
     for (const int queries : {0, 1, 5, 20, 40, 60, 100, 200}) {
-        StopAfter progress(queries);
+        StopWhen progress(afterAsking(queries));
         const GalleryCover cover = guardGallery(floor, progress);
         EXPECT_GE(cover.guards.size(), 6U) << queries;
         EXPECT_GE(cover.bound, 1U) << queries;

@@ -12,6 +12,8 @@
 #include "arrange/poses/certificate.h"
 #include "arrange/poses/pose_search.h"
 #include "geom/visibility/visibility.h"
+#include "support/test_pose_floors.h"
+#include "support/test_problems.h"
 
 namespace ispace {
 namespace {
@@ -23,36 +25,6 @@ using poses::BoxViews;
 using poses::PoseBox;
 using poses::PoseFloor;
 using poses::Sector;
-
-/// Ends a search after this number of queries.
-class Rounds final : public Progress {
-  public:
-    explicit Rounds(int count) : left_(count) {}
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
-    void advance(std::int64_t /*count*/) override {}
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return --left_ < 0; }
-
-  private:
-    mutable int left_;
-};
-
-/// Two rooms with a door between them, and a pillar in the second.
-Region withPillar() {
-    return {{{0, 0},
-             {6, 0},
-             {6, 2},
-             {6.2, 2},
-             {6.2, 0},
-             {11, 0},
-             {11, 5},
-             {6.2, 5},
-             {6.2, 3},
-             {6, 3},
-             {6, 5},
-             {0, 5}},
-            {{{8, 2}, {8, 3}, {9, 3}, {9, 2}}}};
-}
 
 /// A gallery of many reflex corners, in which portals lie at all angles.
 Region comb() {
@@ -70,7 +42,7 @@ Region comb() {
 PoseCertificate certificateOf(const Region& region, const Sector& sector, int sensors, int rounds) {
     PoseCertificate certificate;
     const PoseFloor floor({&region, 1}, kCells);
-    Rounds progress(rounds);
+    StopWhen progress(afterAsking(rounds));
     const PoseBound bound = boundOverPoses(
         floor, sector, {.sensors = sensors, .gap = 0.001, .certificate = &certificate}, progress);
     EXPECT_EQ(bound.bound, certificate.bound);
@@ -84,7 +56,7 @@ CertificateCheck checked(const Region& region, const Sector& sector, int sensors
 
 std::string refusalOf(const PoseCertificate& certificate) {
     try {
-        checked(withPillar(), {3, 2, 0}, 2, certificate);
+        checked(roomsWithPillar(), {3, 2, 0}, 2, certificate);
     } catch (const FormatError& error) {
         return error.what();
     }
@@ -92,7 +64,7 @@ std::string refusalOf(const PoseCertificate& certificate) {
 }
 
 TEST(CheckCertificate, ConfirmsSearches) {
-    for (const Region& region : {withPillar(), comb()})
+    for (const Region& region : {roomsWithPillar(), comb()})
         for (const Sector& sector : {Sector{3, 2, -1}, Sector{2.5, 4, 0}, Sector{30, 2 * kPi, 0}})
             for (const int sensors : {1, 2, 3})
                 for (const int rounds : {0, 40}) {
@@ -105,7 +77,7 @@ TEST(CheckCertificate, ConfirmsSearches) {
 }
 
 TEST(CheckCertificate, TextSurvivesWritingAndReading) {
-    const PoseCertificate made = certificateOf(withPillar(), {3, 2, 0}, 3, 30);
+    const PoseCertificate made = certificateOf(roomsWithPillar(), {3, 2, 0}, 3, 30);
     const std::string text = certificateText(made, {"arrange a.env", "more"});
     const PoseCertificate again = readCertificate(text, "c");
     EXPECT_EQ(again.bound, made.bound);
@@ -138,7 +110,7 @@ TEST(CheckCertificate, RefusesTextThatIsNone) {
 }
 
 TEST(CheckCertificate, RefusesTreesThatLeaveOutPoses) {
-    const PoseCertificate made = certificateOf(withPillar(), {3, 2, 0}, 2, 20);
+    const PoseCertificate made = certificateOf(roomsWithPillar(), {3, 2, 0}, 2, 20);
     EXPECT_EQ(refusalOf(made), "");
     PoseCertificate cut = made;
     cut.tuples.pop_back();
@@ -173,12 +145,12 @@ TEST(CheckCertificate, EachDroppedLeafIsNoticed) {
 
 TEST(CheckCertificate, ALowerClaimIsNotConfirmed) {
     const Sector sector{3, 2, 0};
-    PoseCertificate made = certificateOf(withPillar(), sector, 2, 60);
+    PoseCertificate made = certificateOf(roomsWithPillar(), sector, 2, 60);
     made.bound *= 0.97;
-    EXPECT_GT(checked(withPillar(), sector, 2, made).bound, made.bound);
+    EXPECT_GT(checked(roomsWithPillar(), sector, 2, made).bound, made.bound);
     // Nor does the proof for two sensors hold for three, or for a longer range.
-    EXPECT_GT(checked(withPillar(), sector, 3, made).bound, made.bound);
-    EXPECT_GT(checked(withPillar(), {4, 2, 0}, 2, made).bound, made.bound);
+    EXPECT_GT(checked(roomsWithPillar(), sector, 3, made).bound, made.bound);
+    EXPECT_GT(checked(roomsWithPillar(), {4, 2, 0}, 2, made).bound, made.bound);
 }
 
 /// Poses of the box see no more than its view, by exact area, and by cell.
@@ -216,7 +188,7 @@ void expectHolds(const Region& region, const Sector& sector, const PoseBox& box,
 TEST(BoxViews, HoldTheViewsOfTheirPoses) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> x(0, 11), y(0, 5), turn(0, 2 * kPi), size(0, 2);
-    for (const Region& region : {withPillar(), comb()})
+    for (const Region& region : {roomsWithPillar(), comb()})
         for (int i = 0; i < 40; ++i) {
             const Point2 low{x(random), y(random)};
             const PoseBox box{
@@ -230,7 +202,7 @@ TEST(BoxViews, HoldTheViewsOfTheirPoses) {
 TEST(BoxViews, AreNoLargerThanThoseOfTheSearch) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> x(0, 11), y(0, 5), turn(0, 2 * kPi), size(0, 2);
-    for (const Region& region : {withPillar(), comb()}) {
+    for (const Region& region : {roomsWithPillar(), comb()}) {
         const PoseFloor floor({&region, 1}, kCells);
         for (int i = 0; i < 100; ++i) {
             const Point2 low{x(random), y(random)};

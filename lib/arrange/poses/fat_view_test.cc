@@ -11,28 +11,12 @@
 #include <vector>
 
 #include "geom/visibility/visibility.h"
+#include "support/test_pose_floors.h"
 
 namespace ispace::poses {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-/// Two rooms with a door of 1 m between them, and a pillar in the second.
-Region twoRooms() {
-    return {{{0, 0},
-             {6, 0},
-             {6, 2},
-             {6.2, 2},
-             {6.2, 0},
-             {11, 0},
-             {11, 5},
-             {6.2, 5},
-             {6.2, 3},
-             {6, 3},
-             {6, 5},
-             {0, 5}},
-            {{{8, 2}, {8, 3}, {9, 3}, {9, 2}}}};
-}
 
 double areaOf(const PoseFloor& floor, const std::vector<std::uint8_t>& parts) {
     return static_cast<double>(std::accumulate(parts.begin(), parts.end(), std::uint64_t{0})) *
@@ -57,7 +41,7 @@ struct Seen {
 };
 
 TEST(FatView, AFloorInCellsHasItsArea) {
-    const Region region = twoRooms();
+    const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, 5000);
     EXPECT_NEAR(floor.area(), region.area(), 1e-12);
     EXPECT_GE(areaOf(floor, floor.parts()), region.area() - 1e-9);
@@ -65,7 +49,7 @@ TEST(FatView, AFloorInCellsHasItsArea) {
 }
 
 TEST(FatView, AViewFromAPointHasItsExactArea) {
-    const Region region = twoRooms();
+    const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, 5000);
     const Seen seen(region);
     std::mt19937 random(1);
@@ -85,7 +69,7 @@ TEST(FatView, AViewFromAPointHasItsExactArea) {
 }
 
 TEST(FatView, HoldsAllViewsOfItsPosesAndLittleElse) {
-    const Region region = twoRooms();
+    const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, 5000);
     const Seen seen(region);
     std::mt19937 random(7);
@@ -121,7 +105,7 @@ TEST(FatView, HoldsAllViewsOfItsPosesAndLittleElse) {
 }
 
 TEST(FatView, AFieldOfAHalfTurnWithItsHeadings) {
-    const Region region = twoRooms();
+    const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, 5000);
     const Seen seen(region);
     for (const double span : {kPi / 2 - 1e-9, kPi / 2, kPi / 2 + 1e-9})

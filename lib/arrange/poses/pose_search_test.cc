@@ -13,6 +13,7 @@
 
 #include "geom/arrangement.h"
 #include "geom/visibility/visibility.h"
+#include "support/test_problems.h"
 
 namespace ispace {
 namespace {
@@ -22,24 +23,11 @@ constexpr double kPi = std::numbers::pi;
 using poses::PoseFloor;
 using poses::Sector;
 
-/// Ends a search after this number of queries.
-class Countdown final : public Progress {
-  public:
-    explicit Countdown(int count) : left_(count) {}
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
-    void advance(std::int64_t /*count*/) override {}
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return --left_ < 0; }
-
-  private:
-    mutable int left_;
-};
-
 PoseBound boundOf(const Region& region, const Sector& sector, PoseSearchOptions options,
                   int rounds = 60) {
     const PoseFloor floor({&region, 1}, 3000);
-    Countdown countdown(rounds);
-    return boundOverPoses(floor, sector, options, countdown);
+    StopWhen stop(afterAsking(rounds));
+    return boundOverPoses(floor, sector, options, stop);
 }
 
 Region rectangle(double width, double depth) {
