@@ -11,14 +11,13 @@
 
 #include "arrange/gallery/gallery.h"
 #include "arrange/measured_scene.h"
+#include "arrange/opaque_floor.h"
 #include "arrange/poses/pose_search.h"
 #include "arrange/refine.h"
 #include "base/number.h"
 #include "coverage/coverage.h"
-#include "env/level.h"
 #include "geom/arrangement.h"
 #include "geom/predicates.h"
-#include "geom/tolerance.h"
 
 namespace ispace {
 
@@ -35,26 +34,11 @@ double heightOf(const ArrangeOptions& options) {
     return heights.empty() ? kScanHeight : heights.front();
 }
 
-/// Returns the free floor at a height of walls that a proof can handle.
+/// Returns the free floor at a height, if a proof can handle its walls.
 std::vector<Region> floorAt(const Scene& scene, double height) {
     const std::shared_ptr<const Level> level = scene.environment.level(height);
-    const Slice& slice = level->slice();
-    if (!slice.rounds.empty()) refusePoses("round bodies stand at the height of the lasers");
     std::vector<Region> floor = level->freeFloor();
-    // The middle of a line rounds, so that those of boundaries may lie inside, too.
-    const auto is_inside = [&floor](const Segment2& line) {
-        const Point2 middle = line.a + 0.5 * (line.b - line.a);
-        return std::any_of(floor.begin(), floor.end(), [middle](const Region& region) {
-            if (region.locate(middle) != Side::Inside) return false;
-            bool is_clear = true;
-            region.forEachEdge([&](const Segment2& edge) {
-                is_clear = is_clear && distance(middle, edge) > kCornerTolerance;
-            });
-            return is_clear;
-        });
-    };
-    if (std::any_of(slice.sheets.begin(), slice.sheets.end(), is_inside))
-        refusePoses("a wall without thickness stands in the room, with floor on both sides");
+    if (const std::string why = whyNotOpaque(*level, floor); !why.empty()) refusePoses(why);
     return floor;
 }
 
@@ -245,6 +229,20 @@ void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& prog
     arrangement.is_complete = arrangement.is_complete && found.is_complete;
 }
 
+namespace {
+
+/// True on the floor, and as far beside it as boxes of poses are widened.
+bool isOn(const std::vector<Region>& floor, Point2 p) {
+    return std::any_of(floor.begin(), floor.end(), [p](const Region& region) {
+        bool is_on = region.locate(p) != Side::Outside;
+        region.forEachEdge(
+            [&](const Segment2& edge) { is_on = is_on || distance(p, edge) < poses::kWiden; });
+        return is_on;
+    });
+}
+
+}  // namespace
+
 CheckedPoses checkPoses(const Scene& scene, const PoseCertificate& certificate,
                         const std::string& name) {
     const Laser* first = nullptr;
@@ -270,6 +268,9 @@ CheckedPoses checkPoses(const Scene& scene, const PoseCertificate& certificate,
         refusePoses("wanted 1 to " + std::to_string(kMostPosed) + " lasers with a pose, found " +
                     std::to_string(checked.sensors));
     const std::vector<Region> floor = floorAt(scene, height);
+    for (const Sensor& sensor : scene.sensors)
+        if (kindOf(sensor.model).perceives && !isOn(floor, sensor.pose.position.onFloor()))
+            refusePoses(sensor.id + " is not on the free floor");
     Box2 box;
     for (const Region& region : floor)
         for (const Point2 p : region.outline) box.add(p);

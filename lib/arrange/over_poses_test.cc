@@ -80,6 +80,36 @@ TEST(OverPoses, RefusesRoomsAndSensorsThatAreNoGallery) {
     EXPECT_EQ(refusalOf(room + "wall from=0,0 to=1,0 thickness=0.1\n"), "");
 }
 
+TEST(OverPoses, RefusesRoomsWithSightThroughTheirEdges) {
+    const std::string rooms =
+        "#env 1\nfence path=0,0;12,0;12,4;0,4 closed=yes\n"
+        "inside at=1,1\ninside at=6,1\ninside at=9,1\n";
+    const auto walls = [](const std::string& keys) {
+        return "wall id=p from=4,0 to=4,4" + keys + "\nwall id=q from=8,0 to=8,4" + keys + '\n';
+    };
+    EXPECT_EQ(refusalOf(rooms + walls("")), "");
+    EXPECT_NE(refusalOf(rooms + walls(" height=0.1")).find("over a low wall"), std::string::npos);
+    // In both walls; a window in the outer one alone shows no floor.
+    EXPECT_NE(refusalOf(rooms + walls(" thickness=0.2") +
+                        "window wall=p offset=2 size=3,0.1,2 sill=0 glass=none\n"
+                        "window wall=q offset=2 size=3,0.1,2 sill=0 glass=clear\n")
+                  .find("through the edge of the floor at"),
+              std::string::npos);
+    EXPECT_EQ(refusalOf(rooms + walls("") + "window at=2,0 size=3,0.1,2 sill=0 glass=none\n"), "");
+    EXPECT_NE(refusalOf(rooms + walls("") +
+                        "window at=2,0 size=3,0.1,2 sill=0 glass=none\n"
+                        "window at=10,0 size=3,0.1,2 sill=0 glass=none\n")
+                  .find("through the edge of the floor at"),
+              std::string::npos);
+}
+
+TEST(OverPoses, RefusesSheetsOfWhichAPartStandsOutsideOfBodies) {
+    EXPECT_NE(refusalOf("#env 1\nispace size=8,6\nwall from=-3,-1 to=3,-1 thickness=0\n"
+                        "cube at=0,-1 size=0.4,0.4,1\n")
+                  .find("without thickness"),
+              std::string::npos);
+}
+
 TEST(OverPoses, BoundsTheCoverageOfAnyPoses) {
     const Scene scene = roomScene("#env 1\nispace size=12,8\n");
     ArrangeOptions options = coarse();
@@ -136,6 +166,8 @@ TEST(OverPoses, ChecksLevelLasersOfOneKindAlone) {
     EXPECT_EQ(refusal(laser + laser), "");
     EXPECT_NE(refusal("").find("1 to 4 lasers"), std::string::npos);
     EXPECT_NE(refusal(laser + laser + laser + laser + laser).find("1 to 4"), std::string::npos);
+    EXPECT_NE(refusal("laser id=out at=9,1\n").find("out is not on the free floor"),
+              std::string::npos);
     EXPECT_NE(refusal("camera at=1,1,2\n").find("level lasers"), std::string::npos);
     EXPECT_NE(refusal("laser at=1,1 tilt=5\n").find("level lasers"), std::string::npos);
     EXPECT_NE(refusal(laser + "laser at=2,1 range=3\n").find("one kind"), std::string::npos);

@@ -34,6 +34,9 @@ void verifyCertificate(const ArrangeToolOptions& options) {
                          text(checked.check.bound) + ", not the " + text(certificate.bound) +
                          " that it states");
     const double bound = std::min(checked.check.bound, checked.floor);
+    if (checked.found > bound * (1 + kRounding))
+        throw UnmetError(printable(file) + ": the layout sees " + text(checked.found) +
+                         ", more than the " + text(bound) + " that the certificate allows");
     const double gap = bound > 0 ? std::max(0.0, (bound - checked.found) / bound) : 0;
     tell(options.common, "arrange",
          "the layout sees " + text(checked.found) + "; in any poses " +
