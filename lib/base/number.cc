@@ -340,8 +340,7 @@ std::string formatDouble(double value) {
 
 void appendDouble(std::string& out, double value) {
     std::array<char, kBuffer> buffer;
-    const char* const end =
-        writeShortest<unsigned __int128>(buffer.data(), value, std::bit_cast<std::uint64_t>(value));
+    const char* const end = writeDouble(buffer.data(), value);
     // Not by iterators, for which the library is slower.
     out.append(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
 }
@@ -356,6 +355,10 @@ void appendFloat(std::string& out, float value) {
     std::array<char, kBuffer> buffer;
     const char* const end = writeFloat(buffer.data(), value);
     out.append(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
+}
+
+char* writeDouble(char* to, double value) {
+    return writeShortest<unsigned __int128>(to, value, std::bit_cast<std::uint64_t>(value));
 }
 
 char* writeFloat(char* to, float value) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
 #include <string>
@@ -90,6 +91,9 @@ constexpr std::size_t kNumberSlack = 32;
 /// \pre value is finite, `to` has room for kNumberRoom + kNumberSlack characters
 char* writeFloat(char* to, float value);
 
+/// Writes formatDouble(value) in the same way.
+char* writeDouble(char* to, double value);
+
 /// Writes formatDouble(nineDecimals(value)) in the same way.
 char* writeNineDecimals(char* to, double value);
 
@@ -111,6 +115,11 @@ class TextTail {
 
     void put(char c) { *end_++ = c; }
     void put(std::string_view text) { end_ += text.copy(end_, text.size()); }
+    /// Puts the first `size` characters of a text kept from earlier, of which kNumberSlack exist.
+    void putKept(const char* text, std::size_t size) {
+        std::memcpy(end_, text, kNumberSlack);
+        end_ += size;
+    }
     void put(float value) { end_ = writeFloat(end_, value); }
     void putNineDecimals(double value) { end_ = writeNineDecimals(end_, value); }
     void put(std::size_t value) { end_ = writeInteger(end_, value); }

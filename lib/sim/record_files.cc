@@ -7,12 +7,14 @@
 #include <unistd.h>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <span>
 #include <system_error>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 #include "base/error.h"
@@ -209,23 +211,37 @@ namespace {
 
 /// Appends a row for each mover: time, id and numbers(its index).
 template <typename Numbers>
-void appendRows(std::string& out, SimTime time, const auto& movers, Numbers numbers) {
+void appendRows(std::string& out, RowTexts& known, SimTime time, const auto& movers,
+                Numbers numbers) {
     if (movers.empty()) return;
     const std::string t = formatSimTime(time);
+    constexpr std::size_t kColumns = std::tuple_size_v<decltype(numbers(0))>;
+    known.resize(kColumns * movers.size());
+    auto text = known.begin();
     for (std::size_t i = 0; i < movers.size(); ++i) {
-        out.append(t).append(",").append(movers[i].id);  // a word that requires no quotes
+        const std::string& id = movers[i].id;  // a word that requires no quotes
+        TextTail tail(out, t.size() + id.size() + kColumns * (1 + kNumberRoom) + 2);
+        tail.put(t);
+        tail.put(',');
+        tail.put(id);
         for (const double value : numbers(i)) {
-            out += ',';
-            appendDouble(out, value);
+            NumberText& number = *text++;
+            if (const auto bits = std::bit_cast<std::uint64_t>(value); bits != number.bits) {
+                char* const begin = number.text.data();
+                number.bits = bits;
+                number.size = static_cast<std::size_t>(writeDouble(begin, value) - begin);
+            }
+            tail.put(',');
+            tail.putKept(number.text.data(), number.size);
         }
-        out += '\n';
+        tail.put('\n');
     }
 }
 
 }  // namespace
 
-void appendRobotRows(std::string& out, const World& world) {
-    appendRows(out, world.time(), world.robots(), [&world](std::size_t i) {
+void appendRobotRows(std::string& out, const World& world, RowTexts& known) {
+    appendRows(out, known, world.time(), world.robots(), [&world](std::size_t i) {
         const RobotStatus is = world.status(i);
         return std::array{is.pose.position.x,        is.pose.position.y,
                           is.pose.heading.degrees(), is.speed,
@@ -234,16 +250,16 @@ void appendRobotRows(std::string& out, const World& world) {
     });
 }
 
-void appendOdometryRows(std::string& out, const World& world) {
-    appendRows(out, world.time(), world.robots(), [&world](std::size_t i) {
+void appendOdometryRows(std::string& out, const World& world, RowTexts& known) {
+    appendRows(out, known, world.time(), world.robots(), [&world](std::size_t i) {
         const Pose2 pose = world.odometry(i).pose;
         return std::array{pose.position.x, pose.position.y, pose.heading.degrees()};
     });
 }
 
-void appendPeopleRows(std::string& out, const World& world) {
+void appendPeopleRows(std::string& out, const World& world, RowTexts& known) {
     const std::size_t robots = world.robots().size();
-    appendRows(out, world.time(), world.people(), [&world, robots](std::size_t i) {
+    appendRows(out, known, world.time(), world.people(), [&world, robots](std::size_t i) {
         const RobotStatus is = world.status(robots + i);
         return std::array{is.pose.position.x, is.pose.position.y,    is.pose.heading.degrees(),
                           is.speed,           is.rotspeed.degrees(), is.phase,

@@ -4,11 +4,13 @@
 
 #include <sys/types.h>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/number.h"
 #include "sim/sensor_reading.h"
 #include "sim/world.h"
 
@@ -120,15 +122,24 @@ class FrameFiles {
     std::vector<Frame> recent_;
 };
 
+/// The text of a number in a table.
+struct NumberText {
+    std::uint64_t bits = ~std::uint64_t{0};  ///< of the number; at first of none
+    std::size_t size = 0;
+    std::array<char, kNumberRoom + kNumberSlack> text;
+};
+/// The texts of a table's last rows: most numbers are those of the step before.
+using RowTexts = std::vector<NumberText>;
+
 // The header of a table, and the rows of all its movers at the world's time.
 constexpr std::string_view kRobotsHead =
     "t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall\n";
-void appendRobotRows(std::string& out, const World& world);
+void appendRobotRows(std::string& out, const World& world, RowTexts& known);
 constexpr std::string_view kOdometryHead = "t,id,x,y,heading_deg\n";
-void appendOdometryRows(std::string& out, const World& world);
+void appendOdometryRows(std::string& out, const World& world, RowTexts& known);
 constexpr std::string_view kPeopleHead =
     "t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall\n";
-void appendPeopleRows(std::string& out, const World& world);
+void appendPeopleRows(std::string& out, const World& world, RowTexts& known);
 
 /// Writes the ranges of robots' sonars, in the order of the model, "inf" without an echo; robots
 /// without sonars have no row.

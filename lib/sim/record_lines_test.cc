@@ -76,13 +76,16 @@ TEST_F(RecordLines, OfReceivers) {
 TEST_F(RecordLines, PeopleHaveATable) {
     const Scene scene = room();
     World world(scene, milliseconds(100));
-    std::string out;
-    appendPeopleRows(out, world);
+    std::string out, again;
+    RowTexts known, fresh;
+    appendPeopleRows(out, world, known);
     EXPECT_EQ(out, "0,h1,0,0,90,0,0,0,0,0\n");
     world.command(1, {Verb::Speed, 1});
     for (int i = 0; i < 10; ++i) world.step();
     out.clear();
-    appendPeopleRows(out, world);
+    appendPeopleRows(out, world, known);
+    appendPeopleRows(again, world, fresh);
+    EXPECT_EQ(out, again);
     const RobotStatus status = world.status(1);
     EXPECT_GT(status.phase, 0);
     EXPECT_TRUE(out.starts_with("1,h1,")) << out;

@@ -119,6 +119,7 @@ struct Recorder::Data {
     FolderLock lock;
     LineFile robots, odometry, people, scans, sonars, bumpers, events, states, activities, timing,
         info, scene;
+    RowTexts robot_texts, odometry_texts, people_texts;
     FrameFiles pictures, depths, scenes;
     std::int64_t scene_count = 0;
     steady_clock::time_point started = steady_clock::now(), flushed = started;
@@ -324,11 +325,11 @@ void Recorder::Data::appendDay(const Event& event) {
 }
 
 void Recorder::Data::append(World& world) {
-    appendRobotRows(robots.pending, world);
+    appendRobotRows(robots.pending, world, robot_texts);
     robots.endStep(steps);
-    if (options.odometry) appendOdometryRows(odometry.pending, world);
+    if (options.odometry) appendOdometryRows(odometry.pending, world, odometry_texts);
     odometry.endStep(steps);
-    appendPeopleRows(people.pending, world);
+    appendPeopleRows(people.pending, world, people_texts);
     people.endStep(steps);
     appendEvents();
     appendFeelings(world);
