@@ -18,6 +18,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/random.h"
+#include "base/run_files.h"
 
 namespace ispace {
 
@@ -105,6 +106,21 @@ OpenFile namelessFileBeside(const std::string& output) {
     file = OpenFile(::mkostemp(name.data(), O_APPEND | O_CLOEXEC));
     if (file.fd() >= 0) ::unlink(name.c_str());
     return file;
+}
+
+/// Gives an unnamed file the name and the rights of an older one.
+void takeName(int fd, int older, const std::string& name) {
+    const std::string from = "/proc/self/fd/" + std::to_string(fd), stand_in = name + ".new";
+    struct stat info {};
+    if (::fstat(older, &info) == 0) static_cast<void>(::fchmod(fd, info.st_mode & 07777));
+    const DeferredSignals held;
+    ::unlink(stand_in.c_str());
+    if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, stand_in.c_str(), AT_SYMLINK_FOLLOW) != 0)
+        failOn(stand_in);
+    if (::rename(stand_in.c_str(), name.c_str()) == 0) return;
+    const int error = errno;
+    ::unlink(stand_in.c_str());
+    throw std::system_error(error, std::generic_category(), name);
 }
 
 std::string beside(const std::string& one, const std::string& other) {
@@ -253,7 +269,13 @@ void JobResults::addFile(File file) {
 void JobResults::keep(const std::string& key, const Record& record) {
     files_[record.file].end = record.at + record.size + 1;
     const auto [at, is_new] = records_.try_emplace(key, record);
-    if (!is_new && is_merge_) return;
+    if (!is_new && is_merge_) {
+        const Record& other = at->second;
+        if (key != common_ || other.size != record.size || other.hash != record.hash)
+            files_[record.file].doubled = "its record " + excerpt(key) + " is in " +
+                                          displayName(files_[other.file].name) + ", too";
+        return;
+    }
     if (!is_new) live_ -= std::exchange(at->second, record).size;
     live_ += record.size;
 }
@@ -367,16 +389,31 @@ void JobResults::openKept(const std::string& name, const PartHead& head) {
 }
 
 void JobResults::rewriteKept() {
-    OutputFile anew(file());
-    anew.write(partHeadText(head()));
-    writeRecords(anew, {});
-    anew.commit();
-    JobResults rewritten;  // until it has been read, the results are those of the old file
+    File anew{.name = file(), .open = namelessFileBeside(file())};
+    if (anew.open.fd() < 0) failOn(file());
+    anew.append(partHeadText(head()));
+    writeRecords([&](std::string_view bytes) { anew.append(bytes); }, {});
+    // Locked and read before it takes the name: from then on it is as good as the old one.
+    static_cast<void>(::flock(anew.open.fd(), LOCK_EX | LOCK_NB));
+    const int fd = anew.open.fd();
+    JobResults rewritten;
     rewritten.is_kept_ = true;
-    rewritten.openKept(file(), head());
+    rewritten.addFile(std::move(anew));
+    takeName(fd, files_.front().open.fd(), std::filesystem::canonical(file()).string());
     files_ = std::move(rewritten.files_);
     records_ = std::move(rewritten.records_);
     live_ = rewritten.live_;
+}
+
+void JobResults::rewriteIfDue() {
+    const std::uint64_t end = files_.front().end;
+    if (!is_kept_ || end <= std::max(next_rewrite_, 2 * live_ + kMaxReplacedBytes)) return;
+    try {
+        rewriteKept();
+        next_rewrite_ = 0;
+    } catch (const std::system_error&) {
+        next_rewrite_ = end + kMaxReplacedBytes;  // no room for a second file
+    }
 }
 
 std::vector<std::string> JobResults::keys() const {
@@ -403,7 +440,7 @@ void JobResults::store(const std::string& key, std::string_view bytes) {
         files_.front().append(record);
         const std::uint64_t start = files_.front().end + record.size() - bytes.size() - 1;
         keep(key, {0, start, bytes.size(), hashOf(bytes)});
-        if (is_kept_ && files_.front().end > 2 * live_ + kMaxReplacedBytes) rewriteKept();
+        rewriteIfDue();
     } catch (const std::system_error& error) {
         if (!is_optional_) throw;
         trouble_ = error.what();
@@ -414,13 +451,14 @@ void JobResults::store(const std::string& key, std::string_view bytes) {
     next_ = end + std::max(interval_, kStoringShare * (end - begin));
 }
 
-void JobResults::writeRecords(OutputFile& to, std::span<const std::string_view> prefixes) const {
+void JobResults::writeRecords(const std::function<void(std::string_view)>& write,
+                              std::span<const std::string_view> prefixes) const {
     for (const auto& [key, record] : records_) {
         const auto begins = [&key = key](std::string_view prefix) {
             return key.starts_with(prefix);
         };
         if (prefixes.empty() || std::any_of(prefixes.begin(), prefixes.end(), begins))
-            to.write(partRecordText(key, bytesOf(key, record)));
+            write(partRecordText(key, bytesOf(key, record)));
     }
 }
 
@@ -429,7 +467,7 @@ void JobResults::writePart(const std::string& target,
     const std::lock_guard lock(*mutex_);
     OutputFile part(target);
     part.write(partHeadText(head()));
-    writeRecords(part, prefixes);
+    writeRecords([&](std::string_view bytes) { part.write(bytes); }, prefixes);
     part.write(partRecordText(kEnd, ""));
     part.commit();
 }

@@ -19,6 +19,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -84,7 +85,7 @@ class JobResults {
     /// Returns the result of a key. \throws FormatError if its bytes are damaged
     [[nodiscard]] std::optional<std::string> find(const std::string& key) const;
     /// Inserts a result, or replaces that of the same key; a merge does not store results. The kept
-    /// file is rewritten once most of it is replaced results.
+    /// file is rewritten once most of it is replaced results, or grows if that fails.
     /// \pre the key has no blank or newline and is not `end`
     /// \throws std::system_error if the disk is full; the file is then unchanged
     void store(const std::string& key, std::string_view bytes);
@@ -110,7 +111,8 @@ class JobResults {
     void setInterval(double seconds);
 
   private:
-    friend JobResults mergeParts(std::span<const std::string> files, std::string_view tool);
+    friend JobResults mergeParts(std::span<const std::string> files, std::string_view tool,
+                                 std::string_view common);
     friend PartHead partHeadOf(const std::string& file);
     friend bool isPartOf(const std::string& file, const PartHead& head);
     using Clock = std::chrono::steady_clock;
@@ -125,6 +127,7 @@ class JobResults {
         PartHead head = {};
         std::uint64_t begin = 0, end = 0;  // of its complete records
         bool is_finished = false;
+        std::string doubled = {};  // of a merge: why its records collide with another part's
 
         /// \param flags of open(2); with O_CREAT a missing file is created
         void openAs(int flags);
@@ -148,12 +151,16 @@ class JobResults {
     [[nodiscard]] std::string bytesOf(const std::string& key, const Record& record) const;
     void openKept(const std::string& name, const PartHead& head);
     void rewriteKept();
-    void writeRecords(OutputFile& to, std::span<const std::string_view> prefixes) const;
+    void rewriteIfDue();
+    void writeRecords(const std::function<void(std::string_view)>& write,
+                      std::span<const std::string_view> prefixes) const;
 
     std::vector<File> files_;
     std::map<std::string, Record, std::less<>> records_;
-    std::uint64_t live_ = 0;  // bytes of the records
+    std::uint64_t live_ = 0;          // bytes of the records
+    std::uint64_t next_rewrite_ = 0;  // size of the kept file from which it is rewritten
     bool is_kept_ = false, is_merge_ = false, is_optional_ = false;
+    std::string common_;  // of a merge
     std::string trouble_;
     std::map<std::string, int> steps_;
     Clock::duration interval_{};
@@ -162,9 +169,11 @@ class JobResults {
 };
 
 /// Merges the parts of all shards of one job.
+/// \param common key of the record that is equal in all parts
 /// \throws FormatError if a part is missing, duplicate, unfinished, of another job or tool, or
-/// written by a version of ispace with another format
-JobResults mergeParts(std::span<const std::string> files, std::string_view tool);
+/// written by a version of ispace with another format, and if two parts have the same other record
+JobResults mergeParts(std::span<const std::string> files, std::string_view tool,
+                      std::string_view common);
 
 /// True if `file` is a finished and undamaged part of this shard of this job.
 bool isPartOf(const std::string& file, const PartHead& head);

@@ -75,9 +75,11 @@ std::string mergeProblem(const PartHead& head, bool is_finished, std::string_vie
 
 }  // namespace
 
-JobResults mergeParts(std::span<const std::string> files, std::string_view tool) {
+JobResults mergeParts(std::span<const std::string> files, std::string_view tool,
+                      std::string_view common) {
     JobResults merged;
     merged.is_merge_ = true;
+    merged.common_ = common;
     Diagnostics findings;
     allowFiles(files.size());
     std::optional<PartHead> first;
@@ -92,6 +94,7 @@ JobResults mergeParts(std::span<const std::string> files, std::string_view tool)
         if (problem.empty()) {
             first = file.head;
             const auto [at, is_new] = names.emplace(shard.index, name);
+            problem = file.doubled;
             if (!is_new)
                 problem = "shard " + shard.text() + " is given twice, as " + at->second + ", too";
         }

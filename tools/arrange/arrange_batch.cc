@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/message.h"
 #include "cli/batch.h"
 #include "cli/outputs.h"
 #include "record/text.h"
@@ -12,9 +13,6 @@
 namespace ispace {
 
 namespace {
-
-/// The record of a part with the words of the command, each ended by a NUL.
-constexpr std::string_view kCommand = "command";
 
 /// Returns the prefix of keys for the steps that shards share.
 std::string_view prefixOf(Shared what) {
@@ -44,7 +42,7 @@ JobId arrangeJob(const ArrangeCommand& command, const SceneInput& input,
 
 std::unique_ptr<ArrangeCommand> commandOf(const JobResults& parts,
                                           const ArrangeToolOptions& merge) {
-    const std::string text = parts.find(std::string(kCommand)).value_or("");
+    const std::string text = parts.find(std::string(kCommandKey)).value_or("");
     if (!text.ends_with('\0'))
         throw FormatError({parts.file(), 0, 0, "it does not say which command made it"});
     std::vector<const char*> words;
@@ -54,6 +52,11 @@ std::unique_ptr<ArrangeCommand> commandOf(const JobResults& parts,
     const PartHead& head = parts.head();
     for (const Shared what : kShared) {
         if (nameOf(what) != head.job.form) continue;
+        for (const std::string& key : parts.keys())
+            if (key != kCommandKey && !key.starts_with(prefixOf(what)))
+                throw FormatError(
+                    {parts.file(), 0, 0,
+                     "record " + excerpt(key) + " is not of shards of " + head.job.form});
         command->becomeMerge(merge, what, head.shard.count);
         return command;
     }
@@ -94,8 +97,8 @@ void writePart(const ArrangeCommand& command, JobResults& results) {
     const ArrangeToolOptions& options = command.options();
     std::string words;
     for (const std::string& word : command.resultWords()) words += word + '\0';
-    results.store(std::string(kCommand), words);
-    const std::string_view prefixes[] = {kCommand, prefixOf(options.how.search.share.what)};
+    results.store(std::string(kCommandKey), words);
+    const std::string_view prefixes[] = {kCommandKey, prefixOf(options.how.search.share.what)};
     results.writePart(options.common.output, prefixes);
 }
 

@@ -3,14 +3,18 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "arrange/arrange_run.h"
 #include "base/part_file.h"
 
 namespace ispace {
 
+/// The record of a part with the words of the command, each ended by a NUL.
+constexpr std::string_view kCommandKey = "command";
+
 /// Returns the command line that made the parts, as that of a merge, with the outputs and verbosity
-/// of `merge`. \throws FormatError
+/// of `merge`. \throws FormatError, also for records that no such shard writes
 std::unique_ptr<ArrangeCommand> commandOf(const JobResults& parts, const ArrangeToolOptions& merge);
 
 /// Returns the store of the search's steps: the parts of a merge, or the results of a shard or of a

@@ -225,7 +225,7 @@ void arrangeSensors(const ArrangeCommand& command) {
         if (!arrangeInBuilding(command)) runCommand(command, nullptr);
         return;
     }
-    auto parts = std::make_unique<JobResults>(mergeParts(options.operands, "arrange"));
+    auto parts = std::make_unique<JobResults>(mergeParts(options.operands, "arrange", kCommandKey));
     const auto made_by = commandOf(*parts, options);
     runCommand(*made_by, std::move(parts));
 }

@@ -72,7 +72,8 @@ std::int64_t endOfReadings(const JobResults& results, std::int64_t first, std::i
         const std::size_t plus = std::min(key.find('+'), key.size() - 1);
         const auto at = parseInteger(key.substr(0, plus));
         const auto count = parseInteger(key.substr(plus + 1));
-        if (at != first || !count || *count <= 0 || *count > end - first)
+        if (at != first || !count || *count <= 0 || *count > end - first ||
+            key != keyOf(first, static_cast<std::size_t>(*count)))
             throw FormatError({results.file(), 0, 0,
                                "record " + excerpt(key) + " does not continue the first " +
                                    std::to_string(first) + " of " + std::to_string(end) +
@@ -231,7 +232,7 @@ OwnReadings ownReadings(const ScanToolOptions& options, const JobId& job, const 
 
 void mergeReadings(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
-    const JobResults parts = mergeParts(options.operands, "scan");
+    const JobResults parts = mergeParts(options.operands, "scan", kHeader);
     const JobId& job = parts.head().job;
     const std::string format = job.form.substr(0, job.form.find(' '));
     const std::string& output = options.common.output;

@@ -94,7 +94,8 @@ std::shared_ptr<const ReducedProblem> unpackProblem(Unpacker& from, const Proble
         Unpacker::refuse();
     for (const Kind& kind : original.kinds) {
         ReducedProblem::OfKind& own = problem->kinds.emplace_back();
-        own.multiplicity = static_cast<std::uint16_t>(from.number());
+        if (from.number() != static_cast<std::uint64_t>(kind.multiplicity)) Unpacker::refuse();
+        own.multiplicity = static_cast<std::uint16_t>(kind.multiplicity);
         own.original = from.all<std::uint32_t>();
         own.candidates = unpackSet(from, problem->cells());
         if (own.candidates->size() != own.original.size() ||

@@ -134,7 +134,7 @@ class KeptEnds {
         Unpacker from(*bytes);
         if (from.number() != mark_) return std::nullopt;
         std::vector<Choice> chosen = unpackChoices(from, problem_);
-        if (!isFeasible(problem_, chosen)) return std::nullopt;
+        if (!from.atEnd() || !isFeasible(problem_, chosen)) return std::nullopt;
         return chosen;
     }
     void keep(std::size_t start, const std::vector<Choice>& chosen) {
