@@ -94,8 +94,9 @@ std::shared_ptr<const ReducedProblem> unpackProblem(Unpacker& from, const Proble
         Unpacker::refuse();
     for (const Kind& kind : original.kinds) {
         ReducedProblem::OfKind& own = problem->kinds.emplace_back();
-        if (from.number() != static_cast<std::uint64_t>(kind.multiplicity)) Unpacker::refuse();
-        own.multiplicity = static_cast<std::uint16_t>(kind.multiplicity);
+        const std::uint64_t multiplicity = from.number();
+        if (multiplicity == 0 || multiplicity > UINT16_MAX) Unpacker::refuse();
+        own.multiplicity = static_cast<std::uint16_t>(multiplicity);
         own.original = from.all<std::uint32_t>();
         own.candidates = unpackSet(from, problem->cells());
         if (own.candidates->size() != own.original.size() ||
