@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -23,7 +25,9 @@ namespace ispace {
 namespace {
 
 /// A calibration takes some hundred bytes, more if OpenCV lists the corners it found.
-constexpr std::size_t kMaxCalibration = std::size_t{16} << 20U;
+constexpr std::size_t kMaxCalibration = std::size_t{1} << 20U;
+/// Keys of a map: a search for one visits them all.
+constexpr std::size_t kMaxKeys = 1000;
 
 /// Reads one calibration file; throws the first error found.
 class CalibrationReader {
@@ -31,6 +35,7 @@ class CalibrationReader {
     CalibrationReader(const YAML::Node& root, const std::string& name) : root_(root), name_(name) {}
 
     void applyTo(Record& camera) {
+        checkKeys(root_);
         const std::vector<double> size = {number({"image_width", "width"}, 1, 16384),
                                           number({"image_height", "height"}, 1, 16384)};
         std::vector<double> k = matrix({"camera_matrix", "K", "k"}, 9);
@@ -58,6 +63,12 @@ class CalibrationReader {
     [[noreturn]] void fail(const YAML::Node& node, const std::string& message) const {
         const YAML::Mark mark = node ? node.Mark() : YAML::Mark::null_mark();
         throw FormatError(Diagnostic{name_, std::max(0, mark.line + 1), 0, message});
+    }
+
+    void checkKeys(const YAML::Node& map) const {
+        if (map.size() > kMaxKeys)
+            fail(map,
+                 std::to_string(map.size()) + " keys, wanted at most " + std::to_string(kMaxKeys));
     }
 
     [[nodiscard]] YAML::Node find(std::initializer_list<const char*> names) const {
@@ -90,6 +101,7 @@ class CalibrationReader {
         const char* const what = *names.begin();
         const YAML::Node node = find(names);
         if (!node) fail(root_, "no `" + std::string(what) + "`");
+        if (node.IsMap()) checkKeys(node);
         const YAML::Node data = node.IsMap() ? node["data"] : node;
         if (!data || !data.IsSequence() || (count > 0 && data.size() != count))
             fail(node, '`' + std::string(what) + "`: wanted a list" +
@@ -177,28 +189,65 @@ std::string readCalibration(const std::string& path) {
     return readAll(path);
 }
 
-}  // namespace
-
-void applyCalibration(Record& camera, std::string_view yaml, const std::string& name) {
-    std::string text(yaml);
-    // OpenCV's first line, `%YAML:1.0`, is no directive of YAML.
-    if (text.starts_with("%YAML:")) text[0] = '#';
-    if (text.starts_with("<?xml") || text.starts_with("<opencv_storage"))
-        throw FormatError(
-            Diagnostic{name, 0, 0, "XML is not read: save the calibration as .yaml or .yml"});
+/// Calls `read`; errors of YAML become those of the file.
+template <typename Read>
+auto guarded(const std::string& name, Read read) {
     try {
-        const YAML::Node root = YAML::Load(text);
-        if (!root.IsMap())
-            throw FormatError(Diagnostic{
-                name, 0, 0, "no calibration: wanted YAML with `image_width`, `camera_matrix`, …"});
-        CalibrationReader(root, name).applyTo(camera);
+        return read();
     } catch (const YAML::Exception& error) {
         throw FormatError(Diagnostic{name, error.mark.line + 1, 0, "bad YAML: " + error.msg});
     }
 }
 
+YAML::Node parsedCalibration(std::string text, const std::string& name) {
+    // OpenCV's first line, `%YAML:1.0`, is no directive of YAML.
+    if (text.starts_with("%YAML:")) text[0] = '#';
+    if (text.starts_with("<?xml") || text.starts_with("<opencv_storage"))
+        throw FormatError(
+            Diagnostic{name, 0, 0, "XML is not read: save the calibration as .yaml or .yml"});
+    return guarded(name, [&] {
+        YAML::Node root = YAML::Load(text);
+        if (!root.IsMap())
+            throw FormatError(Diagnostic{
+                name, 0, 0, "no calibration: wanted YAML with `image_width`, `camera_matrix`, …"});
+        return root;
+    });
+}
+
+/// The calibrations of cameras, each file read once.
+class CalibrationFiles {
+  public:
+    /// \throws FormatError, std::system_error; for a file that failed before, the same error
+    const YAML::Node& read(const std::string& path) {
+        const auto [known, is_new] = files_.try_emplace(path);
+        File& file = known->second;
+        if (is_new) try {
+                file.root = parsedCalibration(readCalibration(path), path);
+            } catch (...) {
+                file.failure = std::current_exception();
+            }
+        if (file.failure) std::rethrow_exception(file.failure);
+        return file.root;
+    }
+
+  private:
+    struct File {
+        YAML::Node root;
+        std::exception_ptr failure;
+    };
+    std::map<std::string, File> files_;
+};
+
+}  // namespace
+
+void applyCalibration(Record& camera, std::string_view yaml, const std::string& name) {
+    const YAML::Node root = parsedCalibration(std::string(yaml), name);
+    guarded(name, [&] { CalibrationReader(root, name).applyTo(camera); });
+}
+
 void loadCalibrations(Document& document, const std::string& operand) {
     Diagnostics findings;
+    CalibrationFiles files;
     for (Record& record : document.records) {
         if (record.keyword() != Camera::kKind.keyword || !record.has("calibration")) continue;
         const std::string path = sideFilePath(operand, record.text("calibration"));
@@ -213,13 +262,13 @@ void loadCalibrations(Document& document, const std::string& operand) {
             continue;
         }
         try {
-            const std::string bytes = readCalibration(path);
+            const YAML::Node& root = files.read(path);
             std::vector<std::string>& sources = document.sources;
             if (std::find(sources.begin(), sources.end(), path) == sources.end())
                 sources.push_back(path);
             Record calibrated = record;
             calibrated.erase("calibration");
-            applyCalibration(calibrated, bytes, path);
+            guarded(path, [&] { CalibrationReader(root, path).applyTo(calibrated); });
             record = std::move(calibrated);
         } catch (const std::system_error& error) {
             fail(" cannot be opened: " + error.code().message());

@@ -148,6 +148,11 @@ TEST(Calibration, IsFoundBesideTheFileThatNamesIt) {
     EXPECT_NE(error("calibration=eyes/ost.yaml fov=60")
                   .find("`fov` and `calibration` say the same: leave one out"),
               std::string::npos);
+    std::string keys = kOst;
+    for (int i = 0; i < 1000; ++i) keys += "k" + std::to_string(i) + ": 0\n";
+    writeAll(ost, keys);
+    EXPECT_NE(error("calibration=eyes/ost.yaml").find("1007 keys, wanted at most 1000"),
+              std::string::npos);
     writeAll(ost, "image_width: 640\n");
     EXPECT_NE(error("calibration=eyes/ost.yaml").find("ost.yaml`, line 1: no `image_height`"),
               std::string::npos);
