@@ -125,6 +125,8 @@ struct BuildingRun::Data {
     /// Returns how far from a landing it leaves it to others.
     [[nodiscard]] static double clearanceOf(const Traveller& who);
     void turnBack(Traveller& who, BuildingTrip& trip);
+    static void reverse(BuildingTrip& trip);
+    [[nodiscard]] static double laneOf(const Traveller& who, const StoreyLink& passage, bool is_up);
     /// Returns the landing on which a mover stands, or null.
     [[nodiscard]] const Landing* landingUnder(const Traveller& who) const;
     /// Returns the first of these spots that is free and not reserved.

@@ -300,6 +300,41 @@ TEST(BuildingRun, AMoverKeptFromTheLandingLeavesTheQueue) {
     }
 }
 
+/// Both on stairs that are too narrow to pass, and on wide ones.
+TEST(BuildingRun, ThoseOnStairsWhoseLandingIsOccupiedTurnBack) {
+    for (const char* const width : {"1", "1.6"}) {
+        std::string text = kBuilding;
+        text.replace(text.find("size: [1.6, 4]"), 14, "size: [" + std::string(width) + ", 4]");
+        const BuildingScene building = buildingOf(
+            "human id=ground/h1 at=6,4\nhuman id=ground/h2 at=7,4\n"
+            "robot id=upper/parked at=8,1\n",
+            text);
+        BuildingRun run(building, optionsOf());
+        for (const char* const id : {"ground/h1", "ground/h2"})
+            ASSERT_EQ(run.travel(id, {{1, {9, 6}}}, 0).via, "s1");
+        std::size_t most = 0;
+        std::map<std::string, Outcome> ends;
+        while (ends.size() < 2 && seconds(run.world(0).time()) < 300) {
+            step(run);
+            most = std::max(most, run.world(3).movers().size());
+            for (const TripEnd& end : run.tripEnds()) ends[end.mover] = end.outcome;
+        }
+        EXPECT_EQ(most, 2U) << "one waits behind the other";
+        ASSERT_EQ(ends.size(), 2U) << "they do not wait for ever";
+        for (const auto& [id, outcome] : ends) {
+            EXPECT_EQ(outcome, Outcome::Unreached) << id;
+            EXPECT_EQ(run.roomOf(id), 0U) << id;
+        }
+        // The stairs serve others once the landing is free.
+        ASSERT_EQ(run.travel("upper/parked", {{1, {9, 7}}}, 0).refusal, "");
+        ASSERT_TRUE(await(run, "upper/parked", 400));
+        ASSERT_EQ(run.travel("ground/h2", {{1, {9, 2}}}, 0).refusal, "");
+        const auto second = await(run, "ground/h2", 500);
+        ASSERT_TRUE(second);
+        EXPECT_EQ(second->outcome, Outcome::Done);
+    }
+}
+
 /// Returns the findings of a script, or "" without any.
 std::string scriptFindings(const BuildingRun& run, const std::string& text) {
     return testing::findings([&] { (void)BuildingScript(text, "s.txt", run); });

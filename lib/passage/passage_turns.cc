@@ -17,7 +17,7 @@ namespace {
 constexpr double kClearLanding = 0.3;
 /// Seconds that a mover expects to wait for each one before it.
 constexpr double kTurnWait = 15;
-/// Time for which a rider waits at an occupied landing before it turns back.
+/// Time for which a mover in a lift or on stairs waits at an occupied landing before it turns back.
 constexpr SimTime kPatience = std::chrono::seconds(30);
 
 }  // namespace
@@ -126,7 +126,7 @@ void BuildingRun::Data::waitTurn(Traveller& who, BuildingTrip& trip) {
         const std::size_t flight = is_up ? leg.from : leg.from - 1;
         if (!mayPass(who, passage, first_room[leg.passage] + flight, is_up)) return;
     }
-    if (!stop.holder.empty()) return;
+    if (!stop.holder.empty() && stop.holder != who.id) return;
     const StoreyWays& all = waysOf(who);
     const Landing& landing = *all.landing(leg.passage, leg.from);
     const std::size_t storey = *rooms[who.room].storey;
@@ -137,6 +137,13 @@ void BuildingRun::Data::waitTurn(Traveller& who, BuildingTrip& trip) {
     stop.holder = who.id;
     trip.state = TripState::Nearing;
     send(who, trip, way, trip.speed > 0 ? trip.speed : who.ability.speed);
+}
+
+/// Returns the offset from the middle of the stairs at which a mover walks: on the right where two
+/// can pass.
+double BuildingRun::Data::laneOf(const Traveller& who, const StoreyLink& passage, bool is_up) {
+    const bool is_narrow = passage.width < 4 * who.size.radius + 2 * kFlightGap;
+    return is_narrow ? 0 : (is_up ? -1 : 1) * passage.width / 4;
 }
 
 /// Returns true if a mover may enter a flight of stairs at that end.
@@ -173,8 +180,9 @@ void BuildingRun::Data::enterCabin(Traveller& who, BuildingTrip& trip) {
     const Pose2 pose = placedIn(storey.building_from_storey, statusOf(who).pose);
     if (!slot || !lifts[leg.passage].isOpenAt(leg.from) ||
         !move(who, first_room[leg.passage], pose)) {
-        stops[leg.passage][leg.from].holder.clear();
-        return queueUp(who, trip);
+        // Back to where movers wait; it holds its turn until it has left the landing to others.
+        trip.state = TripState::Setting;
+        return;
     }
     rider.at = *slot;
     riders[leg.passage].push_back(rider);
@@ -188,17 +196,11 @@ void BuildingRun::Data::enterFlight(Traveller& who, BuildingTrip& trip) {
     const StoreyLink& passage = passages[leg.passage];
     const bool is_up = leg.to > leg.from;
     const std::size_t room = first_room[leg.passage] + (is_up ? leg.from : leg.from - 1);
-    // On the right, where two can pass.
-    const double aside = passage.width < 4 * who.size.radius + 2 * kFlightGap
-                             ? 0
-                             : (is_up ? -1 : 1) * passage.width / 4;
-    const Pose2 begin{{is_up ? 0 : passage.length, aside}, Angle::degrees(is_up ? 0 : 180)};
+    const Pose2 begin{{is_up ? 0 : passage.length, laneOf(who, passage, is_up)},
+                      Angle::degrees(is_up ? 0 : 180)};
     const Pose2 pose = placedIn(passage.frame, begin);
     if (!mayPass(who, passage, room, is_up) || !move(who, room, pose)) {
-        // It is still at the landing: tries again.
-        stops[leg.passage][leg.from].queue.push_front(who.id);
-        stops[leg.passage][leg.from].holder.clear();
-        trip.state = TripState::Queueing;
+        trip.state = TripState::Setting;
         return;
     }
     stops[leg.passage][leg.from].holder.clear();
@@ -211,9 +213,8 @@ void BuildingRun::Data::climb(Traveller& who, BuildingTrip& trip) {
     const Leg& leg = trip.legs[trip.leg];
     const StoreyLink& passage = passages[leg.passage];
     const bool is_up = leg.to > leg.from;
-    const Point2 at = seenFrom(passage.frame, statusOf(who).pose).position;
-    send(who, trip, {passage.frame * Point2{is_up ? passage.length : 0, at.y}},
-         is_up ? kSpeedUp : kSpeedDown);
+    const Point2 end{is_up ? passage.length : 0, laneOf(who, passage, is_up)};
+    send(who, trip, {passage.frame * end}, is_up ? kSpeedUp : kSpeedDown);
 }
 
 /// Leaves the cabin at its stop.
@@ -247,7 +248,7 @@ void BuildingRun::Data::arrive(Traveller& who, BuildingTrip& trip) {
     Stop& stop = stops[leg.passage][leg.to];
     const SimTime now = rooms.front().world->time();
     if (!trip.blocked) trip.blocked = now;
-    if (passage.is_lift && now - *trip.blocked > kPatience) return turnBack(who, trip);
+    if (now - *trip.blocked > kPatience) return turnBack(who, trip);
     if (!stop.holder.empty() && stop.holder != who.id) return;
     Pose2 pose = landing.at;
     if (passage.is_lift) {
@@ -264,14 +265,23 @@ void BuildingRun::Data::arrive(Traveller& who, BuildingTrip& trip) {
     trip.state = TripState::Setting;
 }
 
-/// Goes back into the cabin, to leave it where it came from and give up: the lift serves others.
+/// Goes back to where it came from, to give up there: lifts and stairs serve others. On stairs that
+/// are too narrow to pass, all behind it turn back, too.
 void BuildingRun::Data::turnBack(Traveller& who, BuildingTrip& trip) {
-    Leg& leg = trip.legs[trip.leg];
-    std::swap(leg.from, leg.to);
-    trip.blocked.reset();
-    trip.attempts = 0;
-    if (!trip.ending) trip.ending = Outcome::Unreached;
-    const StoreyLink& passage = passages[leg.passage];
+    const StoreyLink& passage = passages[trip.legs[trip.leg].passage];
+    if (!passage.is_lift) {
+        const bool may_pass = laneOf(who, passage, true) != 0;
+        for (auto& [id, other] : trips) {
+            Traveller& its = travellers.find(id)->second;
+            if (its.room != who.room || (may_pass && id != who.id)) continue;
+            reverse(other);
+            other.state = TripState::Climbing;
+            climb(its, other);
+        }
+        return;
+    }
+    reverse(trip);
+    const Leg& leg = trip.legs[trip.leg];
     for (Rider& rider : riders[leg.passage]) {
         if (rider.id != who.id) continue;
         rider.stop = leg.to;
@@ -280,6 +290,15 @@ void BuildingRun::Data::turnBack(Traveller& who, BuildingTrip& trip) {
                      {passage.frame * thresholdOf(passage.cabin, who.size.radius),
                       passage.frame * rider.at});
     }
+}
+
+/// Leads a trip back through its passage, to end as unreached unless it ends otherwise anyway.
+void BuildingRun::Data::reverse(BuildingTrip& trip) {
+    Leg& leg = trip.legs[trip.leg];
+    std::swap(leg.from, leg.to);
+    trip.blocked.reset();
+    trip.attempts = 0;
+    if (!trip.ending) trip.ending = Outcome::Unreached;
 }
 
 }  // namespace ispace
