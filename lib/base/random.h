@@ -24,7 +24,8 @@ enum class Purpose : std::uint32_t {
     Odometry = 9,
     Start = 10,
     Mounting = 11,
-    Crowd = 12
+    Crowd = 12,
+    Storeys = 13
 };
 
 /// A 64-bit hash of an id (FNV-1a), the same on every machine.

@@ -71,8 +71,8 @@ class BuildingReplayTest : public ::testing::Test {
             room.simulation->recordWith(*recorders.back());
         }
         run.recordLifts(folder_ / BuildingRun::kLiftFile);
-        EXPECT_EQ(run.travel("ground/r1", {{1, {9, 6}}, {0, {9, 6}}}, 0).refusal, "");
-        EXPECT_EQ(run.travel("upper/h1", {{0, {10, 4}}}, 0).refusal, "");
+        EXPECT_EQ(run.travel("ground/r1", {{{1, {9, 6}}, {0, {9, 6}}}}).refusal, "");
+        EXPECT_EQ(run.travel("upper/h1", {{{0, {10, 4}}}}).refusal, "");
         shown_.push_back(shown(run));
         while (run.world(0).time() < kEnd) {
             step(run);

@@ -115,6 +115,7 @@ void BuildingRun::Data::addTravellers() {
                          record.text("on") == mover.id)
                     who.records.push_back(record);
             }
+            if (mover.course.wander) wanderers.try_emplace(mover.id);
             if (!mover.is_person) {
                 who.ability.climbs = who.records.front().flag("climbs");
                 who.ability.mass = who.records.front().number("mass");
@@ -293,11 +294,9 @@ std::span<const TripEnd> BuildingRun::tripEnds() const { return data_->ends; }
 
 void BuildingRun::onMove(Observer observer) { data_->observers.push_back(std::move(observer)); }
 
-TripAnswer BuildingRun::travel(const std::string& mover, std::vector<RoomPoint> goals,
-                               double speed) {
+TripAnswer BuildingRun::travel(const std::string& mover, TripPlan plan) {
     BuildingTrip trip;
-    trip.goals = std::move(goals);
-    trip.speed = speed;
+    trip.plan = std::move(plan);
     return data_->begin(mover, std::move(trip));
 }
 
@@ -312,8 +311,9 @@ TripAnswer BuildingRun::ride(const std::string& mover, std::string_view lift,
     if (landing == nullptr) return {passage.id + " has no landing at " + excerpt(storey)};
     BuildingTrip trip;
     // It leaves the landing to others.
-    trip.goals = {{passage.storeys[stop],
-                   landing->spots.empty() ? landing->at.position : landing->spots.front()}};
+    trip.plan.points = {
+        {passage.storeys[stop],
+         landing->spots.empty() ? landing->at.position : landing->spots.front()}};
     trip.only = which;
     return data_->begin(mover, std::move(trip));
 }

@@ -49,6 +49,9 @@ RunInfo recordedInfo(const std::string& folder, const StoreyedDocument& building
 /// one queue for each lift, and enter one by one, those that leave first. A mover in a cabin stands
 /// where it leaves a way out to those that get out before it.
 ///
+/// A mover with walk=wander wanders on a storey for one to three minutes, then goes to a random
+/// point of another one, if it finds a way, and wanders there, until a command ends that.
+///
 /// People climb at kSpeedUp and kSpeedDown; a robot only with climbs=yes. A person weighs
 /// kPersonMass (EN 81-20), a robot `mass`. The same building, options and commands give the same
 /// bytes.
@@ -82,8 +85,7 @@ class BuildingRun final : public JoinedWorlds {
     [[nodiscard]] std::span<const JoinedRoom> rooms() const override;
     [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view mover) const override;
     [[nodiscard]] std::string whereText(std::size_t room) const override;
-    TripAnswer travel(const std::string& mover, std::vector<RoomPoint> goals,
-                      double speed) override;
+    TripAnswer travel(const std::string& mover, TripPlan plan) override;
     TripAnswer ride(const std::string& mover, std::string_view lift,
                     std::string_view storey) override;
     std::string endTrip(const std::string& mover, Outcome outcome) override;

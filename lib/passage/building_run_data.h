@@ -2,6 +2,7 @@
 // Private to lib/passage: the state of a building's run.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
@@ -41,15 +42,16 @@ enum class TripState {
     Riding,
     Climbing,
     Leaving,  ///< out of the cabin, to the lane
-    AtEnd     ///< in the lane or on the last step, until the landing is free
+    AtEnd,    ///< in the lane or on the last step, until the landing is free
+    Pausing   ///< at a point of the plan
 };
 
 struct BuildingTrip {
     int command = 0;
-    std::vector<RoomPoint> goals;
-    std::size_t goal = 0;
+    TripPlan plan;
+    std::size_t goal = 0;             ///< of the plan's points
+    SimTime pause_until{};            ///< of Pausing
     std::optional<std::size_t> only;  ///< passage to be used
-    double speed = 0;                 ///< m/s
     std::vector<Leg> legs;
     std::size_t leg = 0;
     TripState state = TripState::Setting;
@@ -60,6 +62,13 @@ struct BuildingTrip {
     /// Once it is out of lifts and stairs, it clears the landing and ends so.
     std::optional<Outcome> ending;
     std::optional<SimTime> blocked;  ///< since when others occupy its landing
+};
+
+/// A mover with walk=wander.
+struct Wanderer {
+    std::optional<SimTime> until;  ///< it stays on its storey; empty: it does not wander now
+    std::optional<int> trip;       ///< to another storey, its command
+    std::uint64_t draws = 0;       ///< of random numbers
 };
 
 /// A stop of a passage: whose turn it is.
@@ -114,6 +123,8 @@ struct BuildingRun::Data {
     void enterCabin(Traveller& who, BuildingTrip& trip);
     void enterFlight(Traveller& who, BuildingTrip& trip);
     void tryAgain(Traveller& who, BuildingTrip& trip, Outcome outcome);
+    void arriveAtGoal(Traveller& who, BuildingTrip& trip);
+    void goToNextGoal(Traveller& who, BuildingTrip& trip);
     [[nodiscard]] bool isNearLanding(const Traveller& who, const BuildingTrip& trip) const;
     void climb(Traveller& who, BuildingTrip& trip);
     void leaveCabin(Traveller& who, BuildingTrip& trip);
@@ -138,6 +149,12 @@ struct BuildingRun::Data {
     [[nodiscard]] bool mayPass(const Traveller& who, const StoreyLink& passage, std::size_t room,
                                bool is_up) const;
 
+    // Wanderers.
+    void advanceWanderers();
+    void visitOtherStorey(const std::string& id, Wanderer& wanderer);
+    void wanderOn(const std::string& id, int command, Outcome outcome);
+    double random(const std::string& id, Wanderer& wanderer) const;
+
     /// Gives a mover a way in its present world.
     void send(Traveller& who, BuildingTrip& trip, std::vector<Point2> way, double speed);
     /// Sends it from point to point, turning on the spot: along ways that are known to be free.
@@ -155,13 +172,14 @@ struct BuildingRun::Data {
     std::vector<StoreyLink> passages;
     std::vector<Room> rooms;  // storeys, then the cabin or the flights of each passage
     std::vector<JoinedRoom> joined;
-    std::vector<std::size_t> first_room;     // of each passage
-    std::vector<Lift> lifts;                 // by passage; unused for stairs
+    std::vector<std::size_t> first_room;             // of each passage
+    std::vector<Lift> lifts;                         // by passage; unused for stairs
     std::vector<std::vector<Rider>> riders;  // by passage
-    std::vector<std::vector<Stop>> stops;    // by passage and stop
+    std::vector<std::vector<Stop>> stops;            // by passage and stop
     std::map<MoverSize, StoreyWays> ways;
     std::map<std::string, Traveller, std::less<>> travellers;
     std::map<std::string, BuildingTrip, std::less<>> trips;
+    std::map<std::string, Wanderer, std::less<>> wanderers;
     std::vector<TripEnd> ends, new_ends;
     std::vector<Observer> observers;
     std::optional<LiftRecorder> lift_recorder;

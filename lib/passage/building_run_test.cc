@@ -9,64 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "base/file.h"
-#include "building/storeys.h"
-#include "passage/building_script.h"
 #include "passage/cabin.h"
-#include "support/test_layout.h"
+#include "support/test_building_run.h"
 
 namespace ispace {
 namespace {
 
-constexpr SimTime kStep = std::chrono::milliseconds(10);
-
-/// Two storeys of 12 m x 8 m, a lift at the left wall and stairs at the lower one. Both have a box
-/// around the cabin with an open front.
-constexpr const char* kBuilding =
-    "- storey: {id: ground, height: 3, records: &room [{fence: {id: f, path: [[0, 0], [12, 0], "
-    "[12, 8], [0, 8]], closed: yes}}, {fence: {id: c, path: [[2.2, 3], [0.2, 3], [0.2, 5], [2.2, "
-    "5]]}}]}\n"
-    "- storey: {id: upper, z: 3, height: 3, records: *room}\n"
-    "- lift: {id: l1, storeys: 'ground,upper', at: [1.2, 4], heading: 0, size: [1.8, 1.8], door: "
-    "1.2, capacity: 300kg}\n"
-    "- stairs: {id: s1, storeys: 'ground,upper', at: [4, 1], heading: 0, size: [1.6, 4]}\n";
-
-BuildingScene buildingOf(const std::string& layout, const std::string& text = kBuilding) {
-    StoreyedDocument document = readBuilding(text, "house.yaml", {});
-    const std::vector<Document> layouts = layoutsOf(testing::layoutDocument(layout), document);
-    return makeBuildingScene(std::move(document), layouts, testing::devices());
-}
-
-BuildingRunOptions optionsOf(SimTime step = kStep) {
-    BuildingRunOptions options;
-    options.step = step;
-    options.clock = {Clock::Kind::Step};
-    return options;
-}
-
-/// Takes a step, with all worlds in it.
-void step(BuildingRun& run) {
-    run.simulation().allow(1);
-    static_cast<void>(
-        run.simulation().run(std::chrono::steady_clock::now(), std::chrono::hours(1)));
-}
-
-Pose2 poseOf(const BuildingRun& run, const std::string& id) {
-    const World& world = run.world(run.roomOf(id).value());
-    return world.status(world.moverNamed(id).value()).pose;
-}
-
-/// Steps until the trip of a mover ends; returns its end, or nothing after `most` seconds.
-std::optional<TripEnd> await(BuildingRun& run, const std::string& id, double most,
-                             const std::function<void()>& look = {}) {
-    while (seconds(run.world(0).time()) < most) {
-        step(run);
-        if (look) look();
-        for (const TripEnd& end : run.tripEnds())
-            if (end.mover == id) return end;
-    }
-    return std::nullopt;
-}
+using testing::await;
+using testing::buildingOf;
+using testing::kBuilding;
+using testing::optionsOf;
+using testing::poseOf;
+using testing::step;
 
 TEST(BuildingRun, HasAWorldForEachStoreyCabinAndFlight) {
     const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
@@ -83,7 +37,7 @@ TEST(BuildingRun, HasAWorldForEachStoreyCabinAndFlight) {
 TEST(BuildingRun, ARobotTakesTheLift) {
     const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
-    const TripAnswer answer = run.travel("ground/r1", {{1, {9, 6}}}, 0);
+    const TripAnswer answer = run.travel("ground/r1", {{{1, {9, 6}}}});
     ASSERT_EQ(answer.refusal, "");
     EXPECT_EQ(answer.via, "l1");
     EXPECT_EQ(answer.id, 1);
@@ -105,9 +59,9 @@ TEST(BuildingRun, ARobotClimbsOnlyIfItsRecordSaysSo) {
     const BuildingScene building = buildingOf(
         "robot id=ground/r1 at=6,4\nrobot id=ground/r2 at=8,4 climbs=yes\n", stairs_only);
     BuildingRun run(building, optionsOf());
-    EXPECT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).refusal,
+    EXPECT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal,
               "no way for ground/r1 to upper/9,6; s1: it does not climb stairs");
-    const TripAnswer answer = run.travel("ground/r2", {{1, {9, 6}}}, 0);
+    const TripAnswer answer = run.travel("ground/r2", {{{1, {9, 6}}}});
     EXPECT_EQ(answer.refusal, "");
     EXPECT_EQ(answer.via, "s1");
     const auto end = await(run, "ground/r2", 120);
@@ -123,7 +77,7 @@ TEST(BuildingRun, PeopleTakeStairsAtTheirPace) {
             buildingOf(is_up ? "human id=ground/h at=6,4\n" : "human id=upper/h at=6,4\n");
         BuildingRun run(building, optionsOf());
         const std::string id = is_up ? "ground/h" : "upper/h";
-        ASSERT_EQ(run.travel(id, {{is_up ? 1U : 0U, {9, 6}}}, 0).via, "s1");
+        ASSERT_EQ(run.travel(id, {{{is_up ? 1U : 0U, {9, 6}}}}).via, "s1");
         double entered = -1, left = -1, fastest = 0;
         const auto end = await(run, id, 60, [&] {
             const double now = seconds(run.world(0).time());
@@ -154,7 +108,7 @@ TEST(BuildingRun, TheCabinHoldsNoMoreThanItsCapacity) {
     const BuildingScene building = buildingOf(layout);
     BuildingRun run(building, optionsOf());
     for (int i = 0; i < 6; ++i)
-        ASSERT_EQ(run.travel("ground/r" + std::to_string(i), {{1, {5.0 + i, 6}}}, 0).refusal, "");
+        ASSERT_EQ(run.travel("ground/r" + std::to_string(i), {{{1, {5.0 + i, 6}}}}).refusal, "");
     std::size_t most = 0;
     std::map<std::string, Outcome> ends;
     while (ends.size() < 6 && seconds(run.world(0).time()) < 600) {
@@ -176,7 +130,7 @@ TEST(BuildingRun, TheCabinHoldsNoMoreThanItsCapacity) {
 TEST(BuildingRun, GoesThroughPointsOfSeveralStoreys) {
     const BuildingScene building = buildingOf("human id=ground/h at=6,4\n");
     BuildingRun run(building, optionsOf());
-    const TripAnswer answer = run.travel("ground/h", {{1, {9, 6}}, {0, {2.5, 7}}}, 1);
+    const TripAnswer answer = run.travel("ground/h", {{{1, {9, 6}}, {0, {2.5, 7}}}, 1});
     EXPECT_EQ(answer.via, "s1,s1");
     ASSERT_TRUE(await(run, "ground/h", 120));
     EXPECT_EQ(run.roomOf("ground/h"), 0U);
@@ -199,23 +153,23 @@ TEST(BuildingRun, EndsATripForAnotherCommand) {
     EXPECT_TRUE(await(run, "ground/r1", 120));
     EXPECT_EQ(run.ride("ground/r1", "l2", "upper").refusal, "no lift `l2`");
     EXPECT_EQ(run.ride("ground/r1", "l1", "attic").refusal, "l1 does not stop at `attic`");
-    EXPECT_EQ(run.travel("ground/r1", {{0, {11.9, 4}}}, 0).refusal,
+    EXPECT_EQ(run.travel("ground/r1", {{{0, {11.9, 4}}}}).refusal,
               "ground/r1 has no room at ground/11.9,4: f stands there");
-    EXPECT_EQ(run.travel("ground/r1", {{2, {1, 4}}}, 0).refusal,
+    EXPECT_EQ(run.travel("ground/r1", {{{2, {1, 4}}}}).refusal,
               "l1 is no storey: RIDE leads by a lift");
 }
 
 TEST(BuildingRun, KeepsOdometryAndIdsAcrossRooms) {
     const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
-    ASSERT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).id, 1);
+    ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).id, 1);
     ASSERT_TRUE(await(run, "ground/r1", 120));
     // Without noise, and as both storeys have the frame of the building, as if it had gone on foot.
     const World& world = run.world(1);
     const Pose2 odometry = world.odometry(0).pose;
     EXPECT_NEAR(odometry.position.x, 3, 0.02);
     EXPECT_NEAR(odometry.position.y, 2, 0.02);
-    EXPECT_GT(run.travel("ground/r1", {{0, {9, 6}}}, 0).id, 1);
+    EXPECT_GT(run.travel("ground/r1", {{{0, {9, 6}}}}).id, 1);
 }
 
 TEST(BuildingRun, IsTheSameTwice) {
@@ -224,9 +178,9 @@ TEST(BuildingRun, IsTheSameTwice) {
             "robot id=ground/r1 at=6,4\nrobot id=upper/r1 at=6,4\nhuman id=upper/h "
             "at=8,6\nlaser id=upper/l on=upper/r1 at=0,0,0.2\n");
         BuildingRun run(building, optionsOf());
-        run.travel("ground/r1", {{1, {9, 6}}}, 0);
-        run.travel("upper/r1", {{0, {9, 6}}}, 0);
-        run.travel("upper/h", {{0, {10, 4}}}, 0);
+        run.travel("ground/r1", {{{1, {9, 6}}}});
+        run.travel("upper/r1", {{{0, {9, 6}}}});
+        run.travel("upper/h", {{{0, {10, 4}}}});
         std::string text;
         for (int i = 0; i < 9000; ++i) {
             step(run);
@@ -251,7 +205,7 @@ TEST(BuildingRun, IsTheSameTwice) {
 TEST(BuildingRun, AnAbandonedTripEndsBehindTheLift) {
     const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
-    ASSERT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).refusal, "");
+    ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
     while (run.roomOf("ground/r1") == 0U && seconds(run.world(0).time()) < 60) step(run);
     ASSERT_EQ(run.rooms()[*run.roomOf("ground/r1")].id, "l1");
     run.abandonTrip("ground/r1");
@@ -263,7 +217,7 @@ TEST(BuildingRun, AnAbandonedTripEndsBehindTheLift) {
     EXPECT_GT(from_door, 0.9) << "it leaves the landing to others";
     EXPECT_LT(from_door, 5);
     // On a storey it ends at once.
-    ASSERT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).refusal, "");
+    ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
     run.abandonTrip("ground/r1");
     EXPECT_EQ(run.tripEnds().back().outcome, Outcome::Stopped);
 }
@@ -273,15 +227,15 @@ TEST(BuildingRun, ARiderWhoseLandingIsOccupiedTurnsBack) {
         "robot id=ground/r1 at=6,4\nrobot id=ground/r2 at=8,4\n"
         "robot id=upper/parked at=2.6,4\nrobot id=upper/r3 at=8,4\n");
     BuildingRun run(building, optionsOf());
-    ASSERT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).refusal, "");
+    ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
     const auto end = await(run, "ground/r1", 300);
     ASSERT_TRUE(end) << "it does not wait for ever";
     EXPECT_EQ(end->outcome, Outcome::Unreached);
     EXPECT_EQ(run.roomOf("ground/r1"), 0U);
     // The lift serves others once the landing is free.
-    ASSERT_EQ(run.travel("upper/parked", {{1, {9, 7}}}, 0).refusal, "");
+    ASSERT_EQ(run.travel("upper/parked", {{{1, {9, 7}}}}).refusal, "");
     ASSERT_TRUE(await(run, "upper/parked", 400));
-    ASSERT_EQ(run.travel("ground/r2", {{1, {9, 2}}}, 0).refusal, "");
+    ASSERT_EQ(run.travel("ground/r2", {{{1, {9, 2}}}}).refusal, "");
     const auto second = await(run, "ground/r2", 600);
     ASSERT_TRUE(second);
     EXPECT_EQ(second->outcome, Outcome::Done);
@@ -311,7 +265,7 @@ TEST(BuildingRun, ThoseOnStairsWhoseLandingIsOccupiedTurnBack) {
             text);
         BuildingRun run(building, optionsOf());
         for (const char* const id : {"ground/h1", "ground/h2"})
-            ASSERT_EQ(run.travel(id, {{1, {9, 6}}}, 0).via, "s1");
+            ASSERT_EQ(run.travel(id, {{{1, {9, 6}}}}).via, "s1");
         std::size_t most = 0;
         std::map<std::string, Outcome> ends;
         while (ends.size() < 2 && seconds(run.world(0).time()) < 300) {
@@ -326,111 +280,13 @@ TEST(BuildingRun, ThoseOnStairsWhoseLandingIsOccupiedTurnBack) {
             EXPECT_EQ(run.roomOf(id), 0U) << id;
         }
         // The stairs serve others once the landing is free.
-        ASSERT_EQ(run.travel("upper/parked", {{1, {9, 7}}}, 0).refusal, "");
+        ASSERT_EQ(run.travel("upper/parked", {{{1, {9, 7}}}}).refusal, "");
         ASSERT_TRUE(await(run, "upper/parked", 400));
-        ASSERT_EQ(run.travel("ground/h2", {{1, {9, 2}}}, 0).refusal, "");
+        ASSERT_EQ(run.travel("ground/h2", {{{1, {9, 2}}}}).refusal, "");
         const auto second = await(run, "ground/h2", 500);
         ASSERT_TRUE(second);
         EXPECT_EQ(second->outcome, Outcome::Done);
     }
-}
-
-/// Returns the findings of a script, or "" without any.
-std::string scriptFindings(const BuildingRun& run, const std::string& text) {
-    return testing::findings([&] { (void)BuildingScript(text, "s.txt", run); });
-}
-
-TEST(BuildingScript, FindsOrdersThatCannotBeCarriedOut) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
-    const BuildingRun run(building, optionsOf());
-    const auto found = [&](const std::string& line) { return scriptFindings(run, line); };
-    EXPECT_EQ(found("0 ground/r1 RIDE l1 upper\n1 ground/r1 GOTO upper/4,6\n"), "");
-    EXPECT_NE(found("0 ground/r1 RIDE l9 upper\n").find("s.txt:1:18: error: no lift `l9`"),
-              std::string::npos);
-    EXPECT_NE(found("0 ground/r1 RIDE l1 attic\n").find("l1 does not stop at `attic`"),
-              std::string::npos);
-    EXPECT_NE(found("\n0 ground/r1 SIDESPEED 1\n").find("s.txt:2:13: error: "), std::string::npos);
-    EXPECT_NE(found("0 ground/r1 SPEED 500\n").find("s.txt:1:13: error: "), std::string::npos);
-}
-
-TEST(BuildingScript, MarksAnOrderThatIsRefusedInItsTime) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
-    BuildingRun run(building, optionsOf());
-    Simulation& ground = *run.rooms()[0].simulation;
-    ground.events().want(allEventKinds());
-    BuildingScript script("0 ground/r1 GOTO ground/11.9,4\n", "s.txt", run);
-    script.give(run);
-    ASSERT_EQ(ground.events().next(), 1);
-    EXPECT_EQ(ground.events().at(0).other, "ground/r1");
-    EXPECT_EQ(ground.events().at(0).text,
-              "script: ground/r1 has no room at ground/11.9,4: f stands there");
-}
-
-/// The hotel with two lifts that bear two of the four robots each.
-BuildingScene hotel() {
-    StoreyedDocument document = readBuilding(
-        readAll(testing::sourcePath("tests/data/hotel.building.yaml")), "hotel.building.yaml", {});
-    for (StoreyPassage& passage : document.passages) passage.capacity = 130;
-    const std::vector<Document> layouts = layoutsOf(
-        testing::layoutDocument("robot id=l1/tiny1 mass=60 at=4,-4\nrobot id=l1/tiny2 mass=60 "
-                                "at=20,-4\nrobot id=l2/clean mass=60 at=11,-4\nrobot "
-                                "id=l3/deliver mass=60 at=2,-7\n"),
-        document);
-    return makeBuildingScene(std::move(document), layouts, testing::devices());
-}
-
-/// What an hour in the hotel comes to.
-struct HotelHour {
-    std::string ways;
-    int done = 0, others = 0;
-    std::size_t most_riders = 0;
-};
-
-/// Lets each robot go to one point after another for an hour of simulated time.
-HotelHour anHour(bool& is_sound) {
-    const BuildingScene building = hotel();
-    BuildingRun run(building, optionsOf(std::chrono::milliseconds(50)));
-    const std::vector<std::string> robots = {"l1/tiny1", "l1/tiny2", "l2/clean", "l3/deliver"};
-    const std::vector<Point2> points = {{2, -7.5}, {8, -7.5}, {14, -7.5}, {21, -7.5}, {11, -4}};
-    std::vector<std::size_t> trips(robots.size());
-    HotelHour hour;
-    const auto send = [&](std::size_t k) {
-        const std::size_t n = trips[k]++;
-        const RoomPoint goal{(n + k + 1) % 3, points[(2 * n + k) % points.size()]};
-        is_sound = is_sound && run.travel(robots[k], {goal}, 0).refusal.empty();
-    };
-    for (std::size_t k = 0; k < robots.size(); ++k) send(k);
-    while (seconds(run.world(0).time()) < 3600) {
-        step(run);
-        for (const TripEnd& end : run.tripEnds()) {
-            ++(end.outcome == Outcome::Done ? hour.done : hour.others);
-            hour.ways += end.mover + ' ' + std::to_string(end.time.count()) + '\n';
-            send(static_cast<std::size_t>(std::find(robots.begin(), robots.end(), end.mover) -
-                                          robots.begin()));
-        }
-        for (const std::size_t cabin : {3U, 4U}) {
-            const World& world = run.world(cabin);
-            hour.most_riders = std::max(hour.most_riders, world.movers().size());
-            is_sound = is_sound && world.collisions().empty();
-        }
-        if (run.world(0).steps() % 100 != 0) continue;
-        for (const std::string& id : robots) {
-            const Pose2 pose = poseOf(run, id);
-            hour.ways += std::to_string(run.roomOf(id).value()) + ' ' +
-                         formatDouble(pose.position.x) + ' ' + formatDouble(pose.position.y) + '\n';
-        }
-    }
-    return hour;
-}
-
-TEST(BuildingRun, FourRobotsGoAboutAHotelForAnHour) {
-    bool is_sound = true;
-    const HotelHour hour = anHour(is_sound);
-    EXPECT_TRUE(is_sound);
-    EXPECT_EQ(hour.most_riders, 2U);
-    EXPECT_EQ(hour.others, 0);
-    EXPECT_GT(hour.done, 100);
-    EXPECT_TRUE(hour.ways == anHour(is_sound).ways);
 }
 
 TEST(Cabin, RidersLeaveAWayOutForOthers) {

@@ -28,7 +28,6 @@ BuildingScript::BuildingScript(std::string_view text, const std::string& file,
                                const BuildingRun& run) {
     Diagnostics findings;
     LineReader reader(text);
-    constexpr std::string_view kSpeed = "speed=";
     while (const auto whole = reader.next()) {
         const std::string_view bytes = whole->substr(0, whole->find('#'));
         const std::vector<Piece> words = wordsOf(bytes);
@@ -63,17 +62,11 @@ BuildingScript::BuildingScript(std::string_view text, const std::string& file,
                 !refusal.empty())
                 fault(3, refusal);
         } else if ((verb == "GOTO" && words.size() > 3) || (verb == "PATH" && has_storey)) {
-            RoomPoints goals = parseRoomPoints(words[3].text, run.rooms(), *room);
-            if (!goals.fault.empty()) fault(3, goals.fault);
-            line.goals = std::move(goals.points);
-            if (words.size() > 4) {
-                const auto speed = words[4].text.starts_with(kSpeed)
-                                       ? parseDouble(words[4].text.substr(kSpeed.size()))
-                                       : std::nullopt;
-                if (!speed || !(*speed > 0) || words.size() > 5)
-                    fault(4, "unexpected " + excerpt(words[4].text) + ": speed=v alone");
-                line.speed = speed.value_or(0);
-            }
+            std::vector<std::string_view> texts = {verb};
+            for (std::size_t i = 3; i < words.size(); ++i) texts.push_back(words[i].text);
+            ParsedTrip trip = parseTrip(texts, run.rooms(), *room);
+            if (!trip.fault.empty()) fault(trip.word + 2, trip.fault);
+            line.plan = std::move(trip.plan);
         } else {
             const auto begin = static_cast<std::size_t>(words[2].text.data() - bytes.data());
             const ParsedCommand parsed = parseCommand(bytes.substr(begin));
@@ -106,7 +99,7 @@ void BuildingScript::give(BuildingRun& run) {
 
 std::string BuildingScript::give(const Line& line, BuildingRun& run, std::size_t room) {
     if (!line.lift.empty()) return run.ride(line.mover, line.lift, line.storey).refusal;
-    if (!line.goals.empty()) return run.travel(line.mover, line.goals, line.speed).refusal;
+    if (!line.plan.points.empty()) return run.travel(line.mover, line.plan).refusal;
     if (std::string refusal = refusalOf(run, room, line.mover, line.command); !refusal.empty())
         return refusal;
     const bool stops = line.command.verb == Verb::Stop;

@@ -27,9 +27,8 @@ class BuildingScript {
     struct Line {
         SimTime time{};
         std::string mover;
-        Command command;               // unless it is a trip
-        std::vector<RoomPoint> goals;  // of a trip
-        double speed = 0;
+        Command command;           // unless it is a trip
+        TripPlan plan;             // of a trip
         std::string lift, storey;  // of a ride
     };
     static std::string give(const Line& line, BuildingRun& run, std::size_t room);

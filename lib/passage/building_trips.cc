@@ -27,9 +27,9 @@ std::optional<Route> BuildingRun::Data::routeFrom(const Traveller& who, std::siz
                                                   std::size_t goal) const {
     const StoreyWays& all = waysOf(who);
     MoverAbility ability = who.ability;
-    if (trip.speed > 0) ability.speed = trip.speed;
-    return all.route(storey, at, trip.goals[goal].room, trip.goals[goal].at, ability, waits(),
-                     trip.only);
+    if (trip.plan.speed > 0) ability.speed = trip.plan.speed;
+    const RoomPoint& to = trip.plan.points[goal];
+    return all.route(storey, at, to.room, to.at, ability, waits(), trip.only);
 }
 
 TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip) {
@@ -44,7 +44,7 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
     const auto text_of = [this](const RoomPoint& goal) {
         return rooms[goal.room].id + '/' + formatDouble(goal.at.x) + ',' + formatDouble(goal.at.y);
     };
-    for (const RoomPoint& goal : trip.goals) {
+    for (const RoomPoint& goal : trip.plan.points) {
         const std::string& room = rooms[goal.room].id;
         if (!rooms[goal.room].storey)
             return {.refusal = room + " is no storey: RIDE leads by a lift"};
@@ -57,10 +57,11 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
                                    .append(scene.environment.elements()[*element].id)
                                    .append(" stands there")};
     }
-    for (std::size_t i = 0; i < trip.goals.size(); ++i) {
+    const std::vector<RoomPoint>& points = trip.plan.points;
+    for (std::size_t i = 0; i < points.size(); ++i) {
         const auto route = routeFrom(who, from, at, trip, i);
         if (!route) {
-            std::string text = "no way for " + mover + " to " + text_of(trip.goals[i]);
+            std::string text = "no way for " + mover + " to " + text_of(points[i]);
             for (std::size_t k = 0; k < passages.size(); ++k)
                 if (const std::string why = waysOf(who).refusal(passages[k], who.ability);
                     !why.empty() && (!trip.only || trip.only == k))
@@ -71,8 +72,8 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
         for (const Leg& leg : route->legs)
             answer.via += (answer.via.empty() ? "" : ",") + passages[leg.passage].id;
         if (i == 0) trip.legs = route->legs;
-        from = trip.goals[i].room;
-        at = trip.goals[i].at;
+        from = points[i].room;
+        at = points[i].at;
     }
     World& world = worldOf(who);
     const std::size_t index = world.moverNamed(mover).value();
@@ -90,8 +91,10 @@ void BuildingRun::Data::finish(const std::string& id, Outcome outcome) {
     const auto found = trips.find(id);
     if (found == trips.end()) return;
     release(id);
-    new_ends.push_back({id, found->second.command, outcome, rooms.front().world->time()});
+    const int command = found->second.command;
+    new_ends.push_back({id, command, outcome, rooms.front().world->time()});
     trips.erase(found);
+    wanderOn(id, command, outcome);
 }
 
 std::string BuildingRun::endTrip(const std::string& mover, Outcome outcome) {
@@ -152,6 +155,7 @@ void BuildingRun::Data::advance() {
     ends = std::exchange(new_ends, {});
     advanceLifts();
     releaseHolders();
+    advanceWanderers();
     std::vector<std::string> ids;
     for (const auto& [id, trip] : trips) ids.push_back(id);
     for (const std::string& id : ids)
@@ -185,6 +189,9 @@ void BuildingRun::Data::advanceTrip(const std::string& id, BuildingTrip& trip) {
             return leaveCabin(who, trip);
         case TripState::AtEnd:
             return arrive(who, trip);
+        case TripState::Pausing:
+            if (rooms.front().world->time() >= trip.pause_until) goToNextGoal(who, trip);
+            return;
     }
 }
 
@@ -193,7 +200,7 @@ void BuildingRun::Data::setOut(Traveller& who, BuildingTrip& trip) {
     const StoreyWays& all = waysOf(who);
     const Point2 at = statusOf(who).pose.position;
     const std::size_t storey = *rooms[who.room].storey;
-    Point2 to = trip.goals[trip.goal].at;
+    Point2 to = trip.plan.points[trip.goal].at;
     trip.state = TripState::Walking;
     trip.spot.reset();
     if (trip.ending) return clearLanding(who, trip);
@@ -206,7 +213,7 @@ void BuildingRun::Data::setOut(Traveller& who, BuildingTrip& trip) {
     }
     const std::vector<Point2> way = all.finder(storey).wayBetween(at, to);
     if (way.empty()) return giveUp(who, trip, Outcome::Unreached);
-    send(who, trip, way, trip.speed > 0 ? trip.speed : who.ability.speed);
+    send(who, trip, way, trip.plan.speed > 0 ? trip.plan.speed : who.ability.speed);
 }
 
 std::optional<Point2> BuildingRun::Data::freeSpot(const Traveller& who,
@@ -261,9 +268,27 @@ void BuildingRun::Data::clearLanding(Traveller& who, BuildingTrip& trip) {
                                               .wayBetween(statusOf(who).pose.position, *trip.spot)
                                         : std::vector<Point2>();
     if (way.empty()) return finish(who.id, *trip.ending);
-    trip.goals = {{landing->storey, *trip.spot}};
+    trip.plan = {.points = {{landing->storey, *trip.spot}}};
     trip.goal = 0;
     send(who, trip, way, who.ability.speed);
+}
+
+void BuildingRun::Data::arriveAtGoal(Traveller& who, BuildingTrip& trip) {
+    const bool is_last = trip.goal + 1 == trip.plan.points.size() && !trip.plan.loop;
+    if (is_last) return finish(who.id, trip.ending.value_or(Outcome::Done));
+    trip.state = TripState::Pausing;
+    trip.pause_until = rooms.front().world->time() + simSeconds(trip.plan.pause);
+    if (!(trip.plan.pause > 0)) goToNextGoal(who, trip);
+}
+
+void BuildingRun::Data::goToNextGoal(Traveller& who, BuildingTrip& trip) {
+    trip.goal = (trip.goal + 1) % trip.plan.points.size();
+    const auto route =
+        routeFrom(who, *rooms[who.room].storey, statusOf(who).pose.position, trip, trip.goal);
+    if (!route) return giveUp(who, trip, Outcome::Unreached);
+    trip.legs = route->legs;
+    trip.leg = 0;
+    trip.state = TripState::Setting;
 }
 
 /// After a command that came to its end.
@@ -272,16 +297,7 @@ void BuildingRun::Data::step(Traveller& who, BuildingTrip& trip) {
     switch (trip.state) {
         case TripState::Walking:
             if (trip.leg < trip.legs.size()) return queueUp(who, trip);
-            if (++trip.goal == trip.goals.size())
-                return finish(who.id, trip.ending.value_or(Outcome::Done));
-            if (const auto route = routeFrom(who, *rooms[who.room].storey,
-                                             statusOf(who).pose.position, trip, trip.goal)) {
-                trip.legs = route->legs;
-                trip.leg = 0;
-                trip.state = TripState::Setting;
-                return;
-            }
-            return giveUp(who, trip, Outcome::Unreached);
+            return arriveAtGoal(who, trip);
         case TripState::Nearing:
             return enter(who, trip);
         case TripState::Entering: {

@@ -136,7 +136,7 @@ void BuildingRun::Data::waitTurn(Traveller& who, BuildingTrip& trip) {
     if (way.empty()) return finish(who.id, Outcome::Unreached);
     stop.holder = who.id;
     trip.state = TripState::Nearing;
-    send(who, trip, way, trip.speed > 0 ? trip.speed : who.ability.speed);
+    send(who, trip, way, trip.plan.speed > 0 ? trip.plan.speed : who.ability.speed);
 }
 
 /// Returns the offset from the middle of the stairs at which a mover walks: on the right where two

@@ -140,24 +140,12 @@ void Session::startTrip(Words words) {
     JoinedWorlds& worlds = *rooms()->worlds;
     const auto& states = rooms()->states;
     const auto room = std::find(states.begin(), states.end(), state_) - states.begin();
-    RoomPoints goals = parseRoomPoints(words[1], worlds.rooms(), static_cast<std::size_t>(room));
-    if (!goals.fault.empty()) return error(400, {goals.fault});
-    if (words[0] == "GOTO" && goals.points.size() > 1)
-        return error(400, {"GOTO leads to one point, PATH to several"});
-    double speed = 0;
-    if (words.size() > 2) {
-        const auto value = words[2].starts_with("speed=")
-                               ? parseDouble(words[2].substr(std::string_view("speed=").size()))
-                               : std::nullopt;
-        if (!value || words.size() > 3)
-            return error(400,
-                         {"unexpected ", excerpt(words[2]), " behind the points: speed=v alone"});
-        speed = *value;
-        const double most = world().movers()[subject_].model.max_speed;
-        if (!(speed > 0 && speed <= most))
-            return error(416, {id_, " goes at most ", formatDouble(most), " m/s"});
-    }
-    const TripAnswer answer = worlds.travel(id_, std::move(goals.points), speed);
+    ParsedTrip trip = parseTrip(words, worlds.rooms(), static_cast<std::size_t>(room));
+    if (!trip.fault.empty()) return error(400, {trip.fault});
+    const double most = world().movers()[subject_].model.max_speed;
+    if (trip.plan.speed > most)
+        return error(416, {id_, " goes at most ", formatDouble(most), " m/s"});
+    const TripAnswer answer = worlds.travel(id_, std::move(trip.plan));
     answerTrip(words[0], answer);
 }
 

@@ -22,7 +22,7 @@ namespace ispace {
 namespace {
 
 /// Rejects a mistyped digit; also keeps poses within the resolution of doubles.
-constexpr double kMaxDistance = 1e6;
+constexpr double kLongestPath = 1e6;
 
 constexpr std::string_view kPathExample = "PATH 1,0;1,2 speed=0.3";
 
@@ -89,9 +89,9 @@ ParsedCommand parseValue(const VerbFacts& facts, std::string_view text) {
             CommandError::Kind::Range,
             join({facts.name, " takes no negative ", facts.value_name, ", use ", facts.opposite}));
     }
-    if (comesToAnEnd(facts.verb) && *value > kMaxDistance) {
+    if (comesToAnEnd(facts.verb) && *value > kLongestPath) {
         return refuse(CommandError::Kind::Range,
-                      join({facts.name, " takes at most ", formatDouble(kMaxDistance), " ",
+                      join({facts.name, " takes at most ", formatDouble(kLongestPath), " ",
                             facts.unit, ", found ", excerpt(text)}));
     }
     // Adding 0 drops the sign of minus zero.
@@ -119,7 +119,25 @@ std::optional<std::vector<Point2>> parsePlaces(std::string_view text) {
     }
 }
 
-/// Parses a key of PATH. Returns an error message, or "".
+ParsedCommand parsePath(std::span<const Piece> words) {
+    const auto places = words.empty() ? std::nullopt : parsePlaces(words.front().text);
+    if (!places) {
+        const std::string found = words.empty() ? "" : ", found " + excerpt(words.front().text);
+        return refusePath("PATH wants places x,y;x,y in metres" + found);
+    }
+    for (const Point2 p : *places)
+        if (!(std::abs(p.x) <= kLongestPath && std::abs(p.y) <= kLongestPath))
+            return refuse(CommandError::Kind::Range,
+                          join({"PATH goes at most ", formatDouble(kLongestPath), " metres"}));
+    Command command = pathCommand({.path = *places});
+    for (const Piece& word : words.subspan(1))
+        if (std::string wrong = applyPathKey(word.text, command); !wrong.empty())
+            return refusePath(wrong);
+    return {std::move(command), {}};
+}
+
+}  // namespace
+
 std::string applyPathKey(std::string_view text, Command& command) {
     const std::size_t sign = std::min(text.find('='), text.size());
     const std::string_view key = text.substr(0, sign);
@@ -130,7 +148,7 @@ std::string applyPathKey(std::string_view text, Command& command) {
     } else if (key == "speed" && number && *number > 0) {
         command.speed = *number;
     } else if (key == "pause" && number && *number >= 0) {
-        command.course.pause = std::min(*number, kMaxDistance);
+        command.course.pause = std::min(*number, kLongestPath);
     } else {
         return join(
             {"PATH takes speed= in metres a second above 0, pause= in seconds and "
@@ -139,25 +157,6 @@ std::string applyPathKey(std::string_view text, Command& command) {
     }
     return "";
 }
-
-ParsedCommand parsePath(std::span<const Piece> words) {
-    const auto places = words.empty() ? std::nullopt : parsePlaces(words.front().text);
-    if (!places) {
-        const std::string found = words.empty() ? "" : ", found " + excerpt(words.front().text);
-        return refusePath("PATH wants places x,y;x,y in metres" + found);
-    }
-    for (const Point2 p : *places)
-        if (!(std::abs(p.x) <= kMaxDistance && std::abs(p.y) <= kMaxDistance))
-            return refuse(CommandError::Kind::Range,
-                          join({"PATH goes at most ", formatDouble(kMaxDistance), " metres"}));
-    Command command = pathCommand({.path = *places});
-    for (const Piece& word : words.subspan(1))
-        if (std::string wrong = applyPathKey(word.text, command); !wrong.empty())
-            return refusePath(wrong);
-    return {std::move(command), {}};
-}
-
-}  // namespace
 
 Command pathCommand(MotionPlan course, double speed) {
     double length = 0;

@@ -41,6 +41,9 @@ struct Command {
 /// Creates a Path over these points. \pre the plan has at least one
 Command pathCommand(MotionPlan course, double speed = 0);
 
+/// Parses a key of PATH, as "speed=0.3". Returns the reason why it is none, or "".
+std::string applyPathKey(std::string_view text, Command& command);
+
 /// Reason for which a text is rejected as a command.
 struct CommandError {
     enum class Kind { Unknown, Syntax, Range } kind = Kind::Syntax;

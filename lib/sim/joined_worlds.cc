@@ -2,16 +2,21 @@
 #include "sim/joined_worlds.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/message.h"
 #include "base/number.h"
+#include "sim/command.h"
 
 namespace ispace {
 
-RoomPoints parseRoomPoints(std::string_view text, std::span<const JoinedRoom> rooms,
-                           std::size_t room) {
-    constexpr std::size_t kMost = 8;
-    RoomPoints found;
+namespace {
+
+constexpr std::size_t kMostPoints = 8;
+
+/// Adds the points of "upper/1,2;3,4". Returns the reason why the text holds none, or "".
+std::string addPoints(std::string_view text, std::span<const JoinedRoom> rooms, std::size_t room,
+                      std::vector<RoomPoint>& points) {
     for (;;) {
         const std::string_view one = text.substr(0, text.find(';'));
         std::string_view point = one;
@@ -19,7 +24,7 @@ RoomPoints parseRoomPoints(std::string_view text, std::span<const JoinedRoom> ro
             const std::string_view id = one.substr(0, slash);
             const auto named = std::find_if(rooms.begin(), rooms.end(),
                                             [&](const JoinedRoom& each) { return each.id == id; });
-            if (named == rooms.end()) return {.fault = "no storey " + excerpt(id)};
+            if (named == rooms.end()) return "no storey " + excerpt(id);
             room = static_cast<std::size_t>(named - rooms.begin());
             point = one.substr(slash + 1);
         }
@@ -27,13 +32,43 @@ RoomPoints parseRoomPoints(std::string_view text, std::span<const JoinedRoom> ro
         const auto x = parseDouble(point.substr(0, comma));
         const auto y =
             comma == std::string_view::npos ? std::nullopt : parseDouble(point.substr(comma + 1));
-        if (!x || !y) return {.fault = "wanted a point like upper/1,2, found " + excerpt(one)};
-        if (found.points.size() == kMost)
-            return {.fault = "a trip has at most " + std::to_string(kMost) + " points"};
-        found.points.push_back({room, {*x, *y}});
-        if (one.size() == text.size()) return found;
+        if (!x || !y) return "wanted a point like upper/1,2, found " + excerpt(one);
+        if (points.size() == kMostPoints)
+            return "a trip has at most " + std::to_string(kMostPoints) + " points";
+        points.push_back({room, {*x, *y}});
+        if (one.size() == text.size()) return "";
         text.remove_prefix(one.size() + 1);
     }
+}
+
+}  // namespace
+
+ParsedTrip parseTrip(std::span<const std::string_view> words, std::span<const JoinedRoom> rooms,
+                     std::size_t room) {
+    const bool is_path = words[0] == "PATH";
+    ParsedTrip trip;
+    const auto fail = [&trip](std::size_t word, std::string fault) {
+        trip.word = word;
+        trip.fault = std::move(fault);
+        return trip;
+    };
+    std::vector<RoomPoint>& points = trip.plan.points;
+    if (std::string fault = addPoints(words[1], rooms, room, points); !fault.empty())
+        return fail(1, std::move(fault));
+    if (!is_path && points.size() > 1) return fail(1, "GOTO leads to one point, PATH to several");
+    Command keys;
+    for (std::size_t i = 2; i < words.size(); ++i) {
+        std::string fault = applyPathKey(words[i], keys);
+        if (!is_path && !(fault.empty() && words[i].starts_with("speed=")))
+            fault = "unexpected " + excerpt(words[i]) + " behind the point: speed=v alone";
+        if (!fault.empty()) return fail(i, std::move(fault));
+    }
+    if (keys.course.loop && points.size() < 2)
+        return fail(1, "a trip with loop=yes has two points or more");
+    trip.plan.speed = keys.speed;
+    trip.plan.pause = keys.course.pause;
+    trip.plan.loop = keys.course.loop;
+    return trip;
 }
 
 }  // namespace ispace

@@ -26,16 +26,26 @@ struct RoomPoint {
     Point2 at;
 };
 
-/// A list of points, or the reason why a text is none.
-struct RoomPoints {
-    std::vector<RoomPoint> points = {};
-    std::string fault = {};
+/// Points to which a mover goes, one after another.
+struct TripPlan {
+    std::vector<RoomPoint> points;
+    double speed = 0;   ///< m/s; 0: the mover's
+    double pause = 0;   ///< seconds to stay at each point
+    bool loop = false;  ///< from the last point to the first, repeatedly
 };
 
-/// Parses "upper/1,2;3,4". A point without a room is one of that of the point before, at first of
-/// `room`.
-RoomPoints parseRoomPoints(std::string_view text, std::span<const JoinedRoom> rooms,
-                           std::size_t room);
+/// A plan, or the reason why a text is none, and the word that is at fault.
+struct ParsedTrip {
+    TripPlan plan = {};
+    std::string fault = {};
+    std::size_t word = 0;
+};
+
+/// Parses the words of `GOTO upper/1,2 speed=0.3`, or of `PATH upper/1,2;3,4` with the keys of
+/// PATH. A point without a room is one of that of the point before, at first of `room`. \pre there
+/// are two words or more
+ParsedTrip parseTrip(std::span<const std::string_view> words, std::span<const JoinedRoom> rooms,
+                     std::size_t room);
 
 /// A trip that was asked for, or the reason why it cannot begin.
 struct TripAnswer {
@@ -75,10 +85,9 @@ class JoinedWorlds {
     /// "storey=upper in=l1 z=2.100".
     [[nodiscard]] virtual std::string whereText(std::size_t room) const = 0;
 
-    /// Sends a mover by the shortest way to these points, one after another. \param speed m/s; 0:
-    /// the mover's \pre the speed is one that it can go
-    virtual TripAnswer travel(const std::string& mover, std::vector<RoomPoint> goals,
-                              double speed) = 0;
+    /// Sends a mover by the fastest way to the points of a plan. \pre the speed is one that it can
+    /// go
+    virtual TripAnswer travel(const std::string& mover, TripPlan plan) = 0;
     /// Sends a mover by a lift to its landing on a storey.
     virtual TripAnswer ride(const std::string& mover, std::string_view lift,
                             std::string_view storey) = 0;

@@ -12,10 +12,6 @@ namespace {
 
 constexpr SimTime kNever{-1};
 
-SimTime simSeconds(double seconds) {
-    return SimTime(static_cast<SimTime::rep>(std::llround(seconds * 1e9)));
-}
-
 /// m/s: a faster mover tries lower speeds down to this one.
 constexpr double kPace = 1;
 /// Degrees: for a wider turn the mover turns on the spot.

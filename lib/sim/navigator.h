@@ -43,6 +43,10 @@ class Navigator {
     void follow(const MotionPlan& course, double speed, bool commanded);
     void turnOff() { state_ = State::Off; }
     [[nodiscard]] bool isOn() const { return state_ == State::Underway; }
+    /// Returns true once it wanders without a command.
+    [[nodiscard]] bool isWandering() const {
+        return isOn() && !commanded_ && course_.wander && next_ >= course_.path.size();
+    }
     [[nodiscard]] State state() const { return state_; }
     [[nodiscard]] const MotionPlan& course() const { return course_; }
     [[nodiscard]] double speed() const { return speed_; }

@@ -2,6 +2,7 @@
 #include "sim/sim_time.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "base/number.h"
@@ -72,6 +73,11 @@ std::uint64_t magnitude(SimTime time) {
 }
 
 }  // namespace
+
+SimTime simSeconds(double seconds) {
+    constexpr double kNanoseconds = 1e9;
+    return SimTime(static_cast<SimTime::rep>(std::llround(seconds * kNanoseconds)));
+}
 
 double seconds(SimTime time) {
     constexpr std::uint64_t kExactInDouble = std::uint64_t{1} << 53;

@@ -18,6 +18,9 @@ constexpr SimTime kMaxTime = std::chrono::hours(24) * 36525;
 /// Returns the nearest double, for formats that store seconds as a number.
 double seconds(SimTime time);
 
+/// Rounds to nanoseconds. \pre |seconds| is below a hundred years
+SimTime simSeconds(double seconds);
+
 /// Parses "2.5", "5ms", "2min": units of Unit::Time, seconds without one, rounded to nanoseconds.
 /// Returns nullopt if it is not a number, negative, or above a hundred years.
 std::optional<SimTime> parseSimTime(std::string_view text);

@@ -242,6 +242,14 @@ int World::command(std::size_t mover, const Command& command) {
     return state.running;
 }
 
+void World::follow(std::size_t mover, const MotionPlan& plan) {
+    Data& data = *data_;
+    if (data.states[mover].running != 0) data.end(mover, Outcome::Replaced);
+    data.pilots[mover].follow(plan, data.movers[mover].model.speed, false);
+}
+
+bool World::isWandering(std::size_t mover) const { return data_->pilots[mover].isWandering(); }
+
 int World::running(std::size_t mover) const { return data_->states[mover].running; }
 
 void World::steer(std::size_t robot, const WheelOrder& order) {

@@ -179,6 +179,11 @@ class World {
     int command(std::size_t mover, const Command& command);
     /// Returns the id of the command under way that comes to an end, 0 without one.
     [[nodiscard]] int running(std::size_t mover) const;
+    /// Starts a mover on a plan like that of its record, until a command ends it. A running command
+    /// ends as Replaced.
+    void follow(std::size_t mover, const MotionPlan& plan);
+    /// Returns true if the mover wanders, by its record or follow().
+    [[nodiscard]] bool isWandering(std::size_t mover) const;
     /// Gives an order to a robot's wheels; a running command ends as Replaced. The stall flag stays
     /// unless the order has a goal for the drive. \pre speeds and accelerations are not negative
     void steer(std::size_t robot, const WheelOrder& order);
