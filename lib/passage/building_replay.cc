@@ -72,10 +72,14 @@ void BuildingRun::Data::replay() {
     leader.replay(*rooms.front().replay, options.holds);
     leader.beforeStep(
         [this] { showLifts(rooms.front().world->time() + rooms.front().world->stepLength()); });
-    leader.onStep([this] { locate(); });
+    leader.onStep([this] {
+        locate();
+        tellLifts();
+    });
     leader.onReplayChange([this] {
         locate();
         showLifts(rooms.front().world->time());
+        told_lifts.clear();
     });
 }
 

@@ -266,27 +266,47 @@ std::string BuildingRun::call(std::string_view lift, std::string_view storey) {
     return "";
 }
 
+LiftState BuildingRun::Data::liftState(std::size_t passage) const {
+    const Lift& lift = lifts[passage];
+    const StoreyLink& link = passages[passage];
+    const SimTime time = rooms.front().world->time();
+    const auto storey_id = [&](std::size_t stop) {
+        return building.document.storeys[link.storeys[stop]].id;
+    };
+    LiftState state{.id = link.id,
+                    .storey = storey_id(lift.stop()),
+                    .height = lift.height(time),
+                    .door = lift.opening(time),
+                    .riders = {},
+                    .calls = {}};
+    for (const Mover& mover : rooms[first_room[passage]].world->movers())
+        state.riders.push_back(mover.id);
+    for (const std::size_t stop : lift.calls()) state.calls.push_back(storey_id(stop));
+    return state;
+}
+
+/// Tells the states of lifts that have changed, as events of their cabins.
+void BuildingRun::Data::tellLifts() {
+    told_lifts.resize(passages.size());
+    for (std::size_t i = 0; i < passages.size(); ++i) {
+        if (!passages[i].is_lift) continue;
+        std::vector<RoomState> now = statesOf(liftState(i));
+        std::vector<RoomState>& told = told_lifts[i];
+        EventLog& events = rooms[first_room[i]].simulation->events();
+        for (std::size_t k = 0; k < told.size(); ++k)
+            if (told[k] != now[k])
+                events.tell({.kind = EventKind::State,
+                             .id = now[k].id,
+                             .other = now[k].key,
+                             .text = now[k].value});
+        told = std::move(now);
+    }
+}
+
 std::vector<LiftState> BuildingRun::lifts() const {
     std::vector<LiftState> states;
-    const SimTime time = world(0).time();
-    for (std::size_t i = 0; i < data_->passages.size(); ++i) {
-        const StoreyLink& passage = data_->passages[i];
-        if (!passage.is_lift) continue;
-        const Lift& lift = data_->lifts[i];
-        const auto storey_id = [&](std::size_t stop) {
-            return data_->building.document.storeys[passage.storeys[stop]].id;
-        };
-        LiftState state{.id = passage.id,
-                        .storey = storey_id(lift.stop()),
-                        .height = lift.height(time),
-                        .door = lift.opening(time),
-                        .riders = {},
-                        .calls = {}};
-        for (const Mover& mover : world(data_->first_room[i]).movers())
-            state.riders.push_back(mover.id);
-        for (const std::size_t stop : lift.calls()) state.calls.push_back(storey_id(stop));
-        states.push_back(std::move(state));
-    }
+    for (std::size_t i = 0; i < data_->passages.size(); ++i)
+        if (data_->passages[i].is_lift) states.push_back(data_->liftState(i));
     return states;
 }
 

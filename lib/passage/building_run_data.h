@@ -101,6 +101,8 @@ struct BuildingRun::Data {
                                                        std::string_view storey) const;
     [[nodiscard]] std::vector<double> waits() const;
     [[nodiscard]] std::vector<LiftNames> liftNames() const;
+    [[nodiscard]] LiftState liftState(std::size_t passage) const;
+    void tellLifts();
 
     // Replays.
     void replay();
@@ -174,7 +176,8 @@ struct BuildingRun::Data {
     std::vector<JoinedRoom> joined;
     std::vector<std::size_t> first_room;             // of each passage
     std::vector<Lift> lifts;                         // by passage; unused for stairs
-    std::vector<std::vector<Rider>> riders;  // by passage
+    std::vector<std::vector<RoomState>> told_lifts;  // their states, by passage
+    std::vector<std::vector<Rider>> riders;          // by passage
     std::vector<std::vector<Stop>> stops;            // by passage and stop
     std::map<MoverSize, StoreyWays> ways;
     std::map<std::string, Traveller, std::less<>> travellers;

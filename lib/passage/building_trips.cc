@@ -154,6 +154,7 @@ std::optional<Outcome> BuildingRun::Data::ended(const Traveller& who, BuildingTr
 void BuildingRun::Data::advance() {
     ends = std::exchange(new_ends, {});
     advanceLifts();
+    tellLifts();
     releaseHolders();
     advanceWanderers();
     std::vector<std::string> ids;

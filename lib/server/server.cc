@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "server/ros/ros_site.h"
 #include "server/server_data.h"
+#include "server/session.h"
 #include "server/web/web_page.h"
 
 namespace ispace {
@@ -55,9 +56,19 @@ void Server::serveDds(std::uint32_t domain, RosScenery scenery) {
 std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,
                                 const Endpoint& endpoint) {
     Data& data = *data_;
-    const std::string refusal = protocol.refusal(data.simulation.world(), id);
+    const auto [state, name, is_known] = data.state.find(id);
+    if (!is_known) {
+        std::vector<std::string> known;
+        for (const auto& [room, world] : data.state.worlds())
+            for (const auto& ids : {idsOf(world->robots()), idsOf(world->sensors())})
+                for (const std::string& one : ids) known.push_back(nameAcross(room, one));
+        throw UsageError(unknownThing("robot or sensor", id, known));
+    }
+    const std::string refusal = protocol.refusal(state->simulation().world(), name);
     if (!refusal.empty()) throw UsageError(refusal);
-    return data.devices.emplace_back(data.io, data.host, data.limits, protocol, id, endpoint)
+    DeviceHost& host = data.hosts.emplace_back(*state, std::string(name), data.pictures);
+    return data.devices
+        .emplace_back(data.io, host, data.limits, protocol, std::string(name), endpoint)
         .address();
 }
 

@@ -82,7 +82,8 @@ struct Server::Data {
     std::optional<RosFeed> feed;
     std::optional<RosNode> node;
     std::list<WebServer> webs;
-    DeviceHost host{state};
+    PictureFiles pictures;
+    std::list<DeviceHost> hosts;
     std::list<DevicePort> devices;
     std::optional<MqttBridge> mqtt;
 };

@@ -10,6 +10,7 @@
 #include "server/change_request.h"
 #include "server/session.h"
 #include "sim/run_limits.h"
+#include "sim/state_watch.h"
 
 namespace ispace {
 
@@ -158,6 +159,51 @@ bool ServerState::mayHold() const {
     // A client that steps a paused world expects earlier changes to be complete.
     return simulation_->clock().kind != Clock::Kind::Real || simulation_->isReplay() ||
            simulation_->paused();
+}
+
+std::vector<ServerState::ServedWorld> ServerState::worlds() const {
+    if (rooms_ == nullptr) return {{"", &simulation_->world()}};
+    std::vector<ServedWorld> worlds;
+    for (const JoinedRoom& room : rooms_->worlds->rooms())
+        worlds.push_back({room.id, &room.simulation->world()});
+    return worlds;
+}
+
+std::vector<RoomState> ServerState::statesOfAll() const {
+    std::vector<RoomState> states;
+    for (const auto& [room, world] : worlds())
+        for (RoomState& state : statesOf(*world)) {
+            state.id = nameAcross(room, state.id);
+            states.push_back(std::move(state));
+        }
+    if (rooms_ == nullptr) return states;
+    for (const LiftState& lift : rooms_->worlds->lifts())
+        for (RoomState& state : statesOf(lift)) states.push_back(std::move(state));
+    return states;
+}
+
+ServerState::ServedThing ServerState::find(std::string_view name) {
+    if (rooms_ == nullptr) return {this, name};
+    const auto has = [](ServerState& each, std::string_view id) {
+        const World& world = each.simulation().world();
+        return world.moverNamed(id) || world.sensorNamed(id);
+    };
+    const bool is_whole = name.find('/') != std::string_view::npos;
+    if (is_whole && has(*this, name)) return {this, name};
+    for (ServerState* const each : rooms_->states)
+        if (is_whole && has(*each, name)) return {each, name};
+    const auto all = rooms_->worlds->rooms();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const std::string prefix = all[i].id + '/';
+        if (!name.starts_with(prefix)) continue;
+        const std::string_view id = name.substr(prefix.size());
+        if (has(*rooms_->states[i], id)) return {rooms_->states[i], id};
+    }
+    return {this, name, false};
+}
+
+std::string nameAcross(const std::string& room, const std::string& id) {
+    return room.empty() || id.find('/') != std::string::npos ? id : room + '/' + id;
 }
 
 bool ServerState::areAllAtRest() const {

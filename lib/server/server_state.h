@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/room_state.h"
 #include "server/background_worker.h"
 #include "server/server.h"
 #include "server/session_sensors.h"
@@ -49,6 +50,10 @@ inline std::string joined(const std::vector<std::string>& words, std::string_vie
     }
     return out;
 }
+
+/// Returns the name of a thing across the worlds of a run: "ground/d1". \param room "" in the only
+/// one
+std::string nameAcross(const std::string& room, const std::string& id);
 
 /// Enforces a RateLimit: a counter that refills with time.
 class TokenBucket {
@@ -134,6 +139,24 @@ class ServerState {
     [[nodiscard]] const ServedRooms* rooms() const { return rooms_; }
     /// \pre `rooms` outlives this object
     void joinRooms(const ServedRooms& rooms) { rooms_ = &rooms; }
+
+    /// A world of the run, with its id among others.
+    struct ServedWorld {
+        std::string id;  ///< "": the only one
+        const World* world = nullptr;
+    };
+    [[nodiscard]] std::vector<ServedWorld> worlds() const;
+    /// A robot, person or sensor, by its id in the world of a state.
+    struct ServedThing {
+        ServerState* state = nullptr;
+        std::string_view id;
+        bool is_known = true;
+    };
+    /// Finds the world of a thing by its name across the worlds, such as "ground/r1". Without other
+    /// worlds it is this one; a thing that is in none stays here, unknown.
+    [[nodiscard]] ServedThing find(std::string_view name);
+    /// Returns the states of all worlds, with the names of things across them, then of lifts.
+    [[nodiscard]] std::vector<RoomState> statesOfAll() const;
 
     /// Reserves a robot or person. \returns the number of this hold; empty if another client has it
     std::optional<std::int64_t> hold(std::string_view id);

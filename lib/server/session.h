@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "geom/pose.h"
-#include "scene/room_state.h"
 #include "server/server_state.h"
 
 namespace ispace {
@@ -130,7 +129,6 @@ class Session {
     void startTrip(Words words);
     void answerTrip(std::string_view verb, const TripAnswer& answer);
     [[nodiscard]] std::vector<std::string> idsOfAll(Role role) const;
-    [[nodiscard]] std::vector<RoomState> statesOfAll() const;
     [[nodiscard]] std::string whereText() const;
     static std::string_view verbOf(Role role);
     [[nodiscard]] std::string roleText() const;

@@ -12,7 +12,6 @@
 #include "scene/scene.h"
 #include "server/session.h"
 #include "sim/command.h"
-#include "sim/state_watch.h"
 
 namespace ispace {
 
@@ -162,7 +161,7 @@ void Session::list(Words /*words*/) {
 }
 
 void Session::states(Words words) {
-    std::vector<RoomState> states = statesOfAll();
+    std::vector<RoomState> states = state_->statesOfAll();
     if (words.size() > 1) {
         std::erase_if(states, [&](const RoomState& state) { return state.id != words[1]; });
         if (states.empty())

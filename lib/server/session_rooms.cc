@@ -10,31 +10,14 @@
 #include "base/number.h"
 #include "server/session.h"
 #include "sim/joined_worlds.h"
-#include "sim/state_watch.h"
 
 namespace ispace {
 
 std::string_view Session::enter(std::string_view id) {
-    if (rooms() == nullptr) return id;
-    const auto has = [](ServerState* each, std::string_view name) {
-        const World& world = each->simulation().world();
-        return world.moverNamed(name) || world.sensorNamed(name);
-    };
-    for (ServerState* const each : rooms()->states)
-        if (id.find('/') != std::string_view::npos && has(each, id)) {
-            state_ = each;
-            changes_ = world().changes();
-            return id;
-        }
-    const auto all = rooms()->worlds->rooms();
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const std::string prefix = all[i].id + '/';
-        if (!id.starts_with(prefix) || !has(rooms()->states[i], id.substr(prefix.size()))) continue;
-        state_ = rooms()->states[i];
-        changes_ = world().changes();
-        return id.substr(prefix.size());
-    }
-    return id;
+    const auto [state, own_id, is_known] = state_->find(id);
+    state_ = state;
+    if (rooms() != nullptr) changes_ = world().changes();
+    return own_id;
 }
 
 /// Goes to the world in which the client's robot, person or carried sensor is now.
@@ -61,24 +44,10 @@ std::vector<std::string> Session::idsOfAll(Role role) const {
                : role == Role::Laser  ? laserIdsOf(world)
                                       : idsOf(world.sensors());
     };
-    if (rooms() == nullptr) return of_world(world());
     std::vector<std::string> ids;
-    const auto all = rooms()->worlds->rooms();
-    for (std::size_t i = 0; i < all.size(); ++i)
-        for (std::string& id : of_world(all[i].simulation->world()))
-            ids.push_back(id.find('/') == std::string::npos ? all[i].id + '/' + id : std::move(id));
+    for (const auto& [room, world] : state_->worlds())
+        for (const std::string& id : of_world(*world)) ids.push_back(nameAcross(room, id));
     return ids;
-}
-
-std::vector<RoomState> Session::statesOfAll() const {
-    if (rooms() == nullptr) return statesOf(world());
-    std::vector<RoomState> states;
-    for (const JoinedRoom& room : rooms()->worlds->rooms())
-        for (RoomState& state : statesOf(room.simulation->world())) {
-            if (state.id.find('/') == std::string::npos) state.id = room.id + '/' + state.id;
-            states.push_back(std::move(state));
-        }
-    return states;
 }
 
 std::string Session::whereText() const {

@@ -312,7 +312,7 @@ void EventLog::add(EventKind kind, std::string text, std::string other) {
 }
 
 void EventLog::tell(Event event) {
-    assert(event.kind == EventKind::Activity);
+    assert(event.kind == EventKind::Activity || event.kind == EventKind::State);
     if (data_->wants(event.kind)) data_->put(std::move(event));
 }
 

@@ -81,7 +81,8 @@ class EventLog {
     /// Adds an event between steps, at the world's time. \pre Mark or Change
     void add(EventKind kind, std::string text, std::string other = {});
 
-    /// Adds an event at the world's time if its kind is subscribed. \pre Activity
+    /// Adds an event at the world's time if its kind is subscribed. \pre Activity, or State of a
+    /// thing that is not in the scene
     void tell(Event event);
 
     /// Events are numbered from 0 in their order; returns the number of the next one.

@@ -33,7 +33,8 @@ struct Observation {
 struct Trial {
     std::size_t expectation = 0;
     std::string id;
-    std::optional<std::size_t> mover;  // its index; empty while the world lacks it
+    std::size_t room = 0;
+    std::optional<std::size_t> mover;  // its index in that room; empty while all rooms lack it
     std::optional<SimTime> since;      // since when the state holds
     std::optional<SimTime> decided;    // when the verdict was decided
     bool is_met = false;
@@ -47,15 +48,59 @@ std::string at(SimTime time) { return " at t=" + formatMilliseconds(time); }
 
 std::string rounded(double value) { return formatDouble(roundSignificant(value, 4)); }
 
-std::vector<std::string> namesOf(const World& world) {
+/// A world, with its id among others.
+struct JudgedRoom {
+    std::string id;
+    const World* world = nullptr;
+    std::optional<DetectionMonitor> watch = {};
+    std::vector<Pose2> poses = {};  // of all movers, for the watch
+    std::int64_t changes = -1;      // of the world, when it was last read
+
+    [[nodiscard]] std::size_t seenBy(std::size_t mover) const {
+        const std::size_t robots = world->robots().size();
+        const std::span<const Pose2> all(poses);
+        const auto owner = mover < robots
+                               ? static_cast<std::uint32_t>(mover)
+                               : kFirstPerson + static_cast<std::uint32_t>(mover - robots);
+        return watch->seenBy({poses[mover].position, owner},
+                             {.robots = all.first(robots), .people = all.subspan(robots)});
+    }
+};
+
+std::vector<JudgedRoom> judgedRooms(std::span<const JoinedRoom> joined) {
+    std::vector<JudgedRoom> rooms;
+    for (const JoinedRoom& room : joined) rooms.push_back({room.id, &room.simulation->world()});
+    return rooms;
+}
+
+std::vector<JudgedRoom> theOnly(const World& world) {
+    std::vector<JudgedRoom> rooms;
+    rooms.push_back({"", &world});
+    return rooms;
+}
+
+std::vector<std::string> namesOf(const std::vector<JudgedRoom>& rooms) {
     std::vector<std::string> names;
-    for (const Mover& mover : world.movers()) names.push_back(mover.id);
+    for (const JudgedRoom& room : rooms)
+        for (const Mover& mover : room.world->movers()) names.push_back(mover.id);
     return names;
 }
 
-UsageError unknown(const World& world, const std::string& id) {
-    return UsageError("no robot or person is " + excerpt(id) + didYouMean(id, namesOf(world)));
+UsageError unknown(const std::vector<JudgedRoom>& rooms, const std::string& id) {
+    return UsageError("no robot or person is " + excerpt(id) + didYouMean(id, namesOf(rooms)));
 }
+
+UsageError lacksRoom(const std::vector<JudgedRoom>& rooms, const std::string& text) {
+    if (rooms.size() == 1) return UsageError("there is one room: leave out its name");
+    return UsageError(excerpt(text) + " names no room before it, as in " + rooms.front().id + '/' +
+                      text.substr(text.find('/') + 1));
+}
+
+/// Zones of a room.
+struct RoomZones {
+    std::size_t room = 0;
+    std::vector<Polygon> outlines = {};
+};
 
 /// "is not within 0.4 m of h1", "is seen by 0 sensors".
 std::string stateText(const Expectation& expectation, const Observation& seen) {
@@ -64,7 +109,8 @@ std::string stateText(const Expectation& expectation, const Observation& seen) {
         case State::Collision:
             return (seen.is_struck ? "was run into by " : "ran into ") + std::string(seen.other);
         case State::Near:
-            return "was " + rounded(seen.measure) + " m away";
+            return std::isfinite(seen.measure) ? "was " + rounded(seen.measure) + " m away"
+                                               : "was elsewhere";
         case State::InZone:
             return is + "in zone " + expectation.name;
         case State::Seen:
@@ -153,29 +199,28 @@ void close(Trial& trial, const Expectation& expectation, SimTime now) {
 }  // namespace
 
 struct ExpectationJudge::Data {
-    Data(const World& simulated, std::vector<Expectation> list);
+    Data(std::vector<JudgedRoom> judged, std::vector<Expectation> list);
 
     void addTrials(std::size_t expectation);
     void checkTarget(const Expectation& expectation);
+    [[nodiscard]] std::size_t roomNamed(const std::string& id, const std::string& text) const;
+    [[nodiscard]] RoomZones zonesOf(const std::string& text) const;
     void find();
-    [[nodiscard]] std::optional<Point2> placeOf(const Expectation& expectation) const;
+    [[nodiscard]] std::optional<Point2> placeOf(const Trial& trial) const;
     [[nodiscard]] Observation look(const Trial& trial) const;
-    [[nodiscard]] Observation lookForCollision(std::string_view id) const;
-    [[nodiscard]] bool collided(std::size_t mover) const;
-    [[nodiscard]] std::size_t seenBy(std::size_t mover) const;
+    [[nodiscard]] Observation lookForCollision(const Trial& trial) const;
+    [[nodiscard]] bool collided(const Trial& trial) const;
     void observe(Trial& trial);
 
-    const World* world;
+    std::vector<JudgedRoom> rooms;
     std::vector<Expectation> expectations;
-    std::vector<std::vector<Polygon>> zones;  // of the expectations; empty without
+    std::vector<RoomZones> zones;  // of the expectations; empty without
     std::vector<Trial> trials;
-    std::optional<DetectionMonitor> watch;
-    std::vector<Pose2> poses;  // of all movers, for the watch
-    std::int64_t changes = 0;  // of the world, when movers and zones were found
+    bool is_watched = false;
 };
 
-ExpectationJudge::Data::Data(const World& simulated, std::vector<Expectation> list)
-    : world(&simulated), expectations(std::move(list)) {
+ExpectationJudge::Data::Data(std::vector<JudgedRoom> judged, std::vector<Expectation> list)
+    : rooms(std::move(judged)), expectations(std::move(list)) {
     for (std::size_t i = 0; i < expectations.size(); ++i) {
         try {
             addTrials(i);
@@ -184,103 +229,136 @@ ExpectationJudge::Data::Data(const World& simulated, std::vector<Expectation> li
             throw UsageError(excerpt(expectations[i].text) + ": " + error.what());
         }
     }
+    is_watched = std::any_of(expectations.begin(), expectations.end(),
+                             [](const Expectation& each) { return each.state == State::Seen; });
     find();
 }
 
 void ExpectationJudge::Data::addTrials(std::size_t expectation) {
     const std::string& subject = expectations[expectation].subject;
     const std::size_t before = trials.size();
-    for (const std::string& name : namesOf(*world)) {
+    for (const std::string& name : namesOf(rooms)) {
         if (!isSelected(name, {subject})) continue;
         Trial& trial = trials.emplace_back();
         trial.expectation = expectation;
         trial.id = name;
     }
-    if (trials.size() == before && subject != "*") throw unknown(*world, subject);
+    if (trials.size() == before && subject != "*") throw unknown(rooms, subject);
+}
+
+/// Finds a room by its id, "" for the only one. \param text of which it is a part
+std::size_t ExpectationJudge::Data::roomNamed(const std::string& id,
+                                              const std::string& text) const {
+    for (std::size_t i = 0; i < rooms.size(); ++i)
+        if (rooms[i].id == id) return i;
+    throw lacksRoom(rooms, text);
+}
+
+RoomZones ExpectationJudge::Data::zonesOf(const std::string& text) const {
+    RoomZones found;
+    std::string name = text;
+    if (rooms.size() > 1) {
+        const std::size_t slash = std::min(text.find('/'), text.size());
+        found.room = roomNamed(text.substr(0, slash), text);
+        name = text.substr(std::min(slash + 1, text.size()));
+    }
+    for (NamedZone& zone : readZones(name, rooms[found.room].world->scene().environment))
+        found.outlines.push_back(std::move(zone.outline));
+    return found;
 }
 
 void ExpectationJudge::Data::checkTarget(const Expectation& expectation) {
     zones.emplace_back();
-    if (expectation.state == State::InZone)
-        for (NamedZone& zone : readZones(expectation.name, world->scene().environment))
-            zones.back().push_back(std::move(zone.outline));
-    if (expectation.state == State::Near && !expectation.place &&
-        !world->moverNamed(expectation.name))
-        throw unknown(*world, expectation.name);
+    if (expectation.state == State::InZone) zones.back() = zonesOf(expectation.name);
+    if (expectation.state != State::Near) return;
+    if (expectation.place) {
+        const Point2 p = *expectation.place;
+        static_cast<void>(roomNamed(expectation.room, formatDouble(p.x) + ',' + formatDouble(p.y)));
+        return;
+    }
+    const std::vector<std::string> names = namesOf(rooms);
+    if (std::find(names.begin(), names.end(), expectation.name) == names.end())
+        throw unknown(rooms, expectation.name);
 }
 
-/// Finds movers and zones in the world as of its last change.
+/// Finds movers in worlds that have changed.
 void ExpectationJudge::Data::find() {
-    changes = world->changes();
-    for (Trial& trial : trials) trial.mover = world->moverNamed(trial.id);
-    const bool is_watched =
-        std::any_of(expectations.begin(), expectations.end(),
-                    [](const Expectation& each) { return each.state == State::Seen; });
-    if (is_watched) watch.emplace(world->scene());
+    bool has_changed = false;
+    for (JudgedRoom& room : rooms) {
+        if (std::exchange(room.changes, room.world->changes()) == room.world->changes()) continue;
+        has_changed = true;
+        if (is_watched) room.watch.emplace(room.world->scene());
+    }
+    if (!has_changed) return;
+    for (Trial& trial : trials) {
+        trial.mover.reset();
+        for (std::size_t i = 0; i < rooms.size() && !trial.mover; ++i) {
+            trial.room = i;
+            trial.mover = rooms[i].world->moverNamed(trial.id);
+        }
+    }
 }
 
-std::optional<Point2> ExpectationJudge::Data::placeOf(const Expectation& expectation) const {
-    if (expectation.place) return expectation.place;
-    const auto other = world->moverNamed(expectation.name);
+/// Returns the point from which the distance of a mover counts, in its room.
+std::optional<Point2> ExpectationJudge::Data::placeOf(const Trial& trial) const {
+    const Expectation& expectation = expectations[trial.expectation];
+    const JudgedRoom& room = rooms[trial.room];
+    if (expectation.place) return expectation.room == room.id ? expectation.place : std::nullopt;
+    const auto other = room.world->moverNamed(expectation.name);
     if (!other) return std::nullopt;
-    return world->status(*other).pose.position;
+    return room.world->status(*other).pose.position;
 }
 
-Observation ExpectationJudge::Data::lookForCollision(std::string_view id) const {
-    for (const Collision& collision : world->collisions()) {
-        const std::string& who = world->movers()[collision.robot].id;
-        if (who == id) return {.holds = true, .other = collision.into};
-        if (collision.into == id) return {.holds = true, .other = who, .is_struck = true};
+Observation ExpectationJudge::Data::lookForCollision(const Trial& trial) const {
+    const World& world = *rooms[trial.room].world;
+    for (const Collision& collision : world.collisions()) {
+        const std::string& who = world.movers()[collision.robot].id;
+        if (who == trial.id) return {.holds = true, .other = collision.into};
+        if (collision.into == trial.id) return {.holds = true, .other = who, .is_struck = true};
     }
     return {};
 }
 
-bool ExpectationJudge::Data::collided(std::size_t mover) const {
-    const auto collisions = world->collisions();
+bool ExpectationJudge::Data::collided(const Trial& trial) const {
+    const auto collisions = rooms[trial.room].world->collisions();
     return std::any_of(collisions.begin(), collisions.end(),
-                       [mover](const Collision& each) { return each.robot == mover; });
+                       [&trial](const Collision& each) { return each.robot == trial.mover; });
 }
 
-std::size_t ExpectationJudge::Data::seenBy(std::size_t mover) const {
-    const std::size_t robots = world->robots().size();
-    const std::span<const Pose2> all(poses);
-    const auto owner = mover < robots ? static_cast<std::uint32_t>(mover)
-                                      : kFirstPerson + static_cast<std::uint32_t>(mover - robots);
-    return watch->seenBy({poses[mover].position, owner},
-                         {.robots = all.first(robots), .people = all.subspan(robots)});
-}
-
-/// \pre the world has a mover with this id
+/// \pre a world has this mover
 Observation ExpectationJudge::Data::look(const Trial& trial) const {
     const Expectation& expectation = expectations[trial.expectation];
-    const RobotStatus status = world->status(*trial.mover);
+    const JudgedRoom& room = rooms[trial.room];
+    const RobotStatus status = room.world->status(*trial.mover);
     const double speed = std::hypot(status.speed, status.sidespeed);
     switch (expectation.state) {
         case State::Collision:
-            return lookForCollision(trial.id);
+            return lookForCollision(trial);
         case State::Stalled:
             // A command given since the step may have cleared the flag.
-            return {.holds = status.stall || collided(*trial.mover)};
+            return {.holds = status.stall || collided(trial)};
         case State::Still:
             return {.holds = speed == 0 && status.rotspeed == Angle(), .measure = speed};
         case State::Faster:
             return {.holds = speed > expectation.amount, .measure = speed};
         case State::Slower:
             return {.holds = speed < expectation.amount, .measure = speed};
-        case State::InZone:
-            return {.holds = std::any_of(zones[trial.expectation].begin(),
-                                         zones[trial.expectation].end(), [&](const Polygon& zone) {
-                                             return locate(zone, status.pose.position) !=
-                                                    Side::Outside;
-                                         })};
+        case State::InZone: {
+            const auto& [of, outlines] = zones[trial.expectation];
+            return {.holds =
+                        of == trial.room &&
+                        std::any_of(outlines.begin(), outlines.end(), [&](const Polygon& zone) {
+                            return locate(zone, status.pose.position) != Side::Outside;
+                        })};
+        }
         case State::Seen: {
-            const auto count = static_cast<double>(seenBy(*trial.mover));
+            const auto count = static_cast<double>(room.seenBy(*trial.mover));
             return {.holds = count >= expectation.amount, .measure = count};
         }
         case State::Near:
             break;
     }
-    const auto place = placeOf(expectation);
+    const auto place = placeOf(trial);
     const double away =
         place ? distance(*place, status.pose.position) : std::numeric_limits<double>::infinity();
     return {.holds = away <= expectation.amount, .measure = away};
@@ -288,7 +366,7 @@ Observation ExpectationJudge::Data::look(const Trial& trial) const {
 
 void ExpectationJudge::Data::observe(Trial& trial) {
     const Expectation& expectation = expectations[trial.expectation];
-    const SimTime now = world->time();
+    const SimTime now = rooms.front().world->time();
     if (now < expectation.after) return;
     if (now > expectation.before) {
         if (trial.since) trial.longest = std::max(trial.longest, expectation.before - *trial.since);
@@ -308,18 +386,22 @@ void ExpectationJudge::Data::observe(Trial& trial) {
 }
 
 ExpectationJudge::ExpectationJudge(const World& world, std::vector<Expectation> expectations)
-    : data_(std::make_unique<Data>(world, std::move(expectations))) {}
+    : data_(std::make_unique<Data>(theOnly(world), std::move(expectations))) {}
+ExpectationJudge::ExpectationJudge(std::span<const JoinedRoom> rooms,
+                                   std::vector<Expectation> expectations)
+    : data_(std::make_unique<Data>(judgedRooms(rooms), std::move(expectations))) {}
 ExpectationJudge::~ExpectationJudge() = default;
 ExpectationJudge::ExpectationJudge(ExpectationJudge&&) noexcept = default;
 ExpectationJudge& ExpectationJudge::operator=(ExpectationJudge&&) noexcept = default;
 
 void ExpectationJudge::observe() {
     Data& data = *data_;
-    if (data.world->changes() != data.changes) data.find();
-    if (data.watch) {
-        data.poses.resize(data.world->movers().size());
-        for (std::size_t i = 0; i < data.poses.size(); ++i)
-            data.poses[i] = data.world->status(i).pose;
+    data.find();
+    for (JudgedRoom& room : data.rooms) {
+        if (!room.watch) continue;
+        room.poses.resize(room.world->movers().size());
+        for (std::size_t i = 0; i < room.poses.size(); ++i)
+            room.poses[i] = room.world->status(i).pose;
     }
     for (Trial& trial : data.trials)
         if (!trial.decided) data.observe(trial);
@@ -331,7 +413,8 @@ std::vector<RunVerdict> ExpectationJudge::verdicts() const {
         verdicts.push_back({.expectation = expectation.text, .is_met = true});
     for (Trial trial : data_->trials) {
         if (!trial.decided)
-            close(trial, data_->expectations[trial.expectation], data_->world->time());
+            close(trial, data_->expectations[trial.expectation],
+                  data_->rooms.front().world->time());
         RunVerdict& verdict = verdicts[trial.expectation];
         // Reports the first failure, or else the last success.
         if (!trial.is_met && (verdict.is_met || *trial.decided < verdict.time)) {

@@ -173,8 +173,12 @@ class SentenceReader {
                           .help = "",
                           .min_count = 2,
                           .max_count = 2};
+        const std::size_t room = target.rfind('/');
         try {
-            const Tuple place = std::get<Tuple>(parseValue(key, target));
+            const bool has_room = room != std::string::npos;
+            const Tuple place =
+                std::get<Tuple>(parseValue(key, has_room ? target.substr(room + 1) : target));
+            if (has_room) result_.room = target.substr(0, room);
             result_.place = Point2{place[0], place[1]};
         } catch (const FormatError&) {
             --next_;

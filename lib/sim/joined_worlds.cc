@@ -71,4 +71,8 @@ ParsedTrip parseTrip(std::span<const std::string_view> words, std::span<const Jo
     return trip;
 }
 
+std::vector<RoomState> statesOf(const LiftState& lift) {
+    return {{lift.id, "storey", lift.storey}, {lift.id, "open", lift.door > 0 ? "1" : "0"}};
+}
+
 }  // namespace ispace

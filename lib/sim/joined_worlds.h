@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geom/point.h"
+#include "scene/room_state.h"
 #include "sim/simulation.h"
 
 namespace ispace {
@@ -71,6 +72,9 @@ struct LiftState {
     std::vector<std::string> riders;
     std::vector<std::string> calls;  ///< storeys, in the order in which it serves them
 };
+
+/// Returns its states, as those of sensors: `storey`, and `open`, 1 unless its door is closed.
+std::vector<RoomState> statesOf(const LiftState& lift);
 
 /// Worlds that step together, and between which movers go. The ids of movers, and of the sensors
 /// that they carry, are unique in all of them. The server reads worlds through this interface.

@@ -41,6 +41,34 @@ TEST(Building, LeadsRobotsByLifts) {
     EXPECT_THROW(robot.ride("l2", "ground"), Refused);
 }
 
+/// A client's order to a robot aboard a lift is refused; a robot whose client leaves it there goes
+/// on to the storey, and stands off the landing.
+TEST(Building, ARobotLeftAloneInALiftStopsBehindIt) {
+    TestServer server{{data("tower.yaml"), data("tower.3dm"), "--clock", "step", "-q"}};
+    World world(server.address());
+    const auto simulate = [&](double seconds) { world.step(std::lround(seconds / world.dt())); };
+    {
+        Robot robot(server.address(), "ground/r1");
+        robot.goTo("upper", {9, 6});
+        for (int i = 0; i < 120 && robot.status().fields.text("in", "") != "l1"; ++i) simulate(0.5);
+        ASSERT_EQ(robot.status().fields.text("in", ""), "l1");
+        EXPECT_THROW(robot.forward(1), Refused);
+        EXPECT_THROW(robot.goTo("ground", {9, 6}), Refused);
+    }
+    simulate(60);
+    Robot robot(server.address(), "ground/r1");
+    const Status status = robot.status();
+    EXPECT_EQ(status.fields.text("storey"), "upper");
+    EXPECT_FALSE(status.fields.has("in"));
+    EXPECT_EQ(status.speed, 0);
+    const double from_door = std::hypot(status.pose.x - 2.1, status.pose.y - 4);
+    EXPECT_GT(from_door, 0.9);
+    EXPECT_LT(from_door, 5) << "it does not go on to the goal";
+    const Motion motion = robot.forward(0.1);
+    simulate(5);
+    EXPECT_TRUE(robot.wait(motion).done);
+}
+
 /// square.env with sensing.3dm: r1 at (-1, 0) faces h1 at (0.9, 0.5).
 class LivingWorld : public ::testing::Test {
   protected:

@@ -143,6 +143,21 @@ eventually "online again" is_last status online
 kill -KILL "$server"
 wait "$server" 2>/dev/null || true
 eventually "no last will" is_last status offline
+
+# A building: the states of all rooms, and of lifts.
+: >heard
+simrun "$source_dir/tests/data/hotel.building.yaml" -q --mqtt "127.0.0.1:$port" >begin.json 2>err &
+server=$!
+jobs_left+=("$server")
+for state in 'l1/door1/open ON' 'l2/door1/open ON' 'l3/door1/open ON' 'a/storey l1' 'a/open OFF'; do
+    eventually "no state $state" heard "ispace/$state"
+done
+address=$(sed 's/.*"listen":"127.0.0.1:\([0-9]*\)".*/\1/' begin.json)
+printf 'WORLD\nCALL a l1\n' | nc -q 1 127.0.0.1 "$address" >said || true
+eventually "the door of the lift does not open" heard 'ispace/a/open ON'
+tell ispace/l2/door1/open/set OFF
+eventually "no refusal in a building" grep -q '^ispace/error ERR 403' heard
+end "$server"
 end "$broker_job" "$listener"
 
 # A broker that wants a password.

@@ -64,7 +64,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
 
     checkRecord(options, world);
     Server server(simulation, options.listen, limitsOf(options, input));
-    const ServedAddresses addresses = servePorts(server, options, input);
+    const ServedAddresses addresses = servePorts(server, options, titleOf(options, input));
     const StopSignals signals;
     server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;
@@ -90,7 +90,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
             writeAll(options.report,
                      reportFile(options, input, judge, historyOf(command, input).back()));
         if (options.suggestions) writeAll("-", suggestionsText(options, input));
-        conclude(judge, options, input, junit);
+        conclude(judge, options, input.environment_operand, junit);
     };
     endingAtOnce([&server] { return server.isBusy(); }, junit, options, serve_and_conclude);
 }
@@ -131,7 +131,7 @@ void simrun(const SimrunCommand& command) {
     claimFiles(options);
     JunitFile junit("simrun", options.junit);
     junit.during(options.operands, [&] {
-        if (!options.drawing.format.empty() || !runBuilding(command)) run(command, junit);
+        if (!options.drawing.format.empty() || !runBuilding(command, junit)) run(command, junit);
     });
 }
 

@@ -36,15 +36,12 @@ void mustBeAboutBuildings(const SimrunOptions& options, const BuildingInput& inp
                              input.building.document.storeyList() + ')');
     };
     refuse(!options.zones.empty(), "--zone");
-    refuse(!options.expected.empty(), "--expect");
     refuse(!options.report.empty(), "--report");
     refuse(options.suggestions.has_value(), "--suggest");
     refuse(options.foxglove.has_value(), "--foxglove");
     refuse(options.rosbridge.has_value(), "--rosbridge");
     refuse(options.ros_domain.has_value(), "--ros2");
-    refuse(options.mqtt.has_value(), "--mqtt");
     refuse(!options.load_folder.empty(), "--load");
-    refuse(!options.devices.ports().empty(), "a port of a device");
 }
 
 void warnOfScenes(const SimrunOptions& options, const BuildingInput& input) {
@@ -149,7 +146,7 @@ std::string recordedBuilding(const std::string& folder) {
     return is_one ? fileOfRecord(folder, kBuildingFile) : "";
 }
 
-bool runBuilding(const SimrunCommand& command) {
+bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     const SimrunOptions& options = command.options();
     const auto input = readInput(options, recordedBuilding(options.replay));
     if (!input) return false;
@@ -178,11 +175,15 @@ bool runBuilding(const SimrunCommand& command) {
         for (CollisionLog& log : collisions) log.tell();
         for (FailureLog& log : failures) log.tell();
     });
+    auto judge =
+        ofOption("--expect", [&] { return ExpectationJudge(run.rooms(), options.expected); });
+    judge.observe();
+    simulation.onStep([&judge] { judge.observe(); });
+    if (!options.expected.empty()) simulation.keepOrder();
     // Without a source: clients do not change the rooms of a building.
     Server server(simulation, options.listen, limitsOf(options), &run);
-    ServedAddresses addresses;
-    if (options.web)
-        addresses.web = server.serveWeb(*options.web, baseName(input->environment_operand));
+    const ServedAddresses addresses =
+        servePorts(server, options, baseName(input->environment_operand));
     const StopSignals signals;
     server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;
@@ -205,6 +206,7 @@ bool runBuilding(const SimrunCommand& command) {
         if (run.replay(i) != nullptr && run.replay(i)->isCut())
             warn(options.common, "simrun",
                  run.rooms()[i].id + ": the record ends in the midst of a step, which is left out");
+    conclude(judge, options, input->environment_operand, junit);
     return true;
 }
 

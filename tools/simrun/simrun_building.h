@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/batch.h"
 #include "simrun/simrun_options.h"
 
 namespace ispace {
@@ -12,7 +13,8 @@ namespace ispace {
 std::string recordedBuilding(const std::string& folder);
 
 /// Runs a building whole, or replays its record, if ENV is one and no storey of it is chosen;
-/// returns false otherwise. \throws UsageError for options that a building has not
-bool runBuilding(const SimrunCommand& command);
+/// returns false otherwise. \throws UsageError for options that a building has not, and as
+/// conclude()
+bool runBuilding(const SimrunCommand& command, JunitFile& junit);
 
 }  // namespace ispace

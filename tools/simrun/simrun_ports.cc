@@ -55,9 +55,8 @@ std::string meshOf(const Scene& scene) {
 
 RosScenery rosScenery() { return {.map = mapOf, .room = meshOf}; }
 
-ServedAddresses servePorts(Server& server, const SimrunOptions& options, const SceneInput& input) {
+ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title) {
     ServedAddresses out;
-    const std::string title = titleOf(options, input);
     if (options.web) out.web = server.serveWeb(*options.web, title);
     const auto serve = [&](RosLanguage language, const std::optional<Endpoint>& endpoint) {
         return endpoint ? server.serveRos(language, *endpoint, "simrun " + title, rosScenery())

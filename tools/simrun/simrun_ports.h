@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "cli/operands.h"
 #include "server/server.h"
 #include "simrun/simrun_options.h"
 
@@ -16,8 +15,9 @@ struct ServedAddresses {
     std::optional<int> ros_domain;  ///< of DDS
     DeviceAddresses devices;
 };
-/// Opens the ports that options ask for. \throws std::system_error, UsageError naming the option
-ServedAddresses servePorts(Server& server, const SimrunOptions& options, const SceneInput& input);
+/// Opens the ports that options ask for. \param title of the room or the record
+/// \throws std::system_error, UsageError naming the option
+ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title);
 
 /// Writes the first line of output: clients can connect now.
 void announce(const Server& server, const ServedAddresses& addresses);

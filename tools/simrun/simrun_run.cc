@@ -114,8 +114,8 @@ void report(const Simulation& simulation, const SimrunOptions& options) {
              "the world could not keep up: the clock gave up " + formatMilliseconds(lost) + " s");
 }
 
-void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const SceneInput& input,
-              JunitFile& junit) {
+void conclude(const ExpectationJudge& judge, const SimrunOptions& options,
+              const std::string& environment, JunitFile& junit) {
     const std::vector<RunVerdict> verdicts = judge.verdicts();
     std::vector<JunitCase> cases;
     cases.reserve(verdicts.size());
@@ -125,7 +125,7 @@ void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const
              .outcome = verdict.is_met ? JunitCase::Outcome::Met : JunitCase::Outcome::Unmet,
              .message = verdict.reason,
              .time = verdict.time});
-    junit.write(baseName(input.environment_operand), cases);
+    junit.write(baseName(environment), cases);
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
     if (!verdicts.empty())
         talk(options.common, "simrun", "all " + std::to_string(verdicts.size()) + " met");

@@ -58,8 +58,9 @@ void report(const Simulation& simulation, const SimrunOptions& options);
 
 /// Reports the verdicts of --expect at the end. Completes the file of --junit.
 /// \throws UnmetError if one is unmet
-void conclude(const ExpectationJudge& judge, const SimrunOptions& options, const SceneInput& input,
-              JunitFile& junit);
+/// \param environment operand
+void conclude(const ExpectationJudge& judge, const SimrunOptions& options,
+              const std::string& environment, JunitFile& junit);
 
 /// A record that is being written.
 struct RunningRecord {

@@ -108,8 +108,8 @@ const Laser& ColaSession::laser() const {
 /// Follows changes of the world. \returns false once the laser was removed
 bool ColaSession::follow() {
     World& world = host_->world();
-    if (changes_ == world.changes()) return true;
-    changes_ = world.changes();
+    if (changes_ == host_->changes()) return true;
+    changes_ = host_->changes();
     if (!refusalOfCola(world, id_).empty()) {
         close();
         return false;

@@ -187,6 +187,27 @@ WireHost::Change resultOf(const std::exception_ptr& failure) {
 
 }  // namespace
 
+/// Returns the state of the world in which the robot or sensor is now.
+ServerState& DeviceHost::state() { return *(state_ = state_->find(id_).state); }
+
+std::int64_t DeviceHost::changes() {
+    std::int64_t changes = 0;
+    for (const auto& [room, world] : state_->worlds()) changes += world->changes();
+    return changes;
+}
+
+bool DeviceHost::mayDrive(std::string_view robot) {
+    if (isReplay()) return false;
+    const ServedRooms* const rooms = state_->rooms();
+    return rooms == nullptr ||
+           rooms->worlds->endTrip(std::string(robot), Outcome::Replaced).empty();
+}
+
+bool DeviceHost::isPaused() const {
+    const ServedRooms* const rooms = state_->rooms();
+    return (rooms == nullptr ? state_ : rooms->states.front())->simulation().paused();
+}
+
 DeviceHost::Change DeviceHost::change(std::span<const std::string> assignments) {
     // Device protocols cannot carry a token.
     if (!state_->mayChange() || !state_->limits().token.empty()) return Change::Refused;
@@ -226,19 +247,21 @@ DeviceHost::Change DeviceHost::change(std::span<const std::string> assignments) 
 }
 
 std::optional<std::int64_t> DeviceHost::hold(std::string_view robot) {
-    state_->sync();
+    state().sync();
     return state_->hold(robot);
 }
 
 bool DeviceHost::holds(std::string_view robot, std::int64_t hold) {
-    state_->sync();
+    state().sync();
     return state_->holds(robot, hold);
 }
 
 void DeviceHost::release(std::string_view robot, std::int64_t hold) {
     // The result is no longer awaited.
     changing_.reset();
-    state_->sync();
+    state().sync();
+    if (state_->rooms() != nullptr && state_->holds(robot, hold) && !isReplay())
+        state_->rooms()->worlds->abandonTrip(std::string(robot));
     state_->release(robot, hold);
 }
 

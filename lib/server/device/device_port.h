@@ -75,14 +75,20 @@ class DeviceConnection : public std::enable_shared_from_this<DeviceConnection> {
     bool lingering_ = false;
 };
 
-/// The view of a server's run for sessions of device ports.
+/// The view of a server's run for the sessions of a device port, in the world of its robot or
+/// sensor.
 class DeviceHost : public WireHost {
   public:
-    explicit DeviceHost(ServerState& state) : state_(&state) {}
+    /// \param id of the robot or sensor in the world of that state \param pictures of all ports
+    DeviceHost(ServerState& state, std::string id, PictureFiles& pictures)
+        : state_(&state), id_(std::move(id)), pictures_(&pictures) {}
 
-    [[nodiscard]] World& world() override { return state_->simulation().world(); }
+    [[nodiscard]] World& world() override { return state().simulation().world(); }
+    [[nodiscard]] std::int64_t changes() override;
     [[nodiscard]] bool isReplay() const override { return state_->simulation().isReplay(); }
-    [[nodiscard]] bool isPaused() const override { return state_->simulation().paused(); }
+    bool mayDrive(std::string_view robot) override;
+    [[nodiscard]] bool isPaused() const override;
+    [[nodiscard]] PictureFiles& pictures() override { return *pictures_; }
     Change change(std::span<const std::string> assignments) override;
     std::optional<std::int64_t> hold(std::string_view robot) override;
     [[nodiscard]] bool holds(std::string_view robot, std::int64_t hold) override;
@@ -90,7 +96,7 @@ class DeviceHost : public WireHost {
     [[nodiscard]] std::chrono::nanoseconds clock() const override;
     void runInBackground(std::function<void()> work,
                          std::function<void(const std::exception_ptr& failure)> deliver) override {
-        state_->runInBackground({std::move(work), std::move(deliver)});
+        state().runInBackground({std::move(work), std::move(deliver)});
     }
 
   private:
@@ -101,7 +107,11 @@ class DeviceHost : public WireHost {
         std::int64_t changes = 0;  // change count of the world after it
     };
 
+    [[nodiscard]] ServerState& state();
+
     ServerState* state_;
+    std::string id_;
+    PictureFiles* pictures_;
     std::shared_ptr<Changing> changing_;
     WallTime began_ = std::chrono::steady_clock::now();
 };

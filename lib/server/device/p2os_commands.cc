@@ -206,7 +206,7 @@ void P2osSession::place() {
     if (change == WireHost::Change::Later) return;
     new_place_.reset();
     if (change == WireHost::Change::Refused || isLost()) return;
-    changes_ = host_->world().changes();
+    changes_ = host_->changes();
     pose();
     drive_.renew();
 }

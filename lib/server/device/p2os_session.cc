@@ -117,11 +117,12 @@ WheelOrder P2osDrive::order(const RobotStatus& status) const {
     return order;
 }
 
-void P2osDrive::apply(World& world, std::size_t robot, Angle now) {
+void P2osDrive::apply(World& world, std::size_t robot, Angle now,
+                      const std::function<bool()>& may_drive) {
     if (!owns_) return;
     WheelOrder next = order(world.status(robot));
     const bool same = next.drive_limits == drive_limits_ && next.turn_limits == turn_limits_;
-    if (same && !new_drive_ && !new_turn_) return;
+    if ((same && !new_drive_ && !new_turn_) || !may_drive()) return;
     if (new_drive_) {
         next.drive = hushed_ ? AxisGoal{} : drive_;
         retry_ = world.time() + kRetryAfter;
@@ -195,7 +196,7 @@ P2osSession::P2osSession(WireHost& host, std::string robot, WallClock wall_clock
       wall_clock_(std::move(wall_clock)),
       hold_(host.hold(id_)),
       start_(host.world().robots()[this->robot()].pose),
-      changes_(host.world().changes()),
+      changes_(host.changes()),
       seen_(host.world().status(this->robot()).pose),
       drive_(type_, model()),
       odometer_(host.world().odometry(this->robot()).pose) {
@@ -226,8 +227,8 @@ Pose2 P2osSession::pose() {
 /// replay's seek.
 void P2osSession::follow() {
     const World& world = host_->world();
-    if (changes_ == world.changes()) return;
-    changes_ = world.changes();
+    if (changes_ == host_->changes()) return;
+    changes_ = host_->changes();
     next_ = std::min<SimTime>(next_, world.time() + kCycle);
     fed_ = std::min(fed_, world.time());
     const RobotStatus status = world.status(robot());
@@ -276,7 +277,7 @@ void P2osSession::receive(std::string_view bytes) {
     parser_.append(bytes);
     listen();
     if (closing()) return;
-    if (!host_->isReplay()) drive_.apply(host_->world(), robot(), pose().heading);
+    drive();
     seen_ = host_->world().status(robot()).pose;
 }
 
@@ -289,8 +290,7 @@ void P2osSession::stepped(std::size_t unsent) {
     if (waitsToChange()) place();
     watch();
     drive_.stepped(world, robot());
-    const Angle heading = pose().heading;
-    if (!host_->isReplay()) drive_.apply(world, robot(), heading);
+    drive();
     seen_ = world.status(robot()).pose;
     if (!opened_ || world.time() < next_) return;
     while (next_ <= world.time()) next_ += kCycle;
@@ -300,6 +300,12 @@ void P2osSession::stepped(std::size_t unsent) {
     if (tells_sim_) sendSim();
     sendStatus();
     sendScan();
+}
+
+void P2osSession::drive() {
+    const Angle heading = pose().heading;
+    if (!host_->isReplay())
+        drive_.apply(host_->world(), robot(), heading, [this] { return host_->mayDrive(id_); });
 }
 
 void P2osSession::proceed() {

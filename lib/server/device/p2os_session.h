@@ -59,8 +59,8 @@ class P2osDrive {
         return drive_.kind == AxisGoal::Kind::Distance && drive_.value != 0;
     }
 
-    /// Sends changed goals to the wheels.
-    void apply(World& world, std::size_t robot, Angle now);
+    /// Sends changed goals to the wheels, or keeps them for later unless may_drive().
+    void apply(World& world, std::size_t robot, Angle now, const std::function<bool()>& may_drive);
     /// Updates the goals after a step; changes take effect with apply().
     void stepped(const World& world, std::size_t robot);
 
@@ -164,6 +164,7 @@ class P2osSession : public WireSession {
     void reset(const P2osPacket& packet);
     void stat(const P2osPacket& packet);
     void place();
+    void drive();
 
     WireHost* host_;
     std::string id_;

@@ -34,7 +34,7 @@ std::shared_ptr<const PictureFile> fileOf(const Sensor& sensor, const SensorRead
 std::shared_ptr<const PictureFiles::Asked> PictureFiles::newest(World& world, std::size_t sensor,
                                                                 WallTime now, bool at_once,
                                                                 const Doer& does) {
-    Entry& entry = entries_[world.sensors()[sensor].id];
+    Entry& entry = entries_[{&world, world.sensors()[sensor].id}];
     const std::int64_t seq = world.period(sensor), changes = world.changes();
     const bool is_made = entry.asked && (entry.asked->file || entry.asked->failure);
     const bool is_newest = entry.asked && entry.changes == changes && entry.seq == seq;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "sim/world.h"
 
@@ -53,7 +54,7 @@ class PictureFiles {
     };
     void make(World& world, std::size_t sensor, const Entry& entry, const Doer& does);
 
-    std::map<std::string, Entry, std::less<>> entries_;  // by sensor id
+    std::map<std::pair<const World*, std::string>, Entry> entries_;  // by world and sensor id
     WallTime next_{};
 };
 

@@ -64,8 +64,8 @@ ScipSession::ScipSession(WireHost& host, std::string id) : host_(&host), id_(std
 /// Follows changes of the world. \returns false once the laser was removed or replaced
 bool ScipSession::follow() {
     World& world = host_->world();
-    if (changes_ == world.changes()) return true;
-    changes_ = world.changes();
+    if (changes_ == host_->changes()) return true;
+    changes_ = host_->changes();
     if (!refusalOfScip(world, id_).empty()) {
         close();
         return false;

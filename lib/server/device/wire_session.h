@@ -30,8 +30,13 @@ class WireHost {
 
     /// Read-only use, except commands for the robot that the session holds.
     [[nodiscard]] virtual World& world() = 0;
+    /// Returns a number that grows with each change of the world, and when the robot or sensor has
+    /// gone to another one.
+    [[nodiscard]] virtual std::int64_t changes() { return world().changes(); }
     /// True if robots move as recorded and ignore commands.
     [[nodiscard]] virtual bool isReplay() const = 0;
+    /// Called before an order to the robot's wheels. \returns false if it must wait, as in a lift
+    virtual bool mayDrive(std::string_view /*robot*/) { return !isReplay(); }
     /// True while the world is paused, as always with the clock `step`.
     [[nodiscard]] virtual bool isPaused() const = 0;
     enum class Change {
@@ -59,7 +64,7 @@ class WireHost {
     virtual void runInBackground(std::function<void()> work,
                                  std::function<void(const std::exception_ptr& failure)> deliver);
     /// Shared by all sessions.
-    [[nodiscard]] PictureFiles& pictures() { return pictures_; }
+    [[nodiscard]] virtual PictureFiles& pictures() { return pictures_; }
 
   private:
     PictureFiles pictures_;

@@ -43,7 +43,7 @@ ZpsSession::ZpsSession(WireHost& host, std::string sensor) : host_(&host), id_(s
 /// Looks up the tags to report.
 void ZpsSession::follow() {
     const World& world = host_->world();
-    changes_ = world.changes();
+    changes_ = host_->changes();
     tags_.clear();
     const auto named = world.sensorNamed(id_);
     if (!named) return close();
@@ -55,7 +55,7 @@ void ZpsSession::follow() {
 
 void ZpsSession::stepped(std::size_t unsent) {
     const World& world = host_->world();
-    if (changes_ != world.changes()) follow();
+    if (changes_ != host_->changes()) follow();
     constexpr std::size_t kMaxUnsent = 4096;
     for (Followed& tag : tags_) {
         const SensorReading& reading = world.reading(tag.sensor);

@@ -8,11 +8,29 @@
 
 #include "base/message.h"
 #include "server/mqtt/mqtt_topics.h"
-#include "sim/state_watch.h"
 
 namespace ispace {
 
 namespace {
+
+/// Returns the things that have states, of all rooms.
+std::vector<MqttThing> thingsOf(const ServerState& state) {
+    std::unordered_map<std::string, std::string> keywords;
+    for (const auto& [room, world] : state.worlds()) {
+        const Scene& scene = world->scene();
+        for (std::size_t i = 0; i < scene.records.size(); ++i)
+            keywords.emplace(nameAcross(room, scene.ids[i]), scene.records[i].keyword());
+    }
+    std::vector<MqttThing> things;
+    for (const RoomState& one : state.statesOfAll()) {
+        if (things.empty() || things.back().id != one.id) {
+            const auto keyword = keywords.find(one.id);
+            things.push_back({one.id, keyword == keywords.end() ? "" : keyword->second, {}});
+        }
+        things.back().keys.push_back(one.key);
+    }
+    return things;
+}
 
 /// Requests that wait for the world; further commands are refused.
 constexpr std::size_t kMaxRequests = 1000;
@@ -35,17 +53,8 @@ std::string MqttBridge::topicOf(std::string_view id, std::string_view key) const
 
 /// Describes new things, or all of them after a connection, and removes those that are gone.
 void MqttBridge::introduce(bool all) {
-    const World& world = state_->simulation().world();
-    changes_ = world.changes();
-    std::unordered_map<std::string, std::string> keywords;
-    for (std::size_t i = 0; i < world.scene().records.size(); ++i)
-        keywords.emplace(world.scene().ids[i], world.scene().records[i].keyword());
-    std::vector<MqttThing> things;
-    for (const RoomState& state : statesOf(world)) {
-        if (things.empty() || things.back().id != state.id)
-            things.push_back({state.id, keywords[state.id], {}});
-        things.back().keys.push_back(state.key);
-    }
+    changes_ = changesOfAll();
+    const std::vector<MqttThing> things = thingsOf(*state_);
     Topics topics;
     std::set<std::string> descriptions;
     std::vector<MqttMessage> news;
@@ -77,7 +86,7 @@ void MqttBridge::introduce(bool all) {
 }
 
 void MqttBridge::publishAll() {
-    for (const RoomState& state : statesOf(state_->simulation().world())) publish(state);
+    for (const RoomState& state : state_->statesOfAll()) publish(state);
 }
 
 void MqttBridge::publish(const RoomState& state) {
@@ -133,19 +142,32 @@ void MqttBridge::readLine(std::string_view line) {
     if (line.starts_with("ERR ")) client_->publish({prefix_ + "/error", std::string(line), false});
     if (line.starts_with("EVENT missed")) publishAll();
     if (!line.starts_with("EVENT state ")) return;
-    // EVENT state t=T id=ID KEY=VALUE
+    // EVENT state t=T id=ID KEY=VALUE, with room=ROOM behind it in a building.
     const std::vector<Piece> words = wordsOf(line);
     constexpr std::size_t kWords = 5;
-    if (words.size() != kWords) return;
-    const std::string_view state = words.back().text;
+    constexpr std::string_view kRoom = "room=";
+    const bool has_room = words.size() == kWords + 1 && words.back().text.starts_with(kRoom);
+    if (words.size() != kWords && !has_room) return;
+    const std::string_view state = words[kWords - 1].text;
     const std::size_t equals = state.find('=');
-    publish({std::string(words[3].text.substr(3)), std::string(state.substr(0, equals)),
-             std::string(state.substr(equals + 1))});
+    RoomState told{std::string(words[3].text.substr(3)), std::string(state.substr(0, equals)),
+                   std::string(state.substr(equals + 1))};
+    const std::string room(has_room ? words.back().text.substr(kRoom.size()) : "");
+    // A lift has no room before its id.
+    const std::string name = nameAcross(room, told.id);
+    if (topics_.contains(topicOf(name, told.key))) told.id = name;
+    publish(told);
+}
+
+std::int64_t MqttBridge::changesOfAll() const {
+    std::int64_t changes = 0;
+    for (const auto& [room, world] : state_->worlds()) changes += world->changes();
+    return changes;
 }
 
 void MqttBridge::stepped() {
     session_.stepped();
-    if (changes_ != state_->simulation().world().changes()) introduce(false);
+    if (changes_ != changesOfAll()) introduce(false);
     answer();
 }
 

@@ -16,8 +16,8 @@
 
 namespace ispace {
 
-/// Publishes the states of the world, and carries out commands to its actuators: a client of the
-/// protocol's role WORLD whose transport is a broker.
+/// Publishes the states of all worlds of the run, and carries out commands to its actuators: a
+/// client of the protocol's role WORLD whose transport is a broker.
 ///
 /// A state is the retained message PREFIX/ID/KEY: ON or OFF, a share in per cent, a colour as three
 /// numbers up to 255, or the value as in events. A message to PREFIX/ID/KEY/set, in the same form,
@@ -41,6 +41,7 @@ class MqttBridge {
         bool is_actuator = false;
     };
     using Topics = std::map<std::string, Topic, std::less<>>;
+    [[nodiscard]] std::int64_t changesOfAll() const;
     void introduce(bool all);
     void publishAll();
     void publish(const RoomState& state);
@@ -57,7 +58,7 @@ class MqttBridge {
     Topics topics_;                       // of all states
     std::set<std::string> descriptions_;  // topics of discovery
     int connections_ = 0;
-    std::int64_t changes_ = -1;  // of the world when it was introduced
+    std::int64_t changes_ = -1;  // of the worlds when they were introduced
 };
 
 }  // namespace ispace
