@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -128,6 +129,23 @@ TEST_F(DeviceFolder, DevicesHaveModelSourceAndConfidenceButNoPlace) {
     EXPECT_NE(loadFindings().find("at"), std::string::npos);
     write("a.3dm", "desk at=1,2\n");
     EXPECT_NE(loadFindings().find("desk"), std::string::npos);
+}
+
+TEST(Devices, TableHasARowForEachSensor) {
+    const std::string table = "\n" + deviceTable(testing::devices());
+    std::size_t sensors = 0;
+    for (const Record& device : testing::devices().devices()) {
+        if (sensorKind(device.keyword()) == nullptr) continue;
+        ++sensors;
+        const std::size_t row = table.find("\n" + device.text("model") + ' ');
+        ASSERT_NE(row, std::string::npos) << device.text("model");
+        const std::string line = table.substr(row + 1, table.find('\n', row + 1) - row - 1);
+        EXPECT_NE(line.find(' ' + device.keyword() + ' '), std::string::npos) << line;
+        EXPECT_NE(line.find(device.text("name")), std::string::npos) << line;
+        EXPECT_EQ(line.back(), device.text("confidence").front()) << line;
+    }
+    EXPECT_EQ(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')),
+              sensors + 2);  // the header, and the break before it
 }
 
 TEST(Devices, MissingFolderIsASystemError) {
