@@ -107,7 +107,7 @@ void measure(Arrangement& result, MeasuredScene& model) {
     const ArrangeOptions& options = model.options();
     const bool is_whole_floor = options.target == 1 && options.weights.isUniform() &&
                                 options.redundancy == 1 && options.judges_inside &&
-                                !options.beam_step;
+                                !options.beam_step && !options.ways;
     const CoverageOptions usual{.plane = options.plane, .exact = is_whole_floor};
     const Scene whole = withPlaced(model.scene(), model.groups(), result.sensors);
     const Coverage measured = measureCoverage(whole, model.worlds(), usual);
@@ -123,7 +123,7 @@ void measure(Arrangement& result, MeasuredScene& model) {
         result.value = model.share(model.valueOf(views));
     result.is_value_by_cells = result.value && options.judges_inside && !options.beam_step &&
                                options.weights.isUniform() && options.redundancy == 1 &&
-                               !options.robust.isAsked() && options.facing.empty();
+                               !options.robust.isAsked() && options.facing.empty() && !options.ways;
     for (const Objective& row : objectives())
         if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
     if (options.beam_step) result.value = result.candidate_value;
@@ -278,6 +278,7 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     result.candidates = model.candidates();
     result.bytes = model.bytes();
     result.grid = model.target().grid;
+    if (options.ways) result.pieces = problem.cells();
     if (!options.target && !options.budget) result.unplaced = problem.order.size() - chosen.size();
     result.candidate_value = model.share(found.best.value);
     result.candidate_bound = boundOf(found, model);

@@ -21,6 +21,7 @@
 #include "base/message.h"
 #include "coverage/camera_rules.h"
 #include "coverage/target.h"
+#include "scene/run/people_ways.h"
 #include "scene/scene.h"
 
 namespace ispace {
@@ -93,6 +94,9 @@ struct ArrangeOptions {
     std::vector<PrivacyRule> privacy;
     /// In these zones floor counts only where a camera sees faces. Headings are known.
     std::vector<FacingRule> facing;
+    /// Ways of people: their share on which motion is detected counts instead of the floor; the
+    /// zones, weights and cells above then do not.
+    std::shared_ptr<const PeopleWays> ways;
     std::optional<double> target;  ///< share to reach at minimum cost
     /// Prove over all poses: the number of sensors with a target, else their coverage.
     bool over_poses = false;
@@ -178,6 +182,7 @@ struct Arrangement {
     bool is_refined = false;                          ///< refining was asked for
     std::size_t candidates = 0, bytes = 0;            ///< of all kinds
     Grid grid;                                        ///< the cells while searching
+    std::size_t pieces = 0;                           ///< of ways, instead of these cells
     bool is_complete = true;                          ///< false: cut by time or a signal
 
     /// Number of sensors left unplaced, for lack of candidates or of candidates that keep coverage

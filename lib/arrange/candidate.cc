@@ -22,6 +22,7 @@
 #include "base/number.h"
 #include "base/packed.h"
 #include "coverage/plane_cells.h"
+#include "coverage/presence.h"
 #include "coverage/sector_cells.h"
 #include "geom/spatial_index.h"
 #include "geom/tolerance.h"
@@ -99,6 +100,7 @@ struct CandidateViews::Data {
     const RayWorld* beam_world = nullptr;  // of lasers that see by beams; else null
     const SiteErrors* errors = nullptr;    // of mounting; null: none
     const FacingCells* facing = nullptr;   // null: none
+    const PresenceView* ways = nullptr;    // null: its cells are those of the grid
 
     [[nodiscard]] std::size_t headingsOf(const Site& site) const {
         return is_round ? 1 : site.headings.size();
@@ -125,12 +127,25 @@ struct CandidateViews::Data {
         cellsBySector(grid, *level, pose.position.onFloor(), range, sorted, seen);
         inOrderOf(turned, sorted, seen, parts);
     }
+    /// Computes the pieces of way of each heading, like lookAtPlane().
+    void lookAtWays(const Site& site, CellParts& parts) const {
+        parts.first.resize(1);
+        const std::vector<std::uint8_t> unhidden =
+            ways->unhidden(sight.meshFor(device), at(site, 0));
+        for (std::size_t k = 0; k < headingsOf(site); ++k) {
+            const CellParts seen = partOf(ways->detected(at(site, k), unhidden));
+            parts.runs.insert(parts.runs.end(), seen.runs.begin(), seen.runs.end());
+            parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+        }
+        parts.first.push_back(parts.first.back());
+    }
     /// Computes the cells of each heading, one part each, and an empty part shared by all.
     void lookAtPlane(const Site& site, CellParts& parts) const {
         const std::size_t headings = headingsOf(site);
         parts.runs.clear();
         parts.first.assign(headings + 2, 0);
         if (level->isInsideSolid(site.place)) return;
+        if (ways != nullptr) return lookAtWays(site, parts);
         std::vector<FieldOfView> fields;
         for (std::size_t k = 0; k < headings; ++k)
             if (const auto field = fieldOfView(at(site, k))) fields.push_back(*field);
@@ -171,6 +186,8 @@ CandidateViews::CandidateViews(const VisibleArea& sight, const Grid& grid,
 }
 
 CandidateViews::~CandidateViews() = default;
+
+void CandidateViews::lookAtWays(const PresenceView& ways) { data_->ways = &ways; }
 
 bool CandidateViews::isRound() const { return data_->is_round; }
 
@@ -412,7 +429,8 @@ class Scanner {
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
                    std::size_t max_bytes, Progress& progress, std::size_t least,
                    const SearchShare& share) {
-    assert(set.cells() == views.data().grid.size());
+    assert(set.cells() == (views.data().ways != nullptr ? views.data().ways->ways().pieces.size()
+                                                        : views.data().grid.size()));
     const StackedViews one{&views};
     return addCandidates(set, std::span(&one, 1), sites, max_bytes, progress, least, share);
 }

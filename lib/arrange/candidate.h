@@ -51,6 +51,7 @@ class PosedCandidates : public CandidateSet {
 };
 
 class FacingCells;
+class PresenceView;
 class SiteErrors;
 
 /// Computes the cells of a grid that a kind of sensor sees from any site, mounted at one height
@@ -77,6 +78,10 @@ class CandidateViews {
     ~CandidateViews();
     CandidateViews(const CandidateViews&) = delete;
     CandidateViews& operator=(const CandidateViews&) = delete;
+
+    /// Makes its cells the pieces of these ways on which a sensor detects people, instead of those
+    /// of the grid. Stores the reference. \pre detectsMotion(device), and `counted` is null
+    void lookAtWays(const PresenceView& ways);
 
     /// Returns true if the view does not depend on the heading: a laser with a field of view of 360
     /// degrees, a cone that points straight down. A site then has one candidate, with its first

@@ -69,6 +69,7 @@ struct CandidatePool::Data {
     Progress& progress;
     CaseRooms rooms;
     const FacingCells* facing;
+    const PresenceView* ways;
     VisibleArea sight;
     std::map<double, std::unique_ptr<SiteValidity>> validities = {};
     std::map<double, std::vector<std::unique_ptr<SiteValidity>>> other_validities = {};
@@ -272,8 +273,10 @@ struct CandidatePool::Data {
                 std::optional<CandidateViews::ByBeams> by_beams;
                 if (options.beam_step)
                     by_beams.emplace(CandidateViews::ByBeams{worlds, *options.beam_step});
-                const CandidateViews views(sight, target.grid, kind.model, mount, &weights.counted,
-                                           by_beams, nullptr, facing);
+                CandidateViews views(sight, target.grid, kind.model, mount,
+                                     ways == nullptr ? &weights.counted : nullptr, by_beams,
+                                     nullptr, facing);
+                if (ways != nullptr) views.lookAtWays(*ways);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
                 const std::vector<Site> sites = allowedSites(kind, mount, level.sites);
                 if (sites.empty()) continue;
@@ -383,7 +386,8 @@ struct CandidatePool::Data {
 
 CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
                              CandidateWeights weights, const ArrangeOptions& options,
-                             Progress& progress, CaseRooms rooms, const FacingCells* facing)
+                             Progress& progress, CaseRooms rooms, const FacingCells* facing,
+                             const PresenceView* ways)
     : data_(new Data{environment,
                      worlds,
                      target,
@@ -392,6 +396,7 @@ CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, con
                      progress,
                      rooms,
                      facing,
+                     ways,
                      {environment, options.plane, &worlds}}) {}
 
 CandidatePool::~CandidatePool() = default;

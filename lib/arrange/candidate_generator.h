@@ -16,7 +16,7 @@ namespace ispace {
 
 /// Cell weights that guide candidate generation.
 struct CandidateWeights {
-    CellSet counted;                  ///< cells with weight, of the target's grid
+    CellSet counted;                  ///< cells with weight, of the target's grid or of ways
     std::vector<std::uint32_t> left;  ///< weights of the cells not covered yet, else 0
 };
 
@@ -31,7 +31,8 @@ class CandidatePool {
     /// Stores references.
     CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
                   CandidateWeights weights, const ArrangeOptions& options, Progress& progress,
-                  CaseRooms rooms = {}, const FacingCells* facing = nullptr);
+                  CaseRooms rooms = {}, const FacingCells* facing = nullptr,
+                  const PresenceView* ways = nullptr);
     ~CandidatePool();
     CandidatePool(const CandidatePool&) = delete;
     CandidatePool& operator=(const CandidatePool&) = delete;

@@ -20,6 +20,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "scene/sensor/field_of_view.h"
+#include "sense/motion_sense.h"
 #include "sense/scan.h"
 #include "sense/ultrasound.h"
 
@@ -80,11 +81,12 @@ MeasuredScene::MeasuredScene(const Scene& scene, const std::vector<SensorGroup>&
     setUnits();
     if (!options.facing.empty()) facing_.emplace(scene.environment, target_, options.facing);
     setMultiplicities(standing);
+    if (options.ways) countWays();
     rooms_ = caseRoomsOf(scene, options);
     if (!rooms_.empty()) stackRooms();
     pool_ = std::make_unique<CandidatePool>(
         scene.environment, worlds_, target_, CandidateWeights{std::move(counted), weightsLeft()},
-        options, progress, rooms_, facing_ ? &*facing_ : nullptr);
+        options, progress, rooms_, facing_ ? &*facing_ : nullptr, ways_ ? &*ways_ : nullptr);
     addKinds();
 }
 
@@ -128,6 +130,33 @@ void MeasuredScene::setMultiplicities(const Coverage& standing) {
     countStanding(standing.sensors, 0, problem_.achieved);
     problem_.standing = CellSet(target_.grid.size());
     for (const SensorView& view : standing.sensors) problem_.standing |= view.cells;
+}
+
+void MeasuredScene::countWays() {
+    for (const SensorClass& kind : kinds_)
+        if (!detectsMotion(kind.model))
+            throw UsageError("--presence: " + kind.id +
+                             " detects no motion: give PIR sensors or "
+                             "radars");
+    const PresenceView& view = ways_.emplace(*options_.ways, options_.plane);
+    std::vector<double> lengths;
+    lengths.reserve(options_.ways->pieces.size());
+    for (const WayPiece& piece : options_.ways->pieces) lengths.push_back(piece.length);
+    problem_.weights = integerWeights(lengths);
+    total_ = problem_.totalWeight();
+    if (total_ == 0) throw UnmetError("nothing to detect: nobody walks in the ways of --presence");
+    problem_.achieved.assign(problem_.cells(), 0);
+    problem_.standing = CellSet(problem_.cells());
+    for (const Sensor& sensor : scene_.sensors) {
+        if (!detectsMotion(sensor.model)) continue;
+        sight_.prepare(sensor);
+        const CellSet pieces = view.detected(sensor, worlds_);
+        problem_.standing |= pieces;
+        pieces.forEach([&](std::size_t i) {
+            problem_.achieved[i] =
+                static_cast<std::uint16_t>(std::min(problem_.achieved[i] + unit_, 0xffff));
+        });
+    }
 }
 
 void MeasuredScene::addKinds() {
@@ -197,8 +226,9 @@ std::vector<CountedView> MeasuredScene::viewsOf(std::span<const Sensor> sensors)
     tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
         // A thread that waits for a level in here must not begin with another sensor.
         tbb::this_task_arena::isolate([&] {
-            views[i] = {rooms_.empty() ? sight_.cellsOf(target_.grid, sensors[i])
-                                       : stackedCellsOf(sensors[i]),
+            views[i] = {ways_            ? ways_->detected(sensors[i], worlds_)
+                        : rooms_.empty() ? sight_.cellsOf(target_.grid, sensors[i])
+                                         : stackedCellsOf(sensors[i]),
                         isPartial(sensors[i].model) ? 1 : unit_};
             if (facing_)
                 facing_->keepFaces(sensors[i].model, sensors[i].pose.position.onFloor(),

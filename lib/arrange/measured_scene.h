@@ -23,6 +23,7 @@
 #include "base/cell_set.h"
 #include "base/error.h"
 #include "coverage/coverage.h"
+#include "coverage/presence.h"
 #include "coverage/visible_area.h"
 #include "geom/point.h"
 #include "raster/grid.h"
@@ -123,6 +124,8 @@ class MeasuredScene {
     void countStanding(const std::vector<SensorView>& views, std::size_t first,
                        std::vector<std::uint16_t>& achieved) const;
     void setMultiplicities(const Coverage& standing);
+    /// Replaces the cells of the grid by the pieces of the options' ways.
+    void countWays();
     [[nodiscard]] CellSet stackedCellsOf(const Sensor& sensor) const;
     /// Sets the cells of all cases, and their weights.
     void stackRooms();
@@ -137,6 +140,7 @@ class MeasuredScene {
     std::vector<SensorClass> kinds_;
     int unit_ = 1;  ///< multiplicity of sensors other than receivers
     std::optional<FacingCells> facing_;
+    std::optional<PresenceView> ways_;
     std::vector<std::unique_ptr<CaseRoom>> rooms_;
     WorstCaseProblem cases_;
     std::vector<std::string> standing_ids_;  ///< of cases_.standing

@@ -31,7 +31,7 @@ struct Objective {
                    Arrangement&) = nullptr;
 };
 
-/// Returns the rows: coverage, weights, density, redundancy, facing, robust, cost.
+/// Returns the rows: coverage, weights, density, redundancy, facing, presence, robust, cost.
 std::span<const Objective> objectives();
 
 /// Computes the product of the weights of all requested objectives. O(cells * zones)

@@ -6,6 +6,7 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "report/presence_report.h"
 #include "report/run_report.h"
 
 namespace ispace {
@@ -163,6 +164,7 @@ std::string coverageJson(const CoverageReport& report, const ReportParts& parts)
     if (parts.rules != nullptr) writeCameraRules(json, *parts.rules);
     if (parts.robustness != nullptr) writeRobustness(json, *parts.robustness);
     if (parts.run != nullptr) writeRun(json, *parts.run);
+    if (parts.presence != nullptr) writePresence(json, *parts.presence);
     if (parts.advice != nullptr) writeSuggestions(json, *parts.advice);
     json.endObject();
     return json.take() + "\n";

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coverage/coverage.h"
+#include "coverage/presence.h"
 #include "coverage/run_coverage.h"
 #include "report/camera_rules_report.h"
 #include "report/robustness_report.h"
@@ -18,6 +19,7 @@ struct ReportParts {
     const Advice* advice = nullptr;
     const Robustness* robustness = nullptr;
     const CameraRules* rules = nullptr;
+    const Presence* presence = nullptr;
 };
 
 /// Writes one JSON object and a newline, schema ispace-coverage/1, with a member for each part.

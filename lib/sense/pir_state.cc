@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "sense/motion_sense.h"
 #include "sense/sighting.h"
 
 namespace ispace {
@@ -41,8 +42,8 @@ PirState castPir(const RayWorld& mesh, const MovingBodies& bodies,
         };
         for (const Sighting& seen : sightingsOf(observer, mesh, bodies, is_meant)) {
             const Point3 at = pose.position + seen.range * seen.direction;
-            const double speed = length(velocities.of(seen.body->owner).at(at.onFloor()));
-            if (speed < pir.min_speed || speed == 0) continue;
+            const Vec2 motion = velocities.of(seen.body->owner).at(at.onFloor());
+            if (!senses(pir, motion, seen.direction)) continue;
             const bool is_lost =
                 noise_seed && chance(sensor, seen.number + 1, frame, *noise_seed) < pir.dropout;
             state.motion = state.motion || !is_lost;

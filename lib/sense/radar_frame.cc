@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "sense/motion_sense.h"
 #include "sense/noise.h"
 #include "sense/sighting.h"
 
@@ -32,8 +33,8 @@ std::vector<Echo> echoesOf(const RayWorld& mesh, const MovingBodies& bodies,
     for (const Sighting& seen : sightingsOf(observer, mesh, bodies, any)) {
         const Point3 at = origin + seen.range * seen.direction;
         const Vec2 motion = velocities.of(seen.body->owner).at(at.onFloor());
+        if (!senses(radar, motion, seen.direction)) continue;
         const double speed = motion.x * seen.direction.x + motion.y * seen.direction.y;
-        if (std::fabs(speed) < radar.min_speed || speed == 0) continue;
         const Vec3 local = observer.view.frame.toLocal(at);
         const double level = std::hypot(local.x, local.y);
         const double cosine = -dot(seen.body->normalAt(at), seen.direction);

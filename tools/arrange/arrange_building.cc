@@ -37,6 +37,7 @@ void mustBeAboutBuildings(const ArrangeToolOptions& options, const BuildingInput
     if (!zones.keep_in.empty()) option = "--keep-in";
     if (!zones.facing.empty()) option = "--facing";
     if (!zones.privacy.empty()) option = "--privacy";
+    if (options.presence) option = "--presence";
     if (!options.places_file.empty()) option = "--places";
     if (!options.fixed.empty()) option = "--fixed";
     if (!options.trace_file.empty()) option = "--trace";

@@ -10,6 +10,7 @@
 #include "cli/batch.h"
 #include "cli/command_line.h"
 #include "cli/common_options.h"
+#include "cli/presence_ways.h"
 
 namespace ispace {
 
@@ -28,6 +29,7 @@ struct ArrangeToolOptions {
     std::vector<std::string> fixed;    ///< globs of ids; empty: all placed sensors stay
     ArrangeOptions how;
     ZoneWords zones;
+    std::optional<WaysChoice> presence;  ///< ways that count instead of the floor
     std::string places_file;
     std::vector<std::string> robust_rooms;  ///< of --robust rooms:
     std::string trace_file, curve_file, mps_file, report_file, heat_file, certificate_file;
@@ -61,6 +63,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void settleProof();
     void settleRobust();
     void settleCameraRules();
+    void settlePresence() const;
     void settleProofOfCoverage();
     void settleCertificate();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;

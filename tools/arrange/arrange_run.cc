@@ -110,6 +110,12 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     takeZones(options, input.scene.environment, work.how);
     work.files = filesOf(input);
     takeRooms(options, work);
+    if (options.presence) {
+        work.how.ways = std::make_shared<PeopleWays>(
+            readWays(*options.presence, input.scene, options.common.seed));
+        if (!options.presence->record.empty())
+            work.files.push_back(RecordedFiles(options.presence->record).robots);
+    }
     work.how.facing = facingIn(input.scene.environment, options.how.facing);
     for (const PrivacyRule& rule : options.how.privacy)
         static_cast<void>(privateZones(rule, input.scene.environment));
@@ -259,7 +265,8 @@ std::string unfinishedText(const ArrangeOptions& how) {
 std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) {
     return "over " + counted(arrangement.candidates, "candidate", "candidates") + " (" +
            std::string(nameOf(how.strategy)) + ", " + formatBytes(arrangement.bytes) + ") on " +
-           cellsText(arrangement.grid);
+           (arrangement.pieces > 0 ? counted(arrangement.pieces, "piece of way", "pieces of way")
+                                   : cellsText(arrangement.grid));
 }
 
 /// Compares value and coverage if they differ by their cells alone; "" if the two agree.

@@ -69,6 +69,7 @@ void ArrangeCommand::settle() {
     settleProof();
     settleRobust();
     settleCameraRules();
+    settlePresence();
     how.wants_curve = !options_.curve_file.empty();
     how.wants_trace = !options_.trace_file.empty();
     how.wants_gains = !options_.heat_file.empty();
@@ -183,6 +184,17 @@ void ArrangeCommand::settleCameraRules() {
     if (!how.privacy.empty()) refuse("--privacy", kNotPrivate);
     if (!how.privacy.empty() && how.robust.of == RobustChoice::Of::Rooms)
         throw UsageError("--privacy is about one room: leave out --robust rooms");
+}
+
+void ArrangeCommand::settlePresence() const {
+    if (!options_.presence) return;
+    constexpr const char* kOfFloor[] = {"--zone",  "--weight",   "--facing", "--robust",
+                                        "--crowd", "--refine",   "--proof",  "--judge",
+                                        "--reso",  "--connected"};
+    for (const char* option : kOfFloor)
+        if (line_.given(option))
+            throw UsageError("--presence counts ways of people instead of floor: leave out " +
+                             std::string(option));
 }
 
 void ArrangeCommand::checkStrategyOption(const StrategyRow& row,

@@ -39,6 +39,7 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
     std::string option;
     if (!options.other.empty()) option = "--compare";
     if (!options.run.empty()) option = "--run";
+    if (options.presence) option = "--presence";
     if (options.suggestions) option = "--suggest";
     if (!options.trace.empty()) option = "--trace";
     if (!options.zones.empty()) option = "--zone";

@@ -132,9 +132,9 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {"--report", "--suggest", "--compare",
-                                       "--run",    "--perturb", "--failures",
-                                       "--crowd",  "--facing",  "--privacy"};
+    std::vector<const char*> single = {"--report",  "--suggest",  "--compare", "--run",
+                                       "--perturb", "--failures", "--crowd",   "--facing",
+                                       "--privacy", "--presence"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
@@ -209,6 +209,13 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "report by how many sensors robots and people were seen in the run that simrun "
               "--record wrote there, and where sight was lost, in numbers and on the map",
               Enters::BaseName);
+    line.parsed(
+        "--presence", "DIR|wander:N[,TIME]",
+        [&o](const std::string& text) { o.presence = parseWays(text); },
+        "report the share of people's ways on which PIR sensors and radars detect them within a "
+        "second: of the run that simrun --record wrote to DIR, or of N people who wander for TIME "
+        "(default 10min)",
+        Enters::Nothing);
     line.countOr(
         "--suggest", o.suggestions, kSuggestions, 1, kMaxSuggestions,
         "report up to N changes that would help: a sensor to add, turn, move, replace or "

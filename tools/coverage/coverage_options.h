@@ -7,6 +7,7 @@
 
 #include "cli/batch.h"
 #include "cli/common_options.h"
+#include "cli/presence_ways.h"
 #include "coverage/camera_rules.h"
 #include "coverage/requirement.h"
 #include "coverage/robustness.h"
@@ -42,7 +43,8 @@ struct CoverageToolOptions {
     std::vector<PrivacyRule> privacy;
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
-    std::string run;    ///< folder of a record of robots and people; "" without
+    std::optional<WaysChoice> presence;  ///< ways on which presence is measured
+    std::string run;                     ///< folder of a record of robots and people; "" without
     MapOptions map;
     std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor seen by 0, 1, ... sensors
     SceneRules rules;

@@ -19,6 +19,7 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "coverage/crowd.h"
+#include "coverage/presence.h"
 #include "record/text.h"
 #include "report/coverage_formats.h"
 #include "report/coverage_report.h"
@@ -80,6 +81,12 @@ std::optional<RunCoverage> lookAtRun(const CoverageToolOptions& options, const S
         warn(options.common, "coverage",
              "the record ends in the midst of a step, which is left out");
     return run;
+}
+
+std::optional<Presence> presenceOf(const CoverageToolOptions& options, const Scene& scene) {
+    if (!options.presence) return std::nullopt;
+    return measurePresence(scene, readWays(*options.presence, scene, options.common.seed),
+                           options.measure.plane);
 }
 
 std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInput& input,

@@ -12,6 +12,7 @@
 #include "cli/operands.h"
 #include "coverage/coverage.h"
 #include "coverage/coverage_options.h"
+#include "coverage/presence.h"
 #include "coverage/requirement.h"
 #include "coverage/run_coverage.h"
 #include "report/camera_rules_report.h"
@@ -32,6 +33,9 @@ Measured measure(const CoverageToolOptions& options, const Scene& scene, const S
 
 /// Computes the coverage of a recorded run; nullopt without --run.
 std::optional<RunCoverage> lookAtRun(const CoverageToolOptions& options, const Scene& scene);
+
+/// Measures --presence; empty without it.
+std::optional<Presence> presenceOf(const CoverageToolOptions& options, const Scene& scene);
 
 /// Finds the changes of --suggest; nullopt without it. \param coverage of the scene
 std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInput& input,

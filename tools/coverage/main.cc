@@ -17,6 +17,7 @@
 #include "report/coverage_formats.h"
 #include "report/coverage_report.h"
 #include "report/page/coverage_page.h"
+#include "report/presence_report.h"
 #include "report/run_report.h"
 #include "report/trace_file.h"
 #include "scene/scene.h"
@@ -64,6 +65,7 @@ std::string reportText(const CoverageToolOptions& options, const CoverageReport&
     return coverageText(report) + (parts.rules == nullptr ? "" : cameraRulesText(*parts.rules)) +
            (parts.robustness == nullptr ? "" : robustnessText(*parts.robustness)) +
            (parts.run == nullptr ? "" : "\n" + runText(*parts.run)) +
+           (parts.presence == nullptr ? "" : "\n" + presenceText(*parts.presence)) +
            (parts.advice == nullptr ? "" : suggestionsText(*parts.advice));
 }
 
@@ -103,6 +105,8 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     const std::optional<RunCoverage> run = lookAtRun(options, input.scene);
     if (run) options.map.run = &*run;
     if (run) files.push_back(RecordedFiles(options.run).robots);
+    if (options.presence && !options.presence->record.empty())
+        files.push_back(RecordedFiles(options.presence->record).robots);
     if (options.format != nullptr) {
         options.map.title =
             input.environment_operand == "-" ? "" : baseName(input.environment_operand);
@@ -113,8 +117,10 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     const std::optional<Robustness> robustness =
         robustnessOf(options, input.scene, measured.coverage);
     const std::optional<CameraRules> rules = cameraRulesOf(options, input.scene, measured.coverage);
+    const std::optional<Presence> presence = presenceOf(options, input.scene);
     const ReportParts parts{options.map.run, advice ? &*advice : nullptr,
-                            robustness ? &*robustness : nullptr, rules ? &*rules : nullptr};
+                            robustness ? &*robustness : nullptr, rules ? &*rules : nullptr,
+                            presence ? &*presence : nullptr};
     if (!options.report.empty())
         writeAll(options.report, reportFile(options, input, measured.coverage, parts));
     writeAll("-", reportText(options, report, parts));

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/presence_ways.h"
+
+#include <chrono>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "cli/common_options.h"
+#include "coverage/crowd.h"
+#include "scene/placement_schemas.h"
+#include "scene/run/run_reader.h"
+#include "sim/world.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::string_view kWander = "wander:";
+
+/// Returns the records of the scene without people and sensors, and with a wanderer for each of the
+/// crowd.
+std::vector<Record> recordsWith(const Crowd& crowd, const Scene& scene) {
+    std::vector<Record> records;
+    for (const Record& record : scene.records)
+        if (record.keyword() != "human" && sensorKind(record.keyword()) == nullptr)
+            records.push_back(record);
+    std::set<std::string> taken(scene.ids.begin(), scene.ids.end());
+    for (std::size_t i = 0; i < crowd.size(); ++i) {
+        std::string id = "wanderer" + std::to_string(i + 1);
+        while (!taken.insert(id).second) id += '-';
+        Record person(*sceneSchemas().find("human"));
+        person.set("id", Value(std::move(id)));
+        person.set("at", Value(Tuple{crowd[i].place.x, crowd[i].place.y}));
+        person.set("walk", Value("wander"));
+        records.push_back(std::move(person));
+    }
+    return records;
+}
+
+PeopleWays wanderedWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed) {
+    constexpr SimTime kStep = std::chrono::milliseconds(20);
+    const Crowd crowd =
+        CrowdFloor(scene).draw(static_cast<std::size_t>(choice.people), {.seed = seed});
+    Document rest;
+    rest.records = recordsWith(crowd, scene);
+    const DeviceCatalogue& devices = devicesFor({&rest});
+    const Scene crowded = makeScene(std::move(rest.records), scene, devices);
+    World world(crowded, kStep, {.seed = seed});
+    WayCutter cutter;
+    const auto add = [&] {
+        const std::size_t first = world.robots().size();
+        for (std::size_t i = 0; i < world.people().size(); ++i)
+            cutter.add(world.people()[i].id, seconds(world.time()),
+                       world.status(first + i).pose.position);
+    };
+    add();
+    while (world.time() < choice.duration) {
+        world.step();
+        add();
+    }
+    return cutter.finish();
+}
+
+}  // namespace
+
+WaysChoice parseWays(const std::string& text) {
+    constexpr std::int64_t kMostPeople = 1000;
+    constexpr SimTime kLongest = std::chrono::hours(24);
+    if (!text.starts_with(kWander)) return {.record = text};
+    const std::string words = text.substr(kWander.size());
+    const auto comma = words.find(',');
+    WaysChoice choice;
+    const auto people = parseInteger(words.substr(0, comma));
+    std::optional<SimTime> duration = choice.duration;
+    if (comma != std::string::npos) duration = parseSimTime(words.substr(comma + 1));
+    if (!people || *people < 1 || *people > kMostPeople || !duration || *duration <= SimTime(0) ||
+        *duration > kLongest)
+        throw UsageError('`' + text + "` is not wander:N[,TIME] with 1 to 1000 people and a time " +
+                         "up to a day, as in wander:4,10min");
+    choice.people = static_cast<int>(*people);
+    choice.duration = *duration;
+    return choice;
+}
+
+PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed) {
+    if (choice.record.empty()) return wanderedWays(choice, scene, seed);
+    RunReader reader(choice.record);
+    return waysOfRun(reader);
+}
+
+}  // namespace ispace

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "scene/run/people_ways.h"
+#include "scene/scene.h"
+#include "sim/sim_time.h"
+
+namespace ispace {
+
+/// The ways of people that `--presence` counts.
+struct WaysChoice {
+    std::string record;                           ///< folder of a recorded run; "": people wander
+    int people = 0;                               ///< that wander
+    SimTime duration = std::chrono::minutes(10);  ///< for which they do
+};
+
+/// Parses `DIR` or `wander:N[,TIME]`. \throws UsageError
+WaysChoice parseWays(const std::string& text);
+
+/// Reads the ways of a recorded run; or simulates that many people who wander from random positions
+/// instead of the scene's, with its robots. Deterministic for a seed.
+/// \throws as RunReader, UnmetError as CrowdFloor::draw()
+PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed);
+
+}  // namespace ispace

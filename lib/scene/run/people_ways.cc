@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/run/people_ways.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ispace {
+
+std::vector<std::size_t> PeopleWays::firsts() const {
+    std::vector<std::size_t> firsts(people.size() + 1, pieces.size());
+    for (std::size_t i = pieces.size(); i-- > 0;) firsts[pieces[i].person] = i;
+    // A person without pieces has those from the next one's first to before it.
+    for (std::size_t k = people.size(); k-- > 0;)
+        if (firsts[k] == pieces.size()) firsts[k] = firsts[k + 1];
+    return firsts;
+}
+
+void WayCutter::add(const std::string& person, double time, Point2 place) {
+    constexpr double kFastest = 12;  // m/s: no person runs faster
+    // Callers add the people of one moment after another, in one order.
+    for (std::size_t k = 0; k < ways_.size(); ++k) {
+        last_ = (last_ + 1) % ways_.size();
+        if (ways_[last_].id == person) break;
+    }
+    if (ways_.empty() || ways_[last_].id != person) {
+        last_ = ways_.size();
+        ways_.push_back({.id = person, .place = place});
+    }
+    Way& way = ways_[last_];
+    constexpr double kTolerance = 1e-9;  // s
+    const double passed = time - way.time;
+    if (passed < kWayStep - kTolerance) return;
+    const Vec2 step = place - way.place;
+    const double covered = length(step);
+    if (std::isfinite(passed) && covered > 0 && covered <= kFastest * passed)
+        way.pieces.push_back({0, way.time, way.place, (1 / passed) * step, covered});
+    way.time = time;
+    way.place = place;
+}
+
+PeopleWays WayCutter::finish() {
+    PeopleWays ways;
+    for (Way& way : ways_) {
+        for (WayPiece& piece : way.pieces) {
+            piece.person = ways.people.size();
+            ways.pieces.push_back(piece);
+        }
+        ways.people.push_back(std::move(way.id));
+    }
+    ways_.clear();
+    last_ = 0;
+    return ways;
+}
+
+PeopleWays waysOfRun(RunReader& reader) {
+    WayCutter cutter;
+    while (reader.next())
+        for (const RunState& state : reader.states())
+            if (const RunMember& member = reader.who()[state.who]; member.is_person)
+                cutter.add(member.id, reader.time(), state.pose.position);
+    return cutter.finish();
+}
+
+}  // namespace ispace

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geom/point.h"
+#include "scene/run/run_reader.h"
+
+namespace ispace {
+
+/// A piece of a person's way.
+struct WayPiece {
+    std::size_t person = 0;  ///< index in PeopleWays::people
+    double time = 0;         ///< seconds, at its beginning
+    Point2 place;            ///< its beginning
+    Vec2 velocity;           ///< m/s, mean
+    double length = 0;       ///< metres, above 0
+};
+
+/// Duration of a piece, seconds; longer if the moments of a run are farther apart.
+constexpr double kWayStep = 0.2;
+
+/// The ways of people through a room.
+struct PeopleWays {
+    std::vector<std::string> people;  ///< ids
+    /// By person, then by time. People at rest have no piece.
+    std::vector<WayPiece> pieces;
+
+    /// Returns the index of the first piece of each person, then the number of pieces.
+    [[nodiscard]] std::vector<std::size_t> firsts() const;
+};
+
+/// Cuts ways into pieces.
+class WayCutter {
+  public:
+    /// Adds a position of a person, whose times ascend. Ignores those less than kWayStep after the
+    /// last one used. Between two that are farther apart than a person runs, a client moved the
+    /// person: that is no piece.
+    void add(const std::string& person, double time, Point2 place);
+    /// Returns the ways so far; the cutter is then empty.
+    [[nodiscard]] PeopleWays finish();
+
+  private:
+    struct Way {
+        std::string id;
+        double time = -std::numeric_limits<double>::infinity();
+        Point2 place;
+        std::vector<WayPiece> pieces = {};
+    };
+    std::vector<Way> ways_;
+    std::size_t last_ = 0;  // of ways_
+};
+
+/// Reads the ways of all people of a recorded run, from the next moment on. \throws as the reader
+PeopleWays waysOfRun(RunReader& reader);
+
+}  // namespace ispace
