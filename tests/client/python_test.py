@@ -220,6 +220,28 @@ class Sensors(unittest.TestCase):
                 self.assertAlmostEqual(seen.speed, -0.2, delta=0.002)
                 self.assertAlmostEqual(seen.bearing, 0, delta=0.01)
 
+    def test_smart_room(self):
+        at = self.run_.address
+        with self.run_.world() as world:
+            for record in (
+                "imu id=i1 on=r1",
+                "cube id=k1 at=1.2,1.2 size=0.1,0.1,0.1 tag=key",
+                "rfid id=f1 at=1.2,0.7,0.12 heading=90 range=1 fov=90,90",
+                "lamp id=l9 at=0,0 on=yes lumens=3000",
+                "lux id=x1 at=0,0,0.5 tilt=90",
+                "speaker id=p9 at=1,0 height=1 on=yes volume=70",
+                "microphone id=o1 at=-1,0,1 floor=0",
+            ):
+                world.add(record)
+            world.advance(1)
+            with ispace.Imu(at, "i1") as imu, ispace.Rfid(at, "f1") as rfid:
+                self.assertEqual(imu.scan().rates, [0, 0, 0])
+                self.assertAlmostEqual(imu.scan().accelerations[2], 9.81, delta=0.01)
+                self.assertEqual(rfid.scan().tags, ["key"])
+            with ispace.Lux(at, "x1") as lux, ispace.Microphone(at, "o1") as microphone:
+                self.assertGreater(lux.scan().lux, 100)
+                self.assertAlmostEqual(microphone.scan().level, 70 - 20 * math.log10(2), delta=0.05)
+
     def test_pir_and_states(self):
         with self.run_.world() as world:
             world.add("pir id=s1 at=1.2,1.8,1.2 heading=-90 range=1.2 fov=50,60 hold=0.5")

@@ -117,6 +117,23 @@ TEST_F(Sensors, ARadarDetectsAMovingRobot) {
     EXPECT_LT(radar.next().movers.at(0).range, seen.movers[0].range);
 }
 
+TEST_F(Sensors, ASmartRoomReportsTagsLightSoundAndMotion) {
+    world.add("imu id=i1 on=r1");
+    world.add("cube id=k1 at=1.2,1.2 size=0.1,0.1,0.1 tag=key");
+    world.add("rfid id=f1 at=1.2,0.7,0.12 heading=90 range=1 fov=90,90");
+    world.add("lamp id=l9 at=0,0 on=yes lumens=3000");
+    world.add("lux id=x1 at=0,0,0.5 tilt=90");
+    world.add("speaker id=p9 at=1,0 height=1 on=yes volume=70");
+    world.add("microphone id=o1 at=-1,0,1 floor=0");
+    simulate(1);
+    const Inertia rest = Imu(server.address(), "i1").scan();
+    EXPECT_EQ(rest.rates, std::vector<double>({0, 0, 0}));
+    EXPECT_NEAR(rest.accelerations[2], 9.81, 0.01);
+    EXPECT_EQ(Rfid(server.address(), "f1").scan().tags, std::vector<std::string>({"key"}));
+    EXPECT_GT(Lux(server.address(), "x1").scan().lux, 100);
+    EXPECT_NEAR(Microphone(server.address(), "o1").scan().level, 70 - 20 * std::log10(2), 0.05);
+}
+
 TEST_F(Sensors, ARobotHasSonarsAndBumpers) {
     world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225");
     Robot robot(server.address(), "r5");

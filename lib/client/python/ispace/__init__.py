@@ -48,6 +48,16 @@ from .sensors import (
     Ultrasound,
 )
 from .server import Simrun, simrun
+from .smart_room import (
+    Illuminance,
+    Imu,
+    Inertia,
+    Lux,
+    Microphone,
+    Rfid,
+    SoundLevel,
+    TagList,
+)
 from .world import Event, Lift, World
 
 __all__ = [
@@ -70,13 +80,18 @@ __all__ = [
     "Figure",
     "Fix",
     "Gate",
+    "Illuminance",
+    "Imu",
+    "Inertia",
     "LaserSensor",
     "Layout",
     "Lift",
     "Limits",
     "Load",
+    "Lux",
     "Mat",
     "Message",
+    "Microphone",
     "Motion",
     "Object",
     "Odometry",
@@ -94,13 +109,16 @@ __all__ = [
     "Record",
     "Refused",
     "RequirementMissed",
+    "Rfid",
     "Robot",
     "Scan",
     "Sensor",
     "Simrun",
     "Sonar",
+    "SoundLevel",
     "Status",
     "Tag",
+    "TagList",
     "Timeout",
     "ToolError",
     "Ultrasound",
