@@ -108,6 +108,7 @@ struct EventLog::Data {
     std::vector<Walker> walkers;                         // as World::movers()
     std::map<std::string, std::vector<std::string>> on;  // the movers on each mat
     std::optional<DetectionMonitor> watch;               // once Seen or Lost is subscribed
+    std::vector<Pose2> watched;                          // poses of the walkers at its last look
     std::int64_t look = -1;                              // the last one
     std::optional<StateWatch> states;                    // once State is subscribed
 };
@@ -227,9 +228,10 @@ void EventLog::Data::tellSight() {
     if (!wants(EventKind::Seen) && !wants(EventKind::Lost)) return;
     const std::int64_t now = world->time() / kLookEvery;
     if (std::exchange(look, now) == now) return;
-    if (!watch) watch.emplace(world->scene());
     std::vector<Pose2> poses(walkers.size());
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = world->status(i).pose;
+    if (watch && poses == watched) return;  // most of a day nobody moves
+    if (!watch) watch.emplace(world->scene());
     const std::span<const Pose2> all(poses);
     const std::size_t robots = world->robots().size();
     const WatchMoment moment{.robots = all.first(robots), .people = all.subspan(robots)};
@@ -246,6 +248,7 @@ void EventLog::Data::tellSight() {
             if (wants(kind))
                 put({.kind = kind, .id = walkers[i].id, .value = static_cast<int>(counts[i])});
         }
+    watched = std::move(poses);
 }
 
 void EventLog::Data::tellStates() {

@@ -96,6 +96,17 @@ TEST(Events, SeenAndLost) {
     EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1) << rows;
 }
 
+TEST(Events, AMoverAtRestIsSeenByASensorThatComes) {
+    const std::string robot = "robot id=r1 at=-1,0\n", laser = "laser at=-2,0 range=2\n";
+    Watched run(robot);
+    EXPECT_EQ(run.until(milliseconds(500)), "");
+    run.world.change(scene(kRoom, robot + laser));
+    EXPECT_EQ(run.until(milliseconds(1000)), "0.6,seen,r1,,,,1,\n");
+    EXPECT_EQ(run.until(milliseconds(1500)), "");
+    run.world.change(scene(kRoom, robot));
+    EXPECT_EQ(run.until(milliseconds(2000)), "1.6,lost,r1,,,,,\n");
+}
+
 TEST(Events, MatsAndGates) {
     Watched run(
         "robot id=r1 model=pioneer-2dx at=-3,2\nmat id=m1 at=-1,2 size=1,1\n"
