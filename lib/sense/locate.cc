@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geom/rotation.h"
+#include "sense/dilution.h"
 #include "sense/ultrasound.h"
 
 namespace ispace {
@@ -141,24 +142,10 @@ Starts startsOf(const Layout& layout, std::span<const double> distances) {
     return starts;
 }
 
-/// Returns the diagonal of the inverse of J^T J; +infinity along undetermined directions.
+/// Returns the variances for unit errors of distances.
 Vector3d variances(const Matrix3d& normal) {
-    constexpr double kOpen = 1e-14;
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(normal);
-    Vector3d result = Vector3d::Zero();
-    for (int k = 0; k < 3; ++k) {
-        const double value = solver.eigenvalues()[k];
-        const bool is_open = value <= kOpen * solver.eigenvalues()[2];
-        for (int axis = 0; axis < 3; ++axis) {
-            const double share = solver.eigenvectors()(axis, k) * solver.eigenvectors()(axis, k);
-            if (!is_open) {
-                result[axis] += share / value;
-            } else if (share > 1e-9) {
-                result[axis] = std::numeric_limits<double>::infinity();
-            }
-        }
-    }
-    return result;
+    return vectorOf(variancesOf(
+        {normal(0, 0), normal(0, 1), normal(0, 2), normal(1, 1), normal(1, 2), normal(2, 2)}));
 }
 
 /// Returns the distance of a point from the cone in which a receiver hears, in metres; 0 inside.

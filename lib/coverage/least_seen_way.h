@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The way of an intruder that sensors see least.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coverage/coverage.h"
+#include "env/environment.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+/// The zones between which an intruder goes.
+struct WayChoice {
+    std::string from, to;
+};
+
+/// Parses `entrance,vault`. \throws UsageError
+WayChoice parseWay(std::string_view text);
+
+/// A way over free floor, of which a part is seen.
+struct LeastSeenWay {
+    /// A straight piece, seen or unseen from end to end; a zone counts as unseen.
+    struct Piece {
+        Point2 from, to;
+        bool is_seen = false;
+    };
+
+    WayChoice of;
+    bool exists = true;  ///< false: no way on free floor joins the zones
+    /// Length that sensors see, metres, exact; empty without a way, or if a view is known by cells
+    /// only.
+    std::optional<double> seen = {};
+    double length = 0;               ///< of the whole way, metres
+    std::vector<Piece> pieces = {};  ///< from an inner point of one zone to one of the other
+};
+
+/// Finds the way of a point between two zones, over the free floor, of which the shortest length is
+/// seen by at least `times` sensors. It begins and ends anywhere in the zones, in which sight does
+/// not count. Exact for the regions of the overlay, see leastExposedWay(). Of the ways that are
+/// seen least it is any; its unseen parts are as short as they can be between the seen ones.
+/// \throws UsageError for an unknown zone, and for one without free floor
+LeastSeenWay findLeastSeenWay(const Scene& scene, const Coverage& coverage, const WayChoice& of,
+                              int times = 1);
+
+}  // namespace ispace

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The error with which sensors localise a tag or a person.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "coverage/coverage.h"
+#include "scene/scene.h"
+#include "sense/dilution.h"
+
+namespace ispace {
+
+/// The information of all sensors about one spot of the floor.
+struct SpotInformation {
+    FloorInformation seen;   ///< of sensors that know the height of the plane
+    SpaceInformation heard;  ///< of receivers of a tag at any height
+    std::size_t receivers = 0;
+
+    /// Adds a sensor that sees the spot. \param information informationOf() of it and the spot
+    void add(const Sensor& sensor, const SpaceInformation& information);
+    /// Returns the root mean square error of the position, metres; +infinity if it is not
+    /// determined. Receivers count from kMinReceivers on.
+    [[nodiscard]] double error() const;
+};
+
+/// Returns the point of which a sensor measures the position: in its slice for a laser that scans
+/// one, else on the plane.
+Point3 spotFor(const Sensor& sensor, Point2 at, double plane);
+
+/// Limits of the error that counts at most, metres.
+constexpr double kLeastErrorLimit = 0.001, kMostErrorLimit = 1000;
+
+/// Errors of positions over the indoor floor, by cells.
+struct Localisation {
+    double within = 0;  ///< metres: larger errors, and spots without a position, count as this
+    std::vector<double> errors = {};  ///< by cell, metres; +infinity: no position
+    /// Shares of the floor with a position, and with one to `within`; empty without cells.
+    std::optional<double> localised = {}, share_within = {};
+    std::optional<double> mean = {};  ///< of the errors, none above `within`
+    /// Error that half, and 95 %, of the floor do not exceed; empty if fewer have a position.
+    std::optional<double> median = {}, most = {};
+};
+
+/// Computes the errors at the cells' centres from the sensors that see them: the inverse of the sum
+/// of their information (the Cramer-Rao bound of unbiased estimates), one reading of each. Bodies
+/// have no extent. Deterministic for any number of threads. O(cells seen)
+Localisation localise(const Scene& scene, const Coverage& coverage, double within);
+
+}  // namespace ispace

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How errors of measurements become errors of a position: dilution of precision.
+#pragma once
+
+#include "geom/point.h"
+#include "scene/sensor/sensor.h"
+
+namespace ispace {
+
+/// The information of independent measurements about a position in space: the inverse of the
+/// covariance of its errors, 1/m2.
+struct SpaceInformation {
+    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+
+    /// Adds a measurement of the coordinate along a unit vector. \pre sigma > 0, metres
+    void add(Vec3 along, double sigma);
+    SpaceInformation& operator+=(const SpaceInformation& other);
+};
+
+/// Returns the variances of the three coordinates, m2: the diagonal of the inverse; +infinity along
+/// directions that are not determined.
+Vec3 variancesOf(const SpaceInformation& information);
+
+/// The information about a position on a level plane, 1/m2.
+struct FloorInformation {
+    double xx = 0, xy = 0, yy = 0;
+
+    FloorInformation& operator+=(const FloorInformation& other);
+    [[nodiscard]] double trace() const { return xx + yy; }
+    /// Returns the root mean square distance between measured and true position, metres: at least
+    /// 2 / sqrt(trace()), which is reached if the errors are the same in all directions. +infinity
+    /// if some direction is not determined.
+    [[nodiscard]] double error() const;
+};
+
+/// Returns the information about x and y if the height is known.
+FloorInformation atKnownHeight(const SpaceInformation& information);
+/// Returns the same if the height has to be measured, too.
+FloorInformation atAnyHeight(const SpaceInformation& information);
+
+/// Standard deviation of a distance without noise, metres.
+constexpr double kLeastSigma = 0.001;
+
+/// Returns the information of one reading about a point that the sensor sees:
+/// - lasers, rangers, radars: a distance, by their noise, and the direction;
+/// - cameras: the direction;
+/// - receivers: the distance of a tag.
+///
+/// Distances err by `sigma` and the rounding to `resolution`, and by kLeastSigma at least;
+/// directions by `angle_sigma` and the rounding to beams or pixels. Rounding counts as uniform.
+/// The depth of a depth camera counts as a distance. Zero for kinds that measure no position.
+/// \param at position of the sensor; its heading does not matter
+SpaceInformation informationOf(const SensorModel& model, Point3 at, Point3 spot);
+
+}  // namespace ispace
