@@ -57,6 +57,8 @@ void writeModel(const MeasuredScene& model, std::ostream& mps) {
 
 SearchResult find(const MeasuredScene& model, Arrangement& result, Progress& progress) {
     const ArrangeOptions& options = model.options();
+    for (const Objective& row : objectives())
+        if (row.find != nullptr && row.is_asked(options)) return row.find(model, progress);
     if (model.isWorstCase()) return searchWorstCase(model.cases(), model.searchOptions(), progress);
     if (!options.target) return search(model.problem(), model.searchOptions(), progress);
     MinimumCostCover cover = minimumCostCover(model.problem(), model.valueFor(*options.target),
@@ -118,15 +120,17 @@ void measure(Arrangement& result, MeasuredScene& model) {
     if (result.exact_share && *result.exact_share < 1 - kMissedShare) result.is_reached = false;
     const std::vector<CountedView> views =
         model.viewsOf(std::span(whole.sensors).subspan(model.scene().sensors.size()));
-    if (!options.robust.isAsked() &&
+    if (!options.robust.isAsked() && options.objective.isCoverage() &&
         (!options.judges_inside || !(model.target().grid == measured.target.grid)))
         result.value = model.share(model.valueOf(views));
     result.is_value_by_cells = result.value && options.judges_inside && !options.beam_step &&
                                options.weights.isUniform() && options.redundancy == 1 &&
-                               !options.robust.isAsked() && options.facing.empty() && !options.ways;
+                               !options.robust.isAsked() && options.facing.empty() && !options.ways &&
+                               options.objective.isCoverage();
     for (const Objective& row : objectives())
         if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
     if (options.beam_step) result.value = result.candidate_value;
+    if (!options.objective.isCoverage()) return;
     for (const std::size_t i : idleViews(model, views))
         result.idle.push_back(result.sensors[i].sensor);
 }
@@ -269,7 +273,7 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     if (share.own) return result;
     std::vector<Choice>& chosen = found.best.chosen;
     takeEachOnce(chosen);
-    if (found.best.value > 0) {
+    if (found.best.value > 0 && options.objective.isCoverage()) {
         model.spreadRedundant(chosen);
         found.best.value = model.isWorstCase() ? worstCase(model.cases(), chosen).value
                                                : ispace::valueOf(problem, chosen);
@@ -358,6 +362,7 @@ Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
             ? std::optional(arrangement.poses_bound->found / arrangement.poses_bound->floor)
             : arrangement.value;
     if (value) result.set("value", Value(roundSignificant(*value)));
+    if (!parts.objective.empty()) result.set("objective", Value(parts.objective));
     result.set("bound", Value(roundSignificant(arrangement.bound)));
     if (arrangement.is_refined)
         result.set("candidates_bound", Value(roundSignificant(arrangement.candidate_bound)));

@@ -20,6 +20,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "coverage/camera_rules.h"
+#include "coverage/least_seen_way.h"
 #include "coverage/target.h"
 #include "scene/run/people_ways.h"
 #include "scene/scene.h"
@@ -71,6 +72,24 @@ struct MountRules {
     std::vector<Pose3> forbidden = {};  ///< candidates that are left out
 };
 
+/// What a layout is to do best.
+struct ObjectiveChoice {
+    enum class Of {
+        Coverage,
+        Path,      ///< an intruder is seen for the longest way, on the way that is seen least
+        Localise,  ///< the mean error of positions is least
+    };
+    Of of = Of::Coverage;
+    WayChoice way = {};  ///< of Path: ids of two zones
+    double within = 1;   ///< of Localise, metres: larger errors, and no position, count as this
+
+    [[nodiscard]] bool isCoverage() const { return of == Of::Coverage; }
+    /// Returns its word in results; "" for coverage.
+    [[nodiscard]] std::string_view name() const {
+        return of == Of::Path ? "path" : of == Of::Localise ? "localise" : "";
+    }
+};
+
 struct ArrangeOptions {
     Strategy strategy = Strategy::All;
     std::optional<int> x, y;      ///< Grid: interior lines; default by eq. (4.1) and (4.2)
@@ -89,6 +108,7 @@ struct ArrangeOptions {
     int redundancy = 1;  ///< a cell is covered if this many sensors see it
     bool is_connected = false;
     RobustChoice robust;
+    ObjectiveChoice objective;
     /// Cameras must not see these zones. Candidates that see a cell of one are left out; layouts
     /// that see more than kMinPiece are searched again without the cameras that do.
     std::vector<PrivacyRule> privacy;
@@ -201,6 +221,10 @@ struct Arrangement {
     std::optional<PosesProof> over_poses;   ///< with ArrangeOptions::over_poses and a target
     std::optional<PosesBound> poses_bound;  ///< with ArrangeOptions::over_poses and without one
 
+    /// With an objective other than coverage, `value` is a share of this many metres: of the
+    /// shortest way between the zones, or of the largest error that counts, which it falls short.
+    std::optional<double> whole;
+
     /// Of the written poses; the bound is that of the worst case, or of the mean.
     std::optional<RobustValues> robust;
 
@@ -239,6 +263,7 @@ struct LayoutParts {
     std::string environment_file;  ///< "" if unnamed
     std::string environment_digest;
     std::string strategy, optimize;
+    std::string objective = {};  ///< "" for coverage
 };
 
 /// Builds a `.3dm`: the `environment` record, the records of `before` (if any) with its pending

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "arrange/candidate.h"
+#include "arrange/localise_search.h"
 #include "arrange/objective.h"
 #include "arrange/refine.h"
 #include "arrange/search/problem.h"
@@ -84,6 +85,8 @@ MeasuredScene::MeasuredScene(const Scene& scene, const std::vector<SensorGroup>&
     if (options.ways) countWays();
     rooms_ = caseRoomsOf(scene, options);
     if (!rooms_.empty()) stackRooms();
+    if (options.objective.of == ObjectiveChoice::Of::Path) setWays();
+    if (options.objective.of == ObjectiveChoice::Of::Localise) total_ *= kNoError;
     pool_ = std::make_unique<CandidatePool>(
         scene.environment, worlds_, target_, CandidateWeights{std::move(counted), weightsLeft()},
         options, progress, rooms_, facing_ ? &*facing_ : nullptr, ways_ ? &*ways_ : nullptr);

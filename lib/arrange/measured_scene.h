@@ -16,6 +16,7 @@
 #include "arrange/candidate_generator.h"
 #include "arrange/case_room.h"
 #include "arrange/facing_cells.h"
+#include "arrange/search/cell_ways.h"
 #include "arrange/search/problem.h"
 #include "arrange/search/worst_case.h"
 #include "arrange/sensor_group.h"
@@ -77,6 +78,9 @@ class MeasuredScene {
     /// Returns the values of these sensors in the cases.
     [[nodiscard]] RobustValues robustValuesOf(std::span<const CountedView> views,
                                               std::span<const Placement> sensors) const;
+    /// Returns the length of the least seen way with these sensors and the standing ones, in units
+    /// of kWayUnit. \pre the objective is a path
+    [[nodiscard]] std::uint64_t leastSeen(std::span<const CountedView> views) const;
     /// Returns true if the search maximises the worst case; its values are those of worstCase().
     [[nodiscard]] bool isWorstCase() const {
         const bool is_plain =
@@ -130,6 +134,8 @@ class MeasuredScene {
     /// Sets the cells of all cases, and their weights.
     void stackRooms();
     void stackFailures();
+    /// Sets the ways of an intruder. \throws UnmetError if there is none, or none that can be seen
+    void setWays();
     void addKinds();
 
     const Scene& scene_;
@@ -142,6 +148,7 @@ class MeasuredScene {
     std::optional<FacingCells> facing_;
     std::optional<PresenceView> ways_;
     std::vector<std::unique_ptr<CaseRoom>> rooms_;
+    CellWays ways_;
     WorstCaseProblem cases_;
     std::vector<std::string> standing_ids_;  ///< of cases_.standing
     Target target_;

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "arrange/arrange.h"
+#include "arrange/search/search.h"
+#include "base/error.h"
 #include "coverage/target.h"
 #include "scene/scene.h"
 
@@ -24,6 +26,8 @@ struct Objective {
     std::vector<double> (*weights)(const Target&, const ArrangeOptions&) = nullptr;
     /// Limits the region that a sensor covers, before any view is computed; null: no limit.
     void (*limit)(SensorModel&, const ArrangeOptions&) = nullptr;
+    /// Searches for the best layout; null: search() or minimumCostCover() of the problem.
+    SearchResult (*find)(const MeasuredScene&, Progress&) = nullptr;
     /// Stores the objective's figures in the result.
     /// \param views of the placed sensors on the search's grid; null: the coverage already is the
     ///        figure
@@ -31,7 +35,8 @@ struct Objective {
                    Arrangement&) = nullptr;
 };
 
-/// Returns the rows: coverage, weights, density, redundancy, facing, presence, robust, cost.
+/// Returns the rows: coverage, weights, density, redundancy, facing, presence, robust, path,
+/// localise, cost.
 std::span<const Objective> objectives();
 
 /// Computes the product of the weights of all requested objectives. O(cells * zones)

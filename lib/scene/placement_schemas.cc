@@ -290,8 +290,13 @@ Schema resultSchema() {
              .help = "total effective area, eq. (4.6)",
              .lower = 0},
             share("value",
-                  "weighted share of the required floor (zones, weights, redundancy), if that is "
-                  "not the coverage; with proof=poses the share of exact area"),
+                  "weighted share of the required floor (zones, weights, redundancy), or of the "
+                  "objective, if that is not the coverage; with proof=poses the share of exact "
+                  "area"),
+            {.name = "objective",
+             .type = KeyType::Word,
+             .help = "subject of `value`: path (seen share of the shortest way), localise (1 "
+                     "less the mean error); floor without it"},
             share("bound",
                   "upper bound on the value, or on the coverage without a value: of layouts of the "
                   "candidates or, after refinement, of any poses"),

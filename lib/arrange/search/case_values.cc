@@ -84,13 +84,17 @@ void CaseValues::countStanding() {
     }
 }
 
+std::uint32_t CaseValues::required() const {
+    return static_cast<std::uint32_t>(of_->failures > 0 ? 1 : of_->problem->required);
+}
+
 void CaseValues::countBlocks() {
+    if (of_->ways != nullptr) return;
     const Problem& problem = *of_->problem;
-    const auto required = static_cast<std::uint32_t>(of_->failures > 0 ? 1 : problem.required);
     values_.resize(of_->blocks.size());
     for (std::size_t b = 0; b < of_->blocks.size(); ++b)
         for (std::size_t i = of_->blocks[b].first; i < of_->blocks[b].end; ++i)
-            if (counts_[i] >= required) values_[b] += problem.weights[i];
+            if (counts_[i] >= required()) values_[b] += problem.weights[i];
     if (of_->failures > 0) collectShared();
 }
 
@@ -115,6 +119,7 @@ std::uint64_t CaseValues::scaled(std::size_t block, std::uint64_t value) const {
 
 std::vector<std::uint64_t> CaseValues::ofBlocks() const {
     std::vector<std::uint64_t> values;
+    if (of_->ways != nullptr) return {worst().value};
     for (std::size_t b = 0; b < values_.size(); ++b) values.push_back(scaled(b, values_[b]));
     return values;
 }
@@ -128,12 +133,21 @@ std::uint64_t CaseValues::lostWithout(const std::vector<std::size_t>& failed) co
 }
 
 std::uint64_t CaseValues::valueIn(const CaseValue& of) const {
-    return values_[of.block] - lostWithout(of.failed);
+    if (of_->ways == nullptr) return values_[of.block] - lostWithout(of.failed);
+    std::uint64_t seen = 0;
+    for (const WayCell& piece : of.way)
+        if (counts_[piece.cell] >= required()) seen += piece.length;
+    return seen;
 }
 
 CaseValue CaseValues::worst() const { return worstOf(static_cast<std::size_t>(of_->failures)); }
 
 CaseValue CaseValues::worstOf(std::size_t failures) const {
+    if (of_->ways != nullptr) {
+        CellWay way = of_->ways->leastSeen(
+            [this, least = required()](std::uint32_t cell) { return counts_[cell] >= least; });
+        return {0, {}, way.seen, std::move(way.cells)};
+    }
     CaseValue worst{0, {}, values_[0]};
     for (std::size_t b = 1; b < values_.size(); ++b)
         if (const std::uint64_t value = scaled(b, values_[b]); value < worst.value)
@@ -157,14 +171,18 @@ void CaseValues::gains(const CaseValue& in, std::size_t kind,
                        std::vector<std::uint32_t>& gains) const {
     const Problem& problem = *of_->problem;
     const bool fails = of_->failures > 0;
-    const auto required = static_cast<std::uint32_t>(fails ? 1 : problem.required);
+    const std::uint32_t least = required();
     const auto added = static_cast<std::uint32_t>(fails ? 1 : problem.kinds[kind].multiplicity);
     gains.assign(problem.cells(), 0);
+    for (const WayCell& piece : in.way)
+        if (counts_[piece.cell] < least && counts_[piece.cell] + added >= least)
+            gains[piece.cell] = piece.length;
+    if (of_->ways != nullptr) return;
     for (std::size_t i = of_->blocks[in.block].first; i < of_->blocks[in.block].end; ++i) {
         std::uint32_t count = counts_[i];
         if (count > 0)
             for (const std::size_t failed : in.failed) count -= views_[failed].test(i) ? 1 : 0;
-        if (count < required && count + added >= required) gains[i] = problem.weights[i];
+        if (count < least && count + added >= least) gains[i] = problem.weights[i];
     }
 }
 

@@ -38,6 +38,7 @@ class CaseValues {
     /// Weight by the sensors that see it, ascending; floor that more sensors see than may fail is
     /// left out.
     using Shared = std::map<std::vector<std::uint32_t>, std::uint64_t>;
+    [[nodiscard]] std::uint32_t required() const;
     void countStanding();
     void countBlocks();
     void collectShared();

@@ -10,6 +10,7 @@
 namespace ispace {
 
 std::uint64_t WorstCaseProblem::totalOf(std::size_t block) const {
+    if (ways != nullptr) return shortest;
     const auto begin = problem->weights.begin();
     return std::accumulate(begin + static_cast<std::ptrdiff_t>(blocks[block].first),
                            begin + static_cast<std::ptrdiff_t>(blocks[block].end),

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "arrange/search/cell_ways.h"
 #include "arrange/search/problem.h"
 #include "arrange/search/search.h"
 #include "base/cell_set.h"
@@ -24,14 +25,19 @@ struct CellBlock {
 /// With failures = K there is one block, and each set of K sensors that may fail, standing ones
 /// included, is a case. Then one sensor covers a cell of the block, and `problem` is that of
 /// failureProblem(), with copy 1 as the block.
+///
+/// With ways there is one block, and each way between the zones is a case: its value is the length
+/// that covered cells hold.
 struct WorstCaseProblem {
     const Problem* problem = nullptr;
     std::vector<CellBlock> blocks;
     int failures = 0;
     std::vector<CellSet> standing = {};  ///< with failures: cells of each standing sensor
     std::uint64_t least_total = 0;       ///< with failures: see FailureProblem
+    const CellWays* ways = nullptr;
+    std::uint64_t shortest = 0;  ///< with ways: the least seen way if all cells are covered
 
-    /// Returns the weight of a block.
+    /// Returns the weight of a block; with ways the length of the shortest one.
     [[nodiscard]] std::uint64_t totalOf(std::size_t block) const;
 };
 
@@ -59,6 +65,7 @@ struct CaseValue {
     std::size_t block = 0;
     std::vector<std::size_t> failed = {};  ///< standing sensors first, then the chosen ones
     std::uint64_t value = 0;
+    std::vector<WayCell> way = {};  ///< with ways: its cells
 };
 
 /// Cells of a problem that a placed sensor sees.
@@ -81,6 +88,10 @@ CaseValue worstCase(const WorstCaseProblem& of, const std::vector<Choice>& chose
 /// moves of single sensors, which a few of the worst cases choose and all cases judge. Exact goes
 /// on with a depth-first tree: an upper bound of a node adds to each of these means the largest
 /// gains of as many candidates as are left; it ends with value == bound unless it is stopped.
+///
+/// Ways: any mean of the seen lengths of some ways bounds the least. The first ones avoid the cells
+/// of those before, as far as they can; each further one is the least seen way in the layout found
+/// for the mean of the ways so far (Brown, Iterative solution of games by fictitious play, 1951).
 ///
 /// \pre no budget, and no connection is required
 SearchResult searchWorstCase(const WorstCaseProblem& of, const SearchOptions& options,

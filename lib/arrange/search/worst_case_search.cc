@@ -117,6 +117,8 @@ class WorstCaseSearch {
         if (of_.failures > 0) {
             take({*of_.problem, of_.totalOf(0), of_.least_total});
             if (!isClosed()) takeFewer();
+        } else if (of_.ways != nullptr) {
+            takeWays();
         } else {
             takeMeans();
         }
@@ -189,6 +191,50 @@ class WorstCaseSearch {
                 sums[b] += static_cast<double>(values[b] - *least) / spread;
             if (round == 0) options_.swap.starts = (options_.swap.starts + 3) / 4;
         }
+    }
+
+    /// Plays ways against the layouts.
+    void takeWays() {
+        const int rounds = options_.optimizer == Optimizer::Greedy ? 4 : is_exact_ ? 24 : 12;
+        std::vector<CellWay> ways = waysApart();
+        for (int round = 0; round < rounds; ++round) {
+            if (round > 0 && (progress_.stopped() || isClosed())) return;
+            const auto mean = meanOf(ways);
+            if (!mean) return;
+            for (const std::vector<Choice>& chosen : {take(*mean), result_.best.chosen}) {
+                CaseValue worst = worstCase(of_, chosen);
+                ways.push_back({worst.value, 0, std::move(worst.way)});
+            }
+            if (round == 0) options_.swap.starts = (options_.swap.starts + 3) / 4;
+        }
+    }
+
+    /// Finds ways that avoid the cells of those before as far as they can.
+    [[nodiscard]] std::vector<CellWay> waysApart() const {
+        constexpr std::size_t kMost = 16;
+        std::vector<CellWay> ways;
+        CellSet taken(of_.problem->cells());
+        while (ways.size() < kMost) {
+            ways.push_back(
+                of_.ways->leastSeen([&taken](std::uint32_t cell) { return taken.test(cell); }));
+            if (ways.size() > 1 && 2 * ways.back().seen > of_.shortest) break;
+            for (const WayCell& piece : ways.back().cells) taken.set(piece.cell);
+        }
+        return ways;
+    }
+
+    /// Returns the problem of the mean seen length of these ways; empty if weights leave no room.
+    [[nodiscard]] std::optional<MeanOfCases> meanOf(const std::vector<CellWay>& ways) const {
+        constexpr std::uint64_t kMostTotal = 0xffffffffU;
+        MeanOfCases mean{*of_.problem, 1, ways.size()};
+        std::fill(mean.problem.weights.begin(), mean.problem.weights.end(), 0U);
+        std::uint64_t total = 0;
+        for (const CellWay& way : ways)
+            for (const WayCell& piece : way.cells) total += piece.length;
+        if (total > kMostTotal) return std::nullopt;
+        for (const CellWay& way : ways)
+            for (const WayCell& piece : way.cells) mean.problem.weights[piece.cell] += piece.length;
+        return mean;
     }
 
     /// Weighs the cases by whole numbers: the problem's bound is exact, then. Empty if weights

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/cell_floor.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "arrange/measured_scene.h"
+#include "arrange/search/case_values.h"
+#include "base/error.h"
+#include "base/message.h"
+#include "env/level.h"
+#include "env/zone.h"
+#include "geom/predicates.h"
+#include "geom/spatial_index.h"
+
+namespace ispace {
+
+namespace {
+
+/// A move by columns and rows.
+struct Move {
+    int right = 0, up = 0;
+};
+constexpr Move kMoves[] = {{1, 0}, {1, 1}, {0, 1},  {-1, 1}, {-1, 0},  {-1, -1}, {0, -1}, {1, -1},
+                           {2, 1}, {1, 2}, {-1, 2}, {-2, 1}, {-2, -1}, {-1, -2}, {1, -2}, {2, -1}};
+
+/// Returns the cells under a move, each of which holds an equal part of it: those of a knight's
+/// move are the two ends and the two cells between them.
+std::vector<Move> cellsUnder(Move move) {
+    if (std::abs(move.right) == 2)
+        return {{0, 0}, {move.right / 2, 0}, {move.right / 2, move.up}, move};
+    if (std::abs(move.up) == 2) return {{0, 0}, {0, move.up / 2}, {move.right, move.up / 2}, move};
+    return {{0, 0}, move};
+}
+
+CellStep stepOf(const Grid& grid, Move move) {
+    const double width = grid.limits.width() / grid.columns;
+    const double depth = grid.limits.depth() / grid.rows;
+    const double length = std::hypot(move.right * width, move.up * depth);
+    const std::vector<Move> under = cellsUnder(move);
+    CellStep step{move.up * grid.columns + move.right, 0, {}};
+    const auto part = static_cast<std::uint32_t>(
+        std::lround(length / static_cast<double>(under.size()) / kWayUnit));
+    for (const Move& cell : under)
+        step.pieces.push_back(
+            {static_cast<std::uint32_t>(cell.up * grid.columns + cell.right), part});
+    step.length = part * static_cast<std::uint32_t>(under.size());
+    return step;
+}
+
+/// The lines that no way crosses.
+class Barriers {
+  public:
+    Barriers(const Environment& environment, double height)
+        : lines_(linesOf(*environment.level(height))), tree_(lines_) {}
+
+    [[nodiscard]] bool cross(const Segment2& way) const {
+        bool crosses = false;
+        tree_.search(way, 0, [&](std::size_t i) { crosses |= intersects(lines_[i], way); });
+        return crosses;
+    }
+
+  private:
+    static std::vector<Segment2> linesOf(const Level& level) {
+        std::vector<Segment2> lines = level.slice().sheets;
+        for (const Region& region : level.freeFloor())
+            region.forEachEdge([&lines](const Segment2& edge) { lines.push_back(edge); });
+        return lines;
+    }
+
+    std::vector<Segment2> lines_;
+    SegmentTree tree_;
+};
+
+CellSet freeCellsOf(const Environment& environment, const Target& target, const std::string& zone) {
+    const Polygon outline = readZone(zone, environment).outline;
+    CellSet cells = cellsWithin(target.grid, {&outline, 1});
+    cells &= target.free;
+    if (cells.empty())
+        throw UsageError("zone " + printable(zone) +
+                         " has no free cell: no way begins or ends there (--cell M makes them "
+                         "smaller)");
+    return cells;
+}
+
+}  // namespace
+
+CellWays cellWaysOf(const Environment& environment, const Target& target, const WayChoice& of) {
+    const Grid& grid = target.grid;
+    CellWays ways;
+    ways.from = freeCellsOf(environment, target, of.from);
+    ways.to = freeCellsOf(environment, target, of.to);
+    for (const Move& move : kMoves) ways.steps.push_back(stepOf(grid, move));
+    ways.open.resize(grid.size());
+    const Barriers barriers(environment, target.height);
+    const auto is_free = [&](int column, int row) {
+        return column >= 0 && row >= 0 && column < grid.columns && row < grid.rows &&
+               target.free.test(grid.cell(column, row));
+    };
+    for (int row = 0; row < grid.rows; ++row)
+        for (int column = 0; column < grid.columns; ++column) {
+            if (!is_free(column, row)) continue;
+            const std::size_t cell = grid.cell(column, row);
+            for (std::size_t k = 0; k < std::size(kMoves); ++k) {
+                const Move& move = kMoves[k];
+                bool is_open = true;
+                for (const Move& under : cellsUnder(move))
+                    is_open = is_open && is_free(column + under.right, row + under.up);
+                if (!is_open) continue;
+                const std::size_t next = grid.cell(column + move.right, row + move.up);
+                // Steps back are as open as steps there.
+                if (!barriers.cross({grid.center(cell), grid.center(next)}))
+                    ways.open[cell] |= std::uint32_t{1} << k;
+            }
+        }
+    return ways;
+}
+
+void MeasuredScene::setWays() {
+    const WayChoice& way = options_.objective.way;
+    const std::string name = "between " + printable(way.from) + " and " + printable(way.to);
+    ways_ = cellWaysOf(scene_.environment, target_, way);
+    if (!ways_.exist())
+        throw UnmetError("no way " + name + " leads over free cells (--cell M makes them smaller)");
+    cases_.ways = &ways_;
+    cases_.blocks = {{0, problem_.cells()}};
+    cases_.shortest = ways_.leastSeen([](std::uint32_t) { return true; }).seen;
+    if (cases_.shortest == 0) throw UnmetError("the zones touch: a way " + name + " is never seen");
+    total_ = cases_.shortest;
+}
+
+std::uint64_t MeasuredScene::leastSeen(std::span<const CountedView> views) const {
+    std::vector<SensorCells> cells;
+    for (const CountedView& view : views) cells.push_back({&view.cells, view.multiplicity});
+    return CaseValues(cases_, cells).worst().value;
+}
+
+}  // namespace ispace

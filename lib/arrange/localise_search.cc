@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/localise_search.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "coverage/localisation.h"
+#include "sense/dilution.h"
+
+namespace ispace {
+
+namespace {
+
+using Spots = std::vector<SpotInformation>;
+
+/// The worth of one spot, in kNoError.
+using Worth = std::uint64_t (*)(const SpotInformation&, double limit);
+
+std::uint64_t worthOf(const SpotInformation& spot, double limit) {
+    const double error = spot.error();
+    return error < limit
+               ? static_cast<std::uint64_t>(static_cast<double>(kNoError) * (1 - error / limit))
+               : 0;
+}
+
+/// Rounds up, and against the rounding of sums of information.
+std::uint64_t upwards(double share) {
+    constexpr double kRounding = 1e-9;
+    return static_cast<std::uint64_t>(
+        std::ceil(static_cast<double>(kNoError) * std::min(1.0, share + kRounding)));
+}
+
+double traceOf(const SpotInformation& spot) {
+    return spot.seen.trace() + atKnownHeight(spot.heard).trace();
+}
+
+/// Bounds the worth of information with this trace.
+std::uint64_t mostWorth(double trace, double limit) {
+    const double share = 1 - 2 / (limit * std::sqrt(trace));
+    return share > 0 ? upwards(share) : 0;
+}
+
+/// The least concave function above mostWorth(), which has its tangent from 0 at 9/4 of its root.
+std::uint64_t concaveWorth(const SpotInformation& spot, double limit) {
+    const double times = traceOf(spot) * limit * limit / 4;  // of the root of mostWorth()
+    if (!(times > 0)) return 0;
+    return upwards(times < 2.25 ? 4 * times / 27 : 1 - 1 / std::sqrt(times));
+}
+
+class LocaliseSearch {
+  public:
+    explicit LocaliseSearch(const MeasuredScene& model)
+        : model_(model),
+          problem_(model.problem()),
+          limit_(model.options().objective.within),
+          plane_(model.options().plane),
+          standing_(problem_.cells()) {
+        std::vector<Sensor> sensors;
+        for (const Sensor& sensor : model.scene().sensors)
+            if (kindOf(sensor.model).perceives) sensors.push_back(sensor);
+        const std::vector<CountedView> views = model.viewsOf(sensors);
+        for (std::size_t i = 0; i < sensors.size(); ++i) add(sensors[i], views[i].cells, standing_);
+    }
+
+    void add(const Sensor& sensor, const CellSet& cells, Spots& spots) const {
+        cells.forEach([&](std::size_t cell) {
+            if (problem_.weights[cell] > 0) addAt(sensor, cell, spots[cell]);
+        });
+    }
+
+    [[nodiscard]] const Spots& standing() const { return standing_; }
+
+    [[nodiscard]] std::uint64_t valueOf(const Spots& spots, Worth worth = worthOf) const {
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < spots.size(); ++i)
+            if (problem_.weights[i] > 0) value += problem_.weights[i] * worth(spots[i], limit_);
+        return value;
+    }
+
+    [[nodiscard]] Spots spotsOf(const std::vector<Choice>& chosen) const {
+        Spots spots = standing_;
+        for (const Choice& choice : chosen) {
+            const Sensor sensor = sensorOf(choice);
+            problem_.kinds[choice.kind].candidates->forEachRun(
+                choice.candidate, [&](const CellRun& run) {
+                    for (std::uint32_t i = run.first; i < run.end; ++i)
+                        if (problem_.weights[i] > 0) addAt(sensor, i, spots[i]);
+                });
+        }
+        return spots;
+    }
+
+    /// Computes the gain of one more sensor on each candidate of a kind, site by site: the
+    /// information about a cell does not depend on the heading.
+    [[nodiscard]] std::vector<std::uint64_t> gainsOf(std::size_t kind, const Spots& spots,
+                                                     Worth worth) const {
+        std::vector<std::uint64_t> before(spots.size());
+        for (std::size_t i = 0; i < spots.size(); ++i) before[i] = worth(spots[i], limit_);
+        const CandidateSet& set = *problem_.kinds[kind].candidates;
+        std::vector<std::uint64_t> gains(set.size());
+        forEachSite(kind, [&](std::size_t site, std::vector<std::uint64_t>& sums) {
+            const Sensor sensor = sensorOf({kind, set.firstOf(site)});
+            std::fill(sums.begin(), sums.end(), 0);
+            forEachSeen(set, site, [&](std::uint32_t cell) {
+                if (sums[cell + 1] > 0 || problem_.weights[cell] == 0) return;
+                SpotInformation spot = spots[cell];
+                addAt(sensor, cell, spot);
+                const std::uint64_t after = worth(spot, limit_);
+                if (after > before[cell])
+                    sums[cell + 1] = problem_.weights[cell] * (after - before[cell]);
+            });
+            for (std::size_t i = 1; i < sums.size(); ++i) sums[i] += sums[i - 1];
+            for (std::size_t k = set.firstOf(site); k < set.firstOf(site + 1); ++k)
+                set.forEachRun(
+                    k, [&](const CellRun& run) { gains[k] += sums[run.end] - sums[run.first]; });
+        });
+        return gains;
+    }
+
+    /// Adds sensors one by one, the best first; where none gains, the one with the most
+    /// information.
+    [[nodiscard]] std::vector<Choice> greedy(const Progress& progress) const {
+        std::vector<Choice> chosen;
+        while (!progress.stopped()) {
+            const Spots spots = spotsOf(chosen);
+            std::uint64_t most = 0;
+            std::optional<Choice> best = bestOf(chosen, spots, worthOf, most);
+            if (!best) best = bestOf(chosen, spots, concaveWorth, most);
+            if (!best) break;
+            chosen.push_back(*best);
+        }
+        return chosen;
+    }
+
+    /// Moves single sensors while the value grows.
+    void improve(Solution& solution, const Progress& progress) const {
+        for (bool moves = true; moves;) {
+            moves = false;
+            for (std::size_t i = 0; i < solution.chosen.size() && !progress.stopped(); ++i) {
+                std::vector<Choice> others = solution.chosen;
+                const std::size_t kind = others[i].kind;
+                others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+                const Spots spots = spotsOf(others);
+                std::vector<std::uint64_t> gains = gainsOf(kind, spots, worthOf);
+                for (const Choice& other : others)
+                    if (other.kind == kind) gains[other.candidate] = 0;
+                const auto best = static_cast<std::size_t>(
+                    std::max_element(gains.begin(), gains.end()) - gains.begin());
+                const std::uint64_t value = valueOf(spots) + gains[best];
+                if (value <= solution.value) continue;
+                solution.chosen[i].candidate = best;
+                solution.value = value;
+                moves = true;
+            }
+        }
+    }
+
+    /// Bounds the value of all layouts by the gains of this one.
+    [[nodiscard]] std::uint64_t boundBeside(const std::vector<Choice>& chosen) const {
+        const Spots spots = spotsOf(chosen);
+        std::uint64_t bound = valueOf(spots, concaveWorth);
+        for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
+            std::vector<std::uint64_t> gains = gainsOf(k, spots, concaveWorth);
+            const auto most =
+                std::min(gains.size(), static_cast<std::size_t>(problem_.kinds[k].most));
+            std::partial_sort(gains.begin(), gains.begin() + static_cast<std::ptrdiff_t>(most),
+                              gains.end(), std::greater<>());
+            for (std::size_t i = 0; i < most; ++i) bound += gains[i];
+        }
+        return bound;
+    }
+
+    /// Searches for coverage by weights that bound the worth of covered cells; its bound holds for
+    /// this problem, too.
+    [[nodiscard]] SearchResult searchCover(Progress& progress) const {
+        Problem cover = problem_;
+        const std::uint64_t times =
+            std::clamp<std::uint64_t>(0xffffffffU / problem_.totalWeight(), 1, 1024);
+        const std::vector<std::uint64_t> most = mostByCell();
+        for (std::size_t i = 0; i < most.size(); ++i)
+            cover.weights[i] = static_cast<std::uint32_t>(
+                (problem_.weights[i] * times * most[i] + kNoError - 1) / kNoError);
+        SearchResult found = search(cover, model_.searchOptions(), progress);
+        found.bound = (found.bound * kNoError + times - 1) / times;
+        return found;
+    }
+
+    [[nodiscard]] std::uint64_t total() const { return problem_.totalWeight() * kNoError; }
+
+  private:
+    [[nodiscard]] Sensor sensorOf(const Choice& choice) const {
+        return {"", model_.kinds()[choice.kind].model, model_.poseOf(choice)};
+    }
+
+    void addAt(const Sensor& sensor, std::size_t cell, SpotInformation& spot) const {
+        const Point3 at = spotFor(sensor, model_.target().grid.center(cell), plane_);
+        spot.add(sensor, informationOf(sensor.model, sensor.pose.position, at));
+    }
+
+    /// Calls visit(site, buffer of cells + 1) in parallel.
+    template <typename Visit>
+    void forEachSite(std::size_t kind, Visit visit) const {
+        const CandidateSet& set = *problem_.kinds[kind].candidates;
+        tbb::enumerable_thread_specific<std::vector<std::uint64_t>> buffers(
+            std::vector<std::uint64_t>(problem_.cells() + 1));
+        tbb::parallel_for(std::size_t{0}, set.sites(),
+                          [&](std::size_t site) { visit(site, buffers.local()); });
+    }
+
+    /// Calls visit(cell) for the cells that any candidate of a site sees, some repeatedly.
+    template <typename Visit>
+    static void forEachSeen(const CandidateSet& set, std::size_t site, Visit visit) {
+        for (std::size_t part = 0; part <= set.directedParts(site); ++part)
+            for (const CellRun& run : set.runsOf(site, part))
+                for (std::uint32_t i = run.first; i < run.end; ++i) visit(i);
+    }
+
+    [[nodiscard]] std::optional<Choice> bestOf(const std::vector<Choice>& chosen,
+                                               const Spots& spots, Worth worth,
+                                               std::uint64_t& most) const {
+        std::optional<Choice> best;
+        for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
+            const auto placed = std::count_if(chosen.begin(), chosen.end(),
+                                              [k](const Choice& c) { return c.kind == k; });
+            if (placed >= problem_.kinds[k].most) continue;
+            const std::vector<std::uint64_t> gains = gainsOf(k, spots, worth);
+            for (std::size_t i = 0; i < gains.size(); ++i) {
+                const Choice choice{k, i};
+                if (gains[i] <= most ||
+                    std::find(chosen.begin(), chosen.end(), choice) != chosen.end())
+                    continue;
+                most = gains[i];
+                best = choice;
+            }
+        }
+        return best;
+    }
+
+    /// Bounds the worth of each cell if all sensors stand on its best candidate.
+    [[nodiscard]] std::vector<std::uint64_t> mostByCell() const {
+        std::vector<double> traces(problem_.cells());
+        for (std::size_t i = 0; i < traces.size(); ++i) traces[i] = traceOf(standing_[i]);
+        for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
+            const CandidateSet& set = *problem_.kinds[k].candidates;
+            tbb::enumerable_thread_specific<std::vector<double>> best(
+                std::vector<double>(problem_.cells()));
+            tbb::parallel_for(std::size_t{0}, set.sites(), [&](std::size_t site) {
+                const Sensor sensor = sensorOf({k, set.firstOf(site)});
+                std::vector<double>& own = best.local();
+                forEachSeen(set, site, [&](std::uint32_t cell) {
+                    if (problem_.weights[cell] == 0) return;
+                    SpotInformation spot;
+                    addAt(sensor, cell, spot);
+                    own[cell] = std::max(own[cell], traceOf(spot));
+                });
+            });
+            std::vector<double> all(problem_.cells());
+            for (const std::vector<double>& own : best)
+                for (std::size_t i = 0; i < all.size(); ++i) all[i] = std::max(all[i], own[i]);
+            for (std::size_t i = 0; i < all.size(); ++i)
+                traces[i] += problem_.kinds[k].most * all[i];
+        }
+        std::vector<std::uint64_t> most(traces.size());
+        for (std::size_t i = 0; i < traces.size(); ++i)
+            most[i] = traces[i] > 0 ? mostWorth(traces[i], limit_) : 0;
+        return most;
+    }
+
+    const MeasuredScene& model_;
+    const Problem& problem_;
+    double limit_, plane_;
+    Spots standing_;
+};
+
+}  // namespace
+
+std::uint64_t localisedValue(const MeasuredScene& model, std::span<const CountedView> views,
+                             std::span<const Placement> sensors) {
+    const LocaliseSearch search(model);
+    Spots spots = search.standing();
+    for (std::size_t i = 0; i < views.size(); ++i)
+        search.add(sensorOf(model.groups(), sensors[i]), views[i].cells, spots);
+    return search.valueOf(spots);
+}
+
+SearchResult searchLocalised(const MeasuredScene& model, Progress& progress) {
+    const LocaliseSearch search(model);
+    SearchResult result = search.searchCover(progress);
+    const bool moves = model.options().search.optimizer != Optimizer::Greedy;
+    Solution best;
+    for (std::vector<Choice> chosen : {result.best.chosen, search.greedy(progress)}) {
+        Solution solution{std::move(chosen), 0};
+        solution.value = search.valueOf(search.spotsOf(solution.chosen));
+        if (moves) search.improve(solution, progress);
+        if (solution.value > best.value || best.chosen.empty()) best = std::move(solution);
+    }
+    result.best = std::move(best);
+    result.bound = std::min({result.bound, search.total(), search.boundBeside(result.best.chosen)});
+    result.is_complete = result.is_complete && !progress.stopped();
+    return result;
+}
+
+}  // namespace ispace
