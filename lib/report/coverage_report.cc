@@ -162,6 +162,7 @@ std::string coverageJson(const CoverageReport& report, const ReportParts& parts)
     }
     if (report.comparison) write(json, *report.comparison);
     if (parts.rules != nullptr) writeCameraRules(json, *parts.rules);
+    if (parts.objectives != nullptr) writeObjectives(json, *parts.objectives);
     if (parts.robustness != nullptr) writeRobustness(json, *parts.robustness);
     if (parts.run != nullptr) writeRun(json, *parts.run);
     if (parts.presence != nullptr) writePresence(json, *parts.presence);

@@ -8,6 +8,7 @@
 #include "coverage/presence.h"
 #include "coverage/run_coverage.h"
 #include "report/camera_rules_report.h"
+#include "report/objective_report.h"
 #include "report/robustness_report.h"
 #include "report/suggestion_report.h"
 
@@ -20,6 +21,7 @@ struct ReportParts {
     const Robustness* robustness = nullptr;
     const CameraRules* rules = nullptr;
     const Presence* presence = nullptr;
+    const ObjectiveFigures* objectives = nullptr;
 };
 
 /// Writes one JSON object and a newline, schema ispace-coverage/1, with a member for each part.

@@ -32,7 +32,7 @@ constexpr const char* kMapOptions[] = {"--to",   "--width", "--color",
 struct Words {
     std::string to, cells_by, color, fans;
     CellWords cells;
-    std::vector<std::string> requirements, facing, privacy;
+    std::vector<std::string> requirements, facing, privacy, paths;
 };
 
 /// Parses `30` or `30,3`.
@@ -134,7 +134,7 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
     std::vector<const char*> single = {"--report",  "--suggest",  "--compare", "--run",
                                        "--perturb", "--failures", "--crowd",   "--facing",
-                                       "--privacy", "--presence"};
+                                       "--privacy", "--presence", "--path",    "--localise"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
@@ -235,6 +235,14 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         "report coverage and requirements with people in the way of sight: N at random positions, "
         "100 times; those of the scene; those of --run DIR at 100 moments",
         Enters::Nothing);
+    line.texts("--path", "FROM,TO", words.paths,
+               "report the way between these two zones, over free floor, that sensors see for the "
+               "shortest length, and draw it",
+               Enters::History);
+    line.meters("--localise", o.localise_to, kLeastErrorLimit, kMostErrorLimit,
+                "report the error with which the sensors localise a tag or a person, over the "
+                "floor; in the mean, errors above this and floor without a position count as this",
+                Enters::History);
     line.group("The map");
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
                 Enters::History);
@@ -272,6 +280,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         o.requirements.push_back(parseRequirement(text));
     for (const std::string& text : words.facing) o.facing.push_back(parseFacing(text));
     for (const std::string& text : words.privacy) o.privacy.push_back(parsePrivacy(text));
+    for (const std::string& text : words.paths)
+        o.paths.push_back(ofOption("--path", [&] { return parseWay(text); }));
     o.measure.whole_densities =
         !o.facing.empty() || !o.privacy.empty() ||
         std::any_of(o.requirements.begin(), o.requirements.end(),

@@ -41,6 +41,8 @@ struct CoverageToolOptions {
     std::optional<CrowdChoice> crowd;
     std::vector<FacingRule> facing;
     std::vector<PrivacyRule> privacy;
+    std::vector<WayChoice> paths;            ///< of intruders
+    std::optional<double> localise_to;       ///< metres; larger errors of positions count as this
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
     std::optional<WaysChoice> presence;  ///< ways on which presence is measured

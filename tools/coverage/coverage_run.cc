@@ -151,6 +151,16 @@ std::optional<CameraRules> cameraRulesOf(const CoverageToolOptions& options, con
                        measurePrivacy(scene, options.measure.plane, options.privacy)};
 }
 
+std::optional<ObjectiveFigures> objectivesOf(const CoverageToolOptions& options, const Scene& scene,
+                                             const Coverage& coverage) {
+    if (options.paths.empty() && !options.localise_to) return std::nullopt;
+    ObjectiveFigures figures;
+    for (const WayChoice& path : options.paths)
+        figures.ways.push_back(findLeastSeenWay(scene, coverage, path));
+    if (options.localise_to) figures.localisation = localise(scene, coverage, *options.localise_to);
+    return figures;
+}
+
 std::vector<JunitCase> judge(const CameraRules& rules) {
     std::vector<JunitCase> verdicts;
     for (const JudgedRule& rule : judgedRules(rules))

@@ -16,6 +16,7 @@
 #include "coverage/requirement.h"
 #include "coverage/run_coverage.h"
 #include "report/camera_rules_report.h"
+#include "report/objective_report.h"
 #include "report/robustness_report.h"
 #include "report/suggestion_report.h"
 
@@ -50,6 +51,11 @@ std::optional<Robustness> robustnessOf(const CoverageToolOptions& options, const
 /// unknown zones
 std::optional<CameraRules> cameraRulesOf(const CoverageToolOptions& options, const Scene& scene,
                                          const Coverage& coverage);
+
+/// Computes the results of --path and --localise; nullopt without both. \throws UsageError for
+/// unknown zones
+std::optional<ObjectiveFigures> objectivesOf(const CoverageToolOptions& options, const Scene& scene,
+                                             const Coverage& coverage);
 
 /// Returns a verdict for each rule that requires something.
 std::vector<JunitCase> judge(const CameraRules& rules);

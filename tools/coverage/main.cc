@@ -63,6 +63,7 @@ std::string reportText(const CoverageToolOptions& options, const CoverageReport&
                        const ReportParts& parts) {
     if (options.json) return coverageJson(report, parts);
     return coverageText(report) + (parts.rules == nullptr ? "" : cameraRulesText(*parts.rules)) +
+           (parts.objectives == nullptr ? "" : objectivesText(*parts.objectives)) +
            (parts.robustness == nullptr ? "" : robustnessText(*parts.robustness)) +
            (parts.run == nullptr ? "" : "\n" + runText(*parts.run)) +
            (parts.presence == nullptr ? "" : "\n" + presenceText(*parts.presence)) +
@@ -107,6 +108,9 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     if (run) files.push_back(RecordedFiles(options.run).robots);
     if (options.presence && !options.presence->record.empty())
         files.push_back(RecordedFiles(options.presence->record).robots);
+    const std::optional<ObjectiveFigures> objectives =
+        objectivesOf(options, input.scene, measured.coverage);
+    if (objectives) options.map.objectives = &*objectives;
     if (options.format != nullptr) {
         options.map.title =
             input.environment_operand == "-" ? "" : baseName(input.environment_operand);
@@ -118,9 +122,12 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
         robustnessOf(options, input.scene, measured.coverage);
     const std::optional<CameraRules> rules = cameraRulesOf(options, input.scene, measured.coverage);
     const std::optional<Presence> presence = presenceOf(options, input.scene);
-    const ReportParts parts{options.map.run, advice ? &*advice : nullptr,
-                            robustness ? &*robustness : nullptr, rules ? &*rules : nullptr,
-                            presence ? &*presence : nullptr};
+    const ReportParts parts{options.map.run,
+                            advice ? &*advice : nullptr,
+                            robustness ? &*robustness : nullptr,
+                            rules ? &*rules : nullptr,
+                            presence ? &*presence : nullptr,
+                            options.map.objectives};
     if (!options.report.empty())
         writeAll(options.report, reportFile(options, input, measured.coverage, parts));
     writeAll("-", reportText(options, report, parts));

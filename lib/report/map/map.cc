@@ -187,6 +187,9 @@ Picture coverageMap(const Scene& scene, const Coverage& coverage, const MapOptio
     picture.pushLayer("ways of the run");
     drawRun(picture, map);
     picture.pop();
+    picture.pushLayer("ways seen least");
+    drawLeastSeenWays(picture, map);
+    picture.pop();
     drawMarks(picture, map, frame);
     picture.pushLayer("frame");
     drawHead(picture, map, page);

@@ -9,6 +9,7 @@
 #include "coverage/coverage.h"
 #include "coverage/run_coverage.h"
 #include "drawing/drawing.h"
+#include "report/objective_report.h"
 
 namespace ispace {
 
@@ -40,6 +41,8 @@ struct MapOptions {
     /// Coverage of a recorded run: ways coloured by the number of sensors that saw them, and rings
     /// where sight was lost; null: no run. It outlives the options.
     const RunCoverage* run = nullptr;
+    /// Ways of intruders to draw; null: none. It outlives the options.
+    const ObjectiveFigures* objectives = nullptr;
 };
 
 /// Returns the number of sensors to which the colours of a map by itself reach.

@@ -375,6 +375,9 @@ std::vector<LegendBlock> legendBlocks(const MapPicture& map) {
     blocks.push_back(sensorsBlock(map));
     if (!map.options.trace.empty()) blocks.push_back(triedBlock(map.options.trace));
     if (map.options.run != nullptr) blocks.push_back(runBlock(*map.options.run));
+    if (const ObjectiveFigures* figures = map.options.objectives;
+        figures != nullptr && !figures->ways.empty())
+        blocks.push_back(leastSeenWaysBlock(*figures));
     if (markedSpots(map) > 0) blocks.push_back(spotsBlock(map));
     if (!report.zones.empty()) blocks.push_back(zonesBlock(report, map.terse));
     if (!map.terse) blocks.push_back(planBlock(contents, map.coverage.target.height));

@@ -178,6 +178,13 @@ struct LegendBlock {
 void drawRun(Picture& picture, const MapPicture& map);
 LegendBlock runBlock(const RunCoverage& run);
 
+// Ways of intruders (map_objectives.cc).
+
+/// Draws the ways that are seen least on top of the plan, below the sensors' marks.
+void drawLeastSeenWays(Picture& picture, const MapPicture& map);
+/// \pre there are ways
+LegendBlock leastSeenWaysBlock(const ObjectiveFigures& figures);
+
 std::vector<LegendBlock> legendBlocks(const MapPicture& map);
 /// Returns the main metrics, the most important first, for the subtitle.
 std::vector<std::string> mainMetrics(const MapPicture& map);

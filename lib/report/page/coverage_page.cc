@@ -240,6 +240,22 @@ void addCameraRules(const CoveragePageInput& input, ReportPage& page) {
     page.sections.push_back({"rules", "Faces and privacy", {std::move(table)}});
 }
 
+void addObjectives(const CoveragePageInput& input, ReportPage& page) {
+    if (input.parts.objectives == nullptr) return;
+    PageTable table{
+        "ways that are seen least, and errors of positions", "ll", {"figure", "measured"}, {}};
+    for (const NamedFigure& figure : namedFigures(*input.parts.objectives))
+        table.rows.push_back({figure.name, figure.finding});
+    PageSection section{"objectives", "Ways and positions", {std::move(table)}};
+    if (!input.parts.objectives->ways.empty()) {
+        MapOptions options;
+        options.objectives = input.parts.objectives;
+        section.blocks.push_back(PageFigure{"Ways between zones that are seen least.",
+                                            coverageMap(input.scene, input.coverage, options)});
+    }
+    page.sections.push_back(std::move(section));
+}
+
 void addRobustness(const CoveragePageInput& input, ReportPage& page) {
     if (input.parts.robustness == nullptr) return;
     const Robustness& robustness = *input.parts.robustness;
@@ -327,6 +343,7 @@ ReportPage coveragePage(const CoveragePageInput& input) {
     for (const PageSection& section : input.more) page.sections.push_back(section);
     addRequirements(input, page);
     addCameraRules(input, page);
+    addObjectives(input, page);
     addRobustness(input, page);
     addAdvice(input, page);
     addInstallation(input, page);
