@@ -31,6 +31,7 @@ void mustBeAboutBuildings(const ArrangeToolOptions& options, const BuildingInput
     if (options.how.refine) option = options.how.over_poses ? "--proof poses" : "--refine";
     if (options.how.robust.isAsked())
         option = options.how.robust.of == RobustChoice::Of::Crowd ? "--crowd" : "--robust";
+    if (!options.how.objective.isCoverage()) option = "--objective";
     if (!zones.targets.empty()) option = "--zone";
     if (!zones.weights.empty()) option = "--weight";
     if (!zones.keep_out.empty()) option = "--keep-out";

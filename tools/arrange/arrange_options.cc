@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cli/common_options.h"
+#include "coverage/localisation.h"
 #include "record/schema.h"
 
 namespace ispace {
@@ -108,6 +109,28 @@ RobustChoice readRobust(const std::string& text, std::vector<std::string>& rooms
         return robust;
     }
     throw UsageError('`' + text + "` is not rooms:FILE[,FILE...], failures:K or mounting:M,DEG");
+}
+
+/// Parses `coverage`, `path:FROM,TO`, `localise` and `localise:M`.
+ObjectiveChoice readObjective(const std::string& text) {
+    const auto colon = text.find(':');
+    const std::string word = text.substr(0, colon);
+    const std::string rest = colon == std::string::npos ? "" : text.substr(colon + 1);
+    ObjectiveChoice objective;
+    if (text == "coverage") return objective;
+    if (word == "path" && !rest.empty()) {
+        objective.of = ObjectiveChoice::Of::Path;
+        objective.way = parseWay(rest);
+        return objective;
+    }
+    if (text == "localise" || (word == "localise" && !rest.empty())) {
+        objective.of = ObjectiveChoice::Of::Localise;
+        if (!rest.empty())
+            objective.within =
+                numbers(rest, Unit::Length, 1, 1, kLeastErrorLimit, kMostErrorLimit)[0];
+        return objective;
+    }
+    throw UsageError('`' + text + "` is not coverage, path:FROM,TO or localise[:M]");
 }
 
 template <typename Value, std::size_t kCount>
@@ -252,6 +275,13 @@ void ArrangeCommand::addMountOptions() {
 
 void ArrangeCommand::addGoalOptions() {
     ArrangeOptions& how = options_.how;
+    line_.parsed(
+        "--objective", "WHAT",
+        [&how](const std::string& text) { how.objective = readObjective(text); },
+        "quantity that the layout maximises: coverage (default); path:FROM,TO, the length for "
+        "which an intruder between two zones is seen on the way that is seen least; localise[:M], "
+        "small errors of positions of tags and people, none of which counts above M (default 1)",
+        Enters::History);
     line_.texts("--zone", "ZONE", options_.zones.targets,
                 "cover only this part of the floor: the id of a zone, rect:X,Y,X,Y, "
                 "poly:X,Y;X,Y;..., or door:GLOB,M within M of doors",

@@ -62,6 +62,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void settleStrategy();
     void settleProof();
     void settleRobust();
+    void settleObjective();
     void settleCameraRules();
     void settlePresence() const;
     void settleProofOfCoverage();

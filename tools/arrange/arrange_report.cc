@@ -115,6 +115,31 @@ std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangem
     return rules;
 }
 
+namespace {
+
+std::optional<ObjectiveFigures> objectivesOf(const ObjectiveChoice& objective, int times,
+                                             const Scene& scene, const Coverage& coverage) {
+    ObjectiveFigures figures;
+    if (objective.isCoverage()) return std::nullopt;
+    if (objective.of == ObjectiveChoice::Of::Path)
+        figures.ways.push_back(findLeastSeenWay(scene, coverage, objective.way, times));
+    else
+        figures.localisation = localise(scene, coverage, objective.within);
+    return figures;
+}
+
+}  // namespace
+
+std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
+                                             const Arrangement& arrangement) {
+    if (work.how.objective.isCoverage()) return std::nullopt;
+    const Scene scene = withPlaced(work.input.scene, work.groups, arrangement.sensors);
+    Worlds worlds(scene.environment);
+    const Coverage coverage = measureCoverage(
+        scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
+    return objectivesOf(work.how.objective, work.how.redundancy, scene, coverage);
+}
+
 std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& work,
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command) {
@@ -125,6 +150,8 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
     const CameraRules rules{measureFacing(scene, coverage, work.how.facing), arrangement.privacy};
     ReportParts parts;
     if (!rules.facing.empty() || !rules.privacy.empty()) parts.rules = &rules;
+    const auto objectives = objectivesOf(work.how.objective, work.how.redundancy, scene, coverage);
+    if (objectives) parts.objectives = &*objectives;
     if (suffixOf(options.report_file) == "json") return coverageJson(coverage.report, parts);
     CoveragePageInput page{scene, coverage, "", command};
     page.parts = parts;

@@ -21,6 +21,11 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command);
 
+/// Measures --objective path and localise on the written layout, exactly and on the cells of
+/// coverage(1); empty without them.
+std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
+                                             const Arrangement& arrangement);
+
 /// Judges --facing and --privacy on the written layout, by exact regions; empty without them.
 std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangement& arrangement);
 

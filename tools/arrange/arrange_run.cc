@@ -116,6 +116,10 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
         if (!options.presence->record.empty())
             work.files.push_back(RecordedFiles(options.presence->record).robots);
     }
+    if (work.how.objective.of == ObjectiveChoice::Of::Path)
+        for (const std::string* zone : {&work.how.objective.way.from, &work.how.objective.way.to})
+            static_cast<void>(
+                ofOption("--objective", [&] { return readZone(*zone, input.scene.environment); }));
     work.how.facing = facingIn(input.scene.environment, options.how.facing);
     for (const PrivacyRule& rule : options.how.privacy)
         static_cast<void>(privateZones(rule, input.scene.environment));
@@ -309,6 +313,22 @@ std::string robustText(const ArrangeOptions& how, const Arrangement& arrangement
            percentText(values.mean) + '\n';
 }
 
+/// Reports an objective other than coverage in metres.
+std::string objectiveText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    constexpr int kDigits = 4;
+    const double whole = *arrangement.whole;
+    if (how.objective.of == ObjectiveChoice::Of::Path)
+        return "arrange: by cells the way from " + printable(how.objective.way.from) + " to " +
+               printable(how.objective.way.to) + " that is seen least is seen for " +
+               formatFixed(*arrangement.value * whole, 2) +
+               " m; no layout of these candidates makes it more than " +
+               formatFixed(arrangement.candidate_bound * whole, 2) + " m\n";
+    return "arrange: by cells the mean error of positions is " +
+           formatFixed((1 - *arrangement.value) * whole, kDigits) + " m, none above " +
+           formatDouble(whole) + " m; no layout of these candidates makes it less than " +
+           formatFixed((1 - arrangement.candidate_bound) * whole, kDigits) + " m\n";
+}
+
 /// Reports a proof over all poses.
 std::string posesText(const Arrangement& arrangement) {
     constexpr int kDigits = 3;
@@ -383,6 +403,7 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
                 " of these candidates can\n";
     }
     if (arrangement.robust) text += robustText(how, arrangement);
+    if (arrangement.whole) text += objectiveText(how, arrangement);
     if (how.budget)
         text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
                 formatDouble(*how.budget) + '\n';

@@ -68,6 +68,7 @@ void ArrangeCommand::settle() {
             "--judge no");
     settleProof();
     settleRobust();
+    settleObjective();
     settleCameraRules();
     settlePresence();
     how.wants_curve = !options_.curve_file.empty();
@@ -161,6 +162,30 @@ void ArrangeCommand::settleRobust() {
                 "--robust failures is about a given number of sensors, of which one "
                 "covers floor: leave out " +
                 std::string(option));
+}
+
+void ArrangeCommand::settleObjective() {
+    const ObjectiveChoice& objective = options_.how.objective;
+    if (objective.isCoverage()) return;
+    const auto refuse = [this](std::span<const char* const> others) {
+        for (const char* other : others)
+            if (line_.given(other))
+                throw UsageError(
+                    std::string("--objective path and localise are goals of their own: leave "
+                                "out ") +
+                    other);
+    };
+    constexpr const char* kOther[] = {
+        "--target", "--budget", "--refine", "--connected",  "--reso",        "--judge",
+        "--proof",  "--shard",  "--resume", "--robust",     "--crowd",       "--facing",
+        "--curve",  "--heat",   "--trace",  "--export-mps", "--alternatives"};
+    constexpr const char* kOfFloor[] = {"--zone", "--weight"};
+    constexpr const char* kOfTimes[] = {"--redundancy"};
+    refuse(kOther);
+    if (objective.of == ObjectiveChoice::Of::Path)
+        refuse(kOfFloor);
+    else
+        refuse(kOfTimes);
 }
 
 void ArrangeCommand::settleCameraRules() {

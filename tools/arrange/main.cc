@@ -36,9 +36,11 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
     const SceneInput& input = work.input;
     LayoutParts parts{
         input.layout ? input.layout->history : History(),
-        environmentFileFor(options.common.output, input.environment_operand), input.scene.digest(),
+        environmentFileFor(options.common.output, input.environment_operand),
+        input.scene.digest(),
         work.how.over_poses ? "poses" : std::string(nameOf(work.how.strategy)),
-        std::string(nameOf(work.how.over_poses ? Optimizer::Exact : work.how.search.optimizer))};
+        std::string(nameOf(work.how.over_poses ? Optimizer::Exact : work.how.search.optimizer)),
+        std::string(work.how.objective.name())};
     parts.history.push_back(command.historyLine(input.named));
     const Document layout =
         layoutDocument(parts, input.layout ? &*input.layout : nullptr, work.groups, arrangement);
@@ -70,6 +72,10 @@ void report(const ArrangeToolOptions& options, const ArrangeWork& work,
     if (rules != nullptr)
         for (const JudgedRule& rule : judgedRules(*rules))
             tell(options.common, "arrange", rule.rule + ": " + rule.finding);
+    if (const auto objectives = objectivesOf(work, arrangement);
+        objectives && !options.common.quiet)
+        for (const NamedFigure& figure : namedFigures(*objectives))
+            tell(options.common, "arrange", figure.name + ": " + figure.finding);
     const auto asked = static_cast<std::size_t>(work.how.alternatives);
     if (const std::size_t count = arrangement.alternatives.size(); count < asked)
         tell(options.common, "arrange",
