@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The lines that arrange prints about a layout.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "arrange/arrange_run.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "report/coverage_report.h"
+#include "report/curve_chart.h"
+
+namespace ispace {
+
+namespace {
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+    return std::to_string(count) + ' ' + (count == 1 ? one : many);
+}
+
+/// Returns true if all cells are covered, but not all of the exact area between their centres.
+bool isShort(const Arrangement& arrangement) {
+    return !arrangement.is_reached && arrangement.exact_share && arrangement.least;
+}
+
+/// Returns the step that a signal or the time limit ended after the candidates were chosen.
+std::string unfinishedText(const ArrangeOptions& how) {
+    return how.target ? "the search for fewer sensors" : how.refine ? "refining" : "the curve";
+}
+
+std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    return "over " + counted(arrangement.candidates, "candidate", "candidates") + " (" +
+           std::string(nameOf(how.strategy)) + ", " + formatBytes(arrangement.bytes) + ") on " +
+           (arrangement.pieces > 0 ? counted(arrangement.pieces, "piece of way", "pieces of way")
+                                   : cellsText(arrangement.grid));
+}
+
+/// Compares value and coverage if they differ by their cells alone; "" if the two agree.
+std::string cellsGapText(const Arrangement& arrangement) {
+    constexpr double kTold = 0.025, kHundred = 100;  // told as a share of the coverage
+    if (!arrangement.is_value_by_cells) return "";
+    const double gap = std::abs(*arrangement.value - arrangement.coverage);
+    if (gap <= kTold * arrangement.coverage) return "";
+    return "arrange: the cells of the search and those of coverage(1) are " +
+           formatFixed(kHundred * gap, 2) + " points apart: these sensors cover " +
+           percentText(*arrangement.value) + " and " + percentText(arrangement.coverage) +
+           " (--cell M sets the size of cells)\n";
+}
+
+/// Reports the values in the cases.
+std::string robustText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    const RobustValues& values = *arrangement.robust;
+    const RobustChoice& robust = how.robust;
+    std::string text;
+    if (robust.of == RobustChoice::Of::Failures) {
+        for (const std::string& id : values.failed)
+            text.append(text.empty() ? "without " : " and ").append(printable(id));
+        if (text.empty()) text = "without failures";
+        text += ", the worst failure, " + percentText(values.worst) + "; mean over all failures " +
+                percentText(values.mean);
+        return "arrange: " + text + '\n';
+    }
+    if (robust.of == RobustChoice::Of::Rooms) {
+        for (std::size_t i = 0; i < values.names.size(); ++i)
+            text.append(text.empty() ? "in " : ", ")
+                .append(printable(values.names[i]) + ' ' + percentText(values.shares[i]));
+    } else {
+        text = "in " + std::to_string(values.shares.size()) +
+               (robust.of == RobustChoice::Of::Crowd
+                    ? " crowds of " +
+                          counted(static_cast<std::size_t>(robust.people), "person", "people")
+                    : " mountings");
+    }
+    return "arrange: " + text + "; worst " + percentText(values.worst) + ", mean " +
+           percentText(values.mean) + '\n';
+}
+
+/// Reports an objective other than coverage in metres.
+std::string objectiveText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    constexpr int kDigits = 4;
+    const double whole = *arrangement.whole;
+    if (how.objective.of == ObjectiveChoice::Of::Path)
+        return "arrange: by cells the way from " + printable(how.objective.way.from) + " to " +
+               printable(how.objective.way.to) + " that is seen least is seen for " +
+               formatFixed(*arrangement.value * whole, 2) +
+               " m; no layout of these candidates makes it more than " +
+               formatFixed(arrangement.candidate_bound * whole, 2) + " m\n";
+    return "arrange: by cells the mean error of positions is " +
+           formatFixed((1 - *arrangement.value) * whole, kDigits) + " m, none above " +
+           formatDouble(whole) + " m; no layout of these candidates makes it less than " +
+           formatFixed((1 - arrangement.candidate_bound) * whole, kDigits) + " m\n";
+}
+
+/// Reports a proof over all poses.
+std::string posesText(const Arrangement& arrangement) {
+    constexpr int kDigits = 3;
+    const PosesProof& proof = *arrangement.over_poses;
+    std::string text = "arrange: ";
+    if (proof.cover > 0)
+        text += counted(proof.cover, "sensor sees ", "sensors see ") + "the floor of " +
+                formatFixed(proof.floor, 2) + " m2 but for " +
+                formatDouble(roundSignificant(proof.missed, kDigits)) + " m2";
+    else
+        text += "no cover of the floor was found";
+    text += "; over all poses at least " + std::to_string(proof.bound) +
+            (proof.bound == 1 ? " is" : " are") + " needed";
+    if (proof.isProven()) return text + ": proven fewest\n";
+    return text + (arrangement.is_complete ? "\n" : ", cut short\n");
+}
+
+/// Reports a bound of the coverage over all poses.
+std::string posesBoundText(const Arrangement& arrangement) {
+    const PosesBound& proof = *arrangement.poses_bound;
+    const double gap = std::max(0.0, (proof.bound - proof.found) / proof.bound);
+    return "arrange: the layout sees " + formatFixed(proof.found, 3) + " m2 (" +
+           percentText(proof.found / proof.floor) + ") by exact area; over all poses at most " +
+           formatFixed(proof.bound, 3) + " m2 (" + percentText(proof.bound / proof.floor) +
+           ", gap " + percentText(gap) + ")" + (arrangement.is_complete ? "" : ", cut short") +
+           '\n';
+}
+
+}  // namespace
+
+std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    if (arrangement.over_poses) return posesText(arrangement);
+    std::string text = "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
+                       ", coverage " + percentText(arrangement.coverage);
+    // The bound holds for the objective before refinement.
+    if (arrangement.value)
+        text += "; value " + percentText(arrangement.candidate_value);
+    else if (how.refine)
+        text += "; before it was refined " + percentText(arrangement.candidate_value);
+    const double gap = gapOf(arrangement);
+    text += ", bound " + percentText(arrangement.candidate_bound) + " (" +
+            (gap > 0                ? "gap " + percentText(gap)
+             : isShort(arrangement) ? "all cells, not all of the area"
+                                    : "proven best") +
+            ") " + overText(how, arrangement);
+    if (!arrangement.is_complete && gap > 0) text += ", cut short";
+    text += '\n' + cellsGapText(arrangement);
+    if (!arrangement.is_complete && gap <= 0 && !arrangement.poses_bound)
+        text += "arrange: " + unfinishedText(how) + " was cut short\n";
+    if (how.refine && !arrangement.poses_bound &&
+        arrangement.refined_after > arrangement.refined_before) {
+        text += "arrange: refined from " + formatFixed(arrangement.refined_before, 3) + " to " +
+                formatFixed(arrangement.refined_after, 3) +
+                " m2 by exact area, off the candidates; " +
+                (arrangement.bound < 1 ? "from any places at all at most " +
+                                             percentText(arrangement.bound) + " can be covered"
+                                       : "for any places at all no bound below 100% is known") +
+                '\n';
+    } else if (how.refine && !arrangement.poses_bound) {
+        text += "arrange: refining found nothing better than " +
+                formatFixed(arrangement.refined_before, 3) + " m2 by exact area\n";
+    }
+    if (arrangement.least) {
+        text += "arrange: " +
+                (isShort(arrangement) ? std::string("all cells covered ")
+                                      : "target " + percentText(*how.target) + " reached ") +
+                (arrangement.has_costs
+                     ? "at a cost of " + formatDouble(arrangement.cost) +
+                           "; nothing cheaper than " + formatDouble(*arrangement.least)
+                     : "by " + counted(arrangement.sensors.size(), "sensor", "sensors") +
+                           "; none fewer than " + formatDouble(*arrangement.least)) +
+                " of these candidates can\n";
+    }
+    if (arrangement.robust) text += robustText(how, arrangement);
+    if (arrangement.whole) text += objectiveText(how, arrangement);
+    if (how.budget)
+        text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
+                formatDouble(*how.budget) + '\n';
+    if (arrangement.poses_bound) text += posesBoundText(arrangement);
+    if (!arrangement.curve.empty()) text += curveText(arrangement.curve);
+    return text;
+}
+
+double gapOf(const Arrangement& arrangement) {
+    const double bound = arrangement.candidate_bound;
+    return bound > 0 ? std::max(0.0, (bound - arrangement.candidate_value) / bound) : 0;
+}
+
+std::string numberedFile(const std::string& output, std::size_t number) {
+    const std::filesystem::path path(output);
+    const std::string name =
+        path.stem().string() + '-' + std::to_string(number) + path.extension().string();
+    return (path.parent_path() / name).string();
+}
+
+std::string alternativesText(const std::string& output, const Arrangement& arrangement) {
+    std::string text;
+    for (std::size_t i = 0; i < arrangement.alternatives.size(); ++i) {
+        const Arrangement& other = arrangement.alternatives[i];
+        text += "arrange: " + printable(numberedFile(output, i + 2)) + ": value " +
+                percentText(other.candidate_value) + ", gap " + percentText(gapOf(other)) +
+                ", coverage " + percentText(other.coverage) + '\n';
+    }
+    return text;
+}
+
+std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    if (arrangement.over_poses)
+        return "the target of 100% is not reached: " +
+               (arrangement.over_poses->cover > arrangement.sensors.size()
+                    ? counted(arrangement.over_poses->cover, "sensor", "sensors") +
+                          " would reach it; allow more (:COUNT)"
+                    : "no cover was found");
+    if (isShort(arrangement))
+        return "the target of 100% is not reached: " +
+               counted(arrangement.sensors.size(), "sensor covers", "sensors cover") +
+               " all cells, but " + formatPercent(roundSignificant(*arrangement.exact_share)) +
+               " of the exact area; --target 99.9% asks for less, --proof poses for all";
+    std::string text = "the target of " + formatPercent(how.target.value_or(1)) +
+                       " is not reached: " +
+                       counted(arrangement.sensors.size(), "sensor covers ", "sensors cover ") +
+                       percentText(arrangement.candidate_value);
+    if (arrangement.candidate_bound < how.target.value_or(1))
+        text += ", and no layout of these candidates covers more than " +
+                percentText(arrangement.candidate_bound);
+    if (!arrangement.is_complete) return text + "; the search was cut short";
+    if (arrangement.is_exhausted)
+        return text +
+               "; all candidates together see no more: try denser ones (--candidates), other "
+               "places (--mount, --z) or sensors";
+    return text + "; allow more sensors (:COUNT), or denser candidates";
+}
+
+std::string idleText(const Arrangement& arrangement) {
+    constexpr std::size_t kMaxNamed = 10;
+    const std::vector<std::string>& idle = arrangement.idle;
+    if (idle.empty()) return "";
+    std::string text;
+    for (std::size_t i = 0; i < std::min(idle.size(), kMaxNamed); ++i)
+        text.append(i == 0 ? "" : ", ").append(printable(idle[i]));
+    if (idle.size() > kMaxNamed)
+        text += " and " + std::to_string(idle.size() - kMaxNamed) + " more";
+    return text + (idle.size() == 1 ? " adds" : " add") + " nothing to what the others cover";
+}
+
+std::string doubledText(const Arrangement& arrangement) {
+    const std::vector<Placement>& sensors = arrangement.sensors;
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+        for (std::size_t k = i + 1; k < sensors.size(); ++k) {
+            const Point3 p = sensors[i].pose.position;
+            if (!(p == sensors[k].pose.position)) continue;
+            return printable(sensors[i].sensor) + " and " + printable(sensors[k].sensor) +
+                   " are at one place (" + formatDouble(p.x) + ", " + formatDouble(p.y) + ", " +
+                   formatDouble(p.z) + "): mount them side by side";
+        }
+    return "";
+}
+
+}  // namespace ispace
