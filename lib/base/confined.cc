@@ -15,8 +15,10 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <new>
 #include <set>
 #include <string>
@@ -160,6 +162,11 @@ class ConfinedReader::Reading {
                 case ConfinedAnswer::WantsFile:
                     reply(text(size, kMaxName));
                     break;
+                case ConfinedAnswer::Work:
+                    pay(size);
+                    break;
+                case ConfinedAnswer::TooMuchWork:
+                    tooMuchWork(printable(text(size, kMaxMessage)));
                 case ConfinedAnswer::Result:
                     return text(size, limits_.memory);  // the program held its result in memory
                 case ConfinedAnswer::Error:
@@ -182,10 +189,29 @@ class ConfinedReader::Reading {
     [[nodiscard]] std::vector<std::string> arguments() const {
         std::vector<std::string> words{modulePath(task_.program)};
         words.insert(words.end(), task_.arguments.begin(), task_.arguments.end());
-        for (const std::size_t number :
-             {static_cast<std::size_t>(::getpid()), bytes_, limits_.memory, limits_.seconds})
+        const std::uint64_t units =
+            task_.work == nullptr ? std::numeric_limits<std::uint64_t>::max() : task_.work->left();
+        for (const std::uint64_t number :
+             {static_cast<std::uint64_t>(::getpid()), std::uint64_t{bytes_},
+              std::uint64_t{limits_.memory}, std::uint64_t{limits_.seconds}, units})
             words.push_back(std::to_string(number));
         return words;
+    }
+
+    void pay(std::uint64_t size) {
+        std::uint64_t units = 0;
+        if (size != sizeof units) noAnswer();
+        receive(reinterpret_cast<char*>(&units), sizeof units);
+        if (task_.work != nullptr && !task_.work->take(units)) noAnswer();  // beyond its bound
+    }
+
+    void payAll() const {
+        if (task_.work != nullptr) static_cast<void>(task_.work->take(task_.work->left()));
+    }
+
+    [[noreturn]] void tooMuchWork(const std::string& cause) {
+        if (task_.work == nullptr || task_.work->take(task_.work->left() + 1)) noAnswer();
+        fail(task_.problem + cause + " make " + task_.work->excess());
     }
 
     std::string text(std::uint64_t size, std::size_t most) {
@@ -303,12 +329,14 @@ class ConfinedReader::Reading {
              forThisSize());
     }
     [[noreturn]] void tooMuchTime() {
+        payAll();
         fail(bad() + "it takes more than " + std::to_string(limits_.seconds) + " s" +
              forThisSize());
     }
     /// The program has died or broken the protocol.
     [[noreturn]] void noAnswer() {
         const int status = child_.end();
+        payAll();
         const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
         if (signal == SIGXCPU) tooMuchTime();
         if (signal != 0 && signal != SIGKILL)

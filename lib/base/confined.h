@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/budget.h"
 #include "base/file.h"
 
 namespace ispace {
@@ -23,7 +24,9 @@ struct ConfinedLimits {
 /// bytes, and the rest.
 enum class ConfinedAnswer : char {
     WantsFile = 'F',    ///< name of a file that the input refers to; see ConfinedReply
+    Work = 'W',         ///< units of work that the file took, in eight native bytes
     Result = 'P',       ///< the last message for this file
+    TooMuchWork = 'B',  ///< the cause of work beyond the budget; last message
     Error = 'E',        ///< the error in the file; last message
     OutOfMemory = 'M',  ///< without further bytes; last message
 };
@@ -39,7 +42,7 @@ struct ConfinedTask {
     const std::string& name;                  ///< of the file, for messages
     std::string program;                      ///< "read-mesh"
     std::vector<std::string> arguments = {};  ///< of the program; its parent's number, the size of
-                                              ///< the file and the limits follow
+                                              ///< the file, the limits and the units of work follow
     int file = -1;                            ///< open for reading: standard input of the program
     std::size_t bytes = 0;                    ///< of the file
     /// Returns the limits for files of `bytes` bytes in all. \pre increases with `bytes`
@@ -47,6 +50,9 @@ struct ConfinedTask {
     /// Opens a file that the input refers to; nullopt if it does not exist. Empty if inputs refer
     /// to no files.
     std::function<std::optional<RegularFile>(const std::string& name)> open = {};
+    /// Pays for the work that the program reports, with all that is left for a file that the
+    /// program does not finish. Null: unbounded.
+    Budget* work = nullptr;
     // For messages.
     std::string kind;          ///< "mesh file"
     std::string reader;        ///< "assimp"

@@ -18,6 +18,7 @@
 #include "io/exporters.h"
 #include "io/glb/glb_read.h"
 #include "io/import_records.h"
+#include "io/mesh/mesh_file.h"
 #include "record/text.h"
 #include "record/yaml/yaml.h"
 #include "scene/placement_schemas.h"
@@ -147,12 +148,9 @@ std::vector<std::size_t> storeysOf(const Record& record, const std::vector<Store
 /// Reads the rooms of files, each once.
 class RoomFiles {
   public:
-    /// \param work of the building, which pays for its rooms
+    /// \param options of the rooms \param work of the building, which pays for its rooms
     RoomFiles(const std::string& operand, const ImportOptions& options, Budget& work)
-        : operand_(operand), options_(options), work_(work) {
-        options_.storey.clear();
-        options_.max_work.whole = &work;
-    }
+        : operand_(operand), options_(options), work_(work) {}
 
     /// \throws FormatError, std::system_error
     std::shared_ptr<const Document> read(const Record& record) {
@@ -207,7 +205,7 @@ class RoomFiles {
     }
 
     const std::string& operand_;
-    ImportOptions options_;
+    const ImportOptions& options_;
     Budget& work_;
     std::map<std::string, std::shared_ptr<const Document>> rooms_;  // by canonical path
     std::vector<std::string> sources_;
@@ -347,7 +345,12 @@ StoreyedDocument readBuilding(std::string_view bytes, const std::string& operand
         head = readYamlHead(text, operand);
         head.records = readBuildingYaml(text, operand, options, work, rooms);
     }
-    RoomFiles files(operand, options, work);
+    MeshFiles meshes;
+    ImportOptions of_rooms = options;
+    of_rooms.storey.clear();
+    of_rooms.max_work.whole = &work;
+    of_rooms.meshes = &meshes;
+    RoomFiles files(operand, of_rooms, work);
     readRooms(head.records, files, rooms);
     std::map<const Document*, std::shared_ptr<const Document>> loaded;
     std::vector<StoreyInput> storeys;
@@ -364,7 +367,7 @@ StoreyedDocument readBuilding(std::string_view bytes, const std::string& operand
             if (is_new) {
                 auto copy = std::make_shared<Document>(*rooms[i]);
                 if (compiled) attachGlbMeshes(bytes, operand, copy->records);
-                if (options.load_files) loadFiles(*copy, operand);
+                if (options.load_files) loadFiles(*copy, operand, of_rooms);
                 sources.insert(sources.end(), copy->sources.begin(), copy->sources.end());
                 room->second = std::move(copy);
             }

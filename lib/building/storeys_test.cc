@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <string>
@@ -244,6 +245,79 @@ TEST(Building, PaysForFilesThatConfinedProgramsRead) {
                          "units of work (`--max-work 3000` allows more)"))
         << error;
     EXPECT_FALSE(contains(error, "c.ifc")) << error;
+}
+
+/// A mesh of one triangle on so many nodes: each repetition takes a unit of work.
+std::string repeatedTriangle(int nodes) {
+    std::string all, list;
+    for (int i = 0; i < nodes; ++i) {
+        all += std::string(i > 0 ? "," : "") + "{\"mesh\":0}";
+        list += (i > 0 ? "," : "") + std::to_string(i);
+    }
+    return "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[" + list +
+           "]}],\"nodes\":[" + all +
+           "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+           "\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
+           "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],"
+           "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+           "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],"
+           "\"max\":[1,1,0]}]}";
+}
+
+TEST(Building, PaysForTheMeshesOfItsRoomsOnce) {
+    const RoomFolder folder;
+    const auto house = [&](const std::vector<std::string>& meshes) {
+        std::string storeys = "#env 1\n";
+        for (std::size_t i = 0; i < meshes.size(); ++i) {
+            const std::string file = "r" + std::to_string(i) + ".env";
+            folder.write(file, "#env 1\nispace size=8,6\nmesh file=" + meshes[i] + "\n");
+            storeys += "storey file=" + file + " z=" + std::to_string(3 * i) + '\n';
+        }
+        return storeys;
+    };
+    for (const char* name : {"a.gltf", "b.gltf", "c.gltf"})
+        folder.write(name, repeatedTriangle(301));
+    const std::string name = folder.write("house.env", "");
+    ImportOptions options;
+    options.max_work.max = 500;
+    EXPECT_EQ(readBuilding(house({"a.gltf", "a.gltf", "a.gltf"}), name, options).storeys.size(),
+              3U);
+    const std::string storeys = house({"a.gltf", "b.gltf", "c.gltf"});
+    const std::string error = errorOf([&] { readBuilding(storeys, name, options); });
+    EXPECT_TRUE(contains(error, "r1.env:3:11: error: mesh file")) << error;
+    EXPECT_TRUE(contains(error,
+                         "b.gltf`: nodes that repeat meshes make more than 500 units of work "
+                         "(`--max-work 1000` allows more)"))
+        << error;
+    EXPECT_FALSE(contains(error, "r2.env")) << error;
+    options.max_work.max = 900;
+    EXPECT_EQ(readBuilding(storeys, name, options).storeys.size(), 3U);
+}
+
+TEST(Building, PaysForThePicturesOfItsMaps) {
+    const RoomFolder folder;
+    constexpr int kSide = 64;
+    std::string picture = "P5 64 64 255\n", storeys = "#env 1\n";
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x)
+            picture += std::min({x, y, kSide - 1 - x, kSide - 1 - y}) < 2 ? '\0' : '\xfe';
+    folder.write("map.pgm", picture);
+    for (const char* id : {"a", "b", "c"}) {
+        folder.write(std::string(id) + ".yaml",
+                     "image: map.pgm\nresolution: 0.1\norigin: [0, 0, 0]\n"
+                     "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+        storeys += std::string("storey id=") + id + " file=" + id + ".yaml\n";
+    }
+    const std::string name = folder.write("house.env", "");
+    ImportOptions options;
+    options.max_work.max = 200;  // a map takes 128
+    const std::string error = errorOf([&] { readBuilding(storeys, name, options); });
+    EXPECT_TRUE(contains(error,
+                         "map.pgm: error: 64 x 64 cells, and the maps of the building make more "
+                         "than 200 units of work (`--max-work 400` allows more)"))
+        << error;
+    options.max_work.max = 400;
+    EXPECT_EQ(readBuilding(storeys, name, options).storeys.size(), 3U);
 }
 
 TEST(Building, LevelsOfASitePayForAliases) {

@@ -175,7 +175,7 @@ class OperandReader {
         // A compiled room is read in parts.
         if (operand != "-")
             if (auto room = readGlbFile(operand, sceneSchemas())) {
-                loadFiles(*room, operand);
+                loadFiles(*room, operand, defaultImport(request_.rules, &report_));
                 return *std::move(room);
             }
         return readStorey(operand, operand == "-" ? readStdin() : readAll(operand), request_.rules,

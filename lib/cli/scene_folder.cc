@@ -155,7 +155,9 @@ void SceneFolder::loadFilesOf(Record& record) const {
     }
     Document document;
     document.records.push_back(std::move(record));
-    names.guarded([&] { loadFiles(document, "-"); });
+    ImportOptions options;
+    options.max_work.max = rules_.max_work;
+    names.guarded([&] { loadFiles(document, "-", options); });
     record = std::move(document.records.front());
 }
 

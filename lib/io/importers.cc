@@ -306,7 +306,7 @@ Document parseDocument(std::string_view bytes, const std::string& operand,
         !building->take(bytes.size() / kConfinedBytesPerUnit))
         failFile(operand, "the files of the building take " + building->excess());
     Document document = format->read(source);
-    if (options.load_files) loadFiles(document, operand);
+    if (options.load_files) loadFiles(document, operand, options);
     return document;
 }
 
@@ -314,15 +314,15 @@ void ImportReport::addChoice(const std::string& operand, const std::string& sent
     choices.push_back({operand, 0, 0, sentence, Severity::Note});
 }
 
-void loadFiles(Document& document, const std::string& operand) {
-    loadMeshes(document, operand);
+void loadFiles(Document& document, const std::string& operand, const ImportOptions& options) {
+    loadMeshes(document, operand, options);
     loadCalibrations(document, operand);
 }
 
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas) {
     if (auto document = operand == "-" ? std::nullopt : readGlbFile(operand, schemas)) {
-        if (options.load_files) loadFiles(*document, operand);
+        if (options.load_files) loadFiles(*document, operand, options);
         return std::move(*document);
     }
     return parseDocument(readAll(operand), operand, options, schemas);

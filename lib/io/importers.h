@@ -37,6 +37,8 @@ struct ImportReport {
     void addChoice(const std::string& operand, const std::string& sentence);
 };
 
+class MeshFiles;
+
 /// Options for importing plans, maps and meshes of other programs.
 struct ImportOptions {
     double wall_height = 2.5;   ///< metres, of walls in plans without heights
@@ -73,6 +75,7 @@ struct ImportOptions {
     FoundRooms* found = nullptr;     ///< receives the rooms of plans, kept or not; may be null
     ImportReport* report = nullptr;  ///< null: choices are notes, doubts are dropped
     bool load_files = true;          ///< false: the files that records name are not read
+    MeshFiles* meshes = nullptr;     ///< those that other rooms have read; may be null
 };
 
 /// Reads any environment or layout, recognised by content: GLB, `#env`, `#3dm`, YAML, ROS map YAML,
@@ -94,7 +97,7 @@ Document parseDocument(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, const Schemas& schemas);
 
 /// Reads the files that records name and have not loaded yet: loadMeshes() and loadCalibrations().
-void loadFiles(Document& document, const std::string& operand);
+void loadFiles(Document& document, const std::string& operand, const ImportOptions& options);
 
 /// Rejects a file as a whole, or because of one line of it. \throws FormatError
 [[noreturn]] void failFile(const std::string& name, const std::string& message, int line = 0);

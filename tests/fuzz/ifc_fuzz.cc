@@ -8,12 +8,13 @@
 #include "scene/placement_schemas.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
+    Budget work(bytes.size());
     Building building;
     try {
-        building = unpackedBuilding(packedBuilding(readBuilding(bytes, std::nullopt)));
+        building = unpackedBuilding(packedBuilding(readBuilding(bytes, std::nullopt, work)));
     } catch (const std::runtime_error&) {
         return;  // an answer of the reader's process
     }
     ImportRecords out(sceneSchemas(), "x.ifc", {});
-    writeStorey(building, chosenStorey(building, {}), {}, out);
+    writeStorey(building, chosenStorey(building, {}), {}, work, out);
 }

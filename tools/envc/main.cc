@@ -75,7 +75,7 @@ Document readModel(const EnvcOptions& options, const std::vector<RawInput>& raw,
         throw UsageError("--storey is about buildings, and no input is one");
     warn(options.common, "envc", other_rooms);
     document.records = edited(std::move(document.records), options.edits, sceneSchemas());
-    if (request.compiles) loadFiles(document, "");
+    if (request.compiles) loadFiles(document, "", request.import);
     if (options.format == nullptr || !options.format->takes_zones) addZones(options, document);
     document.history.push_back(options.history_line);
     warn(options.common, "envc", report.choices);

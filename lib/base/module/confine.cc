@@ -133,6 +133,13 @@ void send(const char* bytes, std::size_t size) {
 
 std::size_t number(const char* text) { return std::strtoull(text, nullptr, 10); }
 
+void tellWork(const Budget& work) {
+    const std::uint64_t spent = work.limit() - work.left();
+    std::array<char, sizeof spent> bytes{};
+    std::memcpy(bytes.data(), &spent, sizeof spent);
+    tell(ConfinedAnswer::Work, {bytes.data(), bytes.size()});
+}
+
 }  // namespace
 
 void tell(ConfinedAnswer kind, std::string_view bytes) {
@@ -177,22 +184,29 @@ MappedInput::~MappedInput() {
 }
 
 int runConfined(int argc, char** argv, const ConfinedLimits& most,
-                const std::function<std::string(std::size_t size)>& answer) {
-    constexpr int kWords = 4;
+                const std::function<std::string(std::size_t size, Budget& work)>& answer) {
+    constexpr int kWords = 5;
     if (argc <= kWords) return 2;
     const char* const* const words = argv + argc - kWords;
     std::set_new_handler(outOfMemory);
     confine({number(words[2]), number(words[3])}, most, std::atoi(words[0]));
     HandedOver file{STDIN_FILENO, number(words[1])};
+    Budget work(0, {number(words[4])});
     try {
         while (file.fd == STDIN_FILENO) {
-            tell(ConfinedAnswer::Result, answer(file.size));
+            work = Budget(0, {number(words[4])});
+            const std::string result = answer(file.size, work);
+            tellWork(work);
+            tell(ConfinedAnswer::Result, result);
             ::close(STDIN_FILENO);  // frees the number for the next file
             file = receiveFile();
         }
     } catch (const std::bad_alloc&) {
         outOfMemory();
+    } catch (const TooMuchWork& error) {
+        tell(ConfinedAnswer::TooMuchWork, error.what());
     } catch (const std::exception& error) {
+        tellWork(work);
         tell(ConfinedAnswer::Error, error.what());
     }
     ::_exit(0);  // without destructors, which would only take time

@@ -4,15 +4,23 @@
 
 #include <cstddef>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "base/budget.h"
 #include "base/confined.h"
 
 namespace ispace {
 
+/// Reports work beyond the budget, by its cause: "nodes that repeat meshes".
+class TooMuchWork : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
 /// main() of a confined program, whose last arguments are its parent's process number, the size of
-/// the file on standard input, and its limits: memory and seconds.
+/// the file on standard input, and its limits: memory, seconds and units of work.
 ///
 /// First restricts this process to the system calls that a reader requires: no memory or time
 /// beyond the limits, no files but open ones, no programs, network or core dumps; it ends with its
@@ -20,10 +28,10 @@ namespace ispace {
 /// require more system calls, only time is limited. Then computes one answer for each file that the
 /// parent hands over, until the first error.
 /// \param most bound up to which the parent may raise the limits; if lower, the limits stay
-/// \param answer computes the result of a file of this size; its exceptions are the errors of the
-/// file
+/// \param answer computes the result of a file of this size, and takes its work; its exceptions are
+/// the errors of the file
 int runConfined(int argc, char** argv, const ConfinedLimits& most,
-                const std::function<std::string(std::size_t size)>& answer);
+                const std::function<std::string(std::size_t size, Budget& work)>& answer);
 
 /// A file that the parent hands over.
 struct HandedOver {

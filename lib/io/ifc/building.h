@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/budget.h"
 #include "geom/polygon.h"
 
 namespace ispace {
@@ -96,8 +97,9 @@ std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey);
 
 /// Reads a building of IFC2x3, IFC4 or IFC4.3.
 /// \param slice a height at which the highest storey below is cut, instead of 1 m above its floor
+/// \param work pays for mapped shapes
 /// \throws std::runtime_error for a file without products, and for too large ones
-Building readBuilding(std::string_view bytes, std::optional<double> slice);
+Building readBuilding(std::string_view bytes, std::optional<double> slice, Budget& work);
 
 std::string packedBuilding(const Building& building);
 /// Reads a packed building and validates it: on return numbers are finite and indices valid.
@@ -107,6 +109,6 @@ Building unpackedBuilding(std::string_view bytes);
 /// Runs readBuilding() in lib/ispace/read-mesh, confined as meshes are: bounds on memory and time,
 /// no files, no rights. \param name of the file, for messages \throws FormatError
 Building readBuildingInChild(std::string_view bytes, const std::string& name,
-                             std::optional<double> slice);
+                             std::optional<double> slice, Budget& work);
 
 }  // namespace ispace

@@ -53,8 +53,8 @@ constexpr std::array<std::string_view, 20> kThings{"IFCFURNISHINGELEMENT",
 /// Makes the plan of each storey.
 class BuildingReader {
   public:
-    BuildingReader(const StepFile& file, std::optional<double> slice)
-        : file_(file), frames_(file), tree_(file), shapes_(frames_), slice_(slice) {}
+    BuildingReader(const StepFile& file, std::optional<double> slice, Budget& work)
+        : file_(file), frames_(file), tree_(file), shapes_(frames_, work), slice_(slice) {}
 
     Building read() {
         makeStoreys();
@@ -330,12 +330,12 @@ class BuildingReader {
 
 }  // namespace
 
-Building readBuilding(std::string_view bytes, std::optional<double> slice) {
+Building readBuilding(std::string_view bytes, std::optional<double> slice, Budget& work) {
     const StepFile file(bytes);
     if (file.ofType("IFCPROJECT").empty() && file.ofType("IFCBUILDING").empty() &&
         file.ofType("IFCBUILDINGSTOREY").empty())
         throw std::runtime_error("an IFC file without a project, building or storey");
-    return BuildingReader(file, slice).read();
+    return BuildingReader(file, slice, work).read();
 }
 
 }  // namespace ispace

@@ -15,11 +15,14 @@
 #include "io/ifc/storey_plan.h"
 #include "support/test_damage.h"
 #include "support/test_ifc.h"
+#include "support/test_work.h"
 
 namespace ispace {
 namespace {
 
-Building cabin(const std::string& name) { return readBuilding(ifcBytes(name), std::nullopt); }
+Building cabin(const std::string& name) {
+    return readBuilding(ifcBytes(name), std::nullopt, ampleWork());
+}
 
 class Cabins : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Schemas, Cabins,
@@ -50,7 +53,7 @@ TEST_P(Cabins, AreReadByTheirMeaning) {
 
 TEST_P(Cabins, HaveRoomsBetweenTheirWalls) {
     const Building building = cabin(GetParam());
-    const StoreyWalls walls = wallsOf(building, 1);
+    const StoreyWalls walls = wallsOf(building, 1, ampleWork());
     ASSERT_EQ(walls.solids.size(), 1U);
     ASSERT_EQ(walls.solids[0].outline.size(), 4U);
     ASSERT_EQ(walls.solids[0].holes.size(), 2U);
@@ -59,7 +62,7 @@ TEST_P(Cabins, HaveRoomsBetweenTheirWalls) {
     EXPECT_NEAR(walls.top - building.storeys[1].elevation, 2.8, 1e-6);
     ASSERT_EQ(walls.columns.size(), 1U);
     EXPECT_TRUE(walls.columns[0].is_round);
-    const WallFaces faces(walls);
+    const WallFaces faces(walls, ampleWork());
     ASSERT_EQ(building.openings.size(), 4U);
     for (const BuildingOpening& opening : building.openings) {
         EXPECT_TRUE(opening.has_hole);
@@ -79,7 +82,7 @@ TEST(WallFaces, GapsAndWallsWithoutHoles) {
     StoreyWalls walls;
     walls.solids = {{{{0, 0}, {2, 0}, {2, 0.2}, {0, 0.2}}, {}},
                     {{{3, 0}, {6, 0}, {6, 0.2}, {3, 0.2}}, {}}};
-    const WallFaces faces(walls);
+    const WallFaces faces(walls, ampleWork());
     const auto box = [](double x, double y, Vec2 along) {
         BuildingBox box;
         box.center = {x, y};
@@ -126,12 +129,12 @@ TEST(Building, BrokenPartsAreCounted) {
 // A wall whose placement is missing does not stand in the origin.
 TEST(Building, MissingPlacementsAndShapesAreCounted) {
     const std::string whole = ifcBytes("broken-4-m.ifc");
-    const std::size_t walls = readBuilding(whole, std::nullopt).walls.size();
+    const std::size_t walls = readBuilding(whole, std::nullopt, ampleWork()).walls.size();
     const std::string south = "'south',$,$,#34,#43";
     const auto unread_with = [&](const std::string& references, const char* what) {
         std::string bytes = whole;
         bytes.replace(bytes.find(south), south.size(), "'south',$,$," + references);
-        const Building building = readBuilding(bytes, std::nullopt);
+        const Building building = readBuilding(bytes, std::nullopt, ampleWork());
         EXPECT_LT(building.walls.size(), walls) << references;
         const auto found = building.unread.find(what);
         return found == building.unread.end() ? 0 : found->second;
@@ -145,11 +148,11 @@ TEST(Building, WithoutStoreysItsDoorsStandOnTheFloor) {
     std::string bytes = ifcBytes("cabin-2x3-mm.ifc");
     for (std::size_t at = 0; (at = bytes.find("IFCBUILDINGSTOREY", at)) != std::string::npos;)
         bytes.replace(at, 17, "IFCZONEOFANYKINDX");
-    const Building building = readBuilding(bytes, std::nullopt);
+    const Building building = readBuilding(bytes, std::nullopt, ampleWork());
     ASSERT_EQ(building.storeys.size(), 1U);
     EXPECT_NEAR(building.storeys[0].elevation, 0, 1e-9);
-    EXPECT_EQ(wallsOf(building, 0).solids.size(), 1U);
-    EXPECT_THROW(readBuilding("ISO-10303-21;", std::nullopt), std::runtime_error);
+    EXPECT_EQ(wallsOf(building, 0, ampleWork()).solids.size(), 1U);
+    EXPECT_THROW(readBuilding("ISO-10303-21;", std::nullopt, ampleWork()), std::runtime_error);
 }
 
 TEST(Building, WallsOfTheSiteDoNotLowerAStorey) {
@@ -163,14 +166,14 @@ TEST(Building, WallsOfTheSiteDoNotLowerAStorey) {
     fence.box.length = 1000;
     fence.box.top = building.storeys[1].elevation + 1.2;
     building.walls.push_back(fence);
-    EXPECT_NEAR(wallsOf(building, 1).top - building.storeys[1].elevation, 2.8, 1e-6);
+    EXPECT_NEAR(wallsOf(building, 1, ampleWork()).top - building.storeys[1].elevation, 2.8, 1e-6);
     // A file that says of no wall where it belongs.
     std::erase_if(building.walls, [](const BuildingWall& w) { return w.is_inside; });
-    EXPECT_NEAR(wallsOf(building, 1).top - building.storeys[1].elevation, 1.2, 1e-6);
+    EXPECT_NEAR(wallsOf(building, 1, ampleWork()).top - building.storeys[1].elevation, 1.2, 1e-6);
 }
 
 TEST(Building, SliceTakesTheStoreyBelow) {
-    const Building building = readBuilding(ifcBytes("cabin-2x3-mm.ifc"), 0.2);
+    const Building building = readBuilding(ifcBytes("cabin-2x3-mm.ifc"), 0.2, ampleWork());
     EXPECT_EQ(building.storeys[1].cut, 0.2);
     EXPECT_EQ(building.storeys[2].cut, 4);
 }
@@ -181,7 +184,8 @@ TEST(Building, DamageIsSurvived) {
             ifcBytes(name).substr(0, 4000),
             [](const std::string& bytes) {
                 try {
-                    (void)unpackedBuilding(packedBuilding(readBuilding(bytes, std::nullopt)));
+                    (void)unpackedBuilding(
+                        packedBuilding(readBuilding(bytes, std::nullopt, ampleWork())));
                 } catch (const std::runtime_error&) {
                 }
             },
@@ -197,16 +201,17 @@ TEST(Building, DamageIsSurvived) {
             bytes[at] = "#0123456789.()$,'E-"[random() % 19];
         }
         try {
-            const Building building = readBuilding(bytes, std::nullopt);
+            const Building building = readBuilding(bytes, std::nullopt, ampleWork());
             (void)unpackedBuilding(packedBuilding(building));
-            for (std::size_t i = 0; i < building.storeys.size(); ++i) (void)wallsOf(building, i);
+            for (std::size_t i = 0; i < building.storeys.size(); ++i)
+                (void)wallsOf(building, i, ampleWork());
         } catch (const std::runtime_error&) {
         }
     }
 }
 
 TEST(IfcMesh, HasProductsWithoutSpacesAndHoles) {
-    const TriangleMesh mesh = ifcMesh(ifcBytes("cabin-2x3-mm.ifc"));
+    const TriangleMesh mesh = ifcMesh(ifcBytes("cabin-2x3-mm.ifc"), ampleWork());
     std::array<float, 3> low = mesh.vertices.at(0), high = low;
     for (const auto& vertex : mesh.vertices)
         for (std::size_t i = 0; i < 3; ++i) {
@@ -218,7 +223,7 @@ TEST(IfcMesh, HasProductsWithoutSpacesAndHoles) {
     // Of 12 triangles each 7 walls and a table, and a post.
     EXPECT_GT(mesh.triangles.size(), 8U * 12);
     EXPECT_LT(mesh.triangles.size(), 8U * 12 + 300);
-    EXPECT_TRUE(ifcMesh("ISO-10303-21;").triangles.empty());
+    EXPECT_TRUE(ifcMesh("ISO-10303-21;", ampleWork()).triangles.empty());
 }
 
 TEST(Building, PackedIsNotTrusted) {

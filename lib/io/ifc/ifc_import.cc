@@ -183,7 +183,8 @@ std::optional<Vec2> movedHome(Building& building) {
 
 /// Lists the rooms of the storeys that are not imported.
 void listRooms(const Building& building, std::size_t first, std::size_t end,
-               const std::string& operand, ImportOptions options, const Schemas& schemas) {
+               const std::string& operand, ImportOptions options, Budget& work,
+               const Schemas& schemas) {
     if (options.found == nullptr || !options.found->all_storeys) return;
     std::vector<FoundRoom>& listed = options.found->rooms;
     for (std::size_t storey = first; storey < end; ++storey) {
@@ -194,7 +195,7 @@ void listRooms(const Building& building, std::size_t first, std::size_t end,
         ImportRecords out(schemas, operand, options);
         out.setStorey(storeyWord(building, storey));
         try {
-            writeStorey(building, storey, options, out);
+            writeStorey(building, storey, options, work, out);
         } catch (const FormatError&) {
             continue;  // neither walls nor spaces: it has no rooms
         }
@@ -219,10 +220,10 @@ bool isIfc(std::string_view bytes) {
 namespace {
 
 Building wholeBuilding(std::string_view bytes, const std::string& operand,
-                       const ImportOptions& options) {
+                       const ImportOptions& options, Budget& work) {
     if (bytes.find("END-ISO-10303-21") == std::string_view::npos)
         failFile(operand, "truncated: the building ends without `END-ISO-10303-21;`");
-    return readBuildingInChild(bytes, operand, options.slice_walls);
+    return readBuildingInChild(bytes, operand, options.slice_walls, work);
 }
 
 /// Returns the boxes of all things of these types.
@@ -239,7 +240,8 @@ std::vector<BuildingBox> boxesOf(const Building& building,
 
 IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
                           const ImportOptions& options, const Schemas& schemas) {
-    Building building = wholeBuilding(bytes, operand, options);
+    Budget work(bytes.size(), options.max_work);
+    Building building = wholeBuilding(bytes, operand, options, work);
     IfcStoreys all;
     const auto warn = [&](const std::string& sentence) {
         all.warnings.push_back({displayName(operand), 0, 0, sentence, Severity::Warning});
@@ -262,7 +264,7 @@ IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
         }
         ImportRecords out(schemas, operand, options);
         out.setStorey(storeyWord(building, i));
-        withFileName(operand, [&] { writeStorey(building, i, options, out); });
+        withFileName(operand, [&] { writeStorey(building, i, options, work, out); });
         all.storeys.push_back({storey.name, storey.elevation, out.take()});
     }
     if (all.storeys.empty()) failFile(operand, "no storey has walls or spaces");
@@ -273,7 +275,8 @@ IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
 
 Document readIfc(std::string_view bytes, const std::string& operand, const ImportOptions& options,
                  const Schemas& schemas) {
-    Building building = wholeBuilding(bytes, operand, options);
+    Budget work(bytes.size(), options.max_work);
+    Building building = wholeBuilding(bytes, operand, options, work);
     ImportRecords out(schemas, operand, options);
     withFileName(operand, [&] {
         const auto moved = movedHome(building);
@@ -282,10 +285,10 @@ Document readIfc(std::string_view bytes, const std::string& operand, const Impor
         if (options.report != nullptr) options.report->has_storeys = true;
         if (moved) out.tell(surveyText(*moved, "building"));
         if (!building.unread.empty()) out.warn(unreadText(building));
-        listRooms(building, 0, storey, operand, options, schemas);
+        listRooms(building, 0, storey, operand, options, work, schemas);
         out.setStorey(storeyWord(building, storey));
-        writeStorey(building, storey, options, out);
-        listRooms(building, storey + 1, building.storeys.size(), operand, options, schemas);
+        writeStorey(building, storey, options, work, out);
+        listRooms(building, storey + 1, building.storeys.size(), operand, options, work, schemas);
     });
     return out.take();
 }

@@ -109,10 +109,10 @@ bool isBody(std::string_view type) {
 
 }  // namespace
 
-TriangleMesh ifcMesh(std::string_view bytes) {
+TriangleMesh ifcMesh(std::string_view bytes, Budget& work) {
     const StepFile file(bytes);
     IfcFrames frames(file);
-    IfcShapes shapes(frames);
+    IfcShapes shapes(frames, work);
     TriangleList triangles;
     const auto add_product = [&](StepId id) {
         const StepInstance product = file.read(id);

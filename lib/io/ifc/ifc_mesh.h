@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "base/budget.h"
 #include "record/record.h"
 
 namespace ispace {
@@ -10,7 +11,7 @@ namespace ispace {
 /// Reads the surfaces of all products of an IFC file but its spaces and holes, in metres in the
 /// building's coordinates: for `mesh` records. Half-spaces and holes are not subtracted;
 /// unsupported geometry is skipped.
-/// \throws std::runtime_error for more than kMaxMeshTriangles
-TriangleMesh ifcMesh(std::string_view bytes);
+/// \throws std::runtime_error for more than kMaxMeshTriangles, and as IfcShapes
+TriangleMesh ifcMesh(std::string_view bytes, Budget& work);
 
 }  // namespace ispace

@@ -61,9 +61,8 @@ IfcFaces prismOver(const Polygon& boundary, const IfcFrame& position) {
 
 void IfcShapes::append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame) {
     const std::size_t corners = cornersOf(part);
-    if (!budget_.take(part.size() + corners / kCornersPerUnit))
-        throw std::runtime_error("mapped shapes make more than " + std::to_string(budget_.limit()) +
-                                 " units of work");
+    if (!work_.take(part.size() + corners / kCornersPerUnit))
+        throw std::runtime_error("mapped shapes make " + work_.excess());
     if (corners + cornersOf(shape) > kMaxCorners)
         throw std::runtime_error("a shape of more than 20 million corners");
     for (const IfcSolid& solid : part) {

@@ -48,13 +48,14 @@ using IfcShape = std::vector<IfcSolid>;
 /// cylinders, clipped and mapped. Edges of advanced Breps are straight or arcs.
 class IfcShapes {
   public:
-    explicit IfcShapes(const IfcFrames& frames) : frames_(frames), budget_(frames.file().bytes()) {}
+    /// \param work pays for mapped shapes; outlives this object
+    IfcShapes(const IfcFrames& frames, Budget& work) : frames_(frames), work_(work) {}
 
     /// Reads the body of a product in its own frame: from its IfcProductDefinitionShape the
     /// representation `Body`, else another one with solids; if there is none, its footprint, 2.5 m
     /// high, or its box. Counts unsupported parts.
     /// \throws std::runtime_error for more than kMaxCorners, and if mapped shapes require more work
-    /// than Budget allows for a file of this size
+    /// than is left
     IfcShape shapeOf(StepId definition);
     /// Returns the numbers of unsupported parts, by type.
     [[nodiscard]] const std::map<std::string, std::size_t>& unread() const { return unread_; }
@@ -71,7 +72,7 @@ class IfcShapes {
     void append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame);
 
     const IfcFrames& frames_;
-    Budget budget_;
+    Budget& work_;
     std::map<std::string, std::size_t> unread_;
     std::unordered_map<StepId, std::shared_ptr<const IfcShape>> mapped_;
     std::size_t kept_ = 0;  // corners in mapped_

@@ -9,6 +9,7 @@
 #include "io/ifc/ifc_sections.h"
 #include "io/ifc/storey_plan.h"
 #include "support/test_ifc.h"
+#include "support/test_work.h"
 
 namespace ispace {
 namespace {
@@ -24,7 +25,7 @@ struct ShapeOf {
                         data)),
           file(bytes),
           frames(file),
-          shapes(frames),
+          shapes(frames, ampleWork()),
           shape(shapes.shapeOf(90)) {}
 
     /// Area of the cut at a height.

@@ -74,7 +74,6 @@ class StepFile {
         return by_type_;
     }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
-    [[nodiscard]] std::size_t bytes() const { return bytes_.size(); }
 
     /// Bounds the work on any file: far more than a building of 1 GB requires.
     static constexpr std::size_t kMaxReads = 2'000'000'000;

@@ -28,13 +28,14 @@ constexpr double kAreaDiffers = 0.1;  // share
 class StoreyImport {
   public:
     StoreyImport(const Building& building, std::size_t storey, const ImportOptions& options,
-                 ImportRecords& out)
+                 Budget& work, ImportRecords& out)
         : building_(building),
           storey_(storey),
           options_(options),
+          work_(work),
           out_(out),
           floor_(building.storeys[storey].elevation),
-          walls_(wallsOf(building, storey)) {
+          walls_(wallsOf(building, storey, work)) {
         ceiling_ = std::numeric_limits<double>::infinity();
         for (const BuildingStorey& other : building.storeys)
             if (other.elevation >= floor_ + kStoreyHeight)
@@ -77,7 +78,7 @@ class StoreyImport {
 
     /// Adds the outlines of spaces that no walls enclose as walls, e.g. under a roof.
     void encloseSpaces(std::vector<Segment2>& all, std::span<const Segment2> doors) {
-        const PlanFaces faces(all, doors);
+        const PlanFaces faces(all, work_, doors);
         std::size_t open = 0;
         for (const Room& room : spaces_) {
             if (faces.groupAt(interiorPoint(room.area.front())) != nullptr) continue;
@@ -107,13 +108,13 @@ class StoreyImport {
     void takeOpenings() {
         std::vector<BuildingBox> bent;  // holes in curved walls
         {
-            const WallFaces faces(walls_);
+            const WallFaces faces(walls_, work_);
             for (const BuildingOpening& opening : building_.openings)
                 if (opening.has_hole && isHere(opening) && !faces.find(opening.box, true))
                     bent.push_back(opening.box);
         }
         if (!bent.empty()) carve(walls_, bent);
-        const WallFaces faces(walls_);
+        const WallFaces faces(walls_, work_);
         for (std::size_t i = 0; i < building_.openings.size(); ++i) {
             const BuildingOpening& opening = building_.openings[i];
             if (!isHere(opening)) continue;
@@ -188,7 +189,7 @@ class StoreyImport {
             return std::none_of(walls_.solids.begin(), walls_.solids.end(),
                                 [p](const Region& r) { return r.locate(p) != Side::Outside; });
         };
-        rooms_ = chooseRooms(plan, chosen, out_);
+        rooms_ = chooseRooms(plan, chosen, work_, out_);
         if (rooms_.regions.empty())
             out_.warn(
                 "the walls of the storey enclose no room, and what is inside of them may count as "
@@ -329,6 +330,7 @@ class StoreyImport {
     const Building& building_;
     std::size_t storey_;
     const ImportOptions& options_;
+    Budget& work_;
     ImportRecords& out_;
     double floor_, ceiling_ = 0;  // of this storey: the floor above
     StoreyWalls walls_;
@@ -345,8 +347,8 @@ class StoreyImport {
 }  // namespace
 
 void writeStorey(const Building& building, std::size_t storey, const ImportOptions& options,
-                 ImportRecords& out) {
-    StoreyImport(building, storey, options, out).write();
+                 Budget& work, ImportRecords& out) {
+    StoreyImport(building, storey, options, work, out).write();
 }
 
 }  // namespace ispace

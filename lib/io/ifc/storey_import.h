@@ -10,8 +10,8 @@
 namespace ispace {
 
 /// Writes the records of a storey: walls, doors, windows, zones, furniture and inside points.
-/// \throws FormatError (without a file) if it has neither walls nor spaces
+/// \throws FormatError (without a file) if it has neither walls nor spaces, and as NearSegments
 void writeStorey(const Building& building, std::size_t storey, const ImportOptions& options,
-                 ImportRecords& out);
+                 Budget& work, ImportRecords& out);
 
 }  // namespace ispace

@@ -42,7 +42,8 @@ std::vector<Segment2> StoreyOpening::reveals() const {
     return reveals;
 }
 
-WallFaces::WallFaces(const StoreyWalls& walls) : walls_(walls), search_(linesOf(walls.solids)) {
+WallFaces::WallFaces(const StoreyWalls& walls, Budget& work)
+    : walls_(walls), search_(linesOf(walls.solids), work) {
     std::size_t curve = 0;
     const auto add = [&](const Polygon& polygon) {
         forEachEdge(polygon, [&](const Segment2& edge) { faces_.push_back({edge, curve}); });
@@ -234,10 +235,10 @@ void dropCopies(std::vector<WallCurves>& pieces) {
 }
 
 /// Moves corners onto corners of earlier pieces, else onto edges of others, within kMeet.
-void letMeet(std::vector<WallCurves>& pieces) {
+void letMeet(std::vector<WallCurves>& pieces, Budget& work) {
     std::vector<std::size_t> owners;
     const std::vector<Segment2> edges = edgesOf(pieces, owners);
-    const NearSegments search(edges);
+    const NearSegments search(edges, work);
     for (std::size_t i = 0; i < pieces.size(); ++i)
         for (Polygon& curve : pieces[i].curves)
             for (Point2& corner : curve) {
@@ -318,7 +319,7 @@ std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey) {
     return static_cast<std::uint64_t>(first - building.storeys.begin());
 }
 
-StoreyWalls wallsOf(const Building& building, std::size_t storey) {
+StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) {
     storey = storeyOfSections(building, storey);
     StoreyWalls walls;
     std::vector<WallCurves> pieces;
@@ -335,7 +336,7 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey) {
     }
     std::vector<std::size_t> owners;
     const std::vector<Segment2> edges = edgesOf(pieces, owners);
-    const NearSegments search(edges);
+    const NearSegments search(edges, work);
     for (const BuildingWall& wall : building.walls) {
         if (wall.storey != storey || !wall.is_column) continue;
         if (!touches(wall.box, edges, search))
@@ -346,7 +347,7 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey) {
     }
     walls.top = heightOfMost(std::move(tops.empty() ? other_tops : tops));
     dropCopies(pieces);
-    letMeet(pieces);
+    letMeet(pieces, work);
     std::vector<Layer> layers;
     layers.reserve(pieces.size());
     for (const WallCurves& piece : pieces) layers.push_back(layerOf(piece.curves));

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/budget.h"
 #include "geom/polygon.h"
 #include "io/ifc/building.h"
 #include "io/plan/plan_lines.h"
@@ -25,7 +26,8 @@ struct StoreyWalls {
 };
 
 /// Joins the walls of a storey: corners within 2 mm of another wall move onto it.
-StoreyWalls wallsOf(const Building& building, std::size_t storey);
+/// \throws FormatError (without a file) as NearSegments
+StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work);
 
 /// An opening in the walls.
 struct StoreyOpening {
@@ -44,7 +46,7 @@ void carve(StoreyWalls& walls, std::span<const BuildingBox> holes);
 class WallFaces {
   public:
     /// Numbers outlines and holes of the solids, in order, as curves 0, 1, 2 ...
-    explicit WallFaces(const StoreyWalls& walls);
+    WallFaces(const StoreyWalls& walls, Budget& work);
 
     /// Finds the position of a box in the walls: through their faces along one of its sides, else
     /// across a gap between ends of walls; a free-standing door or window is a wall itself. Returns

@@ -210,7 +210,8 @@ class AriaPlan {
     AriaPlan(AriaMap map, const std::string& name, const ImportOptions& options, ImportRecords& out)
         : map_(std::move(map)),
           name_(name),
-          paths_(normalisedLines(map_.lines, options.snap.value_or(kDefaultSnap))) {
+          budget_(kBytesPerLine * map_.lines.size(), options.max_work),
+          paths_(normalisedLines(map_.lines, options.snap.value_or(kDefaultSnap), budget_)) {
         std::vector<Segment2> lines = pathPieces(paths_);
         if (lines.empty())
             fail(map_.points.empty()
@@ -220,21 +221,20 @@ class AriaPlan {
         const double crossings = sampledCrossings(lines);
         if (crossTooOften(lines, crossings))
             fail("the lines cross each other too often to be walls");
-        Budget budget(kBytesPerLine * map_.lines.size(), options.max_work);
-        if (!payForCrossings(crossings, lines.size(), options.rooms, budget))
-            fail("crossings of the lines make " + budget.excess());
+        if (!payForCrossings(crossings, lines.size(), options.rooms, budget_))
+            fail("crossings of the lines make " + budget_.excess());
         if (options.simplify.value_or(0) > 0) {
-            paths_ = simplifiedPaths(joinedAtEnds(paths_), *options.simplify);
+            paths_ = simplifiedPaths(joinedAtEnds(paths_), *options.simplify, budget_);
             lines = pathPieces(paths_);
         }
-        rooms_ = chooseRooms({lines, {}, map_.home}, options, out);
+        rooms_ = chooseRooms({lines, {}, map_.home}, options, budget_, out);
         if (rooms_.regions.empty()) return;
         const std::vector<bool> keep = belongsTo(rooms_.regions, lines);
         dropped_ = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), false));
         paths_ = withPieces(paths_, keep);
     }
 
-    void write(ImportRecords& out, const ImportOptions& options) const {
+    void write(ImportRecords& out, const ImportOptions& options) {
         if (rooms_.reached.empty())
             for (const PlanPath& path : joinedAtEnds(paths_)) out.fence(path);
         if (options.points) writePoints(out);
@@ -257,9 +257,9 @@ class AriaPlan {
             });
     }
 
-    void writePoints(ImportRecords& out) const {
+    void writePoints(ImportRecords& out) {
         const std::vector<Segment2> lines = pathPieces(paths_);
-        const NearSegments search(lines);
+        const NearSegments search(lines, budget_);
         std::vector<Point2> free;
         std::size_t echoes = 0, outside = 0;
         for (const Point2 p : map_.points) {
@@ -313,6 +313,7 @@ class AriaPlan {
 
     AriaMap map_;
     const std::string& name_;
+    Budget budget_;
     std::vector<PlanPath> paths_;
     PlanRooms rooms_;
     std::size_t dropped_ = 0;

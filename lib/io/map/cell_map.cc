@@ -29,6 +29,9 @@ constexpr double kMaxExtent = 10000;
 /// Maximum number of cells in the bounding boxes of all rooms kept.
 constexpr double kMaxCellsOfRooms = 1e9;
 
+/// Cells that become a room in the time of one unit of Budget.
+constexpr std::uint64_t kCellsPerUnit = 32;
+
 /// Metres; a room outside these limits has probably a wrong resolution.
 constexpr double kSmallRoom = 2, kLargeRoom = 2000;
 
@@ -425,11 +428,15 @@ CellIndex CellMap::placeOf(Point2 point) const {
             static_cast<int>(std::clamp(std::floor(cells.y), -kFar, kFar))};
 }
 
-void checkCellMap(int width, int height, double resolution, const std::string& file) {
-    if (resolution * std::max(width, height) <= kMaxExtent) return;
-    failFile(file, std::to_string(width) + " x " + std::to_string(height) + " cells of " +
-                       formatDouble(resolution) + " m are more than " + formatDouble(kMaxExtent) +
-                       " m: is `resolution` in metres?");
+void checkCellMap(int width, int height, double resolution, const std::string& file,
+                  const WorkLimit& limit) {
+    const std::string cells = std::to_string(width) + " x " + std::to_string(height) + " cells";
+    if (resolution * std::max(width, height) > kMaxExtent)
+        failFile(file, cells + " of " + formatDouble(resolution) + " m are more than " +
+                           formatDouble(kMaxExtent) + " m: is `resolution` in metres?");
+    const auto count = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    if (limit.whole != nullptr && !limit.whole->take(count / kCellsPerUnit))
+        failFile(file, cells + ", and the maps of the building make " + limit.whole->excess());
 }
 
 void writeCellMap(const CellMap& map, const CellMapSource& source, const ImportOptions& options,

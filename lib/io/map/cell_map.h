@@ -35,8 +35,10 @@ struct CellMap {
     }
 };
 
-/// Rejects maps of more than 10 km. \throws FormatError
-void checkCellMap(int width, int height, double resolution, const std::string& file);
+/// Rejects maps of more than 10 km. Few bytes of a picture hold many cells, so the map's building
+/// pays for them. \throws FormatError
+void checkCellMap(int width, int height, double resolution, const std::string& file,
+                  const WorkLimit& limit = {});
 
 /// The source of a map, for messages.
 struct CellMapSource {

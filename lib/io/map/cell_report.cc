@@ -313,7 +313,7 @@ Document readBarePicture(std::string_view bytes, const std::string& name,
             "(metres a pixel), or name the map.yaml that goes with it");
     const auto read_cells = [&]() -> CellMap {
         const GreyPicture image = onUnknown(parsePicture(bytes, name));
-        checkCellMap(image.width, image.height, *options.resolution, name);
+        checkCellMap(image.width, image.height, *options.resolution, name, options.max_work);
         OccupancyRule rule;
         rule.unknown_is_free = options.unknown == "free";
         return {freeCells(image, rule), occupiedCells(image, rule), *options.resolution,
@@ -337,7 +337,7 @@ Document readGridMap(std::string_view bytes, const std::string& name, const Impo
     ImportRecords out(schemas, name, options);
     GridCells cells = GridMapReader(bytes, name).read(out);
     const double resolution = options.resolution.value_or(1);
-    checkCellMap(cells.free.width(), cells.free.height(), resolution, name);
+    checkCellMap(cells.free.width(), cells.free.height(), resolution, name, options.max_work);
     ImportOptions exact = options;  // the cells are a game map, not noisy measurements
     exact.simplify = options.simplify.value_or(0);
     writeCellMap({std::move(cells.free), std::move(cells.occupied), resolution, options.origin},

@@ -188,12 +188,15 @@ std::string readImage(const MapHeader& header, const std::string& path, const st
 }
 
 CellMap readCells(MapHeader header, const std::string& path, const std::string& name,
-                  bool unknown_is_free, ImportRecords& out) {
-    const GreyPicture image = parsePicture(readImage(header, path, name), path);
-    checkCellMap(image.width, image.height, header.resolution, path);
-    header.rule.unknown_is_free = unknown_is_free;
+                  const ImportOptions& options, ImportRecords& out) {
+    const std::string bytes = readImage(header, path, name);
+    if (Budget* building = options.max_work.whole; building != nullptr)
+        building->grant(bytes.size());
+    const GreyPicture image = parsePicture(bytes, path);
+    checkCellMap(image.width, image.height, header.resolution, path, options.max_work);
+    header.rule.unknown_is_free = options.unknown == "free";
     if (const std::size_t count = unknownCountedFree(image, header.rule);
-        count > 0 && !unknown_is_free)
+        count > 0 && !header.rule.unknown_is_free)
         out.warn(countText(count, "pixel") +
                  " of shade 205, which map_server writes for unknown, are unknown, though "
                  "`free_thresh` is " +
@@ -223,7 +226,7 @@ Document readRosMap(std::string_view yaml, const std::string& name, const Import
     const std::string path = sideFilePath(name, header.image);
     ImportRecords out(schemas, name, options);
     out.source(path);
-    const CellMap map = readCells(header, path, name, options.unknown == "free", out);
+    const CellMap map = readCells(header, path, name, options, out);
     writeCellMap(map, {path, "check `negate` and `free_thresh` of the map"}, options, out);
     return out.take();
 }

@@ -90,19 +90,6 @@ class Joiner {
 
 }  // namespace
 
-void closeLoops(Slice& slice) {
-    std::vector<PlanPath> lines;
-    for (const Segment2& sheet : slice.sheets) lines.push_back({{sheet.a, sheet.b}, false, 0});
-    slice.sheets.clear();
-    for (PlanPath& path : joinedAtEnds(withoutRepeats(snapped(lines, kStraight)))) {
-        if (path.closed && !selfCrossing(path.points)) {
-            slice.solids.push_back(std::move(path.points));
-            continue;
-        }
-        for (std::size_t i = 0; i < path.pieceCount(); ++i) slice.sheets.push_back(path.piece(i));
-    }
-}
-
 std::vector<PlanPath> cutPaths(Slice slice) {
     std::vector<PlanPath> paths;
     // Ends of triangles are not corners: the plan's opening finder would use them.
@@ -153,7 +140,7 @@ Document readMeshWalls(const std::string& operand, const ImportOptions& options,
     if (options.slice_top) failFile(operand, "a mesh is cut at one height: --slice-walls M");
     // The mesh in its default pose in a room.
     Document mesh = meshDocument(operand, options, schemas);
-    loadMeshes(mesh, operand);
+    loadMeshes(mesh, operand, options);
     const Body body = bodyOf(mesh.records.front());
     Slice slice{options.slice_walls.value_or(kDefaultCut), {}, {}};
     cutMeshes(body, slice.height, slice);

@@ -13,8 +13,4 @@ namespace ispace {
 /// furniture in a room modelled by its inner surface.
 std::vector<PlanPath> cutPaths(Slice slice);
 
-/// Joins sheets that meet within 1 mm, and converts closed ones to solids: where openings are cut
-/// out, faces of assimp's solids no longer share edges.
-void closeLoops(Slice& slice);
-
 }  // namespace ispace

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <system_error>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -29,8 +27,12 @@ namespace {
 /// Loads files, each once.
 class MeshLoader {
   public:
-    MeshLoader(Document& document, const std::string& operand)
-        : document_(document), operand_(operand) {}
+    MeshLoader(Document& document, const std::string& operand, const ImportOptions& options)
+        : document_(document),
+          operand_(operand),
+          files_(options.meshes != nullptr ? *options.meshes : own_files_),
+          limit_(options.max_work),
+          work_(0, limit_) {}
 
     void load() {
         for (Record& record : document_.records)
@@ -43,15 +45,17 @@ class MeshLoader {
         const std::string& file = record.text("file");
         const std::string path = sideFilePath(operand_, file);
         try {
-            MeshOptions options{record.text("up"), record.text("side_files") == "anywhere"};
-            std::shared_ptr<const TriangleMesh>& mesh =
-                loaded_[{path, options.up, options.side_files_anywhere}];
-            if (mesh == nullptr) {
+            if (std::find(document_.sources.begin(), document_.sources.end(), path) ==
+                document_.sources.end()) {
+                const std::size_t bytes = openRegular(path).size;
+                work_.grant(bytes);
+                if (limit_.whole != nullptr) limit_.whole->grant(bytes);
                 addSource(path);
-                std::vector<std::string> side_files;
-                mesh = loadMesh(path, options, &side_files);
-                for (const std::string& side : side_files) addSource(side);
             }
+            const auto& [mesh, side_files] = files_.load(
+                path,
+                {record.text("up"), record.text("side_files") == "anywhere", {limit_.max, &work_}});
+            for (const std::string& side : side_files) addSource(side);
             checkDigest(record, *mesh);
             record.setMesh(mesh);
         } catch (const std::system_error& error) {
@@ -84,15 +88,34 @@ class MeshLoader {
 
     Document& document_;
     const std::string& operand_;
-    std::map<std::tuple<std::string, std::string, bool>, std::shared_ptr<const TriangleMesh>>
-        loaded_;
+    MeshFiles own_files_;
+    MeshFiles& files_;
+    WorkLimit limit_;
+    Budget work_;  // of all files
     Diagnostics findings_;
 };
 
 }  // namespace
 
-void loadMeshes(Document& document, const std::string& operand) {
-    MeshLoader(document, operand).load();
+const MeshFiles::Loaded& MeshFiles::load(const std::string& path, const MeshOptions& options) {
+    std::error_code ignored;
+    const std::filesystem::path file(path);
+    const auto [known, is_new] =
+        files_.try_emplace({std::filesystem::weakly_canonical(file, ignored).string(),
+                            std::filesystem::weakly_canonical(file.parent_path(), ignored).string(),
+                            options.up, options.side_files_anywhere});
+    File& found = known->second;
+    if (is_new) try {
+            found.loaded.mesh = loadMesh(path, options, &found.loaded.side_files);
+        } catch (...) {
+            found.failure = std::current_exception();
+        }
+    if (found.failure) std::rethrow_exception(found.failure);
+    return found.loaded;
+}
+
+void loadMeshes(Document& document, const std::string& operand, const ImportOptions& options) {
+    MeshLoader(document, operand, options).load();
 }
 
 Document meshDocument(const std::string& operand, const ImportOptions& options,
@@ -124,6 +147,7 @@ std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const Mesh
         return file;
     };
     const auto limits = [](std::size_t bytes) { return meshLimits(bytes, false); };
+    Budget work(main.size, options.max_work);
     auto mesh = std::make_shared<TriangleMesh>(
         unpackedMesh(readConfined({.name = path,
                                    .program = "read-mesh",
@@ -132,6 +156,7 @@ std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const Mesh
                                    .bytes = main.size,
                                    .limits = limits,
                                    .open = open,
+                                   .work = &work,
                                    .kind = "mesh file",
                                    .reader = "assimp",
                                    .subject = "meshes are",
@@ -143,7 +168,7 @@ std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const Mesh
 }
 
 Building readBuildingInChild(std::string_view bytes, const std::string& name,
-                             std::optional<double> slice) {
+                             std::optional<double> slice, Budget& work) {
     const OpenFile copy = fileInMemory(bytes);
     const std::string answer = readConfined(
         {.name = name,
@@ -152,6 +177,7 @@ Building readBuildingInChild(std::string_view bytes, const std::string& name,
          .file = copy.fd(),
          .bytes = bytes.size(),
          .limits = [](std::size_t size) { return meshLimits(size, true); },
+         .work = &work,
          .kind = "IFC file",
          .reader = "its reader",
          .subject = "buildings are",

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <exception>
+#include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
+
+#include "base/budget.h"
 
 #include "io/importers.h"
 #include "io/mesh/mesh_parts.h"
@@ -19,6 +24,7 @@ struct MeshOptions {
     std::string up = "auto";
     /// Files that it names may lie anywhere, not only in its folder and below.
     bool side_files_anywhere = false;
+    WorkLimit max_work = {};  ///< of the file, see Budget
 };
 
 /// Reads the triangles of a file: OBJ, STL, PLY, COLLADA, glTF, GLB and IFC, by content, else by
@@ -35,12 +41,32 @@ struct MeshOptions {
 std::shared_ptr<const TriangleMesh> loadMesh(const std::string& path, const MeshOptions& options,
                                              std::vector<std::string>* side_files = nullptr);
 
+/// Meshes of files, each read once.
+class MeshFiles {
+  public:
+    struct Loaded {
+        std::shared_ptr<const TriangleMesh> mesh;
+        std::vector<std::string> side_files;  ///< as loadMesh() tells them
+    };
+    /// \throws as loadMesh(); for a file that failed before, the same error
+    const Loaded& load(const std::string& path, const MeshOptions& options);
+
+  private:
+    struct File {
+        Loaded loaded;
+        std::exception_ptr failure;
+    };
+    /// By path without links, its folder as named, and what the options say about its content.
+    std::map<std::tuple<std::string, std::string, std::string, bool>, File> files_;
+};
+
 /// Loads the file of each `mesh` record that has no content yet, each file once, and adds its path
 /// and those of the files it names to Document::sources. Paths are relative to the operand's folder
-/// (for "-" the current one).
+/// (for "-" the current one). The files share a budget of work, see ImportOptions::max_work, and
+/// those of ImportOptions::meshes are not read again.
 /// \throws FormatError with findings at the records: no such file, bad files, a content that
 /// differs from `digest`
-void loadMeshes(Document& document, const std::string& operand);
+void loadMeshes(Document& document, const std::string& operand, const ImportOptions& options);
 
 /// Returns a document of one `mesh` record that names the operand, not loaded; its id comes from
 /// the file's name. \throws FormatError for "-": records need a name, and other files may belong to

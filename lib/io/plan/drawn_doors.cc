@@ -36,8 +36,11 @@ struct Run {
 
 class DoorFinder {
   public:
-    explicit DoorFinder(std::vector<PlanPath> paths)
-        : paths_(std::move(paths)), pieces_(pathPieces(paths_)), is_door_(pieces_.size()) {
+    DoorFinder(std::vector<PlanPath> paths, Budget& work)
+        : paths_(std::move(paths)),
+          pieces_(pathPieces(paths_)),
+          is_door_(pieces_.size()),
+          work_(work) {
         std::size_t first = 0;
         for (const PlanPath& path : paths_) {
             findRuns(path, first);
@@ -120,7 +123,7 @@ class DoorFinder {
             lines.push_back(pieces_[i]);
             straight_.push_back(i);
         }
-        const NearSegments search(lines);
+        const NearSegments search(lines, work_);
         for (const Run& run : runs_) takeDoor(run, search);
     }
 
@@ -156,7 +159,7 @@ class DoorFinder {
 
     /// Returns true if another line than those of the door ends at the leaf's free end.
     [[nodiscard]] bool isAttached(const Leaf& leaf, const Run& run) {
-        if (!all_) all_.emplace(pieces_);
+        if (!all_) all_.emplace(pieces_, work_);
         const auto near = all_->near(leaf.end, kMeets);
         return std::any_of(near.begin(), near.end(), [&](std::size_t i) {
             if (i == leaf.piece || (i >= run.first && i < run.first + run.count)) return false;
@@ -199,7 +202,7 @@ class DoorFinder {
         if (std::none_of(paths_.begin(), paths_.end(),
                          [](const PlanPath& path) { return path.closed; }))
             return;
-        const NearSegments search(leaves_);
+        const NearSegments search(leaves_, work_);
         std::size_t first = 0;
         for (const PlanPath& path : paths_) {
             const std::size_t begin = std::exchange(first, first + path.pieceCount());
@@ -224,12 +227,13 @@ class DoorFinder {
     std::optional<NearSegments> all_;    // pieces, once needed
     std::vector<Segment2> leaves_;       // from hinge to end
     DrawnDoors doors_;
+    Budget& work_;
 };
 
 }  // namespace
 
-DrawnDoors takeDrawnDoors(std::vector<PlanPath> walls) {
-    return DoorFinder(std::move(walls)).find();
+DrawnDoors takeDrawnDoors(std::vector<PlanPath> walls, Budget& work) {
+    return DoorFinder(std::move(walls), work).find();
 }
 
 }  // namespace ispace

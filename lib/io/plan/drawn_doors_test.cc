@@ -6,6 +6,7 @@
 #include "io/plan/line_plan.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
+#include "support/test_work.h"
 
 namespace ispace {
 namespace {
@@ -22,13 +23,13 @@ Polygon arcOf(Point2 center, double radius, double from, double to, int pieces =
 /// Among these and a wall far away.
 std::size_t doorsIn(std::vector<PlanPath> walls) {
     walls.push_back({{{-30, 0}, {-20, 0}}, false, 9});
-    return takeDrawnDoors(walls).swings.size();
+    return takeDrawnDoors(walls, ampleWork()).swings.size();
 }
 
 TEST(DrawnDoors, ALeafAndItsSwing) {
     const PlanPath wall{{{-3, 0}, {0, 0}}, false, 1};
     const DrawnDoors found = takeDrawnDoors(
-        {wall, {{{0, 0}, {0, 0.9}}, false, 2}, {arcOf({0, 0}, 0.9, 0, 90), false, 3}});
+        {wall, {{{0, 0}, {0, 0.9}}, false, 2}, {arcOf({0, 0}, 0.9, 0, 90), false, 3}}, ampleWork());
     ASSERT_EQ(found.swings.size(), 1U);
     EXPECT_EQ(found.walls, std::vector{wall});
     const PlanChord& chord = found.swings[0].chords.at(0);
@@ -43,7 +44,8 @@ TEST(DrawnDoors, HoweverTheyAreDrawn) {
     // A thin leaf as an outline; in one path with the swing; as a sector.
     EXPECT_EQ(doorsIn({swing, {{{0, 0}, {0, 0.9}, {-0.05, 0.9}, {-0.05, 0}}, true, 2}}), 1U);
     const PlanPath wall{{{-3, 0}, {0, 0}}, false, 1};
-    EXPECT_EQ(takeDrawnDoors({swing, {{{0, 0}, {0, 0.9}, {-0.05, 0.9}, {-0.05, 0}}, true, 2}, wall})
+    EXPECT_EQ(takeDrawnDoors({swing, {{{0, 0}, {0, 0.9}, {-0.05, 0.9}, {-0.05, 0}}, true, 2}, wall},
+                             ampleWork())
                   .walls,
               std::vector{wall});
     Polygon one = swing.points;
@@ -68,7 +70,7 @@ TEST(DrawnDoors, HoweverTheyAreDrawn) {
 TEST(DrawnDoors, WhatIsNone) {
     const PlanPath swing{arcOf({0, 0}, 0.9, 0, 90), false, 1};
     EXPECT_EQ(doorsIn({swing}), 0U) << "no leaf";
-    EXPECT_TRUE(takeDrawnDoors({swing, {{{0, 0}, {0, 0.9}}, false, 2}}).swings.empty())
+    EXPECT_TRUE(takeDrawnDoors({swing, {{{0, 0}, {0, 0.9}}, false, 2}}, ampleWork()).swings.empty())
         << "a drawing of a door alone";
     EXPECT_EQ(doorsIn({swing, {{{0, 0}, {0, 3}}, false, 2}}), 0U) << "a wall";
     EXPECT_EQ(doorsIn({swing, {{{0.4, 0.1}, {0.4, 0.9}}, false, 2}}), 0U) << "from no hinge";
@@ -85,7 +87,8 @@ TEST(DrawnDoors, AWallBesideTheSwingStays) {
     // The threshold ends at other walls, the leaf nowhere.
     const PlanPath threshold{{{0, 0}, {0.9, 0}}, false, 2}, wall{{{0.9, 0}, {4, 0}}, false, 3};
     const DrawnDoors found = takeDrawnDoors(
-        {{arcOf({0, 0}, 0.9, 0, 90), false, 1}, threshold, wall, {{{0, 0}, {0, 0.9}}, false, 4}});
+        {{arcOf({0, 0}, 0.9, 0, 90), false, 1}, threshold, wall, {{{0, 0}, {0, 0.9}}, false, 4}},
+        ampleWork());
     EXPECT_EQ(found.walls, (std::vector{threshold, wall}));
 }
 

@@ -206,12 +206,13 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
 };
 
 /// The rings after snapping and simplifying; those without area are dropped.
-std::vector<Polygon> normalised(const std::vector<Polygon>& rings, const ImportOptions& options) {
+std::vector<Polygon> normalised(const std::vector<Polygon>& rings, const ImportOptions& options,
+                                Budget& work) {
     std::vector<PlanPath> paths;
     paths.reserve(rings.size());
     for (const Polygon& ring : rings) paths.push_back({ring, true, 0});
     std::vector<Polygon> result;
-    for (PlanPath& path : snapped(paths, options.snap.value_or(0)))
+    for (PlanPath& path : snapped(paths, options.snap.value_or(0), work))
         if (path.closed) result.push_back(std::move(path.points));
     if (options.simplify.value_or(0) > 0) result = simplified(result, *options.simplify);
     return result;
@@ -220,11 +221,13 @@ std::vector<Polygon> normalised(const std::vector<Polygon>& rings, const ImportO
 /// Finds the room: the largest face within the outline and outside the holes.
 class RoomFinder {
   public:
-    RoomFinder(const HousePlan& plan, const std::string& name, const ImportOptions& options)
+    RoomFinder(const HousePlan& plan, const std::string& name, const ImportOptions& options,
+               Budget& work)
         : name_(name),
-          outline_(normalised({plan.outline}, options)),
-          holes_(normalised(plan.holes, options)) {
-        if (outline_.empty() && !normalised({plan.outline}, {}).empty())
+          outline_(normalised({plan.outline}, options, work)),
+          holes_(normalised(plan.holes, options, work)),
+          work_(work) {
+        if (outline_.empty() && !normalised({plan.outline}, {}, work).empty())
             fail("`verts`: nothing is left of an outline of " +
                  countText(plan.outline.size(), "point") +
                  " after snapping and simplifying, wanted less of that (--snap, --simplify)");
@@ -240,7 +243,7 @@ class RoomFinder {
                 forEachEdge(ring, [&](const Segment2& edge) { plan.lines.push_back(edge); });
         if (crossTooOften(plan.lines)) fail("the outline crosses itself too often to be a plan");
         plan.is_floor = [this](Point2 p) { return isFloor(p); };
-        PlanRooms rooms = chooseRooms(plan, options, out);
+        PlanRooms rooms = chooseRooms(plan, options, work_, out);
         if (rooms.regions.empty()) fail("`verts` encloses nothing outside of the holes");
         return rooms;
     }
@@ -255,6 +258,7 @@ class RoomFinder {
 
     const std::string& name_;
     std::vector<Polygon> outline_, holes_;
+    Budget& work_;
 };
 
 void writeZones(const std::vector<Box>& boxes, ImportRecords& out) {
@@ -287,9 +291,10 @@ bool isJson(std::string_view bytes) {
 Document readHouseExpo(std::string_view json, const std::string& name, const ImportOptions& options,
                        const Schemas& schemas) {
     const HousePlan plan = HousePlanHandler(json, name).read();
-    const RoomFinder finder(plan, name, options);
+    Budget work(json.size(), options.max_work);
     ImportRecords out(schemas, name, options);
-    const PlanRooms rooms = withFileName(name, [&] { return finder.rooms(options, out); });
+    const PlanRooms rooms = withFileName(
+        name, [&] { return RoomFinder(plan, name, options, work).rooms(options, out); });
     if (rooms.reached.empty())
         for (const PlanRegion& region : rooms.regions)
             for (const Region& room : region.rooms) out.outline(room);

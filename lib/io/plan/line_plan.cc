@@ -63,22 +63,23 @@ class LinePlan {
         DrawnDoors drawn{{}, std::move(shapes.walls)};
         Budget budget(drawing != nullptr ? drawing->bytes : 0, options.max_work);
         payFor(pathPieces(drawn.walls), name, drawing != nullptr, budget);
-        if (drawing != nullptr) drawn = takeDrawnDoors(std::move(drawn.walls));
+        if (drawing != nullptr) drawn = takeDrawnDoors(std::move(drawn.walls), budget);
         drawn_doors_ = drawn.swings.size();
-        paths_ = normalisedLines(std::move(drawn.walls), options.snap.value_or(kDefaultSnap));
+        paths_ =
+            normalisedLines(std::move(drawn.walls), options.snap.value_or(kDefaultSnap), budget);
         pieces_ = pathPieces(paths_);
         check(name, options, drawing, budget);
         std::vector<PlanShape> doors = std::move(shapes.doors);
         doors.insert(doors.end(), std::make_move_iterator(drawn.swings.begin()),
                      std::make_move_iterator(drawn.swings.end()));
-        PlanOpenings found = findOpenings(doors, shapes.windows, pieces_);
+        PlanOpenings found = findOpenings(doors, shapes.windows, pieces_, budget);
         if (options.simplify.value_or(0) > 0) {
-            simplify(*options.simplify, found.openings);
-            found = findOpenings(doors, shapes.windows, pieces_);
+            simplify(*options.simplify, found.openings, budget);
+            found = findOpenings(doors, shapes.windows, pieces_, budget);
         }
         openings_ = std::move(found.openings);
         unused_symbols_ = found.unused;
-        keepRooms(options, drawing, out);
+        keepRooms(options, drawing, budget, out);
     }
 
     [[nodiscard]] double area() const { return rooms_.area(); }
@@ -149,16 +150,16 @@ class LinePlan {
     }
 
     /// Keeps pieces that openings lie on or touch.
-    void simplify(double tolerance, const std::vector<PlanOpening>& openings) {
+    void simplify(double tolerance, const std::vector<PlanOpening>& openings, Budget& budget) {
         paths_ = joinedAtEnds(std::move(paths_));
         pieces_ = pathPieces(paths_);
-        const NearSegments search(pieces_);
+        const NearSegments search(pieces_, budget);
         std::vector<std::size_t> fixed;
         for (const PlanOpening& opening : openings)
             for (const Point2 end : {opening.line.a, opening.line.b})
                 for (const std::size_t i : search.near(end, kOpeningReach))
                     if (distance(end, pieces_[i]) <= kOpeningReach) fixed.push_back(i);
-        paths_ = simplifiedPaths(paths_, tolerance, fixed);
+        paths_ = simplifiedPaths(paths_, tolerance, budget, fixed);
         pieces_ = pathPieces(paths_);
     }
 
@@ -170,7 +171,8 @@ class LinePlan {
         return all;
     }
 
-    void keepRooms(const ImportOptions& options, const DrawingSource* drawing, ImportRecords& out) {
+    void keepRooms(const ImportOptions& options, const DrawingSource* drawing, Budget& budget,
+                   ImportRecords& out) {
         std::vector<Segment2> doorways;
         for (const PlanOpening& opening : openings_)
             if (!opening.is_window && !isShut(opening)) doorways.push_back(opening.line);
@@ -181,7 +183,7 @@ class LinePlan {
             plan.unit_hint = [&](double extent) {
                 return otherUnitHint(extent, *drawing, options);
             };
-        rooms_ = chooseRooms(plan, options, out);
+        rooms_ = chooseRooms(plan, options, budget, out);
         if (rooms_.regions.empty() || sizes_) return;
         const std::vector<bool> keep = belongsTo(rooms_.regions, all);
         std::size_t gap = pieces_.size();

@@ -67,7 +67,7 @@ struct DrawnSize {
 /// sides of a shower. If a drawing with such swings marks the ends of three doors by short lines
 /// across their wall, two more of these, 0.4 m to 1.3 m apart, are a doorway.
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
-                          std::span<const Segment2> walls);
+                          std::span<const Segment2> walls, Budget& work);
 
 /// Doors that a drawing shows among its walls.
 struct DrawnDoors {
@@ -80,7 +80,7 @@ struct DrawnDoors {
 /// distance from the hinge (within 12 %), 5 to 110 degrees from the leaf; it need not be a circle
 /// about the hinge. A leaf drawn as a closed outline counts as one. If lines lead to both ends of
 /// the curve, the leaf is the one with a free end. O(n log n).
-DrawnDoors takeDrawnDoors(std::vector<PlanPath> walls);
+DrawnDoors takeDrawnDoors(std::vector<PlanPath> walls, Budget& work);
 
 /// Sorts the shapes of a drawing into walls, doors and windows by their layers.
 class LayerSorter {

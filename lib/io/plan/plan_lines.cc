@@ -20,9 +20,6 @@ namespace ispace {
 
 namespace {
 
-/// Segments that all queries may find, per segment and in addition: plans need a few each.
-constexpr std::size_t kFoundPerSegment = 256, kFoundAnyway = 1U << 26;
-
 std::vector<Box2> boxesOf(std::span<const Segment2> segments) {
     std::vector<Box2> boxes;
     boxes.reserve(segments.size());
@@ -32,8 +29,8 @@ std::vector<Box2> boxesOf(std::span<const Segment2> segments) {
 
 }  // namespace
 
-NearSegments::NearSegments(std::span<const Segment2> segments)
-    : tree_(boxesOf(segments)), left_(kFoundAnyway + kFoundPerSegment * segments.size()) {}
+NearSegments::NearSegments(std::span<const Segment2> segments, Budget& work)
+    : tree_(boxesOf(segments)), work_(work) {}
 
 std::vector<std::size_t> NearSegments::near(Point2 p, double reach) const {
     Box2 box;
@@ -48,10 +45,12 @@ std::vector<std::size_t> NearSegments::near(const Box2& box, double reach) const
     found.reserve(kMostOften);
     tree_.search({box.low - margin, box.high + margin},
                  [&found](std::size_t i) { found.push_back(i); });
-    if (found.size() > left_)
-        throw FormatError(Diagnostic{
-            "", 0, 0, "too many lines lie close to each other; leave hatching and doubles out"});
-    left_ -= found.size();
+    unpaid_ += found.size();
+    if (!work_.take(unpaid_ / kFoundPerUnit))
+        throw FormatError(Diagnostic{"", 0, 0,
+                                     "lines close to each other make " + work_.excess() +
+                                         "; leave hatching and doubles out"});
+    unpaid_ %= kFoundPerUnit;
     std::sort(found.begin(), found.end());
     return found;
 }
@@ -140,8 +139,8 @@ void dropRepeatedPoints(std::vector<PlanPath>& paths) {
 /// Moves ends that lie on no other path onto the nearest piece within reach.
 class EndMover {
   public:
-    EndMover(const std::vector<PlanPath>& paths, double reach)
-        : pieces_(pathPieces(paths)), reach_(reach) {
+    EndMover(const std::vector<PlanPath>& paths, double reach, Budget& work)
+        : pieces_(pathPieces(paths)), reach_(reach), work_(work) {
         parallelInvoke(
             pieces_.size() > kManyPieces,
             [&] {
@@ -177,7 +176,7 @@ class EndMover {
             [&](std::span<const std::uint32_t> cell) { pairs += cell.size() * cell.size(); });
         if (pairs <= kGridPairsAnyway + kGridPairsPerPiece * pieces_.size()) return;
         grid_.reset();
-        tree_.emplace(pieces_);
+        tree_.emplace(pieces_, work_);
     }
 
     [[nodiscard]] Point2 moved(Point2 end) const {
@@ -210,6 +209,7 @@ class EndMover {
     std::optional<SegmentGrid> grid_;
     std::optional<NearSegments> tree_;  // instead of a crowded grid
     double reach_;
+    Budget& work_;
     PointMap<int> uses_;
 };
 
@@ -303,14 +303,14 @@ Box2 boundsOf(std::span<const Segment2> lines) {
     return box;
 }
 
-std::vector<PlanPath> snapped(std::vector<PlanPath> paths, double snap) {
+std::vector<PlanPath> snapped(std::vector<PlanPath> paths, double snap, Budget& work) {
     if (snap < kCornerTolerance) snap = 0;
     PointWelder welder(snap);
     for (PlanPath& path : paths)
         for (Point2& p : path.points) p = welder.standing(wholeMicrometres(p));
     dropRepeatedPoints(paths);
     if (snap > 0 && !paths.empty()) {
-        EndMover(paths, snap).move(paths);
+        EndMover(paths, snap, work).move(paths);
         dropRepeatedPoints(paths);
     }
     return paths;
@@ -394,8 +394,8 @@ std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach) {
     return paths;
 }
 
-std::vector<PlanPath> normalisedLines(std::vector<PlanPath> paths, double snap) {
-    std::vector<PlanPath> lines = snapped(std::move(paths), std::min(snap, kDefaultSnap));
+std::vector<PlanPath> normalisedLines(std::vector<PlanPath> paths, double snap, Budget& work) {
+    std::vector<PlanPath> lines = snapped(std::move(paths), std::min(snap, kDefaultSnap), work);
     if (snap > kDefaultSnap && !lines.empty()) lines = bridged(std::move(lines), snap);
     return withoutRepeats(std::move(lines));
 }

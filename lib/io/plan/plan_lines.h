@@ -5,27 +5,32 @@
 #include <span>
 #include <vector>
 
+#include "base/budget.h"
 #include "geom/polygon.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 
 namespace ispace {
 
-/// Finds segments near a point, however unevenly they are spread. O(n log n) to build. Queries of
-/// crowded segments are bounded in sum, so that a small file cannot require hours.
+/// Finds segments near a point, however unevenly they are spread. O(n log n) to build. Queries take
+/// a unit of work for so many segments that they find: those of crowds find all of them each time.
 class NearSegments {
   public:
-    explicit NearSegments(std::span<const Segment2> segments);
+    static constexpr std::size_t kFoundPerUnit = 64;
+
+    /// \param work of the reader, which outlives this object
+    NearSegments(std::span<const Segment2> segments, Budget& work);
 
     /// Returns ascending indices of segments, among them all those within `reach` of p.
-    /// \throws FormatError (without a line number) if all queries found too many
+    /// \throws FormatError (without file and line) if the work is used up
     [[nodiscard]] std::vector<std::size_t> near(Point2 p, double reach) const;
     /// Returns the same for the segments within `reach` of the box.
     [[nodiscard]] std::vector<std::size_t> near(const Box2& box, double reach) const;
 
   private:
     BoxTree tree_;
-    mutable std::size_t left_;  // segments that queries may still find
+    Budget& work_;
+    mutable std::size_t unpaid_ = 0;  // segments found, less than a unit
 };
 
 /// A drawn line of straight pieces, in metres.
@@ -60,7 +65,7 @@ struct LexLess {
 /// move onto it, then ends of open paths within `snap` of another path onto that. Equal neighbours
 /// are merged, and paths without two different points dropped. Below a micrometre `snap` joins only
 /// equal points. O(n log n) unless most lines crowd around one point.
-std::vector<PlanPath> snapped(std::vector<PlanPath> paths, double snap);
+std::vector<PlanPath> snapped(std::vector<PlanPath> paths, double snap, Budget& work);
 
 /// Returns the paths, followed by a short one from each loose end to the nearest point of another
 /// line within `reach`. Points do not move, and bridges cross no line. O(n log n).
@@ -68,7 +73,7 @@ std::vector<PlanPath> bridged(std::vector<PlanPath> paths, double reach);
 
 /// Converts hand-drawn lines to walls: points within 5 mm (or `snap`, if less) become one, loose
 /// ends are bridged within `snap`, and repeated pieces dropped.
-std::vector<PlanPath> normalisedLines(std::vector<PlanPath> paths, double snap);
+std::vector<PlanPath> normalisedLines(std::vector<PlanPath> paths, double snap, Budget& work);
 
 /// Returns all pieces of all paths, in order.
 std::vector<Segment2> pathPieces(const std::vector<PlanPath>& paths);
@@ -89,6 +94,6 @@ std::vector<PlanPath> joinedAtEnds(std::vector<PlanPath> paths);
 /// and of pieces in `fixed`. No new crossings appear, no path changes sides, and closed paths keep
 /// three corners. \param fixed indices of pieces as in pathPieces
 std::vector<PlanPath> simplifiedPaths(const std::vector<PlanPath>& paths, double tolerance,
-                                      std::span<const std::size_t> fixed = {});
+                                      Budget& work, std::span<const std::size_t> fixed = {});
 
 }  // namespace ispace

@@ -8,6 +8,7 @@
 #include "geom/predicates.h"
 #include "io/plan/plan_lines.h"
 #include "support/test_import.h"
+#include "support/test_work.h"
 
 namespace ispace {
 
@@ -19,7 +20,7 @@ TEST(NearSegments, FindsWhatAllDistancesFind) {
     std::vector<Segment2> segments{{{0, 0}, {90000, 1}}};
     for (int i = 0; i < 300; ++i)
         segments.push_back({{coordinate(), coordinate()}, {coordinate(), coordinate()}});
-    const NearSegments search(segments);
+    const NearSegments search(segments, ampleWork());
     for (int i = 0; i < 200; ++i) {
         const Point2 p{coordinate(), coordinate()};
         const std::vector<std::size_t> near = search.near(p, 0.3);
@@ -30,18 +31,24 @@ TEST(NearSegments, FindsWhatAllDistancesFind) {
         }
     }
     EXPECT_EQ(search.near(Point2{50000, 5}, 1), std::vector<std::size_t>{});
-    EXPECT_TRUE(NearSegments({}).near(Point2{0, 0}, 1).empty());
+    EXPECT_TRUE(NearSegments({}, ampleWork()).near(Point2{0, 0}, 1).empty());
 }
 
-TEST(NearSegments, ACrowdIsNotSearchedForHours) {
-    const std::vector<Segment2> hatch(20'000, {{0, 0}, {9, 9}});
-    const NearSegments search(hatch);
-    const auto error = errorsOf([&] {
-        for (std::size_t i = 0; i < hatch.size(); ++i)
-            static_cast<void>(search.near(Point2{4, 4}, 1));
-    });
-    EXPECT_EQ(error,
-              "error: too many lines lie close to each other; leave hatching and doubles out\n");
+TEST(NearSegments, CrowdsSpendTheBudgetOfTheReader) {
+    constexpr std::size_t kLines = 6400, kUnitsPerQuery = kLines / NearSegments::kFoundPerUnit;
+    const std::vector<Segment2> hatch(kLines, {{0, 0}, {9, 9}});
+    Budget work(0, {10 * kUnitsPerQuery});
+    const NearSegments search(hatch, work), other(hatch, work);
+    for (int i = 0; i < 5; ++i)
+        for (const NearSegments* each : {&search, &other})
+            EXPECT_EQ(each->near(Point2{4, 4}, 1).size(), kLines);
+    EXPECT_EQ(work.left(), 0U);
+    EXPECT_EQ(search.near(Point2{20, 0}, 1).size(), 0U) << "what finds none costs none";
+    EXPECT_EQ(errorsOf([&] {
+                  static_cast<void>(search.near(Point2{4, 4}, 1));
+              }),
+              "error: lines close to each other make more than 1000 units of work (`--max-work "
+              "2000` allows more); leave hatching and doubles out\n");
 }
 
 using Paths = std::vector<PlanPath>;
@@ -58,22 +65,24 @@ TEST(PlanLines, WholeMicrometres) {
 TEST(PlanLines, PointsInReachAreOne) {
     const Paths lines{open({{0, 0}, {4, 0}}), open({{4.003, 0.002}, {4, 3}}),
                       open({{4.02, 3}, {0, 3}})};
-    const Paths snug = snapped(lines, 0.005);
+    const Paths snug = snapped(lines, 0.005, ampleWork());
     EXPECT_EQ(snug[1].points.front(), (Point2{4, 0}));
     EXPECT_EQ(snug[2].points.front(), (Point2{4.02, 3}));
-    EXPECT_EQ(snapped(lines, 0)[1].points.front(), (Point2{4.003, 0.002}));
+    EXPECT_EQ(snapped(lines, 0, ampleWork())[1].points.front(), (Point2{4.003, 0.002}));
     // Cells of the search are no border.
-    const Paths wide = snapped({open({{0.0999, 0}, {5, 5}}), open({{0.1001, 0}, {7, 5}})}, 0.1);
+    const Paths wide =
+        snapped({open({{0.0999, 0}, {5, 5}}), open({{0.1001, 0}, {7, 5}})}, 0.1, ampleWork());
     EXPECT_EQ(wide[1].points.front(), (Point2{0.0999, 0}));
 }
 
 TEST(PlanLines, EndsMoveOntoLines) {
-    const Paths tee = snapped({open({{0, 0}, {10, 0}}), open({{5, 0.004}, {5, 3}})}, 0.005);
+    const Paths tee =
+        snapped({open({{0, 0}, {10, 0}}), open({{5, 0.004}, {5, 3}})}, 0.005, ampleWork());
     EXPECT_EQ(tee[1].points.front(), (Point2{5, 0}));
     // Not those that others share, and not beyond reach.
     const Paths bent = snapped({open({{0, 0}, {10, 0}}), open({{5, 0.004}, {5, 3}}),
                                 open({{5, 0.004}, {6, 3}}), open({{7, 0.006}, {7, 3}})},
-                               0.005);
+                               0.005, ampleWork());
     EXPECT_EQ(bent[1].points.front(), (Point2{5, 0.004}));
     EXPECT_EQ(bent[3].points.front(), (Point2{7, 0.006}));
 }
@@ -91,25 +100,26 @@ TEST(PlanLines, ManyEndsMoveOntoLinesHoweverTheyAreFound) {
         Paths wanted = lines;
         for (std::size_t i = 0; i < 6000; ++i)
             wanted[2 * i + 1].points.front() = {lines[2 * i].points.front().x, 0.5};
-        EXPECT_EQ(snapped(lines, 0.005), wanted) << crowded;
+        EXPECT_EQ(snapped(lines, 0.005, ampleWork()), wanted) << crowded;
     }
 }
 
 TEST(PlanLines, LeastReachIsNone) {
     const Paths far{open({{800'000, 0}, {0, 0}}), open({{5, 0.000001}, {5, 3}})};
-    EXPECT_EQ(snapped(far, 1e-300), snapped(far, 0));
-    EXPECT_EQ(snapped(far, 1e-7), far);
+    EXPECT_EQ(snapped(far, 1e-300, ampleWork()), snapped(far, 0, ampleWork()));
+    EXPECT_EQ(snapped(far, 1e-7, ampleWork()), far);
 }
 
 TEST(PlanLines, WhatHasNoExtentIsDropped) {
-    EXPECT_TRUE(snapped({open({{1, 1}, {1, 1}})}, 0).empty());
+    EXPECT_TRUE(snapped({open({{1, 1}, {1, 1}})}, 0, ampleWork()).empty());
     EXPECT_TRUE(
-        snapped({open({{1, 1}, {1.001, 1}}), closed({{2, 2}, {2, 2}, {2, 2}})}, 0.005).empty());
-    EXPECT_TRUE(snapped({}, 0.005).empty());
+        snapped({open({{1, 1}, {1.001, 1}}), closed({{2, 2}, {2, 2}, {2, 2}})}, 0.005, ampleWork())
+            .empty());
+    EXPECT_TRUE(snapped({}, 0.005, ampleWork()).empty());
     // Two different points do not close.
-    EXPECT_EQ(snapped({closed({{0, 0}, {1, 0}, {1, 0}, {0, 0}})}, 0),
+    EXPECT_EQ(snapped({closed({{0, 0}, {1, 0}, {1, 0}, {0, 0}})}, 0, ampleWork()),
               (Paths{open({{0, 0}, {1, 0}})}));
-    EXPECT_EQ(snapped({closed({{0, 0}, {1, 0}, {1, 0}, {1, 1}, {0, 0}})}, 0),
+    EXPECT_EQ(snapped({closed({{0, 0}, {1, 0}, {1, 0}, {1, 1}, {0, 0}})}, 0, ampleWork()),
               (Paths{closed({{0, 0}, {1, 0}, {1, 1}})}));
 }
 
@@ -164,7 +174,7 @@ TEST(PlanLines, JoiningKeepsEveryPiece) {
                     {static_cast<double>(random() % 5), static_cast<double>(random() % 5)});
             paths.push_back({points, random() % 3 == 0, 0});
         }
-        const Paths lines = withoutRepeats(snapped(paths, 0));
+        const Paths lines = withoutRepeats(snapped(paths, 0, ampleWork()));
         const auto sorted = [](const Paths& all) {
             std::vector<std::pair<std::pair<double, double>, std::pair<double, double>>> pieces;
             for (auto [a, b] : pathPieces(all)) {
@@ -200,46 +210,48 @@ TEST(PlanLines, LooseEndsAreBridged) {
 TEST(PlanLines, WideSnappingLosesNoWalls) {
     // A thin wall drawn as a rectangle survives a snap that is wider than it is thick.
     const Paths wall{closed({{0, 0}, {3, 0}, {3, 0.1}, {0, 0.1}})};
-    EXPECT_EQ(normalisedLines(wall, 0.3), wall);
+    EXPECT_EQ(normalisedLines(wall, 0.3, ampleWork()), wall);
 }
 
 using Paths = std::vector<PlanPath>;
 
 TEST(PlanSimplify, EndsAndCornersStay) {
     const Paths noisy{open({{0, 0}, {1, 0.01}, {2, -0.01}, {3, 0}, {3, 2}}, 7)};
-    EXPECT_EQ(simplifiedPaths(noisy, 0.02), (Paths{open({{0, 0}, {3, 0}, {3, 2}}, 7)}));
-    EXPECT_EQ(simplifiedPaths(noisy, 0.005), noisy);
-    EXPECT_EQ(simplifiedPaths(noisy, 0), noisy);
-    EXPECT_TRUE(simplifiedPaths({}, 1).empty());
-    EXPECT_EQ(
-        simplifiedPaths({closed({{2, 0.01}, {4, 0}, {4, 3}, {2, 2.99}, {0, 3}, {0, 0}})}, 0.02),
-        (Paths{closed({{0, 0}, {4, 0}, {4, 3}, {0, 3}})}));
+    EXPECT_EQ(simplifiedPaths(noisy, 0.02, ampleWork()),
+              (Paths{open({{0, 0}, {3, 0}, {3, 2}}, 7)}));
+    EXPECT_EQ(simplifiedPaths(noisy, 0.005, ampleWork()), noisy);
+    EXPECT_EQ(simplifiedPaths(noisy, 0, ampleWork()), noisy);
+    EXPECT_TRUE(simplifiedPaths({}, 1, ampleWork()).empty());
+    EXPECT_EQ(simplifiedPaths({closed({{2, 0.01}, {4, 0}, {4, 3}, {2, 2.99}, {0, 3}, {0, 0}})},
+                              0.02, ampleWork()),
+              (Paths{closed({{0, 0}, {4, 0}, {4, 3}, {0, 3}})}));
     // Closed paths do not collapse.
     const Paths flat{closed({{0, 0}, {1, 0.01}, {2, 0}, {1, -0.01}})};
-    EXPECT_EQ(simplifiedPaths(flat, 0.1), flat);
+    EXPECT_EQ(simplifiedPaths(flat, 0.1, ampleWork()), flat);
 }
 
 TEST(PlanSimplify, JointsStay) {
     // A line ends on the noisy one, another begins at a point of it, a third crosses it.
     const PlanPath noisy = open({{0, 0}, {1, 0.01}, {2, 0}, {3, 0.01}, {4, 0}, {5, 0.01}, {6, 0}});
-    EXPECT_EQ(simplifiedPaths({noisy, open({{1, 0.01}, {1, 2}})}, 0.02)[0],
+    EXPECT_EQ(simplifiedPaths({noisy, open({{1, 0.01}, {1, 2}})}, 0.02, ampleWork())[0],
               open({{0, 0}, {1, 0.01}, {6, 0}}));
-    EXPECT_EQ(simplifiedPaths({noisy, open({{2.5, 0.005}, {2.5, 2}})}, 0.02)[0],
+    EXPECT_EQ(simplifiedPaths({noisy, open({{2.5, 0.005}, {2.5, 2}})}, 0.02, ampleWork())[0],
               open({{0, 0}, {2, 0}, {3, 0.01}, {6, 0}}));
-    EXPECT_EQ(simplifiedPaths({noisy, open({{2.5, -1}, {2.5, 0.0051}})}, 0.02)[0],
+    EXPECT_EQ(simplifiedPaths({noisy, open({{2.5, -1}, {2.5, 0.0051}})}, 0.02, ampleWork())[0],
               open({{0, 0}, {2, 0}, {3, 0.01}, {6, 0}}));
     const std::vector<std::size_t> fixed{1};
-    EXPECT_EQ(simplifiedPaths({noisy}, 0.02, fixed)[0], open({{0, 0}, {1, 0.01}, {2, 0}, {6, 0}}));
+    EXPECT_EQ(simplifiedPaths({noisy}, 0.02, ampleWork(), fixed)[0],
+              open({{0, 0}, {1, 0.01}, {2, 0}, {6, 0}}));
 }
 
 TEST(PlanSimplify, WhatLiesInBetweenStaysOnItsSide) {
     const PlanPath bay = open({{0, 0}, {1, 0.3}, {2, 0}});
     const PlanPath pillar = closed({{1, 0.1}, {1.05, 0.1}, {1, 0.15}});
-    EXPECT_EQ(simplifiedPaths({bay}, 0.5)[0], open({{0, 0}, {2, 0}}));
-    EXPECT_EQ(simplifiedPaths({bay, pillar}, 0.5)[0], bay);
+    EXPECT_EQ(simplifiedPaths({bay}, 0.5, ampleWork())[0], open({{0, 0}, {2, 0}}));
+    EXPECT_EQ(simplifiedPaths({bay, pillar}, 0.5, ampleWork())[0], bay);
     // A line that the short cut would cross.
     const PlanPath spike = open({{1, -1}, {1, 0.1}});
-    EXPECT_EQ(simplifiedPaths({bay, spike}, 0.5)[0], bay);
+    EXPECT_EQ(simplifiedPaths({bay, spike}, 0.5, ampleWork())[0], bay);
 }
 
 TEST(PlanSimplify, NewCrossingsDoNotArise) {
@@ -265,7 +277,7 @@ TEST(PlanSimplify, NewCrossingsDoNotArise) {
         }
         ASSERT_EQ(crossings(paths), 0U);
         const double tolerance = 0.02 + 0.2 * unit();
-        const Paths simple = simplifiedPaths(paths, tolerance);
+        const Paths simple = simplifiedPaths(paths, tolerance, ampleWork());
         EXPECT_EQ(crossings(simple), 0U);
         EXPECT_LT(pathPieces(simple).size(), pathPieces(paths).size());
         for (std::size_t i = 0; i < paths.size(); ++i)
@@ -284,7 +296,7 @@ TEST(PlanSimplify, LongRunsTakeNoSquare) {
         const double t = 0.001 * i;
         spiral.points.push_back({t * std::cos(t), t * std::sin(t)});
     }
-    EXPECT_LT(simplifiedPaths({spiral}, 0.01)[0].points.size(), 60'000U);
+    EXPECT_LT(simplifiedPaths({spiral}, 0.01, ampleWork())[0].points.size(), 60'000U);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ struct Anchor {
 
 class Walls {
   public:
-    explicit Walls(std::span<const Segment2> walls) : walls_(walls), search_(walls) {}
+    Walls(std::span<const Segment2> walls, Budget& work) : walls_(walls), search_(walls, work) {}
 
     /// Returns the nearest end of a wall, else the nearest point of one, in reach.
     [[nodiscard]] std::optional<Anchor> anchor(Point2 p) const {
@@ -112,8 +112,8 @@ struct Swing {
 class Finder {
   public:
     /// \param has_lines whether a symbol has a straight piece, which may be the leaf of a swing
-    Finder(std::span<const Segment2> walls, bool has_lines)
-        : walls_(walls), has_lines_(has_lines) {}
+    Finder(std::span<const Segment2> walls, bool has_lines, Budget& work)
+        : walls_(walls, work), has_lines_(has_lines) {}
 
     void find(std::span<const PlanShape> symbols, bool are_windows) {
         are_windows_ = are_windows;
@@ -322,7 +322,7 @@ class Finder {
 }  // namespace
 
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
-                          std::span<const Segment2> walls) {
+                          std::span<const Segment2> walls, Budget& work) {
     if (doors.empty() && windows.empty()) return {};
     const auto has_lines = [](std::span<const PlanShape> symbols) {
         return std::any_of(symbols.begin(), symbols.end(), [](const PlanShape& shape) {
@@ -330,7 +330,7 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
                                [](const PlanChord& chord) { return !chord.center; });
         });
     };
-    Finder finder(walls, has_lines(doors) || has_lines(windows));
+    Finder finder(walls, has_lines(doors) || has_lines(windows), work);
     finder.find(doors, false);
     if (std::any_of(doors.begin(), doors.end(),
                     [](const PlanShape& door) { return door.is_guess; }))
@@ -340,8 +340,8 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
 }
 
 std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,
-                                      std::span<const Segment2> passages) {
-    const NearSegments search(passages);
+                                      std::span<const Segment2> passages, Budget& work) {
+    const NearSegments search(passages, work);
     std::vector<Segment2> rest;
     for (const Segment2& line : lines) {
         const Vec2 along = line.b - line.a;

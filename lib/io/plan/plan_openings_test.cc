@@ -7,6 +7,7 @@
 #include "io/importers.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
+#include "support/test_work.h"
 
 namespace ispace {
 namespace {
@@ -22,8 +23,8 @@ PlanShape swing(Point2 hinge, Point2 a, Point2 b) {
 }
 
 TEST(PlanOpenings, ALineAcrossAGap) {
-    const auto found =
-        findOpenings(std::vector{straight({2.03, 0.02}, {2.88, 0})}, {}, wallWithGap());
+    const auto found = findOpenings(std::vector{straight({2.03, 0.02}, {2.88, 0})}, {},
+                                    wallWithGap(), ampleWork());
     ASSERT_EQ(found.openings.size(), 1U);
     EXPECT_EQ(found.openings[0].line, (Segment2{{2, 0}, {2.9, 0}}));
     EXPECT_FALSE(found.openings[0].wall);
@@ -33,8 +34,8 @@ TEST(PlanOpenings, ALineAcrossAGap) {
 }
 
 TEST(PlanOpenings, ALineAlongAWall) {
-    const auto found =
-        findOpenings({}, std::vector{straight({3.5, 0.01}, {4.5, -0.01})}, wallWithGap());
+    const auto found = findOpenings({}, std::vector{straight({3.5, 0.01}, {4.5, -0.01})},
+                                    wallWithGap(), ampleWork());
     ASSERT_EQ(found.openings.size(), 1U);
     EXPECT_EQ(found.openings[0].line, (Segment2{{3.5, 0}, {4.5, 0}}));
     EXPECT_EQ(found.openings[0].wall, 1U);
@@ -45,7 +46,7 @@ TEST(PlanOpenings, SwingsOpenFromTheHingeToTheWall) {
     // Hinged at the left end, drawn open upwards, with its leaf.
     const auto found =
         findOpenings(std::vector{swing({2, 0}, {2.9, 0}, {2, 0.9}), straight({2, 0}, {2, 0.9})}, {},
-                     wallWithGap());
+                     wallWithGap(), ampleWork());
     ASSERT_EQ(found.openings.size(), 1U);
     EXPECT_EQ(found.openings[0].line, (Segment2{{2, 0}, {2.9, 0}}));
     EXPECT_EQ(found.unused, 0U) << "the leaf is no line that spans nothing";
@@ -54,7 +55,7 @@ TEST(PlanOpenings, SwingsOpenFromTheHingeToTheWall) {
     walls.push_back({{1, 0.9}, {2, 0.9}});
     const auto corner = findOpenings(
         std::vector{swing({2.9, 0}, {2.0, 0.02}, {2.9, 0.9}), straight({2.9, 0}, {2.9, 0.9})}, {},
-        walls);
+        walls, ampleWork());
     ASSERT_EQ(corner.openings.size(), 1U);
     EXPECT_EQ(corner.openings[0].line, (Segment2{{2.9, 0}, {2, 0}}));
 }
@@ -63,7 +64,7 @@ TEST(PlanOpenings, DoubleDoors) {
     const auto found = findOpenings(
         std::vector{swing({2, 0}, {2.45, 0}, {2, 0.45}), swing({2.9, 0}, {2.9, 0.45}, {2.45, 0}),
                     straight({2, 0}, {2, 0.45})},
-        {}, wallWithGap());
+        {}, wallWithGap(), ampleWork());
     ASSERT_EQ(found.openings.size(), 1U);
     EXPECT_EQ(found.openings[0].line, (Segment2{{2, 0}, {2.9, 0}}));
     EXPECT_EQ(found.unused, 0U);
@@ -71,11 +72,12 @@ TEST(PlanOpenings, DoubleDoors) {
 
 TEST(PlanOpenings, EachOnce) {
     // An arc, the threshold, and it again from the other side; a window in the same gap.
-    const auto found = findOpenings(
-        std::vector{swing({2, 0}, {2.9, 0}, {2, 0.9}), straight({2, 0}, {2.9, 0}),
-                    straight({2.9, 0}, {2, 0}), straight({3, 0}, {4, 0}),
-                    straight({3.5, 0}, {4.5, 0})},
-        std::vector{straight({2, 0}, {2.9, 0}), straight({4, 0}, {5, 0})}, wallWithGap());
+    const auto found =
+        findOpenings(std::vector{swing({2, 0}, {2.9, 0}, {2, 0.9}), straight({2, 0}, {2.9, 0}),
+                                 straight({2.9, 0}, {2, 0}), straight({3, 0}, {4, 0}),
+                                 straight({3.5, 0}, {4.5, 0})},
+                     std::vector{straight({2, 0}, {2.9, 0}), straight({4, 0}, {5, 0})},
+                     wallWithGap(), ampleWork());
     ASSERT_EQ(found.openings.size(), 3U);
     EXPECT_EQ(found.openings[1].line, (Segment2{{3, 0}, {4, 0}}));
     EXPECT_TRUE(found.openings[2].is_window);
@@ -87,10 +89,11 @@ TEST(PlanOpenings, WhatSpansNothing) {
                                                 straight({2, 0}, {2.2, 0}),  // too short
                                                 straight({2, 5}, {2.9, 5}),  // far away
                                                 swing({10, 10}, {11, 10}, {10, 11})},
-                                    {}, wallWithGap());
+                                    {}, wallWithGap(), ampleWork());
     EXPECT_TRUE(found.openings.empty());
     EXPECT_EQ(found.unused, 4U);
-    EXPECT_EQ(findOpenings(std::vector{straight({0, 0}, {1, 0})}, {}, Lines{}).unused, 1U);
+    EXPECT_EQ(findOpenings(std::vector{straight({0, 0}, {1, 0})}, {}, Lines{}, ampleWork()).unused,
+              1U);
 }
 
 TEST(PlanOpenings, ManySymbolsInOnePlace) {
@@ -99,7 +102,7 @@ TEST(PlanOpenings, ManySymbolsInOnePlace) {
         symbols.push_back(swing({10, 10}, {11, 10}, {10, 11}));
         symbols.push_back(straight({2, 0}, {2.9, 0}));
     }
-    EXPECT_EQ(findOpenings(symbols, {}, wallWithGap()).openings.size(), 1U);
+    EXPECT_EQ(findOpenings(symbols, {}, wallWithGap(), ampleWork()).openings.size(), 1U);
 }
 
 /// Two rooms of 3 m x 3 m with a gap in the wall between them, one in the outer wall, a door

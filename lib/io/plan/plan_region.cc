@@ -174,22 +174,23 @@ double PlanRegion::area() const {
                            [](double sum, const Region& room) { return sum + room.area(); });
 }
 
-PlanFaces::PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> doors,
+PlanFaces::PlanFaces(std::span<const Segment2> walls, Budget& work, std::span<const Segment2> doors,
                      std::span<const Segment2> closings)
-    : walls_(walls.begin(), walls.end()) {
+    : work_(&work), walls_(walls.begin(), walls.end()) {
     if (closings.empty()) {
         faces_ = boundedFaces(weld(walls));
     } else {
-        Pieces pieces = weldedPieces(walls, closings);
+        Pieces pieces = weldedPieces(walls, closings, work);
         faces_ = boundedFaces(pieces.walls, pieces.closings);
         closings_ = std::move(pieces.closings);
     }
     takeFaces(doors);
 }
 
-PlanFaces::PlanFaces(const Pieces& pieces, std::span<const Segment2> doors,
+PlanFaces::PlanFaces(const Pieces& pieces, Budget& work, std::span<const Segment2> doors,
                      std::size_t closing_pieces)
-    : walls_(pieces.walls),
+    : work_(&work),
+      walls_(pieces.walls),
       closings_(pieces.closings.begin(),
                 pieces.closings.begin() + static_cast<std::ptrdiff_t>(closing_pieces)),
       faces_(boundedFaces(walls_, closings_)) {
@@ -197,14 +198,14 @@ PlanFaces::PlanFaces(const Pieces& pieces, std::span<const Segment2> doors,
 }
 
 PlanFaces::Pieces PlanFaces::weldedPieces(std::span<const Segment2> walls,
-                                          std::span<const Segment2> closings) {
+                                          std::span<const Segment2> closings, Budget& work) {
     std::vector<Segment2> all(walls.begin(), walls.end());
     all.insert(all.end(), closings.begin(), closings.end());
     const WeldedLines welded = weld(all);
     Pieces plan;
     for (std::size_t i = 0; i < welded.pieces.size(); ++i)
         if (welded.source[i] < walls.size()) plan.walls.push_back(welded.pieces[i]);
-    const NearSegments search(plan.walls);
+    const NearSegments search(plan.walls, work);
     for (std::size_t i = 0; i < welded.pieces.size(); ++i) {
         if (welded.source[i] < walls.size()) continue;
         const Point2 middle = middleOf(welded.pieces[i]);
@@ -314,7 +315,7 @@ PlanRegion PlanFaces::region(const Group& group) const {
 std::vector<Segment2> PlanFaces::closedBy(const PlanRegion& region) const {
     std::vector<Segment2> closed;
     if (closings_.empty()) return closed;
-    const NearSegments search(closings_);
+    const NearSegments search(closings_, *work_);
     for (const Region& room : region.rooms)
         room.forEachEdge([&](const Segment2& edge) {
             // An edge may run on from a closing along a wall in its direction.

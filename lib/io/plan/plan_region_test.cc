@@ -10,6 +10,7 @@
 #include "geom/arrangement.h"
 #include "geom/predicates.h"
 #include "io/plan/plan_rooms.h"
+#include "support/test_work.h"
 
 namespace ispace {
 
@@ -31,19 +32,19 @@ Lines flat() {
 }
 
 TEST(PlanRegion, GroupsByAreaAndPlace) {
-    const PlanFaces faces(flat());
+    const PlanFaces faces(flat(), ampleWork());
     EXPECT_EQ(faces.faces().size(), 3U);
     ASSERT_EQ(faces.groups().size(), 3U);
     EXPECT_DOUBLE_EQ(faces.groups().front().area, 25);
     EXPECT_DOUBLE_EQ(faces.groupAt({1, 1})->area, 16);
     EXPECT_EQ(faces.groupAt({-1, 1}), nullptr);
-    EXPECT_TRUE(PlanFaces(Lines{{{0, 0}, {1, 0}}}).groups().empty());
-    EXPECT_TRUE(PlanFaces(Lines{}).groups().empty());
+    EXPECT_TRUE(PlanFaces(Lines{{{0, 0}, {1, 0}}}, ampleWork()).groups().empty());
+    EXPECT_TRUE(PlanFaces(Lines{}, ampleWork()).groups().empty());
 }
 
 TEST(PlanRegion, DoorsJoinRooms) {
     const Lines doors{{{4, 1}, {4, 2}}};
-    const PlanFaces faces(flat(), doors);
+    const PlanFaces faces(flat(), ampleWork(), doors);
     const PlanRegion region = faces.region(faces.groups().front());
     EXPECT_DOUBLE_EQ(region.area(), 28);
     ASSERT_EQ(region.rooms.size(), 2U);
@@ -51,14 +52,14 @@ TEST(PlanRegion, DoorsJoinRooms) {
     EXPECT_EQ(region.rooms[0].locate(region.inside), Side::Inside);
     // A door to the outside joins nothing.
     const Lines outside{{{0, 1}, {0, 2}}};
-    EXPECT_DOUBLE_EQ(PlanFaces(flat(), outside).groups().front().area, 25);
+    EXPECT_DOUBLE_EQ(PlanFaces(flat(), ampleWork(), outside).groups().front().area, 25);
 }
 
 TEST(PlanRegion, HollowsOfWallsAreNoRooms) {
     Lines lines = rectangle(0, 0, 6, 5);
     for (const Segment2& line : rectangle(0.3, 0.3, 5.7, 4.7)) lines.push_back(line);
     for (const Segment2& line : rectangle(2, 1, 3, 2)) lines.push_back(line);
-    const PlanFaces faces(lines);
+    const PlanFaces faces(lines, ampleWork());
     ASSERT_EQ(faces.groups().size(), 3U);  // the room, the hollow, a closed thing
     EXPECT_FALSE(faces.isHollow(faces.groups()[0]));
     EXPECT_NEAR(faces.groups()[1].area, 30 - 5.4 * 4.4, 1e-9);
@@ -67,7 +68,7 @@ TEST(PlanRegion, HollowsOfWallsAreNoRooms) {
     // The same in millimetres that were taken for metres.
     for (Segment2& line : lines)
         line = {{line.a.x / 1000, line.a.y / 1000}, {line.b.x / 1000, line.b.y / 1000}};
-    const PlanFaces small(lines);
+    const PlanFaces small(lines, ampleWork());
     EXPECT_FALSE(small.isHollow(small.groups()[0]));
     EXPECT_TRUE(small.isHollow(small.groups()[1]));
 }
@@ -77,27 +78,27 @@ TEST(PlanRegion, ClosingsBoundOnlyAgainstTheOutside) {
     const Lines walls{{{0, 0}, {3, 0}}, {{4, 0}, {7, 0}}, {{7, 0}, {7, 4}}, {{7, 4}, {0, 4}},
                       {{0, 4}, {0, 0}}, {{3, 0}, {3, 1}}, {{3, 3}, {3, 4}}};
     const Lines closings{{{3, 0}, {4, 0}}, {{3, 1}, {3, 3}}};
-    const PlanFaces faces(walls, {}, closings);
+    const PlanFaces faces(walls, ampleWork(), {}, closings);
     ASSERT_EQ(faces.groups().size(), 1U);
     EXPECT_DOUBLE_EQ(faces.groups()[0].area, 28);
     const auto closed = faces.closedBy(faces.region(faces.groups()[0]));
     ASSERT_EQ(closed.size(), 1U);
     EXPECT_DOUBLE_EQ(distance(closed[0].a, closed[0].b), 1);
     EXPECT_DOUBLE_EQ(closed[0].a.y, 0);
-    EXPECT_TRUE(PlanFaces(walls).groups().empty());
+    EXPECT_TRUE(PlanFaces(walls, ampleWork()).groups().empty());
 }
 
 TEST(PlanRegion, InsideIsClearOfLinesThatStandFree) {
     Lines lines = rectangle(0, 0, 4, 4);
     lines.push_back({{1, 1}, {3, 3}});
     lines.push_back({{1, 3}, {3, 1}});
-    const PlanFaces faces(lines);
+    const PlanFaces faces(lines, ampleWork());
     const Point2 inside = faces.region(faces.groups().front()).inside;
     for (const Segment2& line : lines) EXPECT_GT(distance(inside, line), 0.3);
 }
 
 PlanRegion leftRoom(const Lines& lines) {
-    const PlanFaces faces(lines);
+    const PlanFaces faces(lines, ampleWork());
     return faces.region(*faces.groupAt({1, 3}));
 }
 
@@ -137,7 +138,7 @@ TEST(PlanRegion, DoorsJoinAsCountedByHand) {
             }
             if (k == 0 && random() % 3 == 0) doors.push_back({at(a + 0.3, 0), at(a + 0.9, 0)});
         }
-    const PlanFaces faces(lines, doors);
+    const PlanFaces faces(lines, ampleWork(), doors);
     for (std::size_t i = 0; i < group.size(); ++i)
         for (const std::size_t other : {(i + 1) % group.size(), (i + kSide) % group.size()}) {
             const auto group_of = [&](std::size_t cell) {
@@ -174,7 +175,7 @@ TEST(PlanRegion, BelongingEqualsBruteForce) {
             };
             lines.push_back({at(), at()});
         }
-        const PlanFaces faces(lines);
+        const PlanFaces faces(lines, ampleWork());
         if (faces.groups().empty()) continue;
         const PlanRegion region = faces.region(faces.groups().front());
         const auto belongs = belongsTo({{region}}, lines);
@@ -254,7 +255,7 @@ TEST(ReachedFloor, ThroughDoorsIntoTheNextRoom) {
     std::vector<Segment2> walls = edgesOf(left);
     for (const Segment2& edge : edgesOf(right)) walls.push_back(edge);
     const std::vector<Segment2> door{{{4, 1}, {4, 2}}};
-    const auto open = withoutPassages(walls, door);
+    const auto open = withoutPassages(walls, door, ampleWork());
     EXPECT_EQ(open.size(), walls.size() + 2);  // the wall is drawn twice
     const std::vector<Region> rooms{left, right};
     EXPECT_NEAR(totalArea(reachedFloor(rooms, open, {1, 1}, 0.3)), 21 - 8 * cornerLoss(0.3), 0.01);

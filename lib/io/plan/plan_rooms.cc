@@ -61,8 +61,9 @@ std::string sizeText(const Box2& box) {
 
 class RoomChooser {
   public:
-    RoomChooser(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out)
-        : plan_(plan), options_(options), out_(out), lines_(plan.lines) {
+    RoomChooser(const PlanWalls& plan, const ImportOptions& options, Budget& work,
+                ImportRecords& out)
+        : plan_(plan), options_(options), work_(work), out_(out), lines_(plan.lines) {
         lines_.insert(lines_.end(), options.known_walls.begin(), options.known_walls.end());
         points_ = options.inside;
         points_.insert(points_.end(), options.known_inside.begin(), options.known_inside.end());
@@ -130,7 +131,7 @@ class RoomChooser {
     /// Reports the rooms of the plan; outside the kept rooms only the largest.
     void handOver(const Attempt& taken) {
         const Box2 all = boundsOf(plan_.lines);
-        const NearSegments walls(lines_);
+        const NearSegments walls(lines_, work_);
         std::size_t others = 0;
         for (const PlanFaces::Group& group : taken.faces.groups()) {
             const bool is_kept =
@@ -177,7 +178,7 @@ class RoomChooser {
         EdgeWaypoints ways;
         if (!(width > 0)) return ways;
         std::vector<Point2> corners;
-        if (width >= kMinDoorway) corners = PlanFaces(lines_).wallCorners();
+        if (width >= kMinDoorway) corners = PlanFaces(lines_, work_).wallCorners();
         for (const Closing& gap : closings(lines_, corners, width)) {
             const Segment2 line{wholeMicrometres(gap.line.a), wholeMicrometres(gap.line.b)};
             if (line.a == line.b) continue;
@@ -189,7 +190,7 @@ class RoomChooser {
 
     [[nodiscard]] Attempt attempt(double width, const EdgeWaypoints& ways) const {
         const std::span<const Segment2> closing = ways.upTo(width);
-        return attemptOf(width, closing.size(), PlanFaces(lines_, plan_.doors, closing));
+        return attemptOf(width, closing.size(), PlanFaces(lines_, work_, plan_.doors, closing));
     }
 
     [[nodiscard]] Attempt attemptOf(double width, std::size_t closings, PlanFaces faces) const {
@@ -269,7 +270,7 @@ class RoomChooser {
                 (piece.line < walls ? lines : closings).push_back(piece.segment);
                 if (piece.line >= walls) needs.push_back(piece.line - walls + 1);
             }
-            pieces_ = PlanFaces::weldedPieces(lines, closings);
+            pieces_ = PlanFaces::weldedPieces(lines, closings, chooser.work_);
             for (const std::size_t closing : pieces_.closing_of) needs_.push_back(needs[closing]);
         }
 
@@ -277,8 +278,8 @@ class RoomChooser {
             const std::size_t count = ways_.upTo(width).size();
             const auto end = std::upper_bound(needs_.begin(), needs_.end(), count);
             const auto pieces = static_cast<std::size_t>(end - needs_.begin());
-            return chooser_.attemptOf(width, count,
-                                      PlanFaces(pieces_, chooser_.plan_.doors, pieces));
+            return chooser_.attemptOf(
+                width, count, PlanFaces(pieces_, chooser_.work_, chooser_.plan_.doors, pieces));
         }
 
       private:
@@ -329,7 +330,7 @@ class RoomChooser {
     }
 
     [[nodiscard]] std::vector<Region> reach(const PlanRooms& rooms, double radius) const {
-        std::vector<Segment2> walls = withoutPassages(lines_, plan_.doors);
+        std::vector<Segment2> walls = withoutPassages(lines_, plan_.doors, work_);
         walls.insert(walls.end(), rooms.closing.begin(), rooms.closing.end());
         std::vector<Region> reached;
         double floor = 0;
@@ -480,6 +481,7 @@ class RoomChooser {
 
     const PlanWalls& plan_;
     const ImportOptions& options_;
+    Budget& work_;
     ImportRecords& out_;
     std::vector<Segment2> lines_;  // with those of other inputs
     std::vector<Point2> points_;
@@ -495,8 +497,9 @@ double PlanRooms::area() const {
         [](double sum, const PlanRegion& region) { return sum + region.area(); });
 }
 
-PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out) {
-    return RoomChooser(plan, options, out).choose();
+PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, Budget& work,
+                      ImportRecords& out) {
+    return RoomChooser(plan, options, work, out).choose();
 }
 
 void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportRecords& out) {

@@ -35,7 +35,8 @@ class PlanFaces {
         std::vector<Segment2> walls, closings;
         std::vector<std::size_t> closing_of;  ///< index of the closing that a piece comes from
     };
-    static Pieces weldedPieces(std::span<const Segment2> walls, std::span<const Segment2> closings);
+    static Pieces weldedPieces(std::span<const Segment2> walls, std::span<const Segment2> closings,
+                               Budget& work);
 
     /// Faces joined by doors: indices of faces(), the largest first.
     struct Group {
@@ -46,10 +47,12 @@ class PlanFaces {
     /// \param doors lines that can be crossed: among the walls, or on them
     /// \param closings lines across gaps between walls; they bound only faces that they separate
     /// from the outside
-    explicit PlanFaces(std::span<const Segment2> walls, std::span<const Segment2> doors = {},
-                       std::span<const Segment2> closings = {});
+    /// \param work pays for closings; outlives this object
+    PlanFaces(std::span<const Segment2> walls, Budget& work, std::span<const Segment2> doors = {},
+              std::span<const Segment2> closings = {});
     /// Builds the faces from welded pieces, with the first `closing_pieces` of the closings.
-    PlanFaces(const Pieces& pieces, std::span<const Segment2> doors, std::size_t closing_pieces);
+    PlanFaces(const Pieces& pieces, Budget& work, std::span<const Segment2> doors,
+              std::size_t closing_pieces);
 
     [[nodiscard]] const std::vector<Region>& faces() const { return faces_; }
     /// Returns the groups by falling area.
@@ -70,6 +73,7 @@ class PlanFaces {
     void makeGroups(std::span<const Segment2> doors);
     [[nodiscard]] std::optional<std::size_t> faceAt(Point2 p) const;
 
+    Budget* work_;
     std::vector<Segment2> walls_;
     std::vector<Segment2> closings_;  // pieces of them that lie on no wall
     std::vector<Region> faces_;
@@ -107,7 +111,7 @@ std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const 
 
 /// Returns the lines without the parts that passages cover, as doors cover walls.
 std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,
-                                      std::span<const Segment2> passages);
+                                      std::span<const Segment2> passages, Budget& work);
 
 /// A plan of lines before its rooms are chosen.
 struct PlanWalls {
@@ -145,7 +149,8 @@ struct PlanRooms {
 /// half of the best. Points choose among the rooms that are enclosed without them; only if one lies
 /// outside all of these, gaps are closed for its sake. Warnings report closed gaps, rooms that are
 /// small in their drawing, and drawings of less than 2 m or more than 2 km.
-PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, ImportRecords& out);
+PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, Budget& work,
+                      ImportRecords& out);
 
 /// Writes lines that close gaps as fences, and the inside points; with PlanRooms::reached only its
 /// outlines, and the importer writes no walls.

@@ -9,6 +9,7 @@
 #include "base/budget.h"
 #include "io/importers.h"
 #include "support/test_import.h"
+#include "support/test_work.h"
 
 namespace ispace {
 namespace {
@@ -35,7 +36,7 @@ struct Chosen {
 
 Chosen choose(const PlanWalls& plan, const ImportOptions& options = {}) {
     ImportRecords out(sceneSchemas(), "plan", options);
-    Chosen chosen{chooseRooms(plan, options, out), "", ""};
+    Chosen chosen{chooseRooms(plan, options, ampleWork(), out), "", ""};
     const Document document = out.take();
     chosen.notes = notesOf(document);
     chosen.warnings = warningsOf(document);

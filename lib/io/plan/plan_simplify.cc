@@ -30,9 +30,9 @@ bool shareEnd(const Segment2& s, const Segment2& t) {
 
 class Simplifier {
   public:
-    Simplifier(const std::vector<PlanPath>& paths, double tolerance,
+    Simplifier(const std::vector<PlanPath>& paths, double tolerance, Budget& work,
                std::span<const std::size_t> fixed)
-        : paths_(paths), tolerance_(tolerance), pieces_(pathPieces(paths)), search_(pieces_) {
+        : paths_(paths), tolerance_(tolerance), pieces_(pathPieces(paths)), search_(pieces_, work) {
         for (const PlanPath& path : paths) {
             for (const Point2 p : path.points) ++uses_[p];
             if (path.closed) continue;
@@ -162,9 +162,9 @@ class Simplifier {
 }  // namespace
 
 std::vector<PlanPath> simplifiedPaths(const std::vector<PlanPath>& paths, double tolerance,
-                                      std::span<const std::size_t> fixed) {
+                                      Budget& work, std::span<const std::size_t> fixed) {
     if (!(tolerance > 0)) return paths;
-    return Simplifier(paths, tolerance, fixed).simplify();
+    return Simplifier(paths, tolerance, work, fixed).simplify();
 }
 
 }  // namespace ispace

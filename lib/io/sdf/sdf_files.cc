@@ -123,8 +123,8 @@ std::vector<std::string> SdfFiles::pathsOf(pugi::xml_node node, std::string_view
 }
 
 SdfFiles::SdfFiles(std::string_view bytes, std::string name,
-                   std::span<const std::string> model_folders, const WorkLimit& max_work)
-    : roots_{"", "models", "../models"}, budget_(bytes.size(), max_work) {
+                   std::span<const std::string> model_folders, Budget& work)
+    : roots_{"", "models", "../models"}, work_(work) {
     std::error_code ignored;
     const fs::path home = fs::absolute(name == "-" ? "." : fs::path(name).parent_path(), ignored);
     for (const std::string& folder : model_folders)
@@ -161,8 +161,8 @@ std::optional<std::string> SdfFiles::fileNamed(pugi::xml_node node, std::string_
 }
 
 void SdfFiles::spend(pugi::xml_node node, std::size_t units) {
-    if (!budget_.take(units))
-        fail(node, "what the world includes and repeats makes " + budget_.excess());
+    if (!work_.take(units))
+        fail(node, "what the world includes and repeats makes " + work_.excess());
 }
 
 std::string SdfFiles::read(pugi::xml_node user, const std::string& path) {
@@ -170,7 +170,7 @@ std::string SdfFiles::read(pugi::xml_node user, const std::string& path) {
     const std::size_t size = openRegular(file).size;
     if (std::find(sources_.begin(), sources_.end(), file) == sources_.end()) {
         sources_.push_back(file);
-        budget_.grant(size);
+        work_.grant(size);
     }
     spend(user, workOf(size));
     return readAll(file);

@@ -56,10 +56,11 @@ class XmlFile {
 /// never downloads.
 class SdfFiles {
   public:
-    /// \param model_folders relative to the current one \param max_work see Budget
+    /// \param model_folders relative to the current one
+    /// \param work of the world; outlives this object
     /// \throws FormatError with the line: bad XML
     SdfFiles(std::string_view bytes, std::string name, std::span<const std::string> model_folders,
-             const WorkLimit& max_work);
+             Budget& work);
 
     [[nodiscard]] pugi::xml_node root() const { return files_.front()->xml.root(); }
 
@@ -132,7 +133,7 @@ class SdfFiles {
     std::vector<std::string> sources_;
     std::vector<std::string> missing_;  // as the first includes name them
     pugi::xml_node first_missing_;
-    Budget budget_;
+    Budget& work_;
 };
 
 /// A world or model of SDF, and the children that poses in it can refer to.

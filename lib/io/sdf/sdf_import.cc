@@ -34,13 +34,18 @@ constexpr double kMinDoor = 0.6, kMaxDoor = 2, kDoorHeight = 2;
 class SdfImporter {
   public:
     SdfImporter(SdfWorld world, const std::string& name, const ImportOptions& options,
-                const Schemas& schemas, ImportRecords& out)
-        : world_(std::move(world)), name_(name), options_(options), schemas_(schemas), out_(out) {}
+                const Schemas& schemas, Budget& work, ImportRecords& out)
+        : world_(std::move(world)),
+          name_(name),
+          options_(options),
+          schemas_(schemas),
+          work_(work),
+          out_(out) {}
 
     void write() {
         for (std::string& source : world_.sources) out_.source(std::move(source));
         sortShapes();
-        joinEnds(walls_);
+        joinEnds(walls_, work_);
         cutIntoWalls();
         addMeshes();
         if (walls_.empty() && fences_.empty() && blocks_.empty() && meshes_ == 0) failEmpty();
@@ -122,7 +127,7 @@ class SdfImporter {
         }
         if (options_.slice_top) failFile(name_, "meshes are cut at one height: --slice-walls M");
         const double height = options_.slice_walls.value_or(kMeshCut);
-        std::vector<SdfMeshCut> cuts = cutMeshes(world_.shapes, name_, height, schemas_);
+        std::vector<SdfMeshCut> cuts = cutMeshes(world_.shapes, name_, height, work_, schemas_);
         if (!cuts.empty()) cuts = wallsAmong(std::move(cuts), lines, choose);
         std::vector<Segment2> all = lines;
         for (const SdfMeshCut& cut : cuts)
@@ -205,7 +210,7 @@ class SdfImporter {
         if (options.found != nullptr) options.found = &trial.found;
         ImportRecords out(schemas_, name_, options);
         trial.rooms = withFileName(name_, [&] {
-            return chooseRooms({{lines.begin(), lines.end()}, {}, {}, {}, {}}, options, out);
+            return chooseRooms({{lines.begin(), lines.end()}, {}, {}, {}, {}}, options, work_, out);
         });
         trial.messages = out.take();
         return trial;
@@ -357,6 +362,7 @@ class SdfImporter {
     const std::string& name_;
     const ImportOptions& options_;
     const Schemas& schemas_;
+    Budget& work_;
     ImportRecords& out_;
     std::vector<SdfWall> walls_;
     std::set<std::size_t> is_cut_;  // shapes that are walls now
@@ -375,9 +381,12 @@ bool isSdf(std::string_view bytes) { return xmlRootName(bytes) == "sdf"; }
 Document readSdf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
     ImportRecords out(schemas, name, options);
-    SdfImporter(readSdfShapes(bytes, name, options.model_folders, options.max_work), name, options,
-                schemas, out)
-        .write();
+    Budget work(bytes.size(), options.max_work);
+    withFileName(name, [&] {
+        SdfImporter(readSdfShapes(bytes, name, options.model_folders, work), name, options, schemas,
+                    work, out)
+            .write();
+    });
     return out.take();
 }
 

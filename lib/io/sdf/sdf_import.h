@@ -54,7 +54,7 @@ SdfWall wallOf(const SdfBlock& block);
 /// Moves the end of a mid-line along it onto the mid-line of another wall if it ends within that
 /// wall's thickness: boxes meet at their faces, rooms at mid-lines.
 /// \pre each wall is one straight piece
-void joinEnds(std::vector<SdfWall>& walls);
+void joinEnds(std::vector<SdfWall>& walls, Budget& work);
 
 /// Returns the upward axis of a mesh file for its `mesh` record: Gazebo takes COLLADA and OBJ
 /// unrotated, whatever axis those name.
@@ -67,9 +67,10 @@ struct SdfMeshCut {
 };
 
 /// Cuts the available meshes at a height of the world; skips those that do not reach it, and bad
-/// files. \param name the world's file \throws std::system_error as loadMesh
+/// files. \param name the world's file \param work pays for files that shapes repeat
+/// \throws FormatError if fewer units are left, std::system_error as loadMesh
 std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
-                                  double height, const Schemas& schemas);
+                                  double height, Budget& work, const Schemas& schemas);
 
 /// Returns the cuts that are walls; others are objects in the room. Prefers the cut that, with
 /// other walls of the world, encloses half of the world's extent; then those at the edge of the

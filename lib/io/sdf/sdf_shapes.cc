@@ -24,8 +24,8 @@ constexpr std::size_t kShapeWork = 80, kPointWork = 10;
 class SdfReader {
   public:
     SdfReader(std::string_view bytes, const std::string& name,
-              std::span<const std::string> model_folders, const WorkLimit& max_work)
-        : files_(bytes, name, model_folders, max_work) {}
+              std::span<const std::string> model_folders, Budget& work)
+        : files_(bytes, name, model_folders, work) {}
 
     SdfWorld read() {
         const pugi::xml_node root = files_.root();
@@ -152,8 +152,8 @@ class SdfReader {
 }  // namespace
 
 SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
-                       std::span<const std::string> model_folders, const WorkLimit& max_work) {
-    return SdfReader(bytes, name, model_folders, max_work).read();
+                       std::span<const std::string> model_folders, Budget& work) {
+    return SdfReader(bytes, name, model_folders, work).read();
 }
 
 }  // namespace ispace

@@ -56,11 +56,11 @@ struct SdfWorld {
 /// sees (without `visibility_flags`), in the world and in the models that it includes, with the
 /// poses of SdfFrames. Entities are not resolved.
 /// \param name the world's file \param model_folders see SdfFiles
-/// \param max_work see Budget
+/// \param work of the world; files that it includes raise its bound
 /// \throws FormatError with the line: bad XML, no world and no model, malformed numbers, frames
 /// that are missing or depend on each other, models nested too deep, includes that include
 /// themselves, more work than the budget has
 SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
-                       std::span<const std::string> model_folders, const WorkLimit& max_work);
+                       std::span<const std::string> model_folders, Budget& work);
 
 }  // namespace ispace

@@ -35,6 +35,8 @@ constexpr double kLooseEnd = 0.02;
 constexpr double kShareOfWorld = 0.5;
 constexpr std::size_t kMaxTried = 4;
 constexpr double kOnEdge = 1e-5;  // metres
+/// Triangles that are placed and cut in the time of one unit of Budget.
+constexpr std::size_t kTrianglesPerUnit = 8;
 
 std::vector<Segment2> linesOf(std::span<const Segment2> others, std::span<const SdfMeshCut> cuts) {
     std::vector<Segment2> lines(others.begin(), others.end());
@@ -202,7 +204,7 @@ Segment2 joinedEnds(const BoxLine& wall, std::span<const BoxLine> walls, const N
 
 }  // namespace
 
-void joinEnds(std::vector<SdfWall>& walls) {
+void joinEnds(std::vector<SdfWall>& walls, Budget& work) {
     // Models included several times at one pose already create thousands of coincident walls.
     std::map<BoxLine, std::size_t> known;
     std::vector<BoxLine> distinct;
@@ -218,7 +220,7 @@ void joinEnds(std::vector<SdfWall>& walls) {
         lines.push_back(line.line);
         thickest = std::max(thickest, wall.thickness);
     }
-    const NearSegments search(lines);
+    const NearSegments search(lines, work);
     for (std::size_t i = 0; i < distinct.size(); ++i)
         lines[i] = joinedEnds(distinct[i], distinct, search, thickest / 2 + kLooseEnd);
     for (std::size_t i = 0; i < walls.size(); ++i)
@@ -231,14 +233,17 @@ std::string sdfMeshUp(const std::string& file) {
 }
 
 std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
-                                  double height, const Schemas& schemas) {
+                                  double height, Budget& work, const Schemas& schemas) {
     std::map<std::string, std::shared_ptr<const TriangleMesh>> loaded;
     std::vector<SdfMeshCut> cuts;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const auto* const mesh = std::get_if<SdfMesh>(&shapes[i].shape);
         if (mesh == nullptr || !mesh->file) continue;
         std::shared_ptr<const TriangleMesh>& triangles = loaded[*mesh->file];
-        if (triangles == nullptr) triangles = meshOrNothing(sideFilePath(name, *mesh->file));
+        if (triangles == nullptr)
+            triangles = meshOrNothing(sideFilePath(name, *mesh->file));
+        else if (!work.take(1 + triangles->triangles.size() / kTrianglesPerUnit))
+            failFile(name, "cuts of repeated meshes make " + work.excess(), shapes[i].line);
         const Body body = bodyOf(shapes[i], *triangles, schemas);
         Slice slice{height, {}, {}};
         cutMeshes(body, height, slice);

@@ -51,10 +51,11 @@ std::string packed(const cv::Mat& image) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 5) return 2;
+    if (argc != 6) return 2;
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     cv::setNumThreads(1);
     // A file may contain many pictures, one after another.
     const ConfinedLimits most{pictureLimits(kMaxDecodedPixels).memory, SIZE_MAX};
-    return runConfined(argc, argv, most, [](std::size_t size) { return packed(decoded(size)); });
+    return runConfined(argc, argv, most,
+                       [](std::size_t size, Budget& /*work*/) { return packed(decoded(size)); });
 }

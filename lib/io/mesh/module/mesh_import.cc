@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// read-mesh SUFFIX UP mesh PARENT SIZE MEMORY SECONDS: reads the mesh on standard input and answers
-// by the socket that is standard output, see base/confined.h; read-mesh SUFFIX CUT building ...
-// reads an IFC building, cut at a height or, with "", above each floor. Started by mesh_reader.cc
-// alone.
+// read-mesh SUFFIX UP mesh PARENT SIZE MEMORY SECONDS UNITS: reads the mesh on standard input and
+// answers by the socket that is standard output, see base/confined.h; read-mesh SUFFIX CUT building
+// ... reads an IFC building, cut at a height or, with "", above each floor. Started by
+// mesh_reader.cc alone.
 #include "io/mesh/module/mesh_import.h"
 
 #include <assimp/BaseImporter.h>
@@ -84,10 +84,9 @@ bool comesWithYUp(const aiScene& scene) {
 /// Merges the meshes of all nodes into one list of triangles.
 class Gatherer {
   public:
-    /// \param size of the file in bytes
-    Gatherer(const aiScene& scene, bool turn_y_up, std::size_t size)
+    Gatherer(const aiScene& scene, bool turn_y_up, Budget& work)
         : scene_(scene), turn_y_up_(turn_y_up) {
-        checkSize(Budget(size));
+        checkSize(work);
     }
 
     /// All in one.
@@ -99,7 +98,7 @@ class Gatherer {
 
   private:
     /// To be called before any allocation: instances cost a file few bytes.
-    void checkSize(Budget budget) const {
+    void checkSize(Budget& work) const {
         std::vector<std::pair<const aiNode*, std::size_t>> open{{scene_.mRootNode, 1}};
         std::vector<bool> is_used(scene_.mNumMeshes);
         std::size_t nodes = 0, triangles = 0, vertices = 0;
@@ -115,9 +114,8 @@ class Gatherer {
                 triangles += part.mNumFaces;
                 vertices += part.mNumVertices;
                 const std::size_t corners = std::size_t{3} * part.mNumFaces + part.mNumVertices;
-                if (is_used[node->mMeshes[i]] && !budget.take(1 + corners / kMeshCornersPerUnit))
-                    fail("nodes that repeat meshes make more than " +
-                         std::to_string(budget.limit()) + " units of work");
+                if (is_used[node->mMeshes[i]] && !work.take(1 + corners / kMeshCornersPerUnit))
+                    throw TooMuchWork("nodes that repeat meshes");
                 is_used[node->mMeshes[i]] = true;
             }
             if (triangles > kMaxMeshTriangles || vertices > 3 * kMaxMeshTriangles)
@@ -260,7 +258,7 @@ void leaveOnly(const std::string& suffix, Assimp::Importer& importer) {
 }  // namespace
 
 TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up,
-                        const std::optional<std::string>& obj_up) {
+                        const std::optional<std::string>& obj_up, Budget& work) {
     Assimp::Importer importer;
     const std::string suffix = suffixOf(format);
     leaveOnly(suffix, importer);
@@ -276,7 +274,7 @@ TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& 
     if (scene == nullptr || scene->mRootNode == nullptr)
         fail("bad mesh file: it cannot be read as " + suffix + " (assimp says: " +
              assimpsWords(importer.GetErrorString(), name) + "); is it damaged?");
-    Gatherer gatherer(*scene, !as_is && (obj_up == "y" || comesWithYUp(*scene)), size);
+    Gatherer gatherer(*scene, !as_is && (obj_up == "y" || comesWithYUp(*scene)), work);
     TriangleMesh mesh = gatherer.gather();
     clean(mesh);
     return mesh;
@@ -305,19 +303,26 @@ MeshHead checkedHead(std::size_t size, const std::string& suffix) {
 bool isStep(std::size_t size) { return MappedInput(size).bytes().starts_with("ISO-10303-21"); }
 
 std::string answer(bool is_building, const std::string& suffix, const std::string& setting,
-                   std::size_t size) {
-    if (is_building)
-        return packedBuilding(readBuilding(MappedInput(size).bytes(), parseDouble(setting)));
-    if (isStep(size)) return packedMesh(ifcMesh(MappedInput(size).bytes()));
+                   std::size_t size, Budget& work) {
+    try {
+        if (is_building)
+            return packedBuilding(
+                readBuilding(MappedInput(size).bytes(), parseDouble(setting), work));
+        if (isStep(size)) return packedMesh(ifcMesh(MappedInput(size).bytes(), work));
+    } catch (const std::runtime_error& error) {
+        if (!work.isExceeded()) throw;
+        const std::string what = error.what();
+        throw TooMuchWork(what.substr(0, what.find(" make ")));
+    }
     const MeshHead head = checkedHead(size, suffix);
-    return packedMesh(importMesh(head.format, size, setting, head.obj_up));
+    return packedMesh(importMesh(head.format, size, setting, head.obj_up, work));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 8) return 2;
-    return runConfined(argc, argv, meshLimits(SIZE_MAX, true), [argv](std::size_t size) {
-        return answer(std::string_view(argv[3]) == "building", argv[1], argv[2], size);
+    if (argc != 9) return 2;
+    return runConfined(argc, argv, meshLimits(SIZE_MAX, true), [argv](auto size, Budget& work) {
+        return answer(std::string_view(argv[3]) == "building", argv[1], argv[2], size, work);
     });
 }

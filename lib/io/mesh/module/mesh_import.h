@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/budget.h"
 #include "io/mesh/mesh_parts.h"
 
 namespace ispace {
@@ -22,8 +23,9 @@ void checkMesh(MeshFormat format, std::string_view bytes);
 
 /// Reads the mesh on standard input with assimp, as loadMesh says. \param size in bytes
 /// \param up the upward axis, or auto \param obj_up the result of objUpComment(), for OBJ
-/// \throws std::runtime_error with the error of the file
+/// \param work pays for nodes that repeat meshes
+/// \throws std::runtime_error with the error of the file, TooMuchWork
 TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up,
-                        const std::optional<std::string>& obj_up = {});
+                        const std::optional<std::string>& obj_up, Budget& work);
 
 }  // namespace ispace
