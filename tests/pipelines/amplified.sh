@@ -63,6 +63,8 @@ grep -q ': error: #[0-9]*: mapped shapes make more than [0-9]* units of work' er
 quick gltf_instances 400000
 grep -q 'nodes that repeat meshes make more than [0-9]* units of work' err || fail "another error: $(cat err)"
 quick env_coincident_things 800000
+quick env_calibrations 200000
+quick env_bad_meshes 200000
 for family in env_comb env_comb_zone pol_comb pol_star pol_holes; do
     quick "$family" 800000
 done

@@ -272,6 +272,22 @@ def env_coincident_things(size):
     return {"room.env": "#env 1\nfence path=0,0;8,0;8,6;0,6 closed=yes\n" + things * (size // len(things))}
 
 
+def env_calibrations(size):
+    """Cameras that name one large calibration."""
+    camera = "camera at=1,1,2 calibration=c.yaml\n"
+    return {"room.env": "#env 1\nispace size=8,6\n" + camera * (size // 2 // len(camera)),
+            "c.yaml": "image_width: 640\nimage_height: 480\n"
+                      "camera_matrix: {data: [430.5, 0, 320.25, 0, 431.5, 240.75, 0, 0, 1]}\n"
+                      "corners: [" + "1.5, " * (size // 2 // 5) + "1]\n"}
+
+
+def env_bad_meshes(size):
+    """Records that name one bad mesh."""
+    mesh = "mesh file=m.obj\n"
+    return {"room.env": "#env 1\nispace size=8,6\n" + mesh * (size // 2 // len(mesh)),
+            "m.obj": "v 1 2 3\n" * (size // 2 // 8) + "f 1 2 999999999\n"}
+
+
 def env_collinear(size):
     """Walls on one line that overlap."""
     count = size // 26
