@@ -8,6 +8,8 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "report/coverage_report.h"
+#include "report/map/map.h"
+#include "report/run_report.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -115,14 +117,16 @@ BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOp
     return measured;
 }
 
-std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage) {
+std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage,
+                                 const BuildingRunCoverage* run) {
     JsonWriter json;
     beginReport(json, "ispace-building-coverage/1", "coverage");
     json.key("digest").value(building.document.digest()).key("storeys").beginArray();
     std::string text;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         json.beginObject().key("id").value(building.document.storeys[i].id).key("report");
-        text += json.take() + coverageJson(coverage.storeys[i].report);
+        text += json.take() +
+                coverageJson(coverage.storeys[i].report, {.run = run ? &run->storeys[i] : nullptr});
         text.pop_back();  // its newline
         json.endObject();
     }
@@ -134,26 +138,45 @@ std::string buildingCoverageJson(const BuildingScene& building, const BuildingCo
     writeMetric(json, "free_coverage", coverage.free_coverage);
     json.key("redundancy").beginArray();
     for (const double share : coverage.redundancy) json.value(roundSignificant(share));
-    json.endArray().endObject();
+    json.endArray();
+    if (run != nullptr) writeRun(json, run->sum);
+    json.endObject();
     return text + json.take() + '\n';
 }
 
-std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage) {
-    std::string text;
+std::vector<TextRow> storeyRows(const BuildingScene& building, const BuildingCoverage& coverage) {
     std::vector<TextRow> rows = {
         {"storey", "sensors", "indoor m2", "covered", "exactly", "free floor", "exactly"}};
     std::size_t sensors = 0;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         const CoverageReport& report = coverage.storeys[i].report;
-        const std::string& id = building.document.storeys[i].id;
-        text += "storey " + id + '\n' + coverageText(report) + '\n';
-        rows.push_back(tableRow(id, report.sensors.size(), report.indoor_area, report.coverage,
-                                report.free_coverage));
+        rows.push_back(tableRow(building.document.storeys[i].id, report.sensors.size(),
+                                report.indoor_area, report.coverage, report.free_coverage));
         sensors += report.sensors.size();
     }
     rows.push_back(tableRow("building", sensors, coverage.indoor_area, coverage.coverage,
                             coverage.free_coverage));
-    return text + aligned(rows, "lr");
+    return rows;
+}
+
+std::uint32_t redundancyScale(const BuildingCoverage& coverage) {
+    std::uint32_t scale = 0;
+    for (const Coverage& storey : coverage.storeys)
+        scale = std::max(scale, redundancyScale(storey.report));
+    return scale;
+}
+
+std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage,
+                                 const BuildingRunCoverage* run) {
+    std::string text;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+        text += "storey " + building.document.storeys[i].id + '\n' +
+                coverageText(coverage.storeys[i].report) + '\n';
+        if (run != nullptr && !run->storeys[i].members.empty())
+            text += runText(run->storeys[i]) + '\n';
+    }
+    return text + aligned(storeyRows(building, coverage), "lr") +
+           (run == nullptr ? "" : '\n' + runText(run->sum));
 }
 
 }  // namespace ispace

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "building/building_run_coverage.h"
 #include "building/building_scene.h"
 #include "coverage/coverage.h"
+#include "report/coverage_report.h"
 
 namespace ispace {
 
@@ -22,9 +25,17 @@ struct BuildingCoverage {
 /// Measures all storeys; equal ones once.
 BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options);
 
-/// Writes one JSON object and a newline, schema ispace-building-coverage/1.
-std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage);
-/// Writes the report of each storey, then a table of all.
-std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage);
+/// Returns the rows of a table, its heads first: storeys, then the building.
+std::vector<TextRow> storeyRows(const BuildingScene& building, const BuildingCoverage& coverage);
+/// Returns the scale of redundancy that the maps of all storeys share, see MapOptions.
+std::uint32_t redundancyScale(const BuildingCoverage& coverage);
+
+/// Writes one JSON object and a newline, schema ispace-building-coverage/1. \param run null:
+/// without
+std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage,
+                                 const BuildingRunCoverage* run = nullptr);
+/// Writes the report of each storey, then a table of all. \param run null: without
+std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage,
+                                 const BuildingRunCoverage* run = nullptr);
 
 }  // namespace ispace

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "base/message.h"
@@ -11,6 +13,10 @@
 namespace ispace {
 
 namespace {
+
+bool isMoverRecord(const Record& record) {
+    return record.keyword() == "robot" || record.keyword() == "human";
+}
 
 bool refers(const KeySpec& key) { return key.role == Role::Carrier || key.role == Role::Reference; }
 
@@ -69,6 +75,23 @@ std::vector<Document> layoutsOf(const Document& layout, const StoreyedDocument& 
 Record inBuilding(const Storey& storey, Record record, const std::string& id) {
     return withIds(std::move(record), id,
                    [&](const std::string& plain) { return wholeId(storey, plain); });
+}
+
+std::shared_ptr<const Scene> sceneWithWholeIds(const BuildingScene& building, std::size_t storey) {
+    const std::shared_ptr<const Scene>& scene = building.scenes[storey];
+    if (scene->robots.empty() && scene->people.empty()) return scene;
+    std::set<std::string_view> movers;
+    for (std::size_t i = 0; i < scene->records.size(); ++i)
+        if (isMoverRecord(scene->records[i])) movers.insert(scene->ids[i]);
+    std::vector<Record> records = scene->records;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const bool is_carried = records[i].schema().type == RecordType::Placement &&
+                                records[i].schema().find("on") != nullptr && records[i].has("on") &&
+                                movers.contains(records[i].text("on"));
+        if (isMoverRecord(records[i]) || is_carried)
+            records[i] = inBuilding(building.document.storeys[storey], records[i], scene->ids[i]);
+    }
+    return std::make_shared<const Scene>(makeScene(std::move(records), *scene, building.devices));
 }
 
 BuildingScene makeBuildingScene(StoreyedDocument document, const std::vector<Document>& layouts,

@@ -43,6 +43,10 @@ std::vector<Document> layoutsOf(const Document& layout, const StoreyedDocument& 
 /// the storey before its id and those that it refers to. \param id of the record, see assignIds()
 Record inBuilding(const Storey& storey, Record record, const std::string& id);
 
+/// Returns the scene of a storey with the ids of movers, and of the sensors on them, across the
+/// building, as in the run of a building.
+std::shared_ptr<const Scene> sceneWithWholeIds(const BuildingScene& building, std::size_t storey);
+
 /// Builds the scenes. \param layouts by storey; empty: none \throws FormatError as makeScene()
 BuildingScene makeBuildingScene(StoreyedDocument document, const std::vector<Document>& layouts,
                                 const DeviceCatalogue& devices);

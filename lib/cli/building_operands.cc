@@ -17,6 +17,7 @@
 #include "io/glb/glb_read.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "scene/run/run_reader.h"
 
 namespace ispace {
 
@@ -52,6 +53,39 @@ Document layoutOfStorey(const Document& layout, const StoreyedDocument& building
             record.text("digest") == building.digest())
             record.set("digest", environmentDigest(chosen.room->records));
     return own;
+}
+
+std::string recordedBuilding(const std::string& folder) {
+    const bool is_one = !folder.empty() &&
+                        std::filesystem::exists(folder + '/' + kRecordedBuilding) &&
+                        !std::filesystem::exists(RecordedFiles(folder).robots);
+    return is_one ? fileOfRecord(folder, kRecordedBuilding) : "";
+}
+
+BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std::string& folder,
+                                       const WatchOptions& watch,
+                                       std::optional<std::uint64_t> max_work,
+                                       std::vector<std::string>& warnings) {
+    BuildingRunCoverage run;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const std::string& id = building.document.storeys[i].id;
+        const std::string own = folder + '/' + id;
+        RunCoverage& storey = run.storeys.emplace_back();
+        if (RunReader(own).next()) {
+            const auto scene = sceneWithWholeIds(building, i);
+            RunReader reader(own);
+            RunChanges changes = changesOfRun(own, *scene, max_work);
+            storey = measureRun(*scene, reader, watch, &changes);
+            if (!changes.failure().empty()) warnings.push_back(id + ": " + changes.failure());
+            if (reader.isCut())
+                warnings.push_back(id +
+                                   ": the record ends in the midst of a step, which is left out");
+        }
+        storey.name = baseName(folder) + '/' + id;
+    }
+    run.sum = sumOverStoreys(run.storeys);
+    run.sum.name = baseName(folder);
+    return run;
 }
 
 namespace {

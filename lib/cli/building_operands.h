@@ -2,14 +2,17 @@
 // Buildings among the operands of a tool: one storey as a room, or all of them.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "building/building_run_coverage.h"
 #include "building/building_scene.h"
 #include "building/storeys.h"
 #include "cli/operands.h"
 #include "record/record.h"
+#include "sense/detection.h"
 
 namespace ispace {
 
@@ -33,6 +36,19 @@ struct BuildingInput {
     std::vector<std::string> files;  ///< all that were read, for -MD
     std::vector<Diagnostic> warnings;
 };
+
+/// Name of the building in the folder of its run's record, with the scenes of the start.
+constexpr const char* kRecordedBuilding = "building.yaml";
+/// Returns the building in a folder of its record; "" for a folder without one, as of one room.
+/// \throws as fileOfRecord()
+std::string recordedBuilding(const std::string& folder);
+
+/// Measures the record of a building's run, storey by storey and in sum. \param max_work of changes
+/// \param warnings gets what could not be read or repeated \throws as measureRun()
+BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std::string& folder,
+                                       const WatchOptions& watch,
+                                       std::optional<std::uint64_t> max_work,
+                                       std::vector<std::string>& warnings);
 
 /// Reads ENV and LAYOUT if ENV is a building and no storey of it is chosen; std::nullopt for
 /// others, which readScene() reads. \throws as readScene() and readBuilding()

@@ -93,6 +93,8 @@ class Members {
 class SightSum {
   public:
     void add(const Sample& sample);
+    /// Ends the presence of those that a change of the world has removed; they may come back.
+    void leaveOut(Members& members);
     RunCoverage finish(const RunReader& reader);
 
   private:
@@ -198,6 +200,15 @@ void SightSum::add(const Sample& sample) {
     }
 }
 
+void SightSum::leaveOut(Members& members) {
+    for (std::size_t who = 0; who < last_.size(); ++who) {
+        Last& last = last_[who];
+        if (!last.is_there || members.ownerOf(who) != MovingBodies::kNoOwner) continue;
+        closeGap(who, last.time, last.place);
+        last.is_there = last.has_jumped = false;
+    }
+}
+
 void turnIntoShares(RunSightMetrics& metrics) {
     for (double& share : metrics.time_shares)
         share = metrics.duration > 0 ? share / metrics.duration : 0;
@@ -272,6 +283,7 @@ RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions
             now = &*changed;
             watch.emplace(*now, options);
             members.emplace(*now, reader);
+            sum.leaveOut(*members);
         }
     };
     do {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "base/message.h"
@@ -13,32 +12,6 @@
 #include "scene/placement_schemas.h"
 
 namespace ispace {
-
-namespace {
-
-bool isMoverRecord(const Record& record) {
-    return record.keyword() == "robot" || record.keyword() == "human";
-}
-
-/// Returns the scene of a storey with the ids of movers and of their sensors across the building.
-std::shared_ptr<const Scene> withWholeIds(const std::shared_ptr<const Scene>& scene,
-                                          const Storey& storey, const DeviceCatalogue& devices) {
-    if (scene->robots.empty() && scene->people.empty()) return scene;
-    std::set<std::string_view> movers;
-    for (std::size_t i = 0; i < scene->records.size(); ++i)
-        if (isMoverRecord(scene->records[i])) movers.insert(scene->ids[i]);
-    std::vector<Record> records = scene->records;
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        const bool is_carried = records[i].schema().type == RecordType::Placement &&
-                                records[i].schema().find("on") != nullptr && records[i].has("on") &&
-                                movers.contains(records[i].text("on"));
-        if (isMoverRecord(records[i]) || is_carried)
-            records[i] = inBuilding(storey, records[i], scene->ids[i]);
-    }
-    return std::make_shared<const Scene>(makeScene(std::move(records), *scene, devices));
-}
-
-}  // namespace
 
 BuildingRun::Data::Data(const BuildingScene& the_building, const BuildingRunOptions& the_options)
     : building(the_building), options(the_options), passages(passagesOf(building)) {
@@ -67,11 +40,9 @@ void BuildingRun::Data::addRoom(Room room, std::shared_ptr<const Scene> scene) {
 }
 
 void BuildingRun::Data::addRooms() {
-    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
-        const Storey& storey = building.document.storeys[i];
-        addRoom({.id = storey.id, .storey = i},
-                withWholeIds(building.scenes[i], storey, building.devices));
-    }
+    for (std::size_t i = 0; i < building.scenes.size(); ++i)
+        addRoom({.id = building.document.storeys[i].id, .storey = i},
+                sceneWithWholeIds(building, i));
     for (std::size_t i = 0; i < passages.size(); ++i) {
         const StoreyLink& passage = passages[i];
         first_room.push_back(rooms.size());
@@ -331,9 +302,8 @@ TripAnswer BuildingRun::ride(const std::string& mover, std::string_view lift,
     if (landing == nullptr) return {passage.id + " has no landing at " + excerpt(storey)};
     BuildingTrip trip;
     // It leaves the landing to others.
-    trip.plan.points = {
-        {passage.storeys[stop],
-         landing->spots.empty() ? landing->at.position : landing->spots.front()}};
+    trip.plan.points = {{passage.storeys[stop],
+                         landing->spots.empty() ? landing->at.position : landing->spots.front()}};
     trip.only = which;
     return data_->begin(mover, std::move(trip));
 }

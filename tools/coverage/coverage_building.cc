@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,14 @@
 #include "base/message.h"
 #include "base/run_files.h"
 #include "building/building_coverage.h"
+#include "building/building_page.h"
 #include "cli/building_operands.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "coverage/coverage_run.h"
 #include "report/coverage_formats.h"
 #include "report/map/map.h"
+#include "scene/run/run_reader.h"
 
 namespace ispace {
 
@@ -38,13 +41,11 @@ std::string fileOf(std::string pattern, const std::string& id) {
 void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocument& building) {
     std::string option;
     if (!options.other.empty()) option = "--compare";
-    if (!options.run.empty()) option = "--run";
+    if (!options.run.empty() && recordedBuilding(options.run).empty()) option = "--run of one room";
     if (options.presence) option = "--presence";
     if (options.suggestions) option = "--suggest";
     if (!options.trace.empty()) option = "--trace";
     if (!options.zones.empty()) option = "--zone";
-    if (!options.report.empty() && suffixOf(options.report) != "json")
-        option = "a page of --report";
     for (const Requirement& requirement : options.requirements)
         if (requirement.density) option = "--require of a density class";
     if (!option.empty())
@@ -92,24 +93,36 @@ std::vector<JunitCase> judgeBuilding(const CoverageToolOptions& options,
     return verdicts;
 }
 
-/// Returns the scale of redundancy that the maps of all storeys share.
-std::uint32_t scaleOf(const BuildingCoverage& coverage) {
-    std::uint32_t scale = 0;
-    for (const Coverage& storey : coverage.storeys)
-        scale = std::max(scale, redundancyScale(storey.report));
-    return scale;
+/// Reads the record of each storey; nullopt without --run.
+std::optional<BuildingRunCoverage> lookAtRuns(const CoverageToolOptions& options,
+                                              BuildingInput& input) {
+    if (options.run.empty()) return std::nullopt;
+    for (const Storey& storey : input.building.document.storeys)
+        input.files.push_back(RecordedFiles(options.run + '/' + storey.id).robots);
+    std::vector<std::string> warnings;
+    BuildingRunCoverage run =
+        measureBuildingRun(input.building, options.run,
+                           {.plane = options.measure.plane, .density = options.measure.density},
+                           options.rules.max_work, warnings);
+    for (const std::string& warning : warnings) warn(options.common, "coverage", warning);
+    return run;
+}
+
+const RunCoverage* runOf(const std::optional<BuildingRunCoverage>& run, std::size_t storey) {
+    return run && !run->storeys[storey].members.empty() ? &run->storeys[storey] : nullptr;
 }
 
 /// Draws all storeys on one page.
 void writePanels(const CoverageToolOptions& options, const BuildingInput& input,
-                 const BuildingCoverage& coverage) {
+                 const BuildingCoverage& coverage, const std::optional<BuildingRunCoverage>& run) {
     std::vector<Picture> panels;
-    const std::uint32_t scale = scaleOf(coverage);
+    const std::uint32_t scale = redundancyScale(coverage);
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         MapOptions map = options.map;
         map.format = *options.format->picture;
         map.title = input.building.document.storeys[i].id;
         map.redundancy_scale = scale;
+        map.run = runOf(run, i);
         panels.push_back(coverageMap(*input.building.scenes[i], coverage.storeys[i], map));
     }
     Picture page = panelsOf(panels);
@@ -121,25 +134,44 @@ void writePanels(const CoverageToolOptions& options, const BuildingInput& input,
 
 /// Writes a file for each storey.
 void writeFiles(const CoverageToolOptions& options, const BuildingInput& input,
-                const BuildingCoverage& coverage) {
+                const BuildingCoverage& coverage, const std::optional<BuildingRunCoverage>& run) {
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         const Storey& storey = input.building.document.storeys[i];
         CoverageToolOptions own = options;
         own.common.output = fileOf(options.common.output, storey.id);
         own.map.title = storey.id;
-        own.map.redundancy_scale = scaleOf(coverage);
+        own.map.redundancy_scale = redundancyScale(coverage);
+        own.map.run = runOf(run, i);
         claimOutput(own.common.output, "the map of a storey");
         SceneInput room{*input.building.scenes[i], *storey.room, input.layout, {}, {}, {}, {}};
         writeProduct(own, room, {coverage.storeys[i], {}});
     }
 }
 
+/// Returns the bytes of --report.
+std::string buildingReport(const CoverageToolOptions& options, const BuildingInput& input,
+                           const BuildingCoverage& coverage, const BuildingRunCoverage* run) {
+    const std::string suffix = suffixOf(options.report);
+    if (suffix == "json") return buildingCoverageJson(input.building, coverage, run);
+    BuildingPageInput page{input.building, coverage, "", options.history_line, {}, run};
+    if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
+    for (const JunitCase& verdict : judgeBuilding(options, input.building, coverage))
+        page.requirements.push_back(
+            {verdict.name, verdict.outcome == JunitCase::Outcome::Met, verdict.message});
+    const ReportPage pages = buildingPage(page);
+    return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
+}
+
 }  // namespace
 
 bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
-    const auto read = readBuildingInput({options.operands, options.rules, true});
+    std::vector<std::string> operands = options.operands;
+    if (operands.empty())
+        if (const std::string recorded = recordedBuilding(options.run); !recorded.empty())
+            operands.push_back(recorded);
+    auto read = readBuildingInput({operands, options.rules, true});
     if (!read) return false;
-    const BuildingInput& input = *read;
+    BuildingInput& input = *read;
     mustBeAboutBuildings(options, input.building.document);
     warn(options.common, "coverage", input.warnings);
     if (!options.report.empty()) mustBeWritable(options.report);
@@ -149,17 +181,19 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
             warn(options.common, "coverage", std::span<const Diagnostic>(&finding, 1));
         }
     const BuildingCoverage coverage = measureBuilding(input.building, options.measure);
+    const std::optional<BuildingRunCoverage> run = lookAtRuns(options, input);
     if (options.format != nullptr) {
         if (isPattern(options.common.output))
-            writeFiles(options, input, coverage);
+            writeFiles(options, input, coverage, run);
         else
-            writePanels(options, input, coverage);
+            writePanels(options, input, coverage, run);
         writeDependencies(options.common, input.files);
     }
+    const BuildingRunCoverage* const of_run = run ? &*run : nullptr;
     if (!options.report.empty())
-        writeAll(options.report, buildingCoverageJson(input.building, coverage));
-    writeAll("-", options.json ? buildingCoverageJson(input.building, coverage)
-                               : buildingCoverageText(input.building, coverage));
+        writeAll(options.report, buildingReport(options, input, coverage, of_run));
+    writeAll("-", options.json ? buildingCoverageJson(input.building, coverage, of_run)
+                               : buildingCoverageText(input.building, coverage, of_run));
     const std::vector<JunitCase> verdicts = judgeBuilding(options, input.building, coverage);
     for (const JunitCase& verdict : verdicts)
         if (verdict.outcome == JunitCase::Outcome::Met)

@@ -55,9 +55,6 @@ void warnOfScenes(const SimrunOptions& options, const BuildingInput& input) {
         }
 }
 
-/// The building in the folder of its record, with the scenes of the run's start.
-constexpr const char* kBuildingFile = "building.yaml";
-
 /// Writes the building with its layout. Storeys keep sharing rooms.
 void writeBuilding(const BuildingScene& building, const History& history,
                    const std::string& folder) {
@@ -74,7 +71,7 @@ void writeBuilding(const BuildingScene& building, const History& history,
         }
         whole.storeys[i].room = known;
     }
-    writeAll(folder + '/' + kBuildingFile, writeBuildingYaml(whole));
+    writeAll(folder + '/' + kRecordedBuilding, writeBuildingYaml(whole));
 }
 
 /// Records each room into a folder of its name, as a run by itself, and beside them the building
@@ -138,13 +135,6 @@ void forward(BuildingRun& run, SimTime from) {
 }
 
 }  // namespace
-
-std::string recordedBuilding(const std::string& folder) {
-    const std::string file = folder + '/' + kBuildingFile;
-    const bool is_one = !folder.empty() && std::filesystem::exists(file) &&
-                        !std::filesystem::exists(RecordedFiles(folder).robots);
-    return is_one ? fileOfRecord(folder, kBuildingFile) : "";
-}
 
 bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     const SimrunOptions& options = command.options();

@@ -18,6 +18,7 @@
 #include "base/json_writer.h"
 #include "base/number.h"
 #include "base/run_files.h"
+#include "cli/building_operands.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/scene_folder.h"
@@ -27,7 +28,6 @@
 #include "scene/run/run_reader.h"
 #include "scene/scene.h"
 #include "server/network.h"
-#include "simrun/simrun_building.h"
 
 namespace ispace {
 

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "coverage/run_coverage.h"
+
+namespace ispace {
+
+/// The coverage of a building's run: of each storey, and of all floors together.
+struct BuildingRunCoverage {
+    std::vector<RunCoverage> storeys;  ///< without members where nobody came
+    RunCoverage sum;
+};
+
+/// Adds up the metrics of each mover over the storeys on which it was; the time in lifts and on
+/// stairs, where no sensors stand, is left out. The longest unseen interval is one on a storey.
+/// Ways and losses stay with the storeys.
+RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys);
+
+}  // namespace ispace

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/building_run_coverage.h"
+
+#include <gtest/gtest.h>
+
+namespace ispace {
+namespace {
+
+RunSightMetrics metrics(double duration, double length, std::vector<double> shares,
+                        std::size_t losses, double gap) {
+    RunSightMetrics metrics;
+    metrics.duration = duration;
+    metrics.length = length;
+    metrics.time_shares = metrics.way_shares = std::move(shares);
+    metrics.losses = losses;
+    metrics.longest_gap = UnseenInterval{1, 1 + gap, {}, {}};
+    return metrics;
+}
+
+RunCoverage storey(double begin, double end, const RunSightMetrics& one, const std::string& id) {
+    RunCoverage run;
+    run.begin = begin;
+    run.end = end;
+    run.all = one;
+    run.members = {one};
+    run.members[0].id = id;
+    return run;
+}
+
+TEST(BuildingRunCoverage, AddsUpMoversOverStoreys) {
+    const std::vector<RunCoverage> storeys = {
+        storey(0, 20, metrics(20, 10, {0.5, 0.5}, 1, 4), "ground/r"),
+        RunCoverage(),  // nobody came
+        storey(30, 60, metrics(30, 0, {0, 0, 1}, 2, 9), "ground/r"),
+        storey(5, 50, metrics(10, 10, {1}, 0, 2), "ground/s")};
+    const RunCoverage sum = sumOverStoreys(storeys);
+    EXPECT_EQ(sum.begin, 0);
+    EXPECT_EQ(sum.end, 60);
+    ASSERT_EQ(sum.members.size(), 2U);
+    const RunSightMetrics& r = sum.members[0];
+    EXPECT_EQ(r.id, "ground/r");
+    EXPECT_DOUBLE_EQ(r.duration, 50);
+    EXPECT_DOUBLE_EQ(r.length, 10);
+    ASSERT_EQ(r.time_shares.size(), 3U);
+    EXPECT_DOUBLE_EQ(r.time_shares[0], 0.2);
+    EXPECT_DOUBLE_EQ(r.time_shares[1], 0.2);
+    EXPECT_DOUBLE_EQ(r.time_shares[2], 0.6);
+    EXPECT_DOUBLE_EQ(r.way_shares[0], 0.5);
+    EXPECT_EQ(r.losses, 3U);
+    EXPECT_DOUBLE_EQ(r.longest_gap->end - r.longest_gap->begin, 9);
+    EXPECT_DOUBLE_EQ(sum.all.duration, 60);
+    EXPECT_DOUBLE_EQ(sum.all.time_shares[0], 20.0 / 60);
+    EXPECT_EQ(sum.all.losses, 3U);
+}
+
+TEST(BuildingRunCoverage, OfNobodyIsEmpty) {
+    EXPECT_TRUE(sumOverStoreys(std::vector<RunCoverage>(2)).members.empty());
+}
+
+}  // namespace
+}  // namespace ispace
