@@ -125,8 +125,8 @@ void measure(Arrangement& result, MeasuredScene& model) {
         result.value = model.share(model.valueOf(views));
     result.is_value_by_cells = result.value && options.judges_inside && !options.beam_step &&
                                options.weights.isUniform() && options.redundancy == 1 &&
-                               !options.robust.isAsked() && options.facing.empty() && !options.ways &&
-                               options.objective.isCoverage();
+                               !options.robust.isAsked() && options.facing.empty() &&
+                               !options.ways && options.objective.isCoverage();
     for (const Objective& row : objectives())
         if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
     if (options.beam_step) result.value = result.candidate_value;

@@ -43,6 +43,8 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
     if (!options.other.empty()) option = "--compare";
     if (!options.run.empty() && recordedBuilding(options.run).empty()) option = "--run of one room";
     if (options.presence) option = "--presence";
+    if (!options.paths.empty()) option = "--path";
+    if (options.localise_to) option = "--localise";
     if (options.suggestions) option = "--suggest";
     if (!options.trace.empty()) option = "--trace";
     if (!options.zones.empty()) option = "--zone";
