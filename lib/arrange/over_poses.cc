@@ -121,7 +121,7 @@ namespace {
 
 poses::Sector sectorOf(const Laser& laser, const Box2& box) {
     return {std::min(laser.max_range, std::hypot(box.width(), box.depth())), laser.span().radians(),
-            laser.first.radians()};
+            laser.first.radians(), laser.min_range};
 }
 
 /// Layouts near poses of boxes, by refinement.

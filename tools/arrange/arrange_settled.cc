@@ -176,9 +176,9 @@ void ArrangeCommand::settleObjective() {
                     other);
     };
     constexpr const char* kOther[] = {
-        "--target", "--budget", "--refine", "--connected",  "--reso",        "--judge",
-        "--proof",  "--shard",  "--resume", "--robust",     "--crowd",       "--facing",
-        "--curve",  "--heat",   "--trace",  "--export-mps", "--alternatives"};
+        "--target", "--budget", "--refine", "--connected",  "--reso",         "--judge",
+        "--proof",  "--shard",  "--resume", "--robust",     "--crowd",        "--facing",
+        "--curve",  "--heat",   "--trace",  "--export-mps", "--alternatives", "--presence"};
     constexpr const char* kOfFloor[] = {"--zone", "--weight"};
     constexpr const char* kOfTimes[] = {"--redundancy"};
     refuse(kOther);

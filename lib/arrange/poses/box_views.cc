@@ -8,61 +8,9 @@
 #include <numeric>
 #include <utility>
 
+#include "arrange/poses/box_sides.h"
+
 namespace ispace::poses {
-
-namespace {
-
-using Convex = std::vector<Point2>;
-
-/// The points q with dot(outwards, q - at) <= 0.
-struct Side2 {
-    Point2 at;
-    Vec2 outwards;
-    [[nodiscard]] double beyond(Point2 q) const { return dot(outwards, q - at); }
-};
-
-/// Divides a convex polygon into its parts inside and outside of a half-plane.
-void divide(const Convex& polygon, const Side2& side, Convex& inside, Convex* outside) {
-    inside.clear();
-    if (outside != nullptr) outside->clear();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Point2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-        const double from = side.beyond(a), to = side.beyond(b);
-        if (from <= 0) inside.push_back(a);
-        if (from >= 0 && outside != nullptr) outside->push_back(a);
-        if ((from < 0 && to > 0) || (from > 0 && to < 0)) {
-            const Point2 cut = a + (from / (from - to)) * (b - a);
-            inside.push_back(cut);
-            if (outside != nullptr) outside->push_back(cut);
-        }
-    }
-    if (inside.size() < 3) inside.clear();
-    if (outside != nullptr && outside->size() < 3) outside->clear();
-}
-
-void keepInside(Convex& polygon, const Side2& side) {
-    if (std::none_of(polygon.begin(), polygon.end(),
-                     [&side](Point2 p) { return side.beyond(p) > 0; }))
-        return;
-    Convex kept;
-    divide(polygon, side, kept, nullptr);
-    polygon.swap(kept);
-}
-
-double areaOf(std::span<const Point2> polygon) {
-    double sum = 0;
-    for (std::size_t i = 2; i < polygon.size(); ++i)
-        sum += cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
-    return sum / 2;
-}
-
-Convex cornersOf(const Box2& box) {
-    return {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
-}
-
-Vec2 wayAt(double angle) { return {std::cos(angle), std::sin(angle)}; }
-
-}  // namespace
 
 /// The view of one box.
 class BoxSight {
@@ -129,7 +77,7 @@ void BoxSight::addDirections(const PoseBox& box) {
     const double from = box.from + sector_.first - kTurn;
     const Vec2 first = wayAt(from), last = wayAt(from + span);
     directions_ = {sideAlong(-perpendicular(first)), sideAlong(perpendicular(last))};
-    is_cut_out_ = span > std::numbers::pi;
+    is_cut_out_ = span > std::numbers::pi - kStraight;
     if (is_cut_out_) {  // beyond both sides no pose has the direction in its field
         for (Side2& side : directions_) side.outwards = -side.outwards;
         return;
@@ -238,7 +186,7 @@ BoxView BoxSight::view() {
     view.first = static_cast<std::size_t>(begin - parts.begin());
     view.parts.assign(begin, end);
     const BoxView* const self = &view;
-    view.area = std::min({area_, floor_.unionOf({&self, 1}), sector_.area()});
+    view.area = std::min({area_, floor_.unionOf({}, {&self, 1}), sector_.area()});
     return view;
 }
 
@@ -316,34 +264,56 @@ void BoxViews::addArea(std::span<const Point2> polygon, double sign,
     }
 }
 
-std::vector<std::uint16_t> BoxViews::partsOf(const std::vector<double>& areas) const {
-    constexpr double kNoShare = 1e-9;  // of a cell: rounding
+std::vector<std::uint16_t> BoxViews::partsOf(const std::vector<double>& areas, bool is_up) const {
     std::vector<std::uint16_t> parts(areas.size());
-    for (std::size_t i = 0; i < areas.size(); ++i)
-        if (areas[i] >= kNoShare)
-            parts[i] = static_cast<std::uint16_t>(
-                std::min(std::ceil((areas[i] + kNoShare) * kParts), static_cast<double>(most_[i])));
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+        if (areas[i] < kNoShare) continue;
+        const double share = (areas[i] + kNoShare) * kParts;
+        parts[i] = static_cast<std::uint16_t>(
+            std::min(is_up ? std::ceil(share) : std::floor(share), static_cast<double>(most_[i])));
+    }
     return parts;
 }
 
 BoxView BoxViews::viewOf(const PoseBox& box) const { return BoxSight(*this, box).view(); }
 
-double BoxViews::unionOf(std::span<const BoxView* const> views) const {
-    thread_local std::vector<std::uint16_t> sums;  // memory is reused
-    sums.assign(most_.size(), 0);
-    std::size_t begin = most_.size(), end = 0;
-    for (const BoxView* view : views) {
+double BoxViews::unionOf(std::span<const Known> known,
+                         std::span<const BoxView* const> views) const {
+    thread_local std::vector<std::uint16_t> counted, sure, own, seen;  // memory is reused
+    const std::size_t cells = most_.size();
+    for (auto* parts : {&counted, &sure, &own, &seen}) parts->assign(cells, 0);
+    double area = 0;
+    std::int64_t twice = 0, beside = 0;
+    const auto raise = [](std::uint16_t& part, std::uint16_t by) { part = std::max(part, by); };
+    for (const Known& sensors : known) {
+        area += sensors.area;
+        std::size_t begin = cells, end = 0;
+        for (const BoxCore* core : sensors.cores) {
+            if (core == nullptr) continue;
+            for (std::size_t i = 0; i < core->parts.size(); ++i)
+                raise(own[core->first + i], core->parts[i]);
+            begin = std::min(begin, core->first);
+            end = std::max(end, core->first + core->parts.size());
+        }
+        for (std::size_t i = begin; i < end; ++i) {
+            const int sum = counted[i] + own[i], kept = std::min<int>(sum, most_[i]);
+            twice += sum - kept;
+            counted[i] = static_cast<std::uint16_t>(kept);
+            raise(sure[i], own[i]);
+            own[i] = 0;
+        }
+    }
+    for (const BoxView* view : views)
         for (std::size_t i = 0; i < view->parts.size(); ++i) {
             const std::size_t cell = view->first + i;
-            sums[cell] =
-                static_cast<std::uint16_t>(std::min<int>(sums[cell] + view->parts[i], most_[cell]));
+            seen[cell] =
+                static_cast<std::uint16_t>(std::min<int>(seen[cell] + view->parts[i], most_[cell]));
         }
-        begin = std::min(begin, view->first);
-        end = std::max(end, view->first + view->parts.size());
-    }
-    std::uint64_t sum = 0;
-    for (std::size_t i = begin; i < end; ++i) sum += sums[i];
-    return static_cast<double>(sum) * side_ * side_ / kParts;
+    for (std::size_t i = 0; i < cells && !views.empty(); ++i)
+        beside += std::min<int>(seen[i], most_[i] - sure[i]);
+    const double part = side_ * side_ / kParts;
+    if (!known.empty()) area += 8 * kNoShare * static_cast<double>(cells) * side_ * side_;
+    return area + static_cast<double>(beside - twice) * part;
 }
 
 }  // namespace ispace::poses

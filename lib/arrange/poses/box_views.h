@@ -20,6 +20,12 @@ struct BoxView {
     std::vector<std::uint16_t> parts;  ///< none: no pose on the floor sees any
 };
 
+/// Parts of cells that all poses of a box see.
+struct BoxCore {
+    std::size_t first = 0;             ///< cell of parts[0]
+    std::vector<std::uint16_t> parts;  ///< rounded down
+};
+
 /// A floor as triangles and square cells, and views of boxes of poses on it.
 ///
 /// A sight line from the box crosses a sequence of edges between triangles, each from its near side
@@ -37,18 +43,32 @@ class BoxViews {
 
     [[nodiscard]] const Box2& box() const { return box_; }
     [[nodiscard]] BoxView viewOf(const PoseBox& box) const;
-    /// Returns the area of a union of views, m2: parts add up, to the floor in a cell at most.
-    [[nodiscard]] double unionOf(std::span<const BoxView* const> views) const;
+    /// Returns what all poses see from the same faces through the same edges, or less.
+    [[nodiscard]] BoxCore coreOf(const PoseBox& box) const;
+
+    /// Sensors that see a known area together at most, in boxes of these cores.
+    struct Known {
+        double area = 0;  ///< m2
+        std::array<const BoxCore*, 2> cores{};
+    };
+    /// Bounds what sensors see together: known areas less the overlaps of cores, which are counted
+    /// twice, and views outside of the cores. Parts of views add up, to the floor in a cell at
+    /// most.
+    [[nodiscard]] double unionOf(std::span<const Known> known,
+                                 std::span<const BoxView* const> views) const;
 
   private:
     friend class BoxSight;
+    friend class CommonSight;
     struct Face {
         std::array<Point2, 3> at;                        // counter-clockwise
         std::array<std::int32_t, 3> beyond{-1, -1, -1};  // face behind the edge from corner i
     };
     /// Cuts a convex polygon along the lines of cells, and adds the areas of its pieces, in cells.
     void addArea(std::span<const Point2> polygon, double sign, std::vector<double>& areas) const;
-    [[nodiscard]] std::vector<std::uint16_t> partsOf(const std::vector<double>& areas) const;
+    /// Converts to parts, rounded up, or down but for the least share of a cell.
+    [[nodiscard]] std::vector<std::uint16_t> partsOf(const std::vector<double>& areas,
+                                                     bool is_up = true) const;
 
     Sector sector_;
     std::vector<Face> faces_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <numbers>
@@ -17,6 +18,7 @@ namespace ispace {
 
 namespace {
 
+using poses::BoxCore;
 using poses::BoxView;
 using poses::BoxViews;
 using poses::PoseBox;
@@ -45,6 +47,7 @@ class CertificateChecker {
         double most = 0;           // bounds the area that a single pose of it sees
         bool is_used = false;      // by a pair or a tuple
         BoxView view = {};
+        BoxCore core = {};
     };
     /// Boxes of several sensors, in the order of the tree of boxes.
     struct Group {
@@ -66,7 +69,11 @@ class CertificateChecker {
     void boundPairs();
     [[nodiscard]] double mostOf(std::uint32_t first, std::uint32_t second) const;
     [[nodiscard]] double boundOf(const Boxes& boxes) const;
-    [[nodiscard]] double unionOf(const Boxes& boxes, unsigned chosen) const;
+    /// Bounds the area that poses of boxes see together: those of `known` by their areas, `pair` by
+    /// its own (0: none), and the others by their views.
+    [[nodiscard]] double unionOf(const Boxes& boxes, std::size_t size, unsigned known,
+                                 unsigned pair = 0, double paired = 0) const;
+    [[nodiscard]] double pairOf(const Boxes& pair) const;
 
     const BoxViews& views_;
     const Sector& sector_;
@@ -143,13 +150,22 @@ void CertificateChecker::readGroup(const std::string& tree, std::size_t& at, con
 }
 
 void CertificateChecker::computeViews() {
+    constexpr std::size_t kMostBytes = std::size_t{8} << 30U;
     for (const std::uint32_t id : blind_) boxes_[id].is_used = true;
+    std::atomic<std::size_t> parts = 0;
     tbb::parallel_for(std::size_t{0}, boxes_.size(), [this](std::size_t i) {
         Box& box = boxes_[i];
         if (box.second != 0 && !box.is_used) return;
         box.view = views_.viewOf(box.box);
         box.most = box.view.area;
-        if (!box.is_used) box.view = {};
+        if (!box.is_used) {
+            box.view = {};
+            return;
+        }
+        box.core = views_.coreOf(box.box);
+        parts += box.view.parts.size() + box.core.parts.size();
+        if (parts * sizeof(std::uint16_t) > kMostBytes)
+            refuse("the views of its boxes need more than 8 GiB");
     });
     // A sensor that sees no floor may be moved anywhere else.
     for (const std::uint32_t id : blind_)
@@ -162,20 +178,35 @@ void CertificateChecker::computeViews() {
     }
 }
 
-double CertificateChecker::unionOf(const Boxes& boxes, unsigned chosen) const {
+double CertificateChecker::unionOf(const Boxes& boxes, std::size_t size, unsigned known,
+                                   unsigned pair, double paired) const {
+    std::array<BoxViews::Known, kMostPosed> areas{};
     std::array<const BoxView*, kMostPosed> views{};
-    std::size_t size = 0;
-    for (std::size_t i = 0; i < kMostPosed; ++i)
-        if ((chosen >> i & 1U) != 0) views[size++] = &boxes_[boxes[i]].view;
-    return views_.unionOf({views.data(), size});
+    std::size_t areas_size = pair == 0 ? 0 : 1, views_size = 0, in_pair = 0;
+    areas[0].area = paired;
+    for (std::size_t i = 0; i < size; ++i) {
+        const Box& box = boxes_[boxes[i]];
+        if ((pair >> i & 1U) != 0)
+            areas[0].cores[in_pair++] = &box.core;
+        else if ((known >> i & 1U) != 0)
+            areas[areas_size++] = {box.most, {&box.core, nullptr}};
+        else
+            views[views_size++] = &box.view;
+    }
+    return views_.unionOf({areas.data(), areas_size}, {views.data(), views_size});
+}
+
+/// Bounds the area that two poses see together by their own boxes.
+double CertificateChecker::pairOf(const Boxes& pair) const {
+    double most = boxes_[pair[0]].most + boxes_[pair[1]].most;
+    for (unsigned known = 0; known < 4; ++known) most = std::min(most, unionOf(pair, 2, known));
+    return most;
 }
 
 void CertificateChecker::boundPairs() {
     tbb::parallel_for(std::size_t{0}, pairs_.size(), [this](std::size_t i) {
         Group& pair = pairs_[i];
-        if (pair.is_whole)
-            pair.most = std::min(boxes_[pair.boxes[0]].most + boxes_[pair.boxes[1]].most,
-                                 unionOf(pair.boxes, 3));
+        if (pair.is_whole) pair.most = pairOf(pair.boxes);
     });
     for (std::size_t i = pairs_.size(); i-- > 0;)
         for (std::uint32_t half = static_cast<std::uint32_t>(i) + 1; half < pairs_[i].end;
@@ -208,28 +239,28 @@ double CertificateChecker::mostOf(std::uint32_t first, std::uint32_t second) con
     return most;
 }
 
-/// A sensor adds no more than the largest single view in its box, and floor that one of n sensors
-/// sees is in n - 1 of the pairs of them.
+/// A sensor adds no more than the largest single view in its box, less its overlap with others, and
+/// floor that one of n sensors sees is in n - 1 of the pairs of them.
 double CertificateChecker::boundOf(const Boxes& boxes) const {
+    const unsigned everyone = (1U << count_) - 1;
     double all = 0;
     for (std::size_t i = 0; i < count_; ++i) all += boxes_[boxes[i]].most;
     double bound = all, sum = 0;
-    for (std::size_t i = 0; i < count_ && bound > certificate_.bound; ++i)
-        for (std::size_t k = i + 1; k < count_; ++k) {
-            const double both = boxes_[boxes[i]].most + boxes_[boxes[k]].most;
-            double pair = std::min(both, unionOf(boxes, 1U << i | 1U << k));
+    const auto is_open = [&] { return bound > certificate_.bound; };
+    for (unsigned known = everyone + 1; known-- > 0 && is_open();)
+        bound = std::min(bound, unionOf(boxes, count_, known));
+    for (std::size_t i = 0; i < count_ && is_open(); ++i)
+        for (std::size_t k = i + 1; k < count_ && is_open(); ++k) {
+            const unsigned both = 1U << i | 1U << k;
+            double pair = pairOf({boxes[i], boxes[k]});
             if (!pairs_.empty()) pair = std::min(pair, mostOf(boxes[i], boxes[k]));
             sum += pair;
-            bound = std::min(bound, all - both + pair);
+            bound = std::min(bound, all - boxes_[boxes[i]].most - boxes_[boxes[k]].most + pair);
             if (i + 2 == count_) bound = std::min(bound, sum / static_cast<double>(count_ - 1));
+            for (unsigned known = everyone + 1; known-- > 0 && is_open();)
+                if ((known & both) == 0)
+                    bound = std::min(bound, unionOf(boxes, count_, known, both, pair));
         }
-    for (unsigned chosen = 1; chosen < 1U << count_ && bound > certificate_.bound; ++chosen) {
-        if (std::popcount(chosen) < 3) continue;
-        double rest = 0;
-        for (std::size_t i = 0; i < count_; ++i)
-            if ((chosen >> i & 1U) == 0) rest += boxes_[boxes[i]].most;
-        bound = std::min(bound, rest + unionOf(boxes, chosen));
-    }
     return bound;
 }
 

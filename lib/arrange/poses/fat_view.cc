@@ -5,43 +5,13 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
+
+#include "arrange/poses/convex.h"
 
 namespace ispace::poses {
 
 namespace {
-
-/// The points p with dot(normal, p) <= reach.
-struct HalfPlane {
-    Vec2 normal;
-    double reach;
-    [[nodiscard]] double beyond(Point2 p) const { return dot(normal, p - Point2()) - reach; }
-};
-
-using Outline = std::vector<Point2>;
-
-/// Clips a convex polygon; `spare` is memory.
-void clip(Outline& polygon, const HalfPlane& half, Outline& spare) {
-    const std::size_t n = polygon.size();
-    bool is_cut = false;
-    for (const Point2 p : polygon) is_cut = is_cut || half.beyond(p) > 0;
-    if (!is_cut) return;
-    spare.clear();
-    for (std::size_t i = 0; i < n; ++i) {
-        const Point2 a = polygon[i], b = polygon[i + 1 == n ? 0 : i + 1];
-        const double da = half.beyond(a), db = half.beyond(b);
-        if (da <= 0) spare.push_back(a);
-        if ((da < 0 && db > 0) || (da > 0 && db < 0))
-            spare.push_back(a + (da / (da - db)) * (b - a));
-    }
-    polygon.swap(spare);
-    if (polygon.size() < 3) polygon.clear();
-}
-
-/// The points left of the ray from `at`, or right of it for a negative side.
-HalfPlane besideRay(Point2 at, Vec2 way, double side) {
-    const Vec2 normal = -side * perpendicular(way);
-    return {normal, dot(normal, at - Point2())};
-}
 
 double distanceToBox(Point2 p, const Box2& box) {
     const double x = std::max({box.low.x - p.x, p.x - box.high.x, 0.0});
@@ -53,7 +23,7 @@ bool meets(const PoseFloor::Corners& triangle, const Box2& box) {
     Box2 around;
     for (const Point2 p : triangle) around.add(p);
     if (!around.meets(box)) return false;
-    const Point2 corners[] = {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
+    const Outline corners = cornersOf(box);
     for (std::size_t i = 0; i < 3; ++i) {
         const Point2 a = triangle[i], b = triangle[(i + 1) % 3];
         bool is_outside = true;
@@ -74,21 +44,25 @@ struct Limit {
 /// sources in the rectangle.
 class WeakView {
   public:
-    WeakView(const PoseFloor& floor, const Sector& sector, const PoseBox& box)
-        : floor_(floor), sector_(sector), box_(box), tally_(floor) {
+    /// \param tally collects the view by cells; null: its area is wanted alone
+    WeakView(const PoseFloor& floor, const Sector& sector, const PoseBox& box,
+             PoseFloor::Tally* tally)
+        : floor_(floor), sector_(sector), box_(box), tally_(tally) {
         box_.at.low = box.at.low - Vec2{kWiden, kWiden};
         box_.at.high = box.at.high + Vec2{kWiden, kWiden};
         addRange();
         addField();
     }
 
-    FatView compute();
+    /// Returns the area of the view; none, if the box holds no floor.
+    std::optional<double> compute();
 
   private:
     void addRange();
     void addField();
     /// Adds the part of a polygon within range and field; returns false if there is none.
     bool add(const Outline& polygon);
+    void count(const Outline& polygon);
     void expandFrom(std::size_t triangle, std::size_t edge);
     void expand(std::size_t triangle, std::uint32_t right, std::uint32_t left, Limit right_limit,
                 Limit left_limit);
@@ -108,7 +82,8 @@ class WeakView {
     Outline source_;                      // part of the rectangle behind the first portal
     std::vector<Point2> lefts_, rights_;  // corners of the portals passed
     Outline piece_, clipped_, spare_;
-    PoseFloor::Tally tally_;
+    PoseFloor::Tally* tally_;
+    double area_ = 0;
     std::size_t steps_ = 0;
 };
 
@@ -118,9 +93,9 @@ void WeakView::addRange() {
     for (int i = 0; i < kSides; ++i) {
         const double angle = 2 * std::numbers::pi * i / kSides;
         const Vec2 normal{std::cos(angle), std::sin(angle)};
-        const Point2 corner{normal.x > 0 ? box_.at.high.x : box_.at.low.x,
-                            normal.y > 0 ? box_.at.high.y : box_.at.low.y};
-        range_.push_back({normal, dot(normal, corner - Point2()) + sector_.range});
+        HalfPlane side = aroundBox(box_.at, normal);
+        side.reach += sector_.range;
+        range_.push_back(side);
     }
 }
 
@@ -134,15 +109,12 @@ void WeakView::addField() {
     const double from = box_.from + sector_.first - kTurn, to = from + span + 2 * kTurn;
     const auto beside = [this](double angle, double side) {
         const Vec2 way{std::cos(angle), std::sin(angle)};
-        const Vec2 normal = -side * perpendicular(way);  // outwards
-        const Point2 corner{normal.x > 0 ? box_.at.high.x : box_.at.low.x,
-                            normal.y > 0 ? box_.at.high.y : box_.at.low.y};
-        return HalfPlane{normal, dot(normal, corner - Point2())};
+        return aroundBox(box_.at, -side * perpendicular(way));
     };
     const HalfPlane first = beside(from, 1), last = beside(to, -1);
-    if (to - from > std::numbers::pi) {  // two half-planes cover it
+    if (to - from > std::numbers::pi - kStraight) {  // two half-planes cover it
         fields_.push_back({first});
-        fields_.push_back({last, {-first.normal, -first.reach}});
+        fields_.push_back({last, first.opposite()});
         return;
     }
     std::vector<HalfPlane> cone = {first, last};
@@ -150,10 +122,14 @@ void WeakView::addField() {
     const Vec2 axes[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     for (const Vec2 normal : axes) {
         if (dot(normal, a) > 0 || dot(normal, b) > 0) continue;
-        const Point2 corner = normal.x + normal.y > 0 ? box_.at.high : box_.at.low;
-        cone.push_back({normal, dot(normal, corner - Point2())});
+        cone.push_back(aroundBox(box_.at, normal));
     }
     fields_.push_back(std::move(cone));
+}
+
+void WeakView::count(const Outline& polygon) {
+    area_ += areaOf(polygon);
+    if (tally_ != nullptr) tally_->add(polygon);
 }
 
 bool WeakView::add(const Outline& polygon) {
@@ -165,7 +141,7 @@ bool WeakView::add(const Outline& polygon) {
         for (const HalfPlane& half : range_) clip(clipped_, half, spare_);
     if (clipped_.empty()) return false;
     if (fields_.size() == 1 && fields_[0].empty()) {
-        tally_.add(clipped_);
+        count(clipped_);
         return true;
     }
     bool is_seen = false;
@@ -174,7 +150,7 @@ bool WeakView::add(const Outline& polygon) {
         part = clipped_;
         for (const HalfPlane& half : field) clip(part, half, spare_);
         if (part.empty()) continue;
-        tally_.add(part);
+        count(part);
         is_seen = true;
     }
     return is_seen;
@@ -223,10 +199,7 @@ void WeakView::expandFrom(std::size_t triangle, std::size_t edge) {
     const std::uint32_t right = from.corners[edge], left = from.corners[(edge + 1) % 3];
     const Point2 a = floor_.at(right), b = floor_.at(left);
     if (isFar(a, b)) return;
-    source_ = {box_.at.low,
-               {box_.at.high.x, box_.at.low.y},
-               box_.at.high,
-               {box_.at.low.x, box_.at.high.y}};
+    source_ = cornersOf(box_.at);
     clip(source_, besideRay(a, b - a, 1), spare_);
     if (source_.empty()) return;
     rights_ = {a};
@@ -274,10 +247,9 @@ void WeakView::expand(std::size_t triangle, std::uint32_t right, std::uint32_t l
     }
 }
 
-FatView WeakView::compute() {
+std::optional<double> WeakView::compute() {
     const std::size_t count = floor_.triangles().size();
     is_start_.assign(count, 0);
-    FatView view;
     bool is_any = false;
     for (std::size_t i = 0; i < count; ++i) {
         const PoseFloor::Corners corners = floor_.cornersOf(i);
@@ -286,7 +258,7 @@ FatView WeakView::compute() {
         is_any = true;
         add({corners.begin(), corners.end()});
     }
-    if (!is_any) return view;
+    if (!is_any) return std::nullopt;
     for (std::size_t i = 0; i < count; ++i) {
         if (is_start_[i] == 0) continue;
         const PoseFloor::Triangle& triangle = floor_.triangles()[i];
@@ -296,25 +268,33 @@ FatView WeakView::compute() {
                 expandFrom(i, edge);
     }
     if (steps_ > kMaxSteps) {
-        tally_.clear();
+        area_ = 0;
+        if (tally_ != nullptr) tally_->clear();
         for (std::size_t i = 0; i < count; ++i) {
             const PoseFloor::Corners corners = floor_.cornersOf(i);
             add({corners.begin(), corners.end()});
         }
     }
-    tally_.round(view.parts);
-    // Views around several sides of a hole overlap: the sum of their areas may exceed that of
-    // cells.
-    const auto parts = std::accumulate(view.parts.begin(), view.parts.end(), std::uint64_t{0});
-    view.area =
-        std::min({tally_.area(), static_cast<double>(parts) * floor_.partArea(), sector_.area()});
-    return view;
+    return std::min(area_, sector_.area());
 }
 
 }  // namespace
 
 FatView fatViewOf(const PoseFloor& floor, const Sector& sector, const PoseBox& box) {
-    return WeakView(floor, sector, box).compute();
+    FatView view;
+    PoseFloor::Tally tally(floor);
+    const std::optional<double> area = WeakView(floor, sector, box, &tally).compute();
+    if (!area) return view;
+    tally.round(view.parts);
+    // Views around several sides of a hole overlap: the sum of their areas may exceed that of
+    // cells.
+    const auto parts = std::accumulate(view.parts.begin(), view.parts.end(), std::uint64_t{0});
+    view.area = std::min(*area, static_cast<double>(parts) * floor.partArea());
+    return view;
+}
+
+double fatAreaOf(const PoseFloor& floor, const Sector& sector, const PoseBox& box) {
+    return WeakView(floor, sector, box, nullptr).compute().value_or(0);
 }
 
 }  // namespace ispace::poses

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "arrange/poses/core_view.h"
 #include "base/simd.h"
 
 namespace ispace::poses {
@@ -19,6 +20,34 @@ ISPACE_SIMD_CLONES void addParts(std::uint8_t* sums, const std::uint8_t* parts,
         const auto sum = static_cast<std::uint8_t>(sums[i] + parts[i]);
         sums[i] = sum < most[i] ? sum : most[i];
     }
+}
+
+/// Adds parts as addParts() does, and returns the sum of those beyond `most`.
+ISPACE_SIMD_CLONES std::uint32_t addOver(std::uint8_t* sums, const std::uint8_t* parts,
+                                         const std::uint8_t* most, std::size_t count) {
+    std::uint32_t over = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto sum = static_cast<std::uint8_t>(sums[i] + parts[i]);
+        const std::uint8_t kept = sum < most[i] ? sum : most[i];
+        over += static_cast<std::uint8_t>(sum - kept);
+        sums[i] = kept;
+    }
+    return over;
+}
+
+ISPACE_SIMD_CLONES void raise(std::uint8_t* sums, const std::uint8_t* parts, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) sums[i] = parts[i] > sums[i] ? parts[i] : sums[i];
+}
+
+/// Returns the sum of parts, of which `sure` of each cell are taken already.
+ISPACE_SIMD_CLONES std::uint32_t sumBeside(const std::uint8_t* parts, const std::uint8_t* sure,
+                                           const std::uint8_t* most, std::size_t count) {
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto free = static_cast<std::uint8_t>(most[i] - sure[i]);
+        sum += parts[i] < free ? parts[i] : free;
+    }
+    return sum;
 }
 
 ISPACE_SIMD_CLONES std::uint32_t sumOf(const std::uint8_t* parts, std::size_t count) {
@@ -42,19 +71,28 @@ PoseBoxes::PoseBoxes(const PoseFloor& floor, const Sector& sector)
     : floor_(floor), sector_(sector) {
     boxes_.push_back(nodeOf({floor.box(), 0, sector.isRound() ? 0 : 2 * std::numbers::pi}, 0));
     boxes_.front().high = std::uint64_t{1} << 62U;
+    addViews(boxes_.front());
 }
 
 BoxNode PoseBoxes::nodeOf(const PoseBox& box, BoxId parent) const {
     BoxNode node;
     node.box = box;
     node.parent = parent;
+    node.most = fatAreaOf(floor_, sector_, box);
+    return node;
+}
+
+void PoseBoxes::addViews(BoxNode& node) const {
+    node.has_views = true;
+    if (node.isBlind()) return;
+    const PoseBox& box = node.box;
     const FatView view = fatViewOf(floor_, sector_, box);
     node.parts = CellParts(view.parts);
-    node.most = view.area;
+    node.most = std::min(node.most, view.area);
+    node.core = CellParts(coreViewOf(floor_, sector_, box));
     const Point2 middle = box.at.center();
     node.centre =
         CellParts(fatViewOf(floor_, sector_, {{middle, middle}, box.from + box.span / 2, 0}).parts);
-    return node;
 }
 
 double PoseBoxes::slackOf(const PoseBox& box) const {
@@ -96,7 +134,7 @@ void PoseBoxes::split(std::vector<BoxId> ids) {
         boxes_[ids[i]].child = static_cast<BoxId>(boxes_.size());
         for (BoxNode& half : made[i]) {
             half.most = std::min(half.most, boxes_[ids[i]].most);
-            bytes_ += sizeof(BoxNode) + half.parts.parts.size() + half.centre.parts.size();
+            bytes_ += sizeof(BoxNode);
             boxes_.push_back(std::move(half));
         }
         lowerMost(ids[i]);
@@ -114,20 +152,89 @@ void PoseBoxes::lowerMost(BoxId id) {
     }
 }
 
-double PoseBoxes::unionOf(std::span<const BoxId> boxes, CellParts BoxNode::*views) const {
+BoxId PoseBoxes::largestIn(BoxId id) const {
+    while (boxes_[id].child != 0) {
+        const BoxId child = boxes_[id].child;
+        id = boxes_[child].most >= boxes_[child + 1].most ? child : child + 1;
+    }
+    return id;
+}
+
+void PoseBoxes::splitWithViews(const std::vector<BoxId>& ids) {
+    constexpr int kCloser = 4;  // further halvings of the part with the largest single view
+    split(ids);
+    std::vector<BoxId> halves;
+    for (const BoxId id : ids)
+        for (BoxId half = boxes_[id].child; half < boxes_[id].child + 2; ++half)
+            if (!boxes_[half].has_views) {
+                boxes_[half].has_views = true;
+                halves.push_back(half);
+            }
+    tbb::parallel_for(std::size_t{0}, halves.size(),
+                      [&](std::size_t i) { addViews(boxes_[halves[i]]); });
+    for (const BoxId half : halves) {
+        const BoxNode& node = boxes_[half];
+        bytes_ += node.parts.parts.size() + node.core.parts.size() + node.centre.parts.size();
+        lowerMost(node.parent);
+    }
+    for (int round = 0; round < kCloser; ++round) {
+        std::vector<BoxId> largest;
+        for (const BoxId half : halves) {
+            if (boxes_[half].isBlind()) continue;
+            const BoxId leaf = largestIn(half);
+            if (widestOf({&leaf, 1}) == 0) largest.push_back(leaf);
+        }
+        split(std::move(largest));
+    }
+}
+
+double PoseBoxes::unionOfCentres(std::span<const BoxId> boxes) const {
     thread_local std::vector<std::uint8_t> sums;  // memory is reused
     const std::vector<std::uint8_t>& most = floor_.parts();
     sums.assign(most.size(), 0);
-    std::size_t begin = most.size(), end = 0;
     for (const BoxId id : boxes) {
-        const CellParts& view = boxes_[id].*views;
-        if (view.parts.empty()) continue;
+        const CellParts& view = boxes_[id].centre;
         addParts(&sums[view.first], view.parts.data(), &most[view.first], view.parts.size());
-        begin = std::min(begin, view.first);
-        end = std::max(end, view.first + view.parts.size());
     }
-    if (begin >= end) return 0;
-    return sumOf(&sums[begin], end - begin) * floor_.partArea();
+    return sumOf(sums.data(), sums.size()) * floor_.partArea();
+}
+
+double PoseBoxes::unionOf(std::span<const Known> known, std::span<const BoxId> others) const {
+    thread_local std::vector<std::uint8_t> sums, sure, own, fat;  // memory is reused
+    const std::vector<std::uint8_t>& most = floor_.parts();
+    double area = 0;
+    std::uint32_t over = 0, rest = 0;
+    sums.assign(most.size(), 0);
+    if (!others.empty()) sure.assign(most.size(), 0);
+    for (const Known& part : known) {
+        area += part.most;
+        const CellParts& core = boxes_[part.boxes[0]].core;
+        const std::uint8_t* parts = core.parts.data();
+        std::size_t first = core.first, size = core.parts.size();
+        if (part.count == 2) {
+            own.assign(most.size(), 0);
+            const CellParts& second = boxes_[part.boxes[1]].core;
+            raise(&own[first], parts, size);
+            raise(&own[second.first], second.parts.data(), second.parts.size());
+            parts = own.data();
+            first = 0;
+            size = own.size();
+        }
+        over += addOver(&sums[first], parts, &most[first], size);
+        if (!others.empty()) raise(&sure[first], parts, size);
+    }
+    if (!others.empty()) {
+        fat.assign(most.size(), 0);
+        for (const BoxId id : others) {
+            const CellParts& view = boxes_[id].parts;
+            addParts(&fat[view.first], view.parts.data(), &most[view.first], view.parts.size());
+        }
+        rest = sumBeside(fat.data(), sure.data(), most.data(), most.size());
+    }
+    // Cores are rounded down but for kNoShare of a cell.
+    if (!known.empty())
+        area += 8 * kNoShare * kParts * floor_.partArea() * static_cast<double>(most.size());
+    return area + (static_cast<double>(rest) - static_cast<double>(over)) * floor_.partArea();
 }
 
 std::size_t PoseBoxes::widestOf(std::span<const BoxId> boxes) const {
@@ -146,7 +253,7 @@ std::size_t PoseBoxes::widestOf(std::span<const BoxId> boxes) const {
 
 bool PoseBoxes::isInOrder(std::span<const BoxId> boxes, std::size_t which, BoxId half) const {
     const BoxNode& node = boxes_[half];
-    if (node.parts.parts.empty()) return false;
+    if (node.isBlind()) return false;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const BoxNode& other = boxes_[boxes[i]];
         if (i < which && node.high <= other.low) return false;

@@ -28,8 +28,13 @@ struct BoxNode {
     BoxId parent = 0, child = 0;      // the first child, then the second; 0: not split
     double most = 0;                  // bounds the area that any single pose of the box sees
     std::uint64_t low = 0, high = 0;  // half-open range of its poses in the order of the tree
-    CellParts parts;                  // of the fat view; none: the box holds no floor
-    CellParts centre;                 // of the view from the middle of the box
+    bool has_views = false;
+    CellParts parts;   // of the fat view
+    CellParts core;    // that all poses of the box see
+    CellParts centre;  // of the view from the middle of the box
+
+    /// True if no pose of the box sees any floor.
+    [[nodiscard]] bool isBlind() const { return most == 0; }
 };
 
 /// The tree of boxes. Box 0 holds all poses.
@@ -45,6 +50,8 @@ class PoseBoxes {
     /// Halves those boxes that are whole, in parallel, and lowers the bounds of single views in
     /// them and the boxes around them.
     void split(std::vector<BoxId> ids);
+    /// Halves boxes, and computes the views of the halves and closer bounds of their single views.
+    void splitWithViews(const std::vector<BoxId>& ids);
 
     /// Returns the index of the box whose fat view may shrink most by a split; the number of boxes
     /// if all are too small.
@@ -53,14 +60,27 @@ class PoseBoxes {
     /// boxes are in the order of the tree. Equal sensors may be assumed in that order.
     [[nodiscard]] bool isInOrder(std::span<const BoxId> boxes, std::size_t which, BoxId half) const;
 
-    /// Bounds the area of the union of the fat views, or of the views from centres.
-    [[nodiscard]] double unionOf(std::span<const BoxId> boxes,
-                                 CellParts BoxNode::*views = &BoxNode::parts) const;
+    /// Returns the area of the union of the views from centres.
+    [[nodiscard]] double unionOfCentres(std::span<const BoxId> boxes) const;
+
+    /// Boxes of which a bound of the area that all see together is known.
+    struct Known {
+        std::array<BoxId, 2> boxes{};
+        std::size_t count = 1;
+        double most = 0;  // m2
+    };
+    /// Bounds the area that the poses of boxes see together. The known parts add the areas that are
+    /// known, less the overlaps of their cores; the others add their fat views outside of the
+    /// cores.
+    [[nodiscard]] double unionOf(std::span<const Known> known, std::span<const BoxId> others) const;
 
   private:
     [[nodiscard]] BoxNode nodeOf(const PoseBox& box, BoxId parent) const;
     [[nodiscard]] std::array<BoxNode, 2> halvesOf(BoxId id) const;
     void lowerMost(BoxId id);
+    /// Returns the whole box in a box whose single views are bounded worst.
+    [[nodiscard]] BoxId largestIn(BoxId id) const;
+    void addViews(BoxNode& node) const;
     /// Growth of a fat view with the size of its box, m2.
     [[nodiscard]] double slackOf(const PoseBox& box) const;
     [[nodiscard]] double turnOf(const PoseBox& box) const;

@@ -10,13 +10,6 @@
 
 namespace ispace::poses {
 
-namespace {
-
-/// Smaller shares of a cell count as errors of rounding.
-constexpr double kNoShare = 1e-9;
-
-}  // namespace
-
 bool Sector::isRound() const { return field >= 2 * std::numbers::pi - 1e-9; }
 
 double Sector::area() const { return range * range / 2 * std::min(field, 2 * std::numbers::pi); }
@@ -68,15 +61,11 @@ PoseFloor::Corners PoseFloor::cornersOf(std::size_t triangle) const {
 PoseFloor::Tally::Tally(const PoseFloor& floor)
     : floor_(floor), sums_(floor.rows_ * (floor.columns_ + 1)) {}
 
-void PoseFloor::Tally::clear() {
-    std::fill(sums_.begin(), sums_.end(), 0.0);
-    area_ = 0;
-}
+void PoseFloor::Tally::clear() { std::fill(sums_.begin(), sums_.end(), 0.0); }
 
 void PoseFloor::Tally::add(std::span<const Point2> polygon) {
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Point2 a = polygon[i], b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
-        area_ += cross(a - polygon[0], b - polygon[0]) / 2;
         addEdge(a, b);
     }
 }
@@ -131,19 +120,27 @@ void PoseFloor::Tally::addEdge(Point2 a, Point2 b) {
     }
 }
 
-void PoseFloor::Tally::round(std::vector<std::uint8_t>& parts) const {
+template <typename Share>
+void PoseFloor::Tally::convert(std::vector<std::uint8_t>& parts, Share share) const {
     const std::size_t columns = floor_.columns_;
     parts.resize(floor_.rows_ * columns);
     for (std::size_t row = 0; row < floor_.rows_; ++row) {
         double sum = 0;
         for (std::size_t column = 0; column < columns; ++column) {
             sum += sums_[row * (columns + 1) + column];
-            const double share = sum < kNoShare ? 0 : std::ceil(sum * kParts);
             const std::size_t cell = row * columns + column;
             parts[cell] = static_cast<std::uint8_t>(
-                std::min(share, static_cast<double>(floor_.parts_[cell])));
+                std::min(share(sum), static_cast<double>(floor_.parts_[cell])));
         }
     }
+}
+
+void PoseFloor::Tally::round(std::vector<std::uint8_t>& parts) const {
+    convert(parts, [](double sum) { return sum < kNoShare ? 0 : std::ceil(sum * kParts); });
+}
+
+void PoseFloor::Tally::roundDown(std::vector<std::uint8_t>& parts) const {
+    convert(parts, [](double sum) { return std::floor(std::max(0.0, sum + kNoShare) * kParts); });
 }
 
 }  // namespace ispace::poses

@@ -75,6 +75,7 @@ class PoseSearcher {
     void lowerPair(std::uint32_t id);
     /// Bounds the area that two poses see together, by the pairs.
     [[nodiscard]] double mostOf(BoxId first, BoxId second) const;
+    [[nodiscard]] double unionOfPair(BoxId first, BoxId second) const;
     void searchTuples();
     [[nodiscard]] double boundOf(const Tuple& tuple, double enough) const;
     /// Tuples that replace one, and the best layout of centres of boxes among them.
@@ -140,35 +141,67 @@ double PoseSearcher::mostOf(BoxId first, BoxId second) const {
 }
 
 double PoseSearcher::boundOf(const Tuple& tuple, double enough) const {
+    using Known = PoseBoxes::Known;
     double bound = 0;
-    std::array<double, kMostPosed> single{};
-    for (std::size_t i = 0; i < count_; ++i) bound += single[i] = boxes_[tuple.boxes[i]].most;
+    std::array<Known, kMostPosed> single{};
+    for (std::size_t i = 0; i < count_; ++i) {
+        single[i] = {{tuple.boxes[i]}, 1, boxes_[tuple.boxes[i]].most};
+        bound += single[i].most;
+    }
     const double all = bound;
     if (count_ == 1 || bound <= enough) return bound;
-    const bool has_pairs = !pairs_.empty();
+    std::vector<Known> known;
+    std::vector<BoxId> others;
+    // Sensors of `chosen` add known areas, beside a pair; the others their fat views.
+    const auto lower = [&](const Known* pair, unsigned paired, unsigned chosen) {
+        known.clear();
+        others.clear();
+        if (pair != nullptr) known.push_back(*pair);
+        for (std::size_t i = 0; i < count_; ++i) {
+            if ((paired >> i & 1U) != 0) continue;
+            if ((chosen >> i & 1U) != 0)
+                known.push_back(single[i]);
+            else
+                others.push_back(tuple.boxes[i]);
+        }
+        bound = std::min(bound, boxes_.unionOf(known, others));
+        return bound;
+    };
+    const unsigned everyone = (1U << count_) - 1;
+    if (lower(nullptr, 0, everyone) <= enough) return bound;
     double sum = 0;  // over pairs: floor that one sensor sees is in count_ - 1 of them
     for (std::size_t i = 0; i < count_; ++i)
         for (std::size_t k = i + 1; k < count_; ++k) {
-            double pair = single[i] + single[k];
-            if (has_pairs) pair = std::min(pair, mostOf(tuple.boxes[i], tuple.boxes[k]));
-            pair = std::min(pair, boxes_.unionOf(std::array{tuple.boxes[i], tuple.boxes[k]}));
-            sum += pair;
-            bound = std::min(bound, pair + (all - single[i] - single[k]));
+            Known pair{{tuple.boxes[i], tuple.boxes[k]}, 2, single[i].most + single[k].most};
+            if (!pairs_.empty())
+                pair.most = std::min(pair.most, mostOf(tuple.boxes[i], tuple.boxes[k]));
+            pair.most = std::min(pair.most, unionOfPair(tuple.boxes[i], tuple.boxes[k]));
+            sum += pair.most;
+            bound = std::min(bound, pair.most + (all - single[i].most - single[k].most));
+            if (count_ < 3) continue;
+            const unsigned paired = 1U << i | 1U << k;
+            for (unsigned chosen = everyone;; chosen = (chosen - 1) & everyone) {
+                if ((chosen & paired) != 0) {
+                    if (chosen == 0) break;
+                    continue;
+                }
+                if (lower(&pair, paired, chosen) <= enough) return bound;
+                if (chosen == 0) break;
+            }
         }
     bound = std::min(bound, sum / static_cast<double>(count_ - 1));
-    for (unsigned chosen = (1U << count_) - 1; chosen > 0 && bound > enough; --chosen) {
-        if (std::popcount(chosen) < 3) continue;
-        std::array<BoxId, kMostPosed> boxes{};
-        std::size_t size = 0;
-        double rest = 0;
-        for (std::size_t i = 0; i < count_; ++i)
-            if ((chosen >> i & 1U) != 0)
-                boxes[size++] = tuple.boxes[i];
-            else
-                rest += single[i];
-        if (rest < bound) bound = std::min(bound, rest + boxes_.unionOf({boxes.data(), size}));
-    }
+    for (unsigned chosen = everyone; chosen-- > 0 && bound > enough;) lower(nullptr, 0, chosen);
     return bound;
+}
+
+/// Bounds what two boxes see together, from their views.
+double PoseSearcher::unionOfPair(BoxId first, BoxId second) const {
+    using Known = PoseBoxes::Known;
+    const Known a{{first}, 1, boxes_[first].most}, b{{second}, 1, boxes_[second].most};
+    const Known both[] = {a, b};
+    const BoxId ids[] = {first, second};
+    return std::min({boxes_.unionOf(both, {}), boxes_.unionOf({}, ids),
+                     boxes_.unionOf({&a, 1}, {&second, 1}), boxes_.unionOf({&b, 1}, {&first, 1})});
 }
 
 PoseSearcher::Children PoseSearcher::childrenOf(const Tuple& tuple, std::size_t which) const {
@@ -182,7 +215,7 @@ PoseSearcher::Children PoseSearcher::childrenOf(const Tuple& tuple, std::size_t 
         next.bound = std::min(tuple.bound, boundOf(next, cutoff()));
         children.tuples.push_back(next);
         if (next.bound <= cutoff()) continue;
-        const double value = boxes_.unionOf({next.boxes.data(), count_}, &BoxNode::centre);
+        const double value = boxes_.unionOfCentres({next.boxes.data(), count_});
         if (value <= children.best_value) continue;
         children.best_value = value;
         children.best = next;
@@ -210,7 +243,7 @@ void PoseSearcher::splitPairs(const std::vector<std::uint32_t>& ids) {
         which.push_back(boxes_.widestOf(pairs_[id].boxes));
         to_split.push_back(pairs_[id].boxes[which.back()]);
     }
-    boxes_.split(to_split);
+    boxes_.splitWithViews(to_split);
     std::vector<std::vector<PairNode>> made(ids.size());
     tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
         const PairNode& pair = pairs_[ids[i]];
@@ -220,7 +253,7 @@ void PoseSearcher::splitPairs(const std::vector<std::uint32_t>& ids) {
             PairNode next{.boxes = pair.boxes, .parent = ids[i]};
             next.boxes[which[i]] = half;
             const double both = boxes_[next.boxes[0]].most + boxes_[next.boxes[1]].most;
-            next.most = std::min({pair.most, both, boxes_.unionOf(next.boxes)});
+            next.most = std::min({pair.most, both, unionOfPair(next.boxes[0], next.boxes[1])});
             made[i].push_back(next);
         }
     });
@@ -285,7 +318,7 @@ void PoseSearcher::searchSingle() {
         boxes_.split(batch);
         for (const BoxId id : batch)
             for (BoxId half = boxes_[id].child; half < boxes_[id].child + 2; ++half)
-                if (!boxes_[half].parts.parts.empty()) queue.push(half);
+                if (!boxes_[half].isBlind()) queue.push(half);
     }
 }
 
@@ -335,7 +368,7 @@ void PoseSearcher::searchTuples() {
             which.push_back(widest);
             to_split.push_back(tuple.boxes[widest]);
         }
-        boxes_.split(to_split);
+        boxes_.splitWithViews(to_split);
         std::vector<Children> made(batch.size());
         tbb::parallel_for(std::size_t{0}, batch.size(),
                           [&](std::size_t i) { made[i] = childrenOf(batch[i], which[i]); });
@@ -407,7 +440,7 @@ void PoseSearcher::writeTuples(std::uint32_t id, std::string& text) const {
 }
 
 PoseBound PoseSearcher::run() {
-    if (boxes_[0].parts.parts.empty()) return {};
+    if (boxes_[0].isBlind()) return {};
     searchSingle();
     constexpr std::size_t kPairs = 400'000;
     if (count_ > 2) searchPairs(0, kPairs);

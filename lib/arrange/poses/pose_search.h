@@ -39,10 +39,12 @@ constexpr int kMostPosed = 4;
 /// over tuples of boxes of poses, one box for each sensor.
 ///
 /// All that the poses of a tuple see lies in the union of its fat views (fatViewOf()). No sensor
-/// adds more than the largest single view in its box, which the subdivision of the box for one
-/// sensor bounds: so the bound of a tuple is the least, over all subsets of the sensors, of the
-/// union of their fat views and the largest single views of the others. In cells that several views
-/// share in part, the union counts the sum of the parts, up to the floor in the cell.
+/// adds more than the largest single view in its box, which its subdivision bounds, and no two more
+/// than the largest view of a pair; what two sensors see in any poses of their boxes, their cores
+/// (coreViewOf()), is counted once. So the bound of a tuple is the least, over all subsets of the
+/// sensors, of their known areas less the overlaps of their cores, and the fat views of the others
+/// outside of these cores. In cells that several views share in part, the union counts the sum of
+/// the parts, up to the floor in the cell.
 ///
 /// Deterministic for any number of threads, unless stopped. \pre 1 <= sensors <= kMostPosed
 PoseBound boundOverPoses(const poses::PoseFloor& floor, const poses::Sector& sector,
