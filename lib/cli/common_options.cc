@@ -310,6 +310,16 @@ std::string readingText(const SceneRules& rules) {
     return text;
 }
 
+std::string editCommand(const std::vector<std::string>& operands, const SceneRules& rules) {
+    std::string command = "envc";
+    for (const std::string& operand : operands) {
+        const bool is_like_option = operand.size() > 1 && operand.front() == '-';
+        command += ' ' + shellQuote((is_like_option ? "./" : "") + operand);
+    }
+    if (!rules.storey.empty()) command += " --storey " + shellQuote(rules.storey);
+    return command + readingText(rules);
+}
+
 void addStoreyOption(CommandLine& line, SceneRules& rules, const std::string& without) {
     line.text("--storey", "ID", rules.storey,
               "the storey of a building to take, by its id or name; layouts may have ids of the "

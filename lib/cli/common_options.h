@@ -125,6 +125,10 @@ void addSceneRules(CommandLine& line, SceneRules& rules);
 /// Returns the rules that differ from their defaults and are in no history, as options.
 std::string readingText(const SceneRules& rules);
 
+/// Returns the beginning of an envc command that changes the scene of these operands: "envc
+/// room.env layout.3dm --storey upper".
+std::string editCommand(const std::vector<std::string>& operands, const SceneRules& rules);
+
 /// `--storey`. \param without the effect of leaving it out, for help
 void addStoreyOption(CommandLine& line, SceneRules& rules, const std::string& without);
 

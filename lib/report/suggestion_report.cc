@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/suggestion_report.h"
 
-#include <utility>
-
 #include "base/message.h"
 #include "base/number.h"
 #include "report/coverage_report.h"
@@ -23,12 +21,6 @@ std::string commandOf(std::string command, std::span<const Edit> edits) {
     return command + " -o changed.env";
 }
 
-std::string commandOf(const Suggestion& suggestion, const std::vector<std::string>& operands) {
-    std::string command = "envc";
-    for (const std::string& operand : operands) command += ' ' + shellQuote(operand);
-    return commandOf(std::move(command), suggestion.edits);
-}
-
 void writeSuggestions(JsonWriter& json, const Advice& advice) {
     json.key("suggestions").beginArray();
     for (const Suggestion& suggestion : advice.suggestions) {
@@ -38,7 +30,7 @@ void writeSuggestions(JsonWriter& json, const Advice& advice) {
         json.key("gained").value(roundSignificant(suggestion.gained));
         json.key("coverage").value(roundSignificant(suggestion.share));
         if (suggestion.saved > 0) json.key("saved").value(suggestion.saved);
-        json.key("command").value(commandOf(suggestion, advice.operands));
+        json.key("command").value(commandOf(advice.command, suggestion.edits));
         json.endObject();
     }
     json.endArray();
@@ -49,7 +41,7 @@ std::string suggestionsText(const Advice& advice) {
     std::string text = "\nsuggestions:\n";
     for (const Suggestion& suggestion : advice.suggestions) {
         text += "  " + printable(suggestion.text) + ": " + gainText(suggestion) + '\n';
-        text += "    " + commandOf(suggestion, advice.operands) + '\n';
+        text += "    " + commandOf(advice.command, suggestion.edits) + '\n';
     }
     return text;
 }

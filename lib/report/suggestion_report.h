@@ -10,18 +10,15 @@
 
 namespace ispace {
 
-/// Suggestions for a scene, and the operands from which it was read.
+/// Suggestions for a scene, and the beginning of the command that changes it (editCommand()).
 struct Advice {
     std::vector<Suggestion> suggestions;
-    std::vector<std::string> operands;
+    std::string command;
 };
 
-/// Returns a command of envc with further edits, which writes the changed scene.
+/// Returns a command of envc with further edits, which writes the changed scene: "envc room.env
+/// layout.3dm --rotate l1:35 -o changed.env".
 std::string commandOf(std::string command, std::span<const Edit> edits);
-
-/// Returns the command that writes the changed scene: "envc room.env layout.3dm --rotate l1:35 -o
-/// changed.env".
-std::string commandOf(const Suggestion& suggestion, const std::vector<std::string>& operands);
 
 /// Returns the gain of a change: "+3.20 m2, to 85.71%; saves 120".
 std::string gainText(const Suggestion& suggestion);

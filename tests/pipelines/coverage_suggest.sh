@@ -73,6 +73,14 @@ grep -q '^together' told || fail "no changes that meet the requirement: $(cat to
 (eval "$(cut -f 4 told) -q")
 expect_status 0 coverage changed.env --require 60%
 
+# A storey of a building, and an operand that looks like an option.
+cp -r "$data/house" house
+suggestions_of house/house.env "$data/house.3dm" --storey ground --suggest 3 >told
+[ "$(applied <told)" -ge 1 ] || fail "no suggestion for a storey"
+cp barriers.env ./-barriers.env
+coverage ./-barriers.env barriers.3dm --suggest 1 >told
+has ' \./-barriers\.env ' <told || fail "a name becomes an option"
+
 # Prices are those of the records: the cheaper scanner sees as much of a small room.
 printf '#env 1\nispace size=3,3,2.5\n' >small.env
 cat >small.3dm <<'END'

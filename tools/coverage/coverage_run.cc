@@ -97,7 +97,7 @@ std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInp
                                 .requirements = options.requirements};
     const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
     return Advice{suggestChanges(input.scene, coverage, wanted, shippedDevices(), *progress),
-                  input.named};
+                  editCommand(input.named, options.rules)};
 }
 
 namespace {

@@ -36,6 +36,7 @@ void mustBeAboutBuildings(const EnvcOptions& options, const StoreyedDocument& bu
     if (options.slice) option = "--slice";
     if (!options.zones.empty()) option = "--zone";
     if (!options.report.empty()) option = "--report";
+    if (options.suggestions) option = "--suggest";
     if (options.list_rooms) option = "--rooms list";
     if (option.empty() && options.format != nullptr &&
         std::find(std::begin(kFormats), std::end(kFormats), options.format->name) ==

@@ -344,8 +344,9 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     if ((options.info || options.list_rooms) && !options.json)
         options.json = outputFormat({}, options.common.output, {"txt", "json"}) == "json";
     options.history_line = line.historyLine(options.inputs);
-    options.changing = "envc";
-    for (const std::string& input : options.inputs) options.changing += ' ' + shellQuote(input);
+    options.changing = editCommand(options.inputs, options.rules);
+    for (const std::string& folder : options.import.model_folders)
+        options.changing += " --models " + shellQuote(folder);
     options.changing += line.historyLine({}).substr(std::string_view("envc").size());
     return options;
 }
