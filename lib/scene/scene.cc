@@ -125,7 +125,11 @@ class Resolver {
   public:
     Resolver(const std::vector<Record>& records, const std::vector<std::string>& ids,
              const DeviceCatalogue& devices)
-        : records_(records), ids_(ids), devices_(devices), carriers_(records, ids) {}
+        : records_(records),
+          ids_(ids),
+          room_{records, ids},
+          devices_(devices),
+          carriers_(records, ids) {}
 
     Placements resolve(Diagnostics& findings) {
         for (std::size_t i = 0; i < records_.size(); ++i) {
@@ -164,7 +168,7 @@ class Resolver {
     void addSensor(std::size_t i, const SensorKind& kind) {
         const Record& record = records_[i];
         SensorModel model = kind.read(record, deviceOf(record, devices_));
-        if (kind.look_up != nullptr) kind.look_up(model, record, {records_, ids_});
+        if (kind.look_up != nullptr) kind.look_up(model, record, room_);
         const auto place = placeOf(record);
         if (!place) {
             if (kind.is_arranged) out_.pending.push_back({ids_[i], record, std::move(model)});
@@ -184,6 +188,7 @@ class Resolver {
 
     const std::vector<Record>& records_;
     const std::vector<std::string>& ids_;
+    RoomRecords room_;
     const DeviceCatalogue& devices_;
     Carriers carriers_;
     Placements out_;

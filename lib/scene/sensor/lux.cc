@@ -37,14 +37,19 @@ void addLuxKeys(std::vector<KeySpec>& keys) {
     keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
 }
 
-void lookUpLamps(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
-    Lux& lux = std::get<Lux>(model);
+std::vector<Lux::Light> lightsOf(const RoomRecords& room) {
+    std::vector<Lux::Light> lights;
     for (const Record& record : room.records) {
         if (record.keyword() != "lamp" || !record.flag("on") || record.number("level") == 0)
             continue;
         const Tuple& at = record.tuple("at");
-        lux.lights.push_back({{at[0], at[1]}, record.number("level") * record.number("lumens")});
+        lights.push_back({{at[0], at[1]}, record.number("level") * record.number("lumens")});
     }
+    return lights;
+}
+
+void lookUpLamps(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
+    std::get<Lux>(model).lights = room.shared<Lux::Light>([&room] { return lightsOf(room); });
 }
 
 std::vector<Mesh> luxBody() {

@@ -7,6 +7,7 @@
 
 #include "geom/pose.h"
 #include "record/record.h"
+#include "scene/sensor/shared_list.h"
 
 namespace ispace {
 
@@ -27,11 +28,11 @@ struct Lux {
     double error = 0;           ///< spread of its constant factor, with noise
     double rate = 1;            ///< readings a second
     double max_range = 0;       ///< it covers no floor
-    std::vector<Light> lights;  ///< of the scene
+    SharedList<Light> lights;   ///< of the scene
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
-    [[nodiscard]] static std::size_t rays() { return 16; }
+    [[nodiscard]] std::size_t rays() const { return 16 * (1 + lights.size()); }
     [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
     [[nodiscard]] bool isNoisy() const { return resolution > 0 || error > 0; }
     static const SensorKind kKind;

@@ -45,14 +45,19 @@ void addMicrophoneKeys(std::vector<KeySpec>& keys) {
     keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
 }
 
-void lookUpSpeakers(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
-    Microphone& microphone = std::get<Microphone>(model);
+std::vector<SoundSource> speakersOf(const RoomRecords& room) {
+    std::vector<SoundSource> sources;
     for (const Record& record : room.records) {
         if (record.keyword() != "speaker" || !record.flag("on")) continue;
         const Tuple& at = record.tuple("at");
-        microphone.sources.push_back(
-            {{at[0], at[1], record.number("height")}, record.number("volume")});
+        sources.push_back({{at[0], at[1], record.number("height")}, record.number("volume")});
     }
+    return sources;
+}
+
+void lookUpSpeakers(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
+    std::get<Microphone>(model).sources =
+        room.shared<SoundSource>([&room] { return speakersOf(room); });
 }
 
 std::vector<Mesh> microphoneBody() {

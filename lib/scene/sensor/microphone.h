@@ -7,6 +7,7 @@
 
 #include "geom/pose.h"
 #include "record/record.h"
+#include "scene/sensor/shared_list.h"
 
 namespace ispace {
 
@@ -27,11 +28,12 @@ struct Microphone {
     double sigma = 0;                  ///< dB, standard deviation of a reading
     double rate = 10;                  ///< readings a second
     double max_range = 0;              ///< it covers no floor
-    std::vector<SoundSource> sources;  ///< of the scene
+    SharedList<SoundSource> sources;   ///< of the scene
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
-    [[nodiscard]] static std::size_t rays() { return 1; }
+    /// Walls between stop a ray each.
+    [[nodiscard]] std::size_t rays() const { return 1 + 8 * sources.size(); }
     [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return true; }
     [[nodiscard]] bool isNoisy() const { return sigma > 0; }
     static const SensorKind kKind;

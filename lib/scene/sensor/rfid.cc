@@ -40,10 +40,10 @@ void addRfidKeys(std::vector<KeySpec>& keys) {
                     .upper = 1});
 }
 
-void lookUpTags(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
+std::vector<RfidTag> tagsOf(const RoomRecords& room) {
     using Carrier = RfidTag::Carrier;
     constexpr double kAbove = 0.01;  // a tag lies on a thing, not in its surface
-    Rfid& rfid = std::get<Rfid>(model);
+    std::vector<RfidTag> tags;
     std::size_t robots = 0, people = 0;
     for (const Record& record : room.records) {
         const bool is_robot = record.keyword() == "robot", is_person = record.keyword() == "human";
@@ -59,8 +59,13 @@ void lookUpTags(SensorModel& model, const Record& /*record*/, const RoomRecords&
             const Tuple& at = record.tuple("at");
             tag.at = {at[0], at[1], topOf(bodyOf(record)) + kAbove};
         }
-        rfid.tags.push_back(std::move(tag));
+        tags.push_back(std::move(tag));
     }
+    return tags;
+}
+
+void lookUpTags(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
+    std::get<Rfid>(model).tags = room.shared<RfidTag>([&room] { return tagsOf(room); });
 }
 
 /// Builds the flat housing of an antenna.

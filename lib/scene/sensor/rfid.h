@@ -8,6 +8,7 @@
 #include "geom/pose.h"
 #include "record/record.h"
 #include "scene/sensor/field_of_view.h"
+#include "scene/sensor/shared_list.h"
 
 namespace ispace {
 
@@ -31,11 +32,11 @@ struct Rfid {
     Angle fov_x = Angle::degrees(70), fov_y = Angle::degrees(70);  ///< full angles
     double rate = 10;                                              ///< rounds of inventory a second
     double read = 1;            ///< share of the rounds that read a tag in the field, with noise
-    std::vector<RfidTag> tags;  ///< of the scene
+    SharedList<RfidTag> tags;   ///< of the scene
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
-    [[nodiscard]] static std::size_t rays() { return 1; }
+    [[nodiscard]] std::size_t rays() const { return 1 + tags.size(); }
     [[nodiscard]] bool isNoisy() const { return read < 1; }
     [[nodiscard]] bool isOmnidirectional(const Pose3& mount) const {
         return fov_x >= Angle::degrees(360) && mount.isLevel();

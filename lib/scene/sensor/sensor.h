@@ -3,11 +3,14 @@
 // field of view. Uses env and below.
 #pragma once
 
+#include <any>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <typeindex>
 #include <variant>
 #include <vector>
 
@@ -16,6 +19,7 @@
 #include "record/record.h"
 #include "record/schema.h"
 #include "scene/sensor/kinds.h"
+#include "scene/sensor/shared_list.h"
 
 namespace ispace {
 
@@ -98,6 +102,16 @@ struct BearingSpan {
 struct RoomRecords {
     std::span<const Record> records;
     std::span<const std::string> ids;
+
+    /// Returns a list that the sensors of the room share: what find() finds for the first of them.
+    template <typename T, typename Find>
+    SharedList<T> shared(Find find) const {
+        std::any& known = lists[std::type_index(typeid(T))];
+        if (!known.has_value()) known = SharedList<T>(find());
+        return std::any_cast<SharedList<T>>(known);
+    }
+
+    mutable std::map<std::type_index, std::any> lists = {};
 };
 
 /// One kind of sensor, with all its properties that other folders use: kKind of its parameters,
