@@ -41,6 +41,7 @@ constexpr std::size_t kMaxPayload = 256;
 MqttBridge::MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, std::string prefix)
     : state_(&state), client_(std::move(client)), prefix_(std::move(prefix)), session_(state) {
     if (!state.limits().token.empty()) session_.request("TOKEN " + state.limits().token);
+    client_->subscribe(prefix_ + "/+/+/set");  // of all things, also of later ones
     session_.request("WORLD");
     session_.request("EVENTS state");
     session_.take();
@@ -63,11 +64,8 @@ void MqttBridge::introduce(bool all) {
         bool is_new = all;
         for (const std::string& key : thing.keys) {
             names.push_back(topicOf(thing.id, key));
-            const bool is_actuator = isActuator(thing.keyword);
-            topics.emplace(names.back(), Topic{thing.id, key, is_actuator});
-            const bool was_known = topics_.contains(names.back());
-            if (!was_known && is_actuator) client_->subscribe(names.back() + "/set");
-            is_new = is_new || !was_known;
+            topics.emplace(names.back(), Topic{thing.id, key, isActuator(thing.keyword)});
+            is_new = is_new || !topics_.contains(names.back());
         }
         MqttMessage description = discoveryOf(thing, prefix_, names);
         is_new = is_new || !descriptions_.contains(description.topic);

@@ -29,6 +29,8 @@ constexpr auto kPatience = std::chrono::seconds(5);
 constexpr auto kLastMessages = std::chrono::milliseconds(500);
 /// Messages kept for a broker that is away; then the oldest are dropped.
 constexpr std::size_t kMaxKept = 100'000;
+/// Messages that have arrived between two calls of take(), and bytes of each; further are dropped.
+constexpr std::size_t kMaxIncoming = 10'000, kMaxPayload = 1024;
 
 [[noreturn]] void fail(const std::string& message) {
     throw FormatError(Diagnostic{"", 0, 0, message});
@@ -242,10 +244,11 @@ void MosquittoClient::subscribe(const std::string& topic) {
 void MosquittoClient::received(const mosquitto_message& message) {
     {
         const std::lock_guard lock(mutex_);
-        incoming_.push_back({message.topic,
-                             {static_cast<const char*>(message.payload),
-                              static_cast<std::size_t>(message.payloadlen)},
-                             message.retain});
+        if (incoming_.size() >= kMaxIncoming) return;
+        const std::size_t size =
+            std::min(static_cast<std::size_t>(message.payloadlen), kMaxPayload);
+        incoming_.push_back(
+            {message.topic, {static_cast<const char*>(message.payload), size}, message.retain});
     }
     wake_();
 }
