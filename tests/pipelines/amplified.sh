@@ -58,6 +58,8 @@ quick svg_css_selectors 400000
 quick sdf_same 12000
 quick ifc_mapped_walls 20000
 quick ifc_mapped_walls 400000
+quick ifc_shared_walls 70000
+quick ifc_shared_walls 400000
 quick ifc_mappings 400000
 grep -q ': error: #[0-9]*: mapped shapes make more than [0-9]* units of work' err || fail "another error: $(cat err)"
 quick gltf_instances 400000

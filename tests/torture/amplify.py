@@ -407,21 +407,31 @@ def ifc_mappings(size):
     return ifc(body)
 
 
-def ifc_mapped_walls(size):
-    """One large shape that all walls map."""
+def ifc_walls_of(size, last):
+    """One large shape, #40, and walls of the shape #30 that `last` makes of it."""
     half = size // 2
     boxes = max(1, half // 40)
     body = ifc_box()
     body += "".join(f"#{1000 + i}=IFCEXTRUDEDAREASOLID(#20,#5,#23,3.);\n" for i in range(boxes))
     body += ("#40=IFCSHAPEREPRESENTATION($,'Body','SweptSolid',(" +
-             ",".join(f"#{1000 + i}" for i in range(boxes)) + "));\n#41=IFCREPRESENTATIONMAP(#5,#40);\n"
-             "#42=IFCMAPPEDITEM(#41,#26);\n#43=IFCSHAPEREPRESENTATION($,'Body','MappedRepresentation',(#42));\n"
-             "#30=IFCPRODUCTDEFINITIONSHAPE($,$,(#43));\n")
+             ",".join(f"#{1000 + i}" for i in range(boxes)) + "));\n" + last)
     walls = max(1, half // 50)
     body += "".join(f"#{9000000 + i}=IFCWALL('w',$,'w',$,$,#6,#30,$,$);\n" for i in range(walls))
     body += ("#32=IFCRELCONTAINEDINSPATIALSTRUCTURE('c',$,$,$,(" +
              ",".join(f"#{9000000 + i}" for i in range(walls)) + "),#8);\n")
     return ifc(body)
+
+
+def ifc_mapped_walls(size):
+    """All walls map the shape."""
+    return ifc_walls_of(size, "#41=IFCREPRESENTATIONMAP(#5,#40);\n#42=IFCMAPPEDITEM(#41,#26);\n"
+                        "#43=IFCSHAPEREPRESENTATION($,'Body','MappedRepresentation',(#42));\n"
+                        "#30=IFCPRODUCTDEFINITIONSHAPE($,$,(#43));\n")
+
+
+def ifc_shared_walls(size):
+    """All walls have the same shape, without a map."""
+    return ifc_walls_of(size, "#30=IFCPRODUCTDEFINITIONSHAPE($,$,(#40));\n")
 
 
 def teeth(size, row):
@@ -549,7 +559,7 @@ def batch_quotes(size):
 PREFIXES = ("dxf_", "svg_", "sdf_", "env_", "pol_", "house_", "rmf_", "yaml_", "gltf_", "ifc_", "batch_")
 FAMILIES = {name: make for name, make in globals().items()
             if callable(make) and name.startswith(PREFIXES) and name not in
-            ("sdf_box", "sdf_includes", "ifc_box", "gltf_mesh", "house_of_storeys")}
+            ("sdf_box", "sdf_includes", "ifc_box", "ifc_walls_of", "gltf_mesh", "house_of_storeys")}
 
 
 def command(envc, family, operand):

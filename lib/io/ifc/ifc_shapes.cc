@@ -29,7 +29,7 @@ int rankOf(const StepInstance& representation) {
     return std::find(kOthers.begin(), kOthers.end(), name) == kOthers.end() ? 3 : 0;
 }
 
-std::size_t cornersOf(const IfcShape& shape) {
+std::size_t cornersOf(std::span<const IfcSolid> shape) {
     std::size_t corners = 0;
     for (const IfcSolid& solid : shape) {
         corners += solid.body.corners.size();
@@ -59,11 +59,14 @@ IfcFaces prismOver(const Polygon& boundary, const IfcFrame& position) {
 
 }  // namespace
 
+void IfcShapes::pay(std::span<const IfcSolid> part, const char* cause) {
+    if (!work_.take(part.size() + cornersOf(part) / kCornersPerUnit))
+        throw std::runtime_error(std::string(cause) + " make " + work_.excess());
+}
+
 void IfcShapes::append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame) {
-    const std::size_t corners = cornersOf(part);
-    if (!work_.take(part.size() + corners / kCornersPerUnit))
-        throw std::runtime_error("mapped shapes make " + work_.excess());
-    if (corners + cornersOf(shape) > kMaxCorners)
+    pay(part, "mapped shapes");
+    if (cornersOf(part) + cornersOf(shape) > kMaxCorners)
         throw std::runtime_error("a shape of more than 20 million corners");
     for (const IfcSolid& solid : part) {
         IfcSolid& copy = shape.emplace_back(solid);
@@ -115,6 +118,7 @@ void IfcShapes::addItem(StepId id, IfcShape& shape, int depth) {
         return addBoolean(item, shape, depth);
     if (item.type == "IFCCSGSOLID") return addItem(item[0].reference(), shape, depth + 1);
     shape.push_back({ifcFaces(frames_, item), {}});
+    pay({&shape.back(), 1}, "shared shapes");  // products may share one without a map
 }
 
 void IfcShapes::addMapped(const StepInstance& item, IfcShape& shape, int depth) {

@@ -54,7 +54,7 @@ class IfcShapes {
     /// Reads the body of a product in its own frame: from its IfcProductDefinitionShape the
     /// representation `Body`, else another one with solids; if there is none, its footprint, 2.5 m
     /// high, or its box. Counts unsupported parts.
-    /// \throws std::runtime_error for more than kMaxCorners, and if mapped shapes require more work
+    /// \throws std::runtime_error for more than kMaxCorners, and if shapes require more work
     /// than is left
     IfcShape shapeOf(StepId definition);
     /// Returns the numbers of unsupported parts, by type.
@@ -69,6 +69,8 @@ class IfcShapes {
     void addBoolean(const StepInstance& result, IfcShape& shape, int depth);
     [[nodiscard]] IfcCut cutBy(StepId operand, bool keeps_inside, int depth);
 
+    /// Takes the work for solids. \throws std::runtime_error if it is more than is left
+    void pay(std::span<const IfcSolid> part, const char* cause);
     void append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame);
 
     const IfcFrames& frames_;
