@@ -120,12 +120,12 @@ CellWays cellWaysOf(const Environment& environment, const Target& target, const 
 void MeasuredScene::setWays() {
     const WayChoice& way = options_.objective.way;
     const std::string name = "between " + printable(way.from) + " and " + printable(way.to);
-    ways_ = cellWaysOf(scene_.environment, target_, way);
-    if (!ways_.exist())
+    cell_ways_ = cellWaysOf(scene_.environment, target_, way);
+    if (!cell_ways_.exist())
         throw UnmetError("no way " + name + " leads over free cells (--cell M makes them smaller)");
-    cases_.ways = &ways_;
+    cases_.ways = &cell_ways_;
     cases_.blocks = {{0, problem_.cells()}};
-    cases_.shortest = ways_.leastSeen([](std::uint32_t) { return true; }).seen;
+    cases_.shortest = cell_ways_.leastSeen([](std::uint32_t) { return true; }).seen;
     if (cases_.shortest == 0) throw UnmetError("the zones touch: a way " + name + " is never seen");
     total_ = cases_.shortest;
 }

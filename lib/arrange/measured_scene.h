@@ -148,7 +148,7 @@ class MeasuredScene {
     std::optional<FacingCells> facing_;
     std::optional<PresenceView> ways_;
     std::vector<std::unique_ptr<CaseRoom>> rooms_;
-    CellWays ways_;
+    CellWays cell_ways_;
     WorstCaseProblem cases_;
     std::vector<std::string> standing_ids_;  ///< of cases_.standing
     Target target_;

@@ -153,7 +153,7 @@ void CertificateChecker::computeViews() {
     constexpr std::size_t kMostBytes = std::size_t{8} << 30U;
     for (const std::uint32_t id : blind_) boxes_[id].is_used = true;
     std::atomic<std::size_t> parts = 0;
-    tbb::parallel_for(std::size_t{0}, boxes_.size(), [this](std::size_t i) {
+    tbb::parallel_for(std::size_t{0}, boxes_.size(), [this, &parts](std::size_t i) {
         Box& box = boxes_[i];
         if (box.second != 0 && !box.is_used) return;
         box.view = views_.viewOf(box.box);
