@@ -63,6 +63,8 @@ void CommonSight::follow(std::size_t face, std::size_t edge, std::vector<Wedge> 
         } else {
             if (cross(wedge.right - wedge.corner, to_right) > 0) wedge.right = right;
             if (cross(wedge.left - wedge.corner, to_left) < 0) wedge.left = left;
+            // Nothing lies between: what both sides bound would be behind the corner.
+            if (cross(wedge.right - wedge.corner, wedge.left - wedge.corner) < 0) return;
         }
         // An edge that begins or ends in the corner bounds nothing beyond it.
         wedge.is_open = wedge.corner == right || wedge.corner == left;

@@ -139,5 +139,25 @@ TEST(CoreView, OfTheCheckIsNoSmallerAndLiesInItsView) {
     }
 }
 
+/// Beyond the near edges of a pocket, the two sides of a line of sight may cross: there is no view,
+/// least of all behind the box.
+TEST(CoreView, OfTheCheckEndsWhereLinesOfSightEnd) {
+    const Region region{
+        {{-5, 1}, {2, -1.2}, {2, 0.5}, {1, 0.5}, {-0.2, 0.5}, {-0.2, -0.1}, {1, -0.1}, {1, -0.4}},
+        {}};
+    const PoseFloor floor({&region, 1}, kCells);
+    const Sector sector{30, 2 * kPi, 0};
+    const BoxViews views({&region, 1}, kCells, sector);
+    const PoseBox box{{{0.28, -0.07}, {0.32, -0.03}}, 0, 0};
+    const BoxCore core = views.coreOf(box);
+    const BoxView one = views.viewOf({{{0.3, -0.05}, {0.3, -0.05}}, 0, 0});
+    ASSERT_FALSE(core.parts.empty());
+    for (std::size_t i = 0; i < core.parts.size(); ++i) {
+        const std::size_t cell = core.first + i;
+        const bool is_in = cell >= one.first && cell - one.first < one.parts.size();
+        ASSERT_LE(core.parts[i], is_in ? one.parts[cell - one.first] : 0) << cell;
+    }
+}
+
 }  // namespace
 }  // namespace ispace::poses
