@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <utility>
 
 #include "coverage/localisation.h"
@@ -294,7 +295,8 @@ SearchResult searchLocalised(const MeasuredScene& model, Progress& progress) {
     const bool moves = model.options().search.optimizer != Optimizer::Greedy;
     Solution best;
     for (std::vector<Choice> chosen : {result.best.chosen, search.greedy(progress)}) {
-        Solution solution{std::move(chosen), 0};
+        const std::set<Choice> once(chosen.begin(), chosen.end());
+        Solution solution{{once.begin(), once.end()}, 0};
         solution.value = search.valueOf(search.spotsOf(solution.chosen));
         if (moves) search.improve(solution, progress);
         if (solution.value > best.value || best.chosen.empty()) best = std::move(solution);

@@ -17,18 +17,29 @@ namespace ispace {
 
 namespace {
 
-constexpr std::uint64_t kFromMark = 4, kToMark = 8;
+constexpr std::uint64_t kFromMark = 4, kToMark = 8, kSheetMark = 16;
 
 Layer zoneLayer(const std::string& zone, const Environment& environment, std::uint64_t mark) {
     return markLayer({curveOf(readZone(zone, environment).outline)}, mark);
+}
+
+/// Walls without thickness are taken to be this thick on either side, and at their ends, metres:
+/// more than the errors of the overlay, which grow with the room.
+constexpr double kHalfSheet = 1e-5, kPerMetre = 0.01;
+
+Polygon thickened(const Segment2& sheet, double half) {
+    const double size = distance(sheet.a, sheet.b);
+    const Vec2 along = size > 0 ? (half / size) * (sheet.b - sheet.a) : Vec2{half, 0};
+    const Vec2 aside = perpendicular(along);
+    const Point2 a = sheet.a - along, b = sheet.b + along;
+    return {a - aside, b - aside, b + aside, a + aside};
 }
 
 /// The free floor of an overlay, and the parts of it that hide an intruder.
 class WayFloor {
   public:
     WayFloor(const Scene& scene, const Coverage& coverage, const WayChoice& of, int times)
-        : overlay_(layersOf(scene, coverage, of),
-                   scene.environment.level(coverage.target.height)->slice().sheets),
+        : overlay_(layersOf(scene, coverage, of)),
           free_(overlay_.regions([](const LayerLabel& label) { return isFree(label); })),
           hidden_(overlay_.regions([times](const LayerLabel& label) {
               return isFree(label) &&
@@ -54,7 +65,7 @@ class WayFloor {
         std::optional<std::size_t> region = found->first;
         for (const ExposedLeg& leg : found->legs) {
             if (region) addHidden(*region, at, leg.from, way);
-            way.pieces.push_back({leg.from, leg.to, true});
+            if (!(leg.from == leg.to)) way.pieces.push_back({leg.from, leg.to, true});
             at = leg.to;
             region = leg.reaches;
         }
@@ -64,7 +75,9 @@ class WayFloor {
     }
 
   private:
-    static bool isFree(const LayerLabel& label) { return (label.marks & kFreeMark) != 0; }
+    static bool isFree(const LayerLabel& label) {
+        return (label.marks & kFreeMark) != 0 && (label.marks & kSheetMark) == 0;
+    }
 
     static std::vector<Layer> layersOf(const Scene& scene, const Coverage& coverage,
                                        const WayChoice& of) {
@@ -73,6 +86,10 @@ class WayFloor {
         for (const CoveredSet& set : coverage.sets) layers.push_back({.curves = *set.region});
         const auto level = environment.level(coverage.target.height);
         layers.push_back(markLayer(floorCurvesOf(environment, level->freeFloor()).free, kFreeMark));
+        const Box2& limits = environment.limits();
+        const double half = kHalfSheet * (1 + kPerMetre * (limits.width() + limits.depth()));
+        for (const Segment2& sheet : level->slice().sheets)
+            layers.push_back(markLayer({curveOf(thickened(sheet, half))}, kSheetMark));
         layers.push_back(zoneLayer(of.from, environment, kFromMark));
         layers.push_back(zoneLayer(of.to, environment, kToMark));
         return layers;

@@ -235,5 +235,20 @@ TEST(LeastSeenWay, AgreesWithALatticeInRandomRooms) {
     }
 }
 
+/// The default wall has no thickness; the way leads round its end.
+TEST(LeastSeenWay, LeadsRoundWallsWithoutThickness) {
+    const std::string room =
+        "ispace size=8,6,3\nzone id=a path=-2,-1;-1,-1;-1,0;-2,0\n"
+        "zone id=b path=1,-1;2,-1;2,0;1,0\n"
+        "laser at=-3.9,2.9 range=30 fov=360\nlaser at=3.9,2.9 range=30 fov=360\n"
+        "laser at=3.9,-2.9 range=30 fov=360\nlaser at=-3.9,-2.9 range=30 fov=360\n";
+    const double round = 2 * std::hypot(1, 2.5);
+    EXPECT_NEAR(wayIn(room + "wall from=0,-3 to=0,2.5\n").seen.value(), round, 1e-3);
+    // Two that meet at their ends: not through the joint.
+    EXPECT_NEAR(wayIn(room + "wall from=0,-3 to=0,-0.5\nwall from=0,-0.5 to=0,2.5\n").seen.value(),
+                round, 1e-3);
+    EXPECT_NEAR(wayIn(room).seen.value(), 2, 1e-3);
+}
+
 }  // namespace
 }  // namespace ispace
