@@ -453,7 +453,7 @@ std::string fileInHistory(const std::string& operand) {
 
 std::string filesInHistory(const std::string& list) {
     const auto colon = list.find(':');
-    if (colon == std::string::npos) return shellQuote(list);
+    if (colon == std::string::npos || list.find('/') < colon) return shellQuote(baseName(list));
     std::string names = list.substr(0, colon + 1);
     for (std::size_t at = colon + 1; at <= list.size();) {
         const std::size_t end = std::min(list.find(',', at), list.size());

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
+#include "base/number.h"
 #include "cli/batch.h"
 #include "cli/outputs.h"
 #include "record/text.h"
@@ -19,7 +20,18 @@ std::string_view prefixOf(Shared what) {
     return what == Shared::Candidates ? "views/" : what == Shared::Starts ? "start" : "proof/";
 }
 
-/// Returns the job of the command. \param places the text of --places, "" without
+/// Returns the ways of people as text, "" without.
+std::string waysText(const ArrangeOptions& how) {
+    std::string text;
+    if (how.ways)
+        for (const WayPiece& piece : how.ways->pieces)
+            for (const double part : {static_cast<double>(piece.person), piece.time, piece.place.x,
+                                      piece.place.y, piece.velocity.x, piece.velocity.y})
+                text.append(formatDouble(part)) += ' ';
+    return text;
+}
+
+/// Returns the job of the command. \param places the text of --places and of ways, "" without
 JobId arrangeJob(const ArrangeCommand& command, const SceneInput& input,
                  const std::string& places) {
     const ArrangeToolOptions& options = command.options();
@@ -67,7 +79,7 @@ std::unique_ptr<JobResults> resultsOf(const ArrangeCommand& command, const Arran
                                       std::unique_ptr<JobResults> parts, bool& is_done) {
     const ArrangeToolOptions& options = command.options();
     const BatchOptions& batch = options.batch;
-    JobId job = arrangeJob(command, work.input, work.places);
+    JobId job = arrangeJob(command, work.input, work.places + waysText(work.how));
     if (parts) {
         const JobId& made = parts->head().job;
         job.form = made.form;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
+
 namespace ispace {
 
 std::vector<std::size_t> PeopleWays::firsts() const {
@@ -28,12 +30,17 @@ void WayCutter::add(const std::string& person, double time, Point2 place) {
     }
     Way& way = ways_[last_];
     constexpr double kTolerance = 1e-9;  // s
+    constexpr std::size_t kMaxPieces = 10'000'000;
     const double passed = time - way.time;
     if (passed < kWayStep - kTolerance) return;
     const Vec2 step = place - way.place;
     const double covered = length(step);
-    if (std::isfinite(passed) && covered > 0 && covered <= kFastest * passed)
+    if (std::isfinite(passed) && covered > 0 && covered <= kFastest * passed) {
+        if (++pieces_ > kMaxPieces)
+            throw UsageError(
+                "the ways have more than 10 000 000 pieces of 0.2 s; take a shorter run");
         way.pieces.push_back({0, way.time, way.place, (1 / passed) * step, covered});
+    }
     way.time = time;
     way.place = place;
 }
@@ -48,7 +55,7 @@ PeopleWays WayCutter::finish() {
         ways.people.push_back(std::move(way.id));
     }
     ways_.clear();
-    last_ = 0;
+    last_ = pieces_ = 0;
     return ways;
 }
 

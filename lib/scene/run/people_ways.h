@@ -39,7 +39,7 @@ class WayCutter {
   public:
     /// Adds a position of a person, whose times ascend. Ignores those less than kWayStep after the
     /// last one used. Between two that are farther apart than a person runs, a client moved the
-    /// person: that is no piece.
+    /// person: that is no piece. \throws UsageError for more than 10 million pieces
     void add(const std::string& person, double time, Point2 place);
     /// Returns the ways so far; the cutter is then empty.
     [[nodiscard]] PeopleWays finish();
@@ -52,7 +52,8 @@ class WayCutter {
         std::vector<WayPiece> pieces = {};
     };
     std::vector<Way> ways_;
-    std::size_t last_ = 0;  // of ways_
+    std::size_t last_ = 0;    // of ways_
+    std::size_t pieces_ = 0;  // of all ways
 };
 
 /// Reads the ways of all people of a recorded run, from the next moment on. \throws as the reader
