@@ -271,7 +271,8 @@ void JobResults::keep(const std::string& key, const Record& record) {
     const auto [at, is_new] = records_.try_emplace(key, record);
     if (!is_new && is_merge_) {
         const Record& other = at->second;
-        if (key != common_ || other.size != record.size || other.hash != record.hash)
+        const bool is_equal = other.size == record.size && other.hash == record.hash;
+        if (key != common_ || (is_common_equal_ && !is_equal))
             files_[record.file].doubled = "its record " + excerpt(key) + " is in " +
                                           displayName(files_[other.file].name) + ", too";
         return;

@@ -112,7 +112,7 @@ class JobResults {
 
   private:
     friend JobResults mergeParts(std::span<const std::string> files, std::string_view tool,
-                                 std::string_view common);
+                                 std::string_view common, bool is_equal);
     friend PartHead partHeadOf(const std::string& file);
     friend bool isPartOf(const std::string& file, const PartHead& head);
     using Clock = std::chrono::steady_clock;
@@ -161,6 +161,7 @@ class JobResults {
     std::uint64_t next_rewrite_ = 0;  // size of the kept file from which it is rewritten
     bool is_kept_ = false, is_merge_ = false, is_optional_ = false;
     std::string common_;  // of a merge
+    bool is_common_equal_ = true;
     std::string trouble_;
     std::map<std::string, int> steps_;
     Clock::duration interval_{};
@@ -169,11 +170,11 @@ class JobResults {
 };
 
 /// Merges the parts of all shards of one job.
-/// \param common key of the record that is equal in all parts
+/// \param common key of the record that all parts have \param is_equal false: its bytes may differ
 /// \throws FormatError if a part is missing, duplicate, unfinished, of another job or tool, or
 /// written by a version of ispace with another format, and if two parts have the same other record
 JobResults mergeParts(std::span<const std::string> files, std::string_view tool,
-                      std::string_view common);
+                      std::string_view common, bool is_equal = true);
 
 /// True if `file` is a finished and undamaged part of this shard of this job.
 bool isPartOf(const std::string& file, const PartHead& head);

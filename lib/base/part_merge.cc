@@ -76,10 +76,11 @@ std::string mergeProblem(const PartHead& head, bool is_finished, std::string_vie
 }  // namespace
 
 JobResults mergeParts(std::span<const std::string> files, std::string_view tool,
-                      std::string_view common) {
+                      std::string_view common, bool is_equal) {
     JobResults merged;
     merged.is_merge_ = true;
     merged.common_ = common;
+    merged.is_common_equal_ = is_equal;
     Diagnostics findings;
     allowFiles(files.size());
     std::optional<PartHead> first;

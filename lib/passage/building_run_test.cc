@@ -247,7 +247,7 @@ TEST(BuildingRun, AMoverKeptFromTheLandingLeavesTheQueue) {
         const BuildingScene building = buildingOf(
             std::string("robot id=ground/r1 at=6,4\nrobot id=ground/parked at=") + at + '\n');
         BuildingRun run(building, optionsOf());
-        ASSERT_EQ(run.travel("ground/r1", {{1, {9, 6}}}, 0).refusal, "");
+        ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
         const auto end = await(run, "ground/r1", 300);
         ASSERT_TRUE(end) << at;
         EXPECT_EQ(end->outcome, Outcome::Unreached) << at;

@@ -91,7 +91,7 @@ UsageError unknown(const std::vector<JudgedRoom>& rooms, const std::string& id) 
 }
 
 UsageError lacksRoom(const std::vector<JudgedRoom>& rooms, const std::string& text) {
-    if (rooms.size() == 1) return UsageError("there is one room: leave out its name");
+    if (rooms.front().id.empty()) return UsageError("there is one room: leave out its name");
     return UsageError(excerpt(text) + " names no room before it, as in " + rooms.front().id + '/' +
                       text.substr(text.find('/') + 1));
 }
@@ -257,7 +257,7 @@ std::size_t ExpectationJudge::Data::roomNamed(const std::string& id,
 RoomZones ExpectationJudge::Data::zonesOf(const std::string& text) const {
     RoomZones found;
     std::string name = text;
-    if (rooms.size() > 1) {
+    if (!rooms.front().id.empty()) {
         const std::size_t slash = std::min(text.find('/'), text.size());
         found.room = roomNamed(text.substr(0, slash), text);
         name = text.substr(std::min(slash + 1, text.size()));

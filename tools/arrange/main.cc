@@ -231,7 +231,8 @@ void arrangeSensors(const ArrangeCommand& command) {
         if (!arrangeInBuilding(command)) runCommand(command, nullptr);
         return;
     }
-    auto parts = std::make_unique<JobResults>(mergeParts(options.operands, "arrange", kCommandKey));
+    auto parts =
+        std::make_unique<JobResults>(mergeParts(options.operands, "arrange", kCommandKey, false));
     const auto made_by = commandOf(*parts, options);
     runCommand(*made_by, std::move(parts));
 }

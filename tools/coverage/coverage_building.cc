@@ -43,6 +43,11 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
     if (!options.other.empty()) option = "--compare";
     if (!options.run.empty() && recordedBuilding(options.run).empty()) option = "--run of one room";
     if (options.presence) option = "--presence";
+    if (!options.privacy.empty()) option = "--privacy";
+    if (!options.facing.empty()) option = "--facing";
+    if (options.perturb) option = "--perturb";
+    if (options.failures > 0) option = "--failures";
+    if (options.crowd) option = "--crowd";
     if (!options.paths.empty()) option = "--path";
     if (options.localise_to) option = "--localise";
     if (options.suggestions) option = "--suggest";

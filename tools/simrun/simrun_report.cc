@@ -104,7 +104,8 @@ std::string suggestionsText(const SimrunOptions& options, const SceneInput& inpu
         text += "  " + printable(one.change.text) + ": +" +
                 formatFixed(kPoints * (one.seen - *before), 2) +
                 " points, robots and people are seen for " + percentText(one.seen) +
-                " of their time\n    " + commandOf(editCommand(input.named, options.rules), one.change.edits) + '\n';
+                " of their time\n    " +
+                commandOf(editCommand(input.named, options.rules), one.change.edits) + '\n';
     return text;
 }
 

@@ -208,7 +208,8 @@ void addAdvice(const CoveragePageInput& input, ReportPage& page) {
     for (const Suggestion& suggestion : input.parts.advice->suggestions) {
         section.blocks.push_back(
             PageText{printable(suggestion.text) + ": " + gainText(suggestion) + "."});
-        section.blocks.push_back(PageCode{commandOf(input.parts.advice->command, suggestion.edits)});
+        section.blocks.push_back(
+            PageCode{commandOf(input.parts.advice->command, suggestion.edits)});
     }
     page.sections.push_back(std::move(section));
 }

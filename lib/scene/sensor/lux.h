@@ -22,13 +22,13 @@ struct Lux {
         friend bool operator==(const Light&, const Light&) = default;
     };
 
-    std::string model;          ///< "" for the bare meter
-    double max = 100'000;       ///< lux: greatest value that it tells
-    double resolution = 0;      ///< lux, with noise; 0: exact
-    double error = 0;           ///< spread of its constant factor, with noise
-    double rate = 1;            ///< readings a second
-    double max_range = 0;       ///< it covers no floor
-    SharedList<Light> lights;   ///< of the scene
+    std::string model;         ///< "" for the bare meter
+    double max = 100'000;      ///< lux: greatest value that it tells
+    double resolution = 0;     ///< lux, with noise; 0: exact
+    double error = 0;          ///< spread of its constant factor, with noise
+    double rate = 1;           ///< readings a second
+    double max_range = 0;      ///< it covers no floor
+    SharedList<Light> lights;  ///< of the scene
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }

@@ -22,13 +22,13 @@ struct SoundSource {
 
 /// A microphone that reports the sound pressure level. It hears in all directions.
 struct Microphone {
-    std::string model;                 ///< "" for the bare microphone
-    double floor = 30, max = 120;      ///< dB: its own noise, and the loudest sound that it tells
-    double loss = 30;                  ///< dB that a wall takes
-    double sigma = 0;                  ///< dB, standard deviation of a reading
-    double rate = 10;                  ///< readings a second
-    double max_range = 0;              ///< it covers no floor
-    SharedList<SoundSource> sources;   ///< of the scene
+    std::string model;                ///< "" for the bare microphone
+    double floor = 30, max = 120;     ///< dB: its own noise, and the loudest sound that it tells
+    double loss = 30;                 ///< dB that a wall takes
+    double sigma = 0;                 ///< dB, standard deviation of a reading
+    double rate = 10;                 ///< readings a second
+    double max_range = 0;             ///< it covers no floor
+    SharedList<SoundSource> sources;  ///< of the scene
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }

@@ -31,8 +31,8 @@ struct Rfid {
     double min_range = 0, max_range = 3;
     Angle fov_x = Angle::degrees(70), fov_y = Angle::degrees(70);  ///< full angles
     double rate = 10;                                              ///< rounds of inventory a second
-    double read = 1;            ///< share of the rounds that read a tag in the field, with noise
-    SharedList<RfidTag> tags;   ///< of the scene
+    double read = 1;           ///< share of the rounds that read a tag in the field, with noise
+    SharedList<RfidTag> tags;  ///< of the scene
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }

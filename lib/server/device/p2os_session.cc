@@ -235,8 +235,9 @@ void P2osSession::follow() {
     if (status.speed != 0 || status.rotspeed != Angle()) return;
     const bool is_elsewhere =
         status.pose.position != seen_.position || status.pose.heading != seen_.heading;
-    // A robot that was not moved continues, and may have received a distance just now.
-    if (is_elsewhere || !drive_.hasDistance()) drive_.renew();
+    // A robot that was not moved continues, and may have received a distance just now. One without
+    // an order may be on a trip by another client.
+    if (drive_.wantsMotion() && (is_elsewhere || !drive_.hasDistance())) drive_.renew();
 }
 
 void P2osSession::feed() {

@@ -54,6 +54,7 @@ class P2osDrive {
     [[nodiscard]] bool isStopping() const { return stopping_; }
     [[nodiscard]] bool isStalled() const { return stalled_; }
     [[nodiscard]] bool isHushed() const { return hushed_; }
+    [[nodiscard]] bool wantsMotion() const { return drive_.value != 0 || turn_.value != 0; }
     /// True if a distance remains to be driven.
     [[nodiscard]] bool hasDistance() const {
         return drive_.kind == AxisGoal::Kind::Distance && drive_.value != 0;

@@ -41,7 +41,8 @@ constexpr std::size_t kMaxPayload = 256;
 MqttBridge::MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, std::string prefix)
     : state_(&state), client_(std::move(client)), prefix_(std::move(prefix)), session_(state) {
     if (!state.limits().token.empty()) session_.request("TOKEN " + state.limits().token);
-    client_->subscribe(prefix_ + "/+/+/set");  // of all things, also of later ones
+    // Of all things, also of later ones; an id of a building has its storey before it.
+    for (const char* levels : {"/+/+/set", "/+/+/+/set"}) client_->subscribe(prefix_ + levels);
     session_.request("WORLD");
     session_.request("EVENTS state");
     session_.take();

@@ -125,7 +125,7 @@ TEST_F(BridgeTest, PublishesStatesAndSubscribesToCommands) {
     EXPECT_EQ(broker.last("home/s1/motion"), "OFF");
     EXPECT_EQ(broker.last("home/status"), "online");
     EXPECT_NE(broker.last("homeassistant/light/home_lp/config"), "");
-    EXPECT_EQ(broker.subscriptions, std::vector<std::string>{"home/+/+/set"});
+    EXPECT_EQ(broker.subscriptions, (std::vector<std::string>{"home/+/+/set", "home/+/+/+/set"}));
     EXPECT_TRUE(std::all_of(broker.published.begin(), broker.published.end(),
                             [](const MqttMessage& message) { return message.retain; }));
     bridge->end();
