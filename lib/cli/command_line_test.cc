@@ -129,7 +129,7 @@ TEST(CommandLine, HistoryNamesTheFilesOfAListWithoutTheirFolders) {
           {"rooms:a.env", "rooms:a.env"},
           {"failures:1", "failures:1"},
           {"mounting:5cm,3deg", "mounting:5cm,3deg"},
-          {"/tmp/run", "run"},
+          {"runs/of/today", "today"},
           {"none", "none"},
           {"none:", "none:"}}) {
         CommandLine line("tool", "ENV", "A tool.");

@@ -81,9 +81,10 @@ void CommonSight::follow(std::size_t face, std::size_t edge, std::vector<Wedge> 
 }
 
 void CommonSight::add(Convex polygon, std::vector<double>& areas) const {
-    constexpr int kSides = 192;
-    constexpr double kTurn = 1e-9;  // more than rounding
-    const double half = std::numbers::pi / kSides;
+    constexpr int kSides = 96;       // of a polygon in the range: its vertices are at its end
+    constexpr int kNearSides = 192;  // of one around what is too near
+    constexpr double kTurn = 1e-9;   // more than rounding
+    const double half = std::numbers::pi / kSides, turn = 2 * std::numbers::pi / kNearSides;
     std::vector<std::vector<Side2>> hidden;  // convex sets that not all poses see
     for (int i = 0; i < kSides; ++i) {
         Side2 side = sideAround(wayAt(2 * i * half), false);
@@ -92,8 +93,8 @@ void CommonSight::add(Convex polygon, std::vector<double>& areas) const {
     }
     if (sector_.near > 0) {
         hidden.emplace_back();
-        for (int i = 0; i < kSides; ++i) {
-            Side2 side = sideAround(wayAt(2 * i * half), true);
+        for (int i = 0; i < kNearSides; ++i) {
+            Side2 side = sideAround(wayAt(i * turn), true);
             side.at = side.at + sector_.near * side.outwards;
             hidden.back().push_back(side);
         }
