@@ -295,8 +295,9 @@ SearchResult searchLocalised(const MeasuredScene& model, Progress& progress) {
     const bool moves = model.options().search.optimizer != Optimizer::Greedy;
     Solution best;
     for (std::vector<Choice> chosen : {result.best.chosen, search.greedy(progress)}) {
-        const std::set<Choice> once(chosen.begin(), chosen.end());
-        Solution solution{{once.begin(), once.end()}, 0};
+        std::set<Choice> once;
+        std::erase_if(chosen, [&once](const Choice& one) { return !once.insert(one).second; });
+        Solution solution{std::move(chosen), 0};
         solution.value = search.valueOf(search.spotsOf(solution.chosen));
         if (moves) search.improve(solution, progress);
         if (solution.value > best.value || best.chosen.empty()) best = std::move(solution);

@@ -74,7 +74,7 @@ grep -q '^together' told || fail "no changes that meet the requirement: $(cat to
 expect_status 0 coverage changed.env --require 60%
 
 # A storey of a building, and an operand that looks like an option.
-cp -r "$data/house" house
+cp -r "$scenes/house" house
 suggestions_of house/house.env "$data/house.3dm" --storey ground --suggest 3 >told
 [ "$(applied <told)" -ge 1 ] || fail "no suggestion for a storey"
 cp barriers.env ./-barriers.env
