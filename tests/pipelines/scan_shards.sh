@@ -78,7 +78,11 @@ with open("more.part", "rb") as more, open("other.part", "rb") as other:
     part, rest = more.read(), other.read()
 at, begin = part.rindex(b"=end "), rest.index(b"\n=0") + 1
 with open("forged.part", "wb") as forged:
-    forged.write(part[:at] + rest[begin:])
+    # Without its header, which the first has.
+    head = rest.index(b"\n=header ") + 1
+    after = rest.find(b"\n=", head) + 1
+    records = rest[begin:head] + rest[after:] if head > begin else rest[begin:]
+    forged.write(part[:at] + records)
 PY
 expect_error 1 scan --merge forged.part -o none
 grep -q 'record `000000000008+8` does not continue the first 8 of 8 readings' err || fail "$(cat err)"
