@@ -67,7 +67,7 @@ void CommonSight::follow(std::size_t face, std::size_t edge, std::vector<Wedge> 
             if (cross(wedge.right - wedge.corner, wedge.left - wedge.corner) < 0) return;
         }
         // An edge that begins or ends in the corner bounds nothing beyond it.
-        wedge.is_open = wedge.corner == right || wedge.corner == left;
+        wedge.is_open = std::min(length(to_right), length(to_left)) <= kAtCorner;
         if (wedge.is_open) continue;
         keepInside(piece, {wedge.corner, -perpendicular(wedge.right - wedge.corner)});
         if (!piece.empty())
@@ -152,9 +152,11 @@ BoxCore CommonSight::core() {
         for (const auto& [face, before] : common)
             for (const auto& [other, piece] : pieces) {
                 Convex part = face == other ? before : Convex();
-                for (std::size_t k = 0; k < piece.size() && !part.empty(); ++k)
-                    keepInside(
-                        part, {piece[k], -perpendicular(piece[(k + 1) % piece.size()] - piece[k])});
+                for (std::size_t k = 0; k < piece.size() && !part.empty(); ++k) {
+                    const Vec2 edge = piece[(k + 1) % piece.size()] - piece[k];
+                    if (length(edge) > kAtCorner)
+                        keepInside(part, {piece[k], -perpendicular(edge)});
+                }
                 if (!part.empty()) both.emplace_back(face, std::move(part));
             }
         common = std::move(both);

@@ -101,7 +101,7 @@ void CoreView::setRange() {
 
 void CoreView::addLimits(Point2 end, double side) {
     for (const Point2 s : source_)
-        if (!(s == end)) limits_.push_back(besideRay(s, end - s, -side));
+        if (distance(s, end) > kAtCorner) limits_.push_back(besideRay(s, end - s, -side));
 }
 
 void CoreView::expandFrom(std::size_t triangle) {
@@ -156,7 +156,8 @@ void CoreView::intersect() {
             Outline outline = a.outline;
             for (std::size_t i = 0; i < b.outline.size() && !outline.empty(); ++i) {
                 const Point2 p = b.outline[i], q = b.outline[(i + 1) % b.outline.size()];
-                clip(outline, besideRay(p, q - p, 1), spare_);
+                // The direction of a shorter edge is that of rounding.
+                if (distance(p, q) > kAtCorner) clip(outline, besideRay(p, q - p, 1), spare_);
             }
             if (!outline.empty()) both.push_back({a.triangle, std::move(outline)});
         }

@@ -17,6 +17,8 @@ constexpr int kParts = 127;
 /// A box is widened by this much on all sides, metres: more than all errors of rounding, and than
 /// kRayEpsilon, within which walls do not block the view.
 constexpr double kWiden = 2 * 1e-4;
+/// Points this close are one, metres: far less than the distance within which walls are ignored.
+constexpr double kAtCorner = 1e-9;
 /// A cone this close to a half-plane may round to more than one, radians.
 constexpr double kStraight = 1e-6;
 /// Smaller shares of a cell count as errors of rounding.
