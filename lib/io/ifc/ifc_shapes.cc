@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kMaxKept = 10'000'000;
 /// Corners that are copied and cut in the time of one unit of Budget.
 constexpr std::size_t kCornersPerUnit = 4;
+constexpr std::size_t kReading = 4;  // times the work of copying
 /// Beyond any building, in metres: how far limits of half-spaces are drawn out.
 constexpr double kFar = 10'000;
 
@@ -59,8 +60,8 @@ IfcFaces prismOver(const Polygon& boundary, const IfcFrame& position) {
 
 }  // namespace
 
-void IfcShapes::pay(std::span<const IfcSolid> part, const char* cause) {
-    if (!work_.take(part.size() + cornersOf(part) / kCornersPerUnit))
+void IfcShapes::pay(std::span<const IfcSolid> part, const char* cause, std::size_t times) {
+    if (!work_.take(times * (part.size() + cornersOf(part) / kCornersPerUnit)))
         throw std::runtime_error(std::string(cause) + " make " + work_.excess());
 }
 
@@ -118,7 +119,7 @@ void IfcShapes::addItem(StepId id, IfcShape& shape, int depth) {
         return addBoolean(item, shape, depth);
     if (item.type == "IFCCSGSOLID") return addItem(item[0].reference(), shape, depth + 1);
     shape.push_back({ifcFaces(frames_, item), {}});
-    pay({&shape.back(), 1}, "shared shapes");  // products may share one without a map
+    pay({&shape.back(), 1}, "shared shapes", kReading);  // products may share one without a map
 }
 
 void IfcShapes::addMapped(const StepInstance& item, IfcShape& shape, int depth) {

@@ -70,7 +70,7 @@ class IfcShapes {
     [[nodiscard]] IfcCut cutBy(StepId operand, bool keeps_inside, int depth);
 
     /// Takes the work for solids. \throws std::runtime_error if it is more than is left
-    void pay(std::span<const IfcSolid> part, const char* cause);
+    void pay(std::span<const IfcSolid> part, const char* cause, std::size_t times = 1);
     void append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame);
 
     const IfcFrames& frames_;
