@@ -48,7 +48,7 @@ void checkRecords(const std::string& bytes, const PartHead& head, const std::str
 }
 
 void tryMerge(const std::string& path) {
-    const JobResults parts = mergeParts(std::vector{path}, "arrange");
+    const JobResults parts = mergeParts(std::vector{path}, "arrange", kCommandKey, false);
     try {
         (void)commandOf(parts, {});
     } catch (const UsageError&) {
