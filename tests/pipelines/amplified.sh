@@ -46,6 +46,7 @@ refused yaml_repeats 15000 room.yaml
 refused house_rooms 15000 'r[0-9]*.yaml'
 refused house_inline 15000 house.yaml
 refused rmf_aliases 16000 house.building.yaml
+refused ifc_levels 400000 house.ifc
 
 # Done once, or in one pass.
 quick svg_style 89000
@@ -56,6 +57,7 @@ quick svg_long_ids 89000
 quick svg_css_comments 2000000
 quick svg_css_selectors 400000
 quick sdf_same 12000
+quick ifc_storeys 2000000
 quick ifc_mapped_walls 20000
 quick ifc_mapped_walls 400000
 quick ifc_shared_walls 70000

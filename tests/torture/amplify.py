@@ -443,6 +443,154 @@ def teeth(size, row):
     return [row(x, y) for x, y in [*points, (0, 8)]]
 
 
+def ifc_elements(size, head, row, more=""):
+    """A box #24 of shape #30, `head`, as many rows as fit, and a relation of all of them to the storey."""
+    body = ifc_box() + "#30=IFCPRODUCTDEFINITIONSHAPE($,$,(#25));\n" + head
+    count = max(1, size // (len(row(100_000)) + 8))
+    body += "".join(row(100_000 + i) for i in range(count))
+    return ifc(body + "#32=IFCRELCONTAINEDINSPATIALSTRUCTURE('c',$,$,$,(" +
+               ",".join(f"#{100_000 + i}" for i in range(count)) + f"{more}),#8);\n")
+
+
+def ifc_openings(size):
+    """Openings of one wall, on each other."""
+    return ifc_elements(size, "#31=IFCWALL('w',$,'w',$,$,#6,#30,$,$);\n",
+                        lambda i: f"#{i}=IFCOPENINGELEMENT('o',$,$,$,$,#6,#30,$,$);\n"
+                                  f"#{i + 5_000_000}=IFCRELVOIDSELEMENT('v',$,$,$,#31,#{i});\n", ",#31")
+
+
+def ifc_doors(size):
+    """Doors of one opening."""
+    return ifc_elements(size, "#31=IFCWALL('w',$,'w',$,$,#6,#30,$,$);\n#33=IFCOPENINGELEMENT('o',$,$,$,$,#6,#30,$,$);\n"
+                        "#34=IFCRELVOIDSELEMENT('v',$,$,$,#31,#33);\n",
+                        lambda i: f"#{i}=IFCDOOR('d',$,$,$,$,#6,#30,$,2.,1.,$,$,$);\n"
+                                  f"#{i + 5_000_000}=IFCRELFILLSELEMENT('f',$,$,$,#33,#{i});\n", ",#31")
+
+
+def ifc_flights(size):
+    """Flights of stairs and lifts on each other."""
+    return ifc_elements(size, "#31=IFCWALL('w',$,'w',$,$,#6,#30,$,$);\n",
+                        lambda i: f"#{i}=IFC{'STAIR' if i % 2 else 'TRANSPORTELEMENT'}('s',$,$,$,$,#6,#30,$,$);\n", ",#31")
+
+
+def ifc_clips(size):
+    """Walls of a solid from which half spaces are cut, one after the other, as often as readers follow."""
+    head = "#27=IFCPLANE(#5);\n#28=IFCHALFSPACESOLID(#27,.T.);\n"
+    head += "".join(f"#{1000 + i}=IFCBOOLEANCLIPPINGRESULT(.DIFFERENCE.,#{999 + i if i else 24},#28);\n" for i in range(250))
+    head += "#35=IFCSHAPEREPRESENTATION($,'Body','Clipping',(#1249));\n#36=IFCPRODUCTDEFINITIONSHAPE($,$,(#35));\n"
+    return ifc_elements(size, head, lambda i: f"#{i}=IFCWALL('w',$,'w',$,$,#6,#36,$,$);\n")
+
+
+def ifc_of_storeys(size, step):
+    """Storeys with this much between their heights, each with a wall."""
+    def row(i):
+        return (f"#{i}=IFCBUILDINGSTOREY('2',$,'s',$,$,$,$,$,$,{(i - 100_000) * step:.4f});\n"
+                f"#{i + 2_000_000}=IFCWALL('w',$,'w',$,$,#6,#30,$,$);\n"
+                f"#{i + 4_000_000}=IFCRELCONTAINEDINSPATIALSTRUCTURE('c',$,$,$,(#{i + 2_000_000}),#{i});\n")
+    count = max(1, size // (len(row(100_000)) + 8))
+    return ifc(ifc_box() + "#30=IFCPRODUCTDEFINITIONSHAPE($,$,(#25));\n" + "".join(row(100_000 + i) for i in range(count)) +
+               "#11=IFCRELAGGREGATES('9',$,$,$,#7,(" + ",".join(f"#{100_000 + i}" for i in range(count)) + "));\n")
+
+
+def ifc_storeys(size):
+    """Level storeys."""
+    return ifc_of_storeys(size, 0)
+
+
+def ifc_levels(size):
+    """Walls through all storeys."""
+    return ifc_of_storeys(size, 0.0003)
+
+
+def ifc_placements(size):
+    """Placements relative to one another, a wall on each."""
+    def row(i):
+        return (f"#{i}=IFCWALL('w',$,'w',$,$,#{i + 5_000_000},#30,$,$);\n"
+                f"#{i + 5_000_000}=IFCLOCALPLACEMENT(#{i + 4_999_999},#5);\n")
+    return ifc_elements(size, "#5099999=IFCLOCALPLACEMENT($,#5);\n", row)
+
+
+def ifc_spans(size):
+    """A profile whose outline crosses itself with each edge."""
+    points = ",".join(f"({9 * (i % 2)}.,{7 * i % 1000 / 100:.2f})" for i in range(size // 14))
+    return ifc(ifc_box() + f"#40=IFCCARTESIANPOINTLIST2D(({points}));\n#41=IFCINDEXEDPOLYCURVE(#40,$,$);\n"
+               "#42=IFCARBITRARYCLOSEDPROFILEDEF(.AREA.,$,#41);\n#43=IFCEXTRUDEDAREASOLID(#42,#5,#23,3.);\n"
+               "#44=IFCSHAPEREPRESENTATION($,'Body','SweptSolid',(#43));\n#30=IFCPRODUCTDEFINITIONSHAPE($,$,(#44));\n"
+               "#31=IFCWALL('w',$,'w',$,$,#6,#30,$,$);\n#32=IFCRELCONTAINEDINSPATIALSTRUCTURE('c',$,$,$,(#31),#8);\n")
+
+
+def prism(number, x, y, size, height=2.5):
+    """Twelve triangles of an upright box, as text of OBJ; its vertices begin after 8 * number others."""
+    corners = [(x, y), (x + size[0], y), (x + size[0], y + size[1]), (x, y + size[1])]
+    text = "".join(f"v {cx:g} {cy:g} {z:g}\n" for z in (0, height) for cx, cy in corners)
+    first = 8 * number + 1
+    for a, b, c, d in ((0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)):
+        text += f"f {first + a} {first + b} {first + c} {first + d}\n"
+    return text
+
+
+def obj_crossing(size):
+    """Long boxes that all cross each other."""
+    count = max(2, size // 200)
+    return {"mesh.obj": "".join(prism(i, 0, 20 * i / count, (20, 0.001)) if i % 2 else
+                                prism(i, 20 * i / count, 0, (0.001, 20)) for i in range(count))}
+
+
+def obj_nested(size):
+    """Boxes in each other, which do not touch."""
+    count = max(2, size // 200)
+    return {"mesh.obj": "".join(prism(i, 9 * i / count, 9 * i / count, (20 - 18 * i / count, 20 - 18 * i / count))
+                                for i in range(count))}
+
+
+def obj_fan(size):
+    """A face of thousands of corners."""
+    count = size // 40
+    return {"mesh.obj": prism(0, 0, 0, (8, 6)) +
+            "".join(f"v {4 + math.cos(i / count * 6):.5f} {3 + math.sin(i / count * 6):.5f} {i % 2 * 2}\n" for i in range(count)) +
+            "f " + " ".join(str(9 + i) for i in range(count)) + "\n"}
+
+
+def sdf_cuts(size):
+    """Meshes that make an outline with as many corners, cut in a world whose boxes enclose no room."""
+    tooth = ("<link name='l{0}'><pose>{1:g} {2:g} 0 0 0 {3:g}</pose><collision name='c'><geometry><mesh><uri>wall.obj</uri>"
+             "</mesh></geometry></collision></link>")
+    count = max(4, size // len(tooth))
+    links = [tooth.format(i, 8 * math.cos(2 * math.pi * i / count), 8 * math.sin(2 * math.pi * i / count),
+                          2 * math.pi * i / count) for i in range(count)]
+    return {"world.sdf": "<sdf version='1.7'><world name='w'><model name='m'><static>true</static>" + "".join(links) +
+            "</model></world></sdf>\n",
+            "wall.obj": prism(0, 0, -60 / count, (0.05, 120 / count))}
+
+
+def aria_lines(size):
+    """Lines of a map that all cross."""
+    count = max(2, size // 26)
+    lines = "".join(f"0 {9000 * i // count} 9000 {9000 * (count - i) // count}\n" for i in range(count))
+    return {"room.map": f"2D-Map\nLineMinPos: 0 0\nLineMaxPos: 9000 9000\nNumLines: {count}\nLINES\n{lines}DATA\n"}
+
+
+def aria_cairns(size):
+    return {"room.map": "2D-Map\nLineMinPos: 0 0\nLineMaxPos: 9000 9000\nNumLines: 4\n" +
+            'Cairn: Goal 100 100 0 "" ICON "g"\n' * (size // 33) +
+            "LINES\n0 0 9000 0\n9000 0 9000 9000\n9000 9000 0 9000\n0 9000 0 0\nDATA\n"}
+
+
+def expo(more):
+    return {"house.json": json.dumps({"id": "h", "verts": more, "bbox": {"min": [0, 0], "max": [9, 9]}, "room_category": {}})}
+
+
+def expo_comb(size):
+    return expo(teeth(size, lambda x, y: [x, round(y, 4)]))
+
+
+def yaml_alias_paths(size):
+    """Fences along one long line."""
+    path = ", ".join(f"[{1 + i % 2 * 6}, {1 + i % 997 / 200:.3f}]" for i in range(size // 2 // 12))
+    return {"room.yaml": f"- ispace: {{size: [8, 6]}}\n- fence: {{path: &p [{path}]}}\n" +
+            "- fence: {path: *p}\n" * (size // 2 // 20)}
+
+
 def env_comb(size):
     return {"room.env": "#env 1\nfence closed=yes path=" + ";".join(teeth(size, lambda x, y: f"{x:g},{y:.4f}")) + "\n"}
 
@@ -513,6 +661,18 @@ def house_passages(size):
     return house_of_storeys(stairs * max(1, size // len(stairs)))
 
 
+def house_lifts(size):
+    """Lifts through all storeys on each other."""
+    lift = f"lift storeys={','.join(f's{i}' for i in range(STOREYS))} at=2,2 size=1.2,1.2\n"
+    return house_of_storeys(lift * max(1, size // len(lift)))
+
+
+def house_shafts(size):
+    """Openings between two storeys on each other."""
+    shaft = "shaft storeys=s1,s2 path=1,1;2,1;2,2\n"
+    return house_of_storeys(shaft * (size // len(shaft)))
+
+
 def house_unknown(size):
     """Passages between storeys that the building lacks."""
     shaft = f"shaft storeys=s1,t{'b' * 40} path=1,1;2,1;2,2\n"
@@ -533,6 +693,18 @@ def rmf_aliases(size):
     return rmf("".join(f"  L{i}:\n    elevation: {3 * i}\n    vertices: " +
                        (f"&v {vertices}\n    walls: &w {walls}\n" if i == 0 else "*v\n    walls: *w\n")
                        for i in range(min(STOREYS, size // 150))))
+
+
+def rmf_of_walls(count, doors):
+    """A level with walls between two rows of vertices, and `doors` as text."""
+    vertices = [[0, 0], [80, 0], [80, 60], [0, 60]] + [[i % 800 / 10, y] for i in range(count) for y in (1, 59)]
+    walls = [[0, 1], [1, 2], [2, 3], [3, 0]] + [[4 + 2 * i, 5 + 2 * i] for i in range(count)]
+    return rmf(f"  L:\n    elevation: 0\n    vertices: {vertices}\n    walls: {walls}\n    doors: {doors}\n")
+
+
+def rmf_doors(size):
+    """Doors on one edge, and walls."""
+    return rmf_of_walls(min(500, size // 60), [[0, 1, {"type": [1, "hinged"]}]] * max(1, (size - 30_000) // 31))
 
 
 def rmf_fiducials(size):
@@ -556,17 +728,19 @@ def batch_quotes(size):
     return {"list": ('"' + "\\" * 60 + '" "b"\n') * (size // 67)}
 
 
-PREFIXES = ("dxf_", "svg_", "sdf_", "env_", "pol_", "house_", "rmf_", "yaml_", "gltf_", "ifc_", "batch_")
+PREFIXES = ("dxf_", "svg_", "sdf_", "env_", "pol_", "house_", "rmf_", "yaml_", "gltf_", "ifc_", "obj_", "aria_", "expo_",
+            "batch_")
 FAMILIES = {name: make for name, make in globals().items()
             if callable(make) and name.startswith(PREFIXES) and name not in
-            ("sdf_box", "sdf_includes", "ifc_box", "ifc_walls_of", "gltf_mesh", "house_of_storeys")}
+            ("sdf_box", "sdf_includes", "ifc_box", "ifc_walls_of", "ifc_elements", "ifc_of_storeys", "gltf_mesh", "house_of_storeys",
+                                                                             "rmf_of_walls")}
 
 
 def command(envc, family, operand):
     """The command that reads such a file."""
     if family.startswith("batch_"):
         return [os.path.join(os.path.dirname(envc), "coverage"), "--batch", operand]
-    return [envc, "--info", operand]
+    return [envc, "--info", operand, *(["--slice-walls", "1"] if family.startswith("obj_") else [])]
 
 
 def write(name, size, folder):

@@ -133,13 +133,19 @@ class BuildingReader {
             out_.storeys.push_back(std::move(storey));
         }
         countElements();
-        if (!slice_) return;
+        if (slice_) cutAt(*slice_);
+        for (std::uint64_t i = 0; i < out_.storeys.size(); ++i)
+            if (storeyOfSections(out_, i) == i) planes_.push_back(i);
+    }
+
+    /// Cuts the highest storey below this height there.
+    void cutAt(double slice) {
         double below = out_.storeys.front().elevation;
         for (const BuildingStorey& storey : out_.storeys)
-            if (storey.elevation <= *slice_) below = storey.elevation;
+            if (storey.elevation <= slice) below = storey.elevation;
         for (BuildingStorey& storey : out_.storeys)
             if (storey.elevation <= below)
-                storey.cut = storey.elevation == below ? *slice_ : std::min(storey.cut, *slice_);
+                storey.cut = storey.elevation == below ? slice : std::min(storey.cut, slice);
     }
 
     [[nodiscard]] double elevationOf(const StepInstance& storey) {
@@ -193,10 +199,14 @@ class BuildingReader {
         const Product product = productOf(id);
         const IfcHeights heights = heightsOf(product.shape);
         const std::optional<std::uint64_t> own = storeyOf(id);
-        for (std::uint64_t i = 0; i < out_.storeys.size(); ++i) {
+        const auto first = std::partition_point(planes_.begin(), planes_.end(), [&](auto i) {
+            return out_.storeys[i].cut < heights.low;
+        });
+        for (auto plane = first; plane != planes_.end(); ++plane) {
+            const std::uint64_t i = *plane;
             const double cut = out_.storeys[i].cut;
-            if (cut < heights.low || cut >= heights.high || storeyOfSections(out_, i) != i)
-                continue;
+            if (cut >= heights.high) break;
+            if (plane != first) shapes_.pay(product.shape, "walls that cross storeys");
             BuildingWall wall;
             wall.storey = i;
             wall.is_column = is_column;
@@ -234,10 +244,11 @@ class BuildingReader {
 
     [[nodiscard]] std::uint64_t storeyAtHeight(double height) const {
         constexpr double kBelow = 0.3;
-        std::uint64_t found = 0;
-        for (std::uint64_t i = 0; i < out_.storeys.size(); ++i)
-            if (out_.storeys[i].elevation <= height + kBelow) found = i;
-        return found;
+        const auto above =
+            std::upper_bound(out_.storeys.begin(), out_.storeys.end(), height + kBelow,
+                             [](double low, const BuildingStorey& s) { return low < s.elevation; });
+        return static_cast<std::uint64_t>(
+            std::max<std::ptrdiff_t>(above - out_.storeys.begin() - 1, 0));
     }
 
     void addOpening(StepId id, BuildingOpening::Kind kind, bool has_hole, Vec2 axis) {
@@ -325,6 +336,7 @@ class BuildingReader {
     IfcShapes shapes_;
     std::optional<double> slice_;
     std::unordered_map<StepId, std::uint64_t> storey_at_;
+    std::vector<std::uint64_t> planes_;  // storeys that store sections, in the order of cuts
     Building out_;
 };
 

@@ -57,6 +57,9 @@ class IfcShapes {
     /// \throws std::runtime_error for more than kMaxCorners, and if shapes require more work
     /// than is left
     IfcShape shapeOf(StepId definition);
+    /// Takes the work for solids that are read, copied or cut again.
+    /// \throws std::runtime_error, which begins with the cause, if it is more than is left
+    void pay(std::span<const IfcSolid> part, const char* cause, std::size_t times = 1);
     /// Returns the numbers of unsupported parts, by type.
     [[nodiscard]] const std::map<std::string, std::size_t>& unread() const { return unread_; }
 
@@ -69,8 +72,6 @@ class IfcShapes {
     void addBoolean(const StepInstance& result, IfcShape& shape, int depth);
     [[nodiscard]] IfcCut cutBy(StepId operand, bool keeps_inside, int depth);
 
-    /// Takes the work for solids. \throws std::runtime_error if it is more than is left
-    void pay(std::span<const IfcSolid> part, const char* cause, std::size_t times = 1);
     void append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame);
 
     const IfcFrames& frames_;

@@ -27,19 +27,14 @@ namespace {
 
 constexpr double kStraight = 0.001;  // metres: floats of a file wobble by less
 
-bool edgesMeet(const Polygon& a, const Polygon& b) {
-    bool meet = false;
-    forEachEdge(a, [&](const Segment2& s) {
-        forEachEdge(b, [&](const Segment2& t) { meet = meet || intersects(s, t); });
-    });
-    return meet;
-}
+// Edges cross their neighbours, and some of other solids; uniting more of them takes work.
+constexpr std::size_t kFreeCrossings = 8, kUnitsPerCrossing = 16;
 
 /// Unites solids that meet at edges, such as walls that run into each other. Keeps a solid inside
 /// another, e.g. furniture in a room modelled by its inner surface.
 class Joiner {
   public:
-    explicit Joiner(std::vector<Polygon> solids) : solids_(std::move(solids)) {
+    Joiner(std::vector<Polygon> solids, Budget& work) : solids_(std::move(solids)), work_(work) {
         for (std::size_t i = 0; i < solids_.size(); ++i) group_.push_back(i);
     }
 
@@ -64,36 +59,39 @@ class Joiner {
         return i;
     }
 
-    /// From left to right, so that only boxes that overlap in x are compared.
     void groupTouching() {
-        std::vector<Box2> boxes;
-        for (const Polygon& solid : solids_) boxes.push_back(bounds(solid));
-        std::vector<std::size_t> order(group_);
-        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-            return std::pair(boxes[a].low.x, a) < std::pair(boxes[b].low.x, b);
-        });
-        for (std::size_t i = 0; i < order.size(); ++i)
-            for (std::size_t k = i + 1; k < order.size(); ++k) {
-                const Box2 &a = boxes[order[i]], &b = boxes[order[k]];
-                if (b.low.x > a.high.x) break;
-                if (b.low.y > a.high.y || b.high.y < a.low.y) continue;
-                if (rootOf(order[i]) != rootOf(order[k]) &&
-                    edgesMeet(solids_[order[i]], solids_[order[k]]))
-                    group_[std::max(rootOf(order[i]), rootOf(order[k]))] =
-                        std::min(rootOf(order[i]), rootOf(order[k]));
+        std::vector<Segment2> edges;
+        std::vector<std::size_t> solid_of;
+        for (std::size_t i = 0; i < solids_.size(); ++i)
+            forEachEdge(solids_[i], [&](const Segment2& edge) {
+                edges.push_back(edge);
+                solid_of.push_back(i);
+            });
+        const NearSegments search(edges, work_);
+        std::size_t crossings = 0;
+        for (std::size_t i = 0; i < edges.size(); ++i)
+            for (const std::size_t k : search.near(bounds(edges[i]), 0)) {
+                if (k >= i) break;
+                if (!intersects(edges[i], edges[k])) continue;
+                if (++crossings > kFreeCrossings * edges.size() && !work_.take(kUnitsPerCrossing))
+                    throw FormatError(Diagnostic{
+                        "", 0, 0, "crossings of the cut's outlines make " + work_.excess()});
+                const std::size_t a = rootOf(solid_of[i]), b = rootOf(solid_of[k]);
+                group_[std::max(a, b)] = std::min(a, b);
             }
     }
 
     std::vector<Polygon> solids_;
     std::vector<std::size_t> group_;
+    Budget& work_;
 };
 
 }  // namespace
 
-std::vector<PlanPath> cutPaths(Slice slice) {
+std::vector<PlanPath> cutPaths(Slice slice, Budget& work) {
     std::vector<PlanPath> paths;
     // Ends of triangles are not corners: the plan's opening finder would use them.
-    for (Polygon& outline : simplified(Joiner(std::move(slice.solids)).join(), kStraight))
+    for (Polygon& outline : simplified(Joiner(std::move(slice.solids), work).join(), kStraight))
         paths.push_back({std::move(outline), true, 0});
     for (const Segment2& sheet : slice.sheets) paths.push_back({{sheet.a, sheet.b}, false, 0});
     return paths;
@@ -104,8 +102,9 @@ namespace {
 constexpr double kDefaultCut = 1.2;  // metres: over most sills, under most lintels
 
 /// Returns the cut through a layer as lines of the plan.
-void addShapes(Slice slice, const std::string& layer, std::vector<PlanShape>& shapes) {
-    for (PlanPath& path : cutPaths(std::move(slice))) {
+void addShapes(Slice slice, const std::string& layer, Budget& work,
+               std::vector<PlanShape>& shapes) {
+    for (PlanPath& path : cutPaths(std::move(slice), work)) {
         PlanShape& shape = shapes.emplace_back();
         shape.path = std::move(path);
         shape.layer = layer;
@@ -146,7 +145,10 @@ Document readMeshWalls(const std::string& operand, const ImportOptions& options,
     cutMeshes(body, slice.height, slice);
     std::vector<PlanShape> shapes;
     const double height = slice.height;
-    addShapes(std::move(slice), "cut", shapes);
+    std::size_t bytes = 0;  // as STL has them
+    for (const Mesh& part : body.meshes) bytes += 50 * part.triangles.size();
+    Budget work(bytes, options.max_work);
+    withFileName(operand, [&] { addShapes(std::move(slice), "cut", work, shapes); });
     if (shapes.empty()) {
         Heights heights;
         heights.add(body);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "base/budget.h"
 #include "env/slice.h"
 #include "io/plan/plan_lines.h"
 
@@ -11,6 +12,8 @@ namespace ispace {
 /// Returns the cut through meshes as lines of a plan, straight within 1 mm. Solids that meet at
 /// edges, such as walls that run into each other, are united; a solid inside another remains, e.g.
 /// furniture in a room modelled by its inner surface.
-std::vector<PlanPath> cutPaths(Slice slice);
+/// \param work pays for outlines that cross each other often
+/// \throws FormatError (without file and line) if the work is used up
+std::vector<PlanPath> cutPaths(Slice slice, Budget& work);
 
 }  // namespace ispace

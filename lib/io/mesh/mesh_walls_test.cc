@@ -134,5 +134,25 @@ TEST(ObjUpAxis, IsYUnlessACommentOrTheExtentSaysOtherwise) {
     EXPECT_EQ(objUpAxis("", 1), "y");
 }
 
+TEST(MeshWalls, CrossingsThatTakeLongAreRefusedAtOnce) {
+    const testing::TestFolder folder;
+    Boxes grid;
+    constexpr int kBars = 300;
+    for (int i = 0; i < kBars; ++i) {
+        const double at = 20.0 * i / kBars;
+        grid.add(at, 0, 0, at + 0.001, 20, 3).add(0, at, 0, 20, at + 0.001, 3);
+    }
+    const std::string path = grid.write(folder, "grid.obj");
+    try {
+        (void)readMeshWalls(path, cutAt(1), sceneSchemas());
+        FAIL() << "nothing was refused";
+    } catch (const FormatError& error) {
+        EXPECT_EQ(error.diagnostics().front().file, path);
+        EXPECT_NE(std::string(error.what()).find("crossings of the cut's outlines make more than"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 }  // namespace
 }  // namespace ispace

@@ -128,7 +128,7 @@ class SdfImporter {
         if (options_.slice_top) failFile(name_, "meshes are cut at one height: --slice-walls M");
         const double height = options_.slice_walls.value_or(kMeshCut);
         std::vector<SdfMeshCut> cuts = cutMeshes(world_.shapes, name_, height, work_, schemas_);
-        if (!cuts.empty()) cuts = wallsAmong(std::move(cuts), lines, choose);
+        if (!cuts.empty()) cuts = wallsAmong(std::move(cuts), lines, work_, choose);
         std::vector<Segment2> all = lines;
         for (const SdfMeshCut& cut : cuts)
             for (const Segment2& piece : pathPieces(cut.wall.paths)) all.push_back(piece);

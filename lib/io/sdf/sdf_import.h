@@ -74,9 +74,10 @@ std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::s
 
 /// Returns the cuts that are walls; others are objects in the room. Prefers the cut that, with
 /// other walls of the world, encloses half of the world's extent; then those at the edge of the
-/// room that all enclose together; then all. \param choose the rooms among lines
+/// room that all enclose together; then all. \param work pays for crowded outlines \param choose
+/// the rooms among lines
 std::vector<SdfMeshCut> wallsAmong(
-    std::vector<SdfMeshCut> cuts, std::span<const Segment2> others,
+    std::vector<SdfMeshCut> cuts, std::span<const Segment2> others, Budget& work,
     const std::function<PlanRooms(std::span<const Segment2>)>& choose);
 
 }  // namespace ispace

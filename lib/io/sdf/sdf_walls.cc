@@ -76,20 +76,32 @@ std::shared_ptr<const TriangleMesh> meshOrNothing(const std::string& path) {
     }
 }
 
-/// Whether a line of the cut lies on the outline of a room.
-bool isAtEdge(const SdfMeshCut& cut, const PlanRooms& rooms) {
-    const std::vector<Segment2> lines = pathPieces(cut.wall.paths);
-    for (const PlanRegion& region : rooms.regions)
-        for (const Region& room : region.rooms)
-            for (const Segment2& line : lines) {
-                const Point2 middle = line.a + 0.5 * (line.b - line.a);
-                for (std::size_t i = 0; i < room.outline.size(); ++i)
-                    if (distance(middle, {room.outline[i],
-                                          room.outline[(i + 1) % room.outline.size()]}) < kOnEdge)
-                        return true;
-            }
-    return false;
-}
+/// Finds the cuts of which a line lies on the outline of a room.
+class RoomEdges {
+  public:
+    RoomEdges(const PlanRooms& rooms, Budget& work) : edges_(edgesOf(rooms)), near_(edges_, work) {}
+
+    [[nodiscard]] bool touch(const SdfMeshCut& cut) const {
+        return std::ranges::any_of(pathPieces(cut.wall.paths), [&](const Segment2& line) {
+            const Point2 middle = line.a + 0.5 * (line.b - line.a);
+            return std::ranges::any_of(near_.near(middle, kOnEdge), [&](std::size_t i) {
+                return distance(middle, edges_[i]) < kOnEdge;
+            });
+        });
+    }
+
+  private:
+    static std::vector<Segment2> edgesOf(const PlanRooms& rooms) {
+        std::vector<Segment2> edges;
+        for (const PlanRegion& region : rooms.regions)
+            for (const Region& room : region.rooms)
+                forEachEdge(room.outline, [&](const Segment2& edge) { edges.push_back(edge); });
+        return edges;
+    }
+
+    std::vector<Segment2> edges_;
+    NearSegments near_;
+};
 
 }  // namespace
 
@@ -247,7 +259,7 @@ std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::s
         const Body body = bodyOf(shapes[i], *triangles, schemas);
         Slice slice{height, {}, {}};
         cutMeshes(body, height, slice);
-        std::vector<PlanPath> paths = cutPaths(std::move(slice));
+        std::vector<PlanPath> paths = cutPaths(std::move(slice), work);
         if (!paths.empty())
             cuts.push_back(
                 {i, {std::move(paths), 0, topOf(body), shapes[i].model, shapes[i].line}});
@@ -256,7 +268,7 @@ std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::s
 }
 
 std::vector<SdfMeshCut> wallsAmong(
-    std::vector<SdfMeshCut> cuts, std::span<const Segment2> others,
+    std::vector<SdfMeshCut> cuts, std::span<const Segment2> others, Budget& work,
     const std::function<PlanRooms(std::span<const Segment2>)>& choose) {
     const Box2 world = boundsOf(linesOf(others, cuts));
     std::vector<std::size_t> order(cuts.size());
@@ -269,8 +281,10 @@ std::vector<SdfMeshCut> wallsAmong(
         if (choose(linesOf(others, {&cuts[i], 1})).area() >= kShareOfWorld * areaOf(world))
             return {std::move(cuts[i])};
     const PlanRooms rooms = choose(linesOf(others, cuts));
-    if (!rooms.regions.empty())
-        std::erase_if(cuts, [&](const SdfMeshCut& cut) { return !isAtEdge(cut, rooms); });
+    if (!rooms.regions.empty()) {
+        const RoomEdges edges(rooms, work);
+        std::erase_if(cuts, [&](const SdfMeshCut& cut) { return !edges.touch(cut); });
+    }
     return cuts;
 }
 
