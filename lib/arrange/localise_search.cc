@@ -29,6 +29,8 @@ std::uint64_t worthOf(const SpotInformation& spot, double limit) {
                : 0;
 }
 
+constexpr std::uint64_t kWorthRounding = 2;  // upwards() adds less
+
 /// Rounds up, and against the rounding of sums of information.
 std::uint64_t upwards(double share) {
     constexpr double kRounding = 1e-9;
@@ -98,10 +100,15 @@ class LocaliseSearch {
 
     /// Computes the gain of one more sensor on each candidate of a kind, site by site: the
     /// information about a cell does not depend on the heading.
+    /// \param rounding subtracted from the worth that cells have without it
     [[nodiscard]] std::vector<std::uint64_t> gainsOf(std::size_t kind, const Spots& spots,
-                                                     Worth worth) const {
+                                                     Worth worth,
+                                                     std::uint64_t rounding = 0) const {
         std::vector<std::uint64_t> before(spots.size());
-        for (std::size_t i = 0; i < spots.size(); ++i) before[i] = worth(spots[i], limit_);
+        for (std::size_t i = 0; i < spots.size(); ++i) {
+            before[i] = worth(spots[i], limit_);
+            before[i] -= std::min(before[i], rounding);
+        }
         const CandidateSet& set = *problem_.kinds[kind].candidates;
         std::vector<std::uint64_t> gains(set.size());
         forEachSite(kind, [&](std::size_t site, std::vector<std::uint64_t>& sums) {
@@ -166,7 +173,7 @@ class LocaliseSearch {
         const Spots spots = spotsOf(chosen);
         std::uint64_t bound = valueOf(spots, concaveWorth);
         for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
-            std::vector<std::uint64_t> gains = gainsOf(k, spots, concaveWorth);
+            std::vector<std::uint64_t> gains = gainsOf(k, spots, concaveWorth, kWorthRounding);
             const auto most =
                 std::min(gains.size(), static_cast<std::size_t>(problem_.kinds[k].most));
             std::partial_sort(gains.begin(), gains.begin() + static_cast<std::ptrdiff_t>(most),

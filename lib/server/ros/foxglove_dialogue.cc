@@ -341,6 +341,7 @@ void FoxgloveDialogue::setParameters(const Json& request) {
         const auto line = requestToSet(state().simulation(), name, member(one, "value"));
         if (!line) {
             tell(Level::Error, excerpt(name) + " cannot be set to this");
+            if (!id.empty()) sendParameters({name}, id);
             continue;
         }
         if (!orders().mayRequest()) return tell(Level::Error, "too many parameters at once");
@@ -352,13 +353,21 @@ void FoxgloveDialogue::setParameters(const Json& request) {
     }
 }
 
+// An empty list means all parameters that there are.
 void FoxgloveDialogue::watchParameters(const Json& request) {
-    for (const Json& one : member(request, "parameterNames"))
-        if (watched_.size() < kMaxWatched) watched_.insert(textOf(one));
+    const auto watch = [this](const std::string& name) {
+        if (watched_.size() < kMaxWatched) watched_.insert(name);
+    };
+    const Json& names = member(request, "parameterNames");
+    for (const Json& one : names) watch(textOf(one));
+    if (!names.empty()) return;
+    for (const RosParameter& one : rosParameters(state().simulation())) watch(one.name);
 }
 
 void FoxgloveDialogue::unwatchParameters(const Json& request) {
-    for (const Json& one : member(request, "parameterNames")) watched_.erase(textOf(one));
+    const Json& names = member(request, "parameterNames");
+    for (const Json& one : names) watched_.erase(textOf(one));
+    if (names.empty()) watched_.clear();
 }
 
 void FoxgloveDialogue::fetchAsset(const Json& request) {

@@ -234,6 +234,30 @@ TEST(Foxglove, ParametersAreReadAndSet) {
         talk.send({{"op", "setParameters"}, {"parameters", json::parse(bad)}});
         EXPECT_EQ(talk.ask("status")["level"], 2) << bad;
     }
+    talk.drain();
+    const json paused = json::parse(R"([{"name":"clock.paused","value":1}])");
+    talk.send({{"op", "setParameters"}, {"parameters", paused}, {"id", "t"}});
+    EXPECT_EQ(talk.ask("status")["level"], 2);
+    values = talk.ask("parameterValues");
+    EXPECT_EQ(values["id"], "t");
+    EXPECT_EQ(values["parameters"][0]["value"], true) << "a clock in steps";
+}
+
+TEST(Foxglove, WatchesAllParametersOfAnEmptyList) {
+    FoxgloveTalk talk;
+    talk.send({{"op", "subscribeParameterUpdates"}, {"parameterNames", json::array()}});
+    const auto move = [&talk](const json& to) {
+        talk.send({{"op", "setParameters"}, {"parameters", {{{"name", "r1.at"}, {"value", to}}}}});
+        talk.settle();
+        talk.step();
+    };
+    move({1, -1});
+    EXPECT_GT(talk.ask("parameterValues")["parameters"].size(), 3U);
+    talk.send({{"op", "unsubscribeParameterUpdates"}, {"parameterNames", json::array()}});
+    talk.drain();
+    move({1, 1});
+    for (auto message = talk.next(); message; message = talk.next())
+        EXPECT_EQ(message->find("parameterValues"), std::string::npos);
 }
 
 TEST(Foxglove, AssetsOfTheScene) {

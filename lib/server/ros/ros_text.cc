@@ -223,16 +223,29 @@ class FromJson {
     void structure(const RosStruct& type, const json& value) {
         if (!value.is_null() && !value.is_object()) refuse(type.name, "an object");
         const bool is_time = type.name.starts_with("builtin_interfaces/");
+        std::size_t read = 0;
         for (const RosField& field : type.fields) {
             const json& member = memberOf(value, field.name, is_time);
+            read += member.is_discarded() ? 0 : 1;
             field.is_array ? list(field, member) : one(field, member);
         }
+        if (value.is_object() && value.size() > read) refuseOthers(type, value, is_time);
     }
     std::string take() { return out_.take(); }
 
   private:
     [[noreturn]] static void refuse(const std::string& name, const std::string& wanted) {
         throw FormatError({"", 0, 0, excerpt(name) + " is wanted as " + wanted});
+    }
+    /// Accepts the counter that headers of ROS 1 have, and its names of the parts of a time.
+    static void refuseOthers(const RosStruct& type, const json& value, bool is_time) {
+        for (const auto& [name, member] : value.items()) {
+            const bool is_known = std::ranges::any_of(
+                type.fields, [&](const RosField& field) { return field.name == name; });
+            const bool is_old = is_time ? name == "secs" || name == "nsecs" : name == "seq";
+            if (!is_known && !is_old)
+                throw FormatError({"", 0, 0, type.name + " has no member " + excerpt(name)});
+        }
     }
     static const json& memberOf(const json& value, const std::string& name, bool is_time) {
         static const json none = json::value_t::discarded;

@@ -25,11 +25,16 @@ const nlohmann::json& memberOf(const nlohmann::json& value, const char* name) {
     return found == value.end() ? null : *found;
 }
 
-/// Returns a text, also of a number, as ids may be; "" for anything else.
+/// Returns a text; "" for anything else.
 std::string wordOf(const nlohmann::json& value, const char* name) {
-    const nlohmann::json& one = memberOf(value, name);
-    if (const auto* const text = one.get_ptr<const std::string*>()) return *text;
-    return one.is_number() ? one.dump() : "";
+    const auto* const text = memberOf(value, name).get_ptr<const std::string*>();
+    return text == nullptr ? "" : *text;
+}
+
+/// Returns the id of a request, a text or a number, as JSON; "" if it has none.
+std::string idOf(const nlohmann::json& request) {
+    const nlohmann::json& id = memberOf(request, "id");
+    return id.is_string() || id.is_number() ? id.dump() : "";
 }
 
 /// Returns a number from 0 to `most`; 0 if it is absent or negative.
@@ -40,6 +45,28 @@ double figureOf(const nlohmann::json& value, const char* name, double most) {
 
 /// Returns a name with one leading slash, as topics are called here.
 std::string absolute(const std::string& name) { return name.starts_with('/') ? name : "/" + name; }
+
+/// Writes an id as idOf() returned it, if there is one: a text as a text, a number as a number.
+void writeId(JsonWriter& json, const std::string& id) {
+    if (id.empty()) return;
+    const auto value = nlohmann::json::parse(id);
+    json.key("id");
+    if (value.is_string())
+        json.value(value.get_ref<const std::string&>());
+    else if (value.is_number_integer())
+        json.value(value.get<std::int64_t>());
+    else
+        json.value(value.get<double>());
+}
+
+/// Returns true if a message of this type has all members of the object.
+bool hasMembersOf(const nlohmann::json& message, RosType type) {
+    const std::vector<RosField>& fields = rosFields(type).fields;
+    return std::ranges::all_of(message.items(), [&](const auto& item) {
+        return std::ranges::any_of(fields,
+                                   [&](const RosField& field) { return field.name == item.key(); });
+    });
+}
 
 /// Begins a message of a topic in CBOR; its value is to follow.
 std::string cborPublication(const std::string& topic) {
@@ -83,7 +110,7 @@ void RosbridgeDialogue::tell(Level level, const std::string& text, const std::st
     JsonWriter json;
     json.beginObject().key("op").value("status");
     json.key("level").value(kLevels[static_cast<std::size_t>(level)]).key("msg").value(text);
-    if (!id.empty()) json.key("id").value(id);
+    writeId(json, id);
     json.endObject();
     sendText(json.take());
 }
@@ -109,7 +136,7 @@ void RosbridgeDialogue::receive(std::string_view message, bool is_text) {
     if (!is_text) return tell(Level::Error, "requests are JSON, in messages of text");
     const std::optional<Json> request = parseClientJson(message);
     if (!request || !request->is_object()) return tell(Level::Error, "this is no JSON object");
-    const std::string name = wordOf(*request, "op"), id = wordOf(*request, "id");
+    const std::string name = wordOf(*request, "op"), id = idOf(*request);
     const auto* const op =
         std::find_if(kOps.begin(), kOps.end(), [&](const Op& one) { return one.name == name; });
     if (op == kOps.end()) return tell(Level::Error, "op " + excerpt(name) + " is not served", id);
@@ -124,7 +151,7 @@ void RosbridgeDialogue::receive(std::string_view message, bool is_text) {
 
 void RosbridgeDialogue::subscribeTo(const Json& request) {
     constexpr double kMostMilliseconds = 1e6, kMostQueue = 1000;
-    const std::string topic = absolute(wordOf(request, "topic")), id = wordOf(request, "id"),
+    const std::string topic = absolute(wordOf(request, "topic")), id = idOf(request),
                       form = wordOf(request, "compression");
     if (form == "png") return tell(Level::Error, "compression png is not served", id);
     const bool is_new = !wishes_.contains(topic);
@@ -157,7 +184,7 @@ void RosbridgeDialogue::apply(const std::string& topic, const Wish& wish) {
 }
 
 void RosbridgeDialogue::unsubscribeFrom(const Json& request) {
-    const std::string topic = absolute(wordOf(request, "topic")), id = wordOf(request, "id");
+    const std::string topic = absolute(wordOf(request, "topic")), id = idOf(request);
     const auto wish = wishes_.find(topic);
     if (wish == wishes_.end()) return;
     // Without an id all requests for the topic end.
@@ -180,7 +207,7 @@ void RosbridgeDialogue::topicsChanged() {
 }
 
 void RosbridgeDialogue::advertise(const Json& request) {
-    const std::string topic = absolute(wordOf(request, "topic")), id = wordOf(request, "id");
+    const std::string topic = absolute(wordOf(request, "topic")), id = idOf(request);
     const auto type = rosTypeNamed(wordOf(request, "type"));
     if (!type || input(topic, *type) == nullptr)
         return tell(
@@ -198,24 +225,32 @@ void RosbridgeDialogue::unadvertise(const Json& request) {
 
 void RosbridgeDialogue::publish(const Json& request) {
     const std::string topic = absolute(wordOf(request, "topic"));
+    const Json& message = memberOf(request, "msg");
     const auto known = advertised_.find(topic);
     const RosChannel* channel = nullptr;
     if (known != advertised_.end()) {
         channel = input(topic, known->second);
     } else {
-        for (const RosRow& row : rosRows())
-            if (row.decode != nullptr && channel == nullptr) channel = input(topic, row.type);
+        // Rows of one topic differ in their types: the first that has the message's members.
+        for (const RosRow& row : rosRows()) {
+            if (row.decode == nullptr) continue;
+            const RosChannel* const one = input(topic, row.type);
+            if (one == nullptr) continue;
+            if (channel == nullptr) channel = one;
+            if (!hasMembersOf(message, row.type)) continue;
+            channel = one;
+            break;
+        }
     }
     if (channel == nullptr)
-        return tell(Level::Error, "no messages are read from " + excerpt(topic),
-                    wordOf(request, "id"));
-    orders().obey(*channel, rosMessage(channel->type, memberOf(request, "msg")));
+        return tell(Level::Error, "no messages are read from " + excerpt(topic), idOf(request));
+    orders().obey(*channel, rosMessage(channel->type, message));
 }
 
 // Services.
 
 void RosbridgeDialogue::callService(const Json& request) {
-    const std::string service = wordOf(request, "service"), id = wordOf(request, "id"),
+    const std::string service = wordOf(request, "service"), id = idOf(request),
                       name = absolute(service);
     if (const auto values = rosApi(feed(), state().simulation(), std::string_view(name).substr(1),
                                    memberOf(request, "args")))
@@ -239,7 +274,7 @@ void RosbridgeDialogue::answer(const std::string& id, std::string_view service, 
                                std::string_view values) {
     JsonWriter json;
     json.beginObject().key("op").value("service_response");
-    if (!id.empty()) json.key("id").value(id);
+    writeId(json, id);
     json.key("service").value(service).key("result").value(is_done).key("values");
     send({.head = json.take(), .body = std::make_shared<const std::string>(values), .tail = "}"});
 }

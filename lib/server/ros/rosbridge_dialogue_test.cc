@@ -196,5 +196,31 @@ TEST(Rosbridge, SubscriptionsAwaitTheirTopic) {
     EXPECT_EQ(talk.text().value("topic", ""), "/r9/odom");
 }
 
+TEST(Rosbridge, AnswersIdsThatAreNumbersAsNumbers) {
+    BridgeTalk talk;
+    talk.send({{"op", "call_service"}, {"id", 9}, {"service", "/rosapi/topics"}});
+    talk.settle();
+    EXPECT_EQ(talk.text()["id"], json(9));
+    talk.send({{"op", "nonsense"}, {"id", 2.5}});
+    EXPECT_EQ(talk.text()["id"], json(2.5));
+}
+
+TEST(Rosbridge, ReadsOrdersWithoutAdvertisementByTheirMembers) {
+    BridgeTalk talk;
+    const auto drive = [&talk](const json& message) {
+        talk.send({{"op", "publish"}, {"topic", "/r1/cmd_vel"}, {"msg", message}});
+        talk.step(3);
+        return talk.room.world.status(0).speed;
+    };
+    EXPECT_GT(drive({{"twist", {{"linear", {{"x", 0.4}}}}}}), 0);
+    EXPECT_FALSE(talk.next());
+    EXPECT_GT(drive({{"linear", {{"x", 0.4}}}}), 0);
+    EXPECT_FALSE(talk.next());
+    (void)drive({{"velocity", 0.4}});
+    const json answer = talk.text();
+    EXPECT_EQ(answer["level"], "error");
+    EXPECT_EQ(answer["msg"], "geometry_msgs/msg/Twist has no member `velocity`");
+}
+
 }  // namespace
 }  // namespace ispace
