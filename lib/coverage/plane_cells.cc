@@ -5,21 +5,18 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "coverage/held_views.h"
 #include "sense/scan.h"
 
 namespace ispace {
 
 namespace {
-
-/// Number of views tested together, one for each bit of a word.
-constexpr std::size_t kTogether = 64;
 
 /// The part of a plane that may be in view.
 struct Reach {
@@ -32,6 +29,17 @@ struct Reach {
         if (!withinRange(std::fabs(drop), range)) return std::nullopt;
         return Reach{origin, kSlack * std::sqrt(std::max(0.0, range * range - drop * drop))};
     }
+    /// Returns the part of the window that is in reach.
+    [[nodiscard]] CellWindow within(const Grid& grid, CellWindow window) const {
+        const auto limit = [this](const GridAxis& axis, double middle, int& first, int& end) {
+            const int in_reach = axis.firstNotBelow(middle - distance);
+            first = std::max(first, in_reach);
+            end = std::min(end, axis.firstAbove(middle + distance, in_reach));
+        };
+        limit(GridAxis::rowsOf(grid), origin.y, window.first_row, window.end_row);
+        limit(GridAxis::columnsOf(grid), origin.x, window.first_column, window.end_column);
+        return window;
+    }
 };
 
 /// The target of a cell's ray, and the views that contain it.
@@ -40,7 +48,39 @@ struct CellTarget {
     std::uint64_t held = 0;  ///< bit k: in view k
 };
 
-/// Tests the cells row by row. `target_of(center)` returns the CellTarget of a cell.
+/// Runs of cells that each view sees, from seen cells in ascending order.
+class RunsByView {
+  public:
+    explicit RunsByView(std::size_t views) : runs_(views) {}
+
+    /// Adds a cell to the runs of these views.
+    void add(std::uint32_t cell, std::uint64_t views) {
+        if (cell != end_) close(open_);
+        close(open_ & ~views);
+        for (std::uint64_t bits = views & ~open_; bits != 0; bits &= bits - 1)
+            runs_[static_cast<std::size_t>(std::countr_zero(bits))].push_back({cell, cell});
+        open_ = views;
+        end_ = cell + 1;
+    }
+    /// Ends all runs and returns those of a view.
+    const std::vector<CellRun>& of(std::size_t view) {
+        close(open_);
+        return runs_[view];
+    }
+
+  private:
+    void close(std::uint64_t views) {
+        open_ &= ~views;
+        for (; views != 0; views &= views - 1)
+            runs_[static_cast<std::size_t>(std::countr_zero(views))].back().end = end_;
+    }
+
+    std::vector<std::vector<CellRun>> runs_;
+    std::uint64_t open_ = 0;  // views whose last run ends at end_
+    std::uint32_t end_ = 0;
+};
+
+/// Tests the cells row by row. `target_of(center, column, row)` returns the CellTarget of a cell.
 template <typename TargetOf>
 class RowLook {
   public:
@@ -54,16 +94,13 @@ class RowLook {
           window_(window) {}
 
     /// Appends the cells of a row that each view sees to its runs.
-    void add(int row, std::span<std::vector<CellRun>> runs) {
+    void add(int row, RunsByView& runs) {
         findTargets(row);
         if (targets_.empty()) return;
         seen_.resize(targets_.size());
         mesh_.query(reach_.origin, targets_, seen_);
-        for (std::size_t i = 0; i < targets_.size(); ++i) {
-            if (seen_[i] == 0 && targets_[i] != reach_.origin) continue;
-            for (std::uint64_t bits = held_[i]; bits != 0; bits &= bits - 1)
-                addCell(runs[static_cast<std::size_t>(std::countr_zero(bits))], cells_[i]);
-        }
+        for (std::size_t i = 0; i < targets_.size(); ++i)
+            if (seen_[i] != 0 || targets_[i] == reach_.origin) runs.add(cells_[i], held_[i]);
     }
 
   private:
@@ -80,25 +117,19 @@ class RowLook {
         const int end =
             std::min(columns_.firstAbove(reach_.origin.x + half, in_reach), window_.end_column);
         for (int column = first; column < end; ++column) {
-            const CellTarget target = target_of_(Point2{grid_.columnCenter(column), y});
+            const CellTarget target = target_of_({columns_.center(column), y}, column, row);
             if (target.held == 0) continue;
             cells_.push_back(static_cast<std::uint32_t>(grid_.cell(column, row)));
             targets_.push_back(target.place);
             held_.push_back(target.held);
         }
     }
-    static void addCell(std::vector<CellRun>& runs, std::uint32_t cell) {
-        if (!runs.empty() && runs.back().end == cell)
-            ++runs.back().end;
-        else
-            runs.push_back({cell, cell + 1});
-    }
 
     const Grid& grid_;
     GridAxis columns_;
     const RayWorld& mesh_;
     Reach reach_;
-    const TargetOf& target_of_;
+    TargetOf target_of_;
     CellWindow window_;
     std::vector<std::uint32_t> cells_;
     std::vector<Point3> targets_;
@@ -113,9 +144,8 @@ void addParts(const Grid& grid, const RayWorld& mesh, const Reach& reach, std::s
     constexpr int kCellsOfBand = 1 << 16;
     const int rows = std::max(1, kCellsOfBand / grid.columns);
     const auto bands = static_cast<std::size_t>((grid.rows + rows - 1) / rows);
-    std::vector<std::vector<std::vector<CellRun>>> runs(bands);
+    std::vector<RunsByView> runs(bands, RunsByView(views));
     const auto look = [&](std::size_t band) {
-        runs[band].resize(views);
         RowLook<TargetOf> row_look(grid, mesh, reach, target_of, window);
         const int first = static_cast<int>(band) * rows;
         for (int row = std::max(first, window.first_row);
@@ -127,11 +157,81 @@ void addParts(const Grid& grid, const RayWorld& mesh, const Reach& reach, std::s
     else
         tbb::parallel_for(std::size_t{0}, bands, look);
     for (std::size_t k = 0; k < views; ++k) {
-        for (const auto& of_band : runs)
-            parts.runs.insert(parts.runs.end(), of_band[k].begin(), of_band[k].end());
+        for (RunsByView& of_band : runs) {
+            const std::vector<CellRun>& added = of_band.of(k);
+            parts.runs.insert(parts.runs.end(), added.begin(), added.end());
+        }
         parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
     }
 }
+
+/// The targets on a level plane. Finds the views that hold them by blocks of cells, halved until
+/// all of a block is inside or outside of each view: O(edges of the views * log(block)) tests.
+class ViewTargets {
+  public:
+    /// Tests no cells outside the window. \pre it lies in the grid
+    ViewTargets(const Grid& grid, const HeldViews& views, double height, const CellWindow& window)
+        : columns_(GridAxis::columnsOf(grid)),
+          rows_(GridAxis::rowsOf(grid)),
+          views_(views),
+          height_(height),
+          window_(window) {}
+
+    CellTarget operator()(Point2 center, int column, int row) {
+        if (row < first_row_ || row >= end_row_) findStrip(row);
+        return {{center.x, center.y, height_}, held_[index(column, row)]};
+    }
+
+  private:
+    static constexpr int kBlock = 8;  // cells of its side, a power of two
+
+    void findStrip(int row) {
+        first_row_ = row;
+        end_row_ = std::min(row + kBlock, window_.end_row);
+        held_.resize(static_cast<std::size_t>((window_.end_column - window_.first_column) *
+                                              (end_row_ - first_row_)));
+        for (int column = window_.first_column; column < window_.end_column; column += kBlock)
+            settle(column, row, kBlock, views_.all(), 0);
+    }
+    /// Stores the views of a block, `held` and some of the `unsure` ones.
+    void settle(int column, int row, int size, std::uint64_t unsure, std::uint64_t held) {
+        const int end_column = std::min(column + size, window_.end_column);
+        const int end_row = std::min(row + size, end_row_);
+        if (column >= end_column || row >= end_row) return;
+        const Point2 low{columns_.center(column), rows_.center(row)};
+        if (size == 1) {
+            held |= views_.holding({low.x, low.y, height_}, unsure);
+            unsure = 0;
+        } else {
+            const Vec2 half =
+                0.5 * (Point2{columns_.center(end_column - 1), rows_.center(end_row - 1)} - low);
+            const Point2 center = low + half;
+            const auto verdict = views_.decide({center.x, center.y, height_}, half, unsure);
+            held |= verdict.held;
+            unsure = verdict.unsure;
+        }
+        if (unsure == 0) {
+            for (int r = row; r < end_row; ++r)
+                std::fill_n(held_.begin() + static_cast<std::ptrdiff_t>(index(column, r)),
+                            end_column - column, held);
+            return;
+        }
+        for (const int r : {row, row + size / 2})
+            for (const int c : {column, column + size / 2}) settle(c, r, size / 2, unsure, held);
+    }
+    [[nodiscard]] std::size_t index(int column, int row) const {
+        return static_cast<std::size_t>((row - first_row_) *
+                                            (window_.end_column - window_.first_column) +
+                                        column - window_.first_column);
+    }
+
+    GridAxis columns_, rows_;
+    const HeldViews& views_;
+    double height_;
+    CellWindow window_;
+    int first_row_ = 0, end_row_ = 0;  // of the strip
+    std::vector<std::uint64_t> held_;
+};
 
 /// A laser that scans in one tilted plane covers the floor below or above that plane.
 void addScan(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, CellParts& parts) {
@@ -143,7 +243,7 @@ void addScan(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, CellP
     const BearingWindow window(laser);
     addParts(
         grid, mesh, *reach, 1,
-        [&](Point2 center) {
+        [&](Point2 center, int, int) {
             const Point3 target{center.x, center.y, plane.heightAt(center)};
             const Vec3 way = target - origin;
             const bool is_held = target.z >= 0 &&
@@ -163,7 +263,7 @@ void addSweep(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, doub
     const SweptScan scan(sensor);
     addParts(
         grid, mesh, *reach, 1,
-        [&](Point2 center) {
+        [&](Point2 center, int, int) {
             const Point3 target{center.x, center.y, height};
             const Vec3 way = target - origin;
             const bool is_held =
@@ -172,155 +272,6 @@ void addSweep(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, doub
         },
         parts);
 }
-
-/// Decides for nearly all directions whether they are in the picture of a lens that distorts by the
-/// angle to the axis alone, without evaluating the lens model: reads the position in the picture
-/// from a table over the cosine of that angle.
-class PictureTable {
-  public:
-    enum class Answer { Outside, Inside, Unsure };
-
-    /// Builds the table. \pre a fisheye or a mirror
-    explicit PictureTable(const Camera& camera)
-        : low_{(-0.5 - camera.cx) / camera.fx, (-0.5 - camera.cy) / camera.fy},
-          high_{(camera.columns - 0.5 - camera.cx) / camera.fx,
-                (camera.rows - 0.5 - camera.cy) / camera.fy} {
-        const Angle widest = camera.widestInPicture();
-        has_all_ = widest <= kLimit;
-        // Slightly less, as the lens may end there.
-        least_ = cos(std::min(widest, kLimit) - Angle::radians(kRounding / 10));
-        step_ = (1 - least_) / kSteps;
-        for (int i = 0; i <= kSteps; ++i)
-            stretch_[static_cast<std::size_t>(i)] = stretchAt(camera, least_ + i * step_);
-        for (int i = 0; i < kSteps; ++i) {
-            const double cosine = least_ + (i + 0.5) * step_;
-            margin_ = std::max(margin_, std::fabs(stretchOf(cosine) - stretchAt(camera, cosine)));
-        }
-        margin_ = kSafety * margin_ + kRounding;
-    }
-
-    /// Finds the direction in the picture. \pre distance is the length of `local`
-    [[nodiscard]] Answer locate(Vec3 local, double distance) const {
-        if (!(distance > 0)) return Answer::Unsure;
-        const double cosine = local.x / distance;
-        if (cosine < least_ - kRounding) return has_all_ ? Answer::Outside : Answer::Unsure;
-        if (cosine < least_ + kRounding) return Answer::Unsure;
-        const double scale = stretchOf(cosine) / distance;
-        const double u = -scale * local.y, v = -scale * local.z;
-        const double inside =
-            std::min(std::min(u - low_.x, high_.x - u), std::min(v - low_.y, high_.y - v));
-        if (std::fabs(inside) <= margin_) return Answer::Unsure;
-        return inside > 0 ? Answer::Inside : Answer::Outside;
-    }
-
-  private:
-    static constexpr int kSteps = 256;
-    static constexpr double kSafety = 8, kRounding = 1e-9;
-    /// Beyond it neighbouring directions map to distant pixels.
-    static constexpr Angle kLimit = Angle::radians(2.4);
-
-    /// Returns the distance from the centre of the picture, in focal lengths, divided by the sine
-    /// of the angle.
-    static double stretchAt(const Camera& camera, double cosine) {
-        const double sine = std::max(std::sqrt(std::max(0.0, 1 - cosine * cosine)), 1e-5);
-        const auto place = camera.project({cosine, -sine, 0});
-        return place ? (place->column - camera.cx) / camera.fx / sine : 0;
-    }
-    [[nodiscard]] double stretchOf(double cosine) const {
-        const double at = (cosine - least_) / step_;
-        const auto i = static_cast<std::size_t>(std::clamp(at, 0.0, kSteps - 1.0));
-        return stretch_[i] + (at - static_cast<double>(i)) * (stretch_[i + 1] - stretch_[i]);
-    }
-
-    Vec2 low_, high_;       // the picture's bounds, in focal lengths from its centre
-    bool has_all_ = false;  // the table spans the whole picture
-    double least_ = 0, step_ = 0, margin_ = 0;
-    std::array<double, kSteps + 1> stretch_{};
-};
-
-/// Returns the same as views[k].holds(), for views of one sensor that differ in heading.
-class ViewTest {
-  public:
-    /// Stores the views. \pre at most kTogether
-    explicit ViewTest(std::span<const FieldOfView> views) : views_(views) {
-        const FieldOfView& first = views.front();
-        is_pyramid_ = first.shape == FieldOfView::Shape::Pyramid;
-        if (first.shape == FieldOfView::Shape::Picture && first.camera->lens != Lens::Pinhole)
-            table_.emplace(*first.camera);
-        if (!is_pyramid_) return;
-        for (std::size_t k = 0; k < views.size(); ++k) {
-            const Frame3& frame = views[k].frame;
-            const Tangents& s = views[k].sides;
-            setSide(0, k, 1, frame.left, s.left);
-            setSide(1, k, -1, frame.left, s.right);
-            setSide(2, k, 1, frame.up, s.up);
-            setSide(3, k, -1, frame.up, s.down);
-        }
-    }
-
-    [[nodiscard]] std::uint64_t holding(Point3 place) const {
-        if (is_pyramid_) return pyramidsHolding(place);
-        if (table_) return all([&](const FieldOfView& view) { return isInTable(view, place); });
-        return all([&](const FieldOfView& view) { return view.holds(place); });
-    }
-
-  private:
-    /// Outward normals of one side of each view.
-    struct Normals {
-        std::array<double, kTogether> x, y, z;
-    };
-
-    /// Sets a side of a view, by its axis and sign.
-    void setSide(std::size_t side, std::size_t view, double sign, Vec3 axis, double tangent) {
-        const Vec3& forward = views_[view].frame.forward;
-        sides_[side].x[view] = sign * axis.x - tangent * forward.x;
-        sides_[side].y[view] = sign * axis.y - tangent * forward.y;
-        sides_[side].z[view] = sign * axis.z - tangent * forward.z;
-    }
-    template <typename Holds>
-    [[nodiscard]] std::uint64_t all(Holds holds) const {
-        std::uint64_t held = 0;
-        for (std::size_t k = 0; k < views_.size(); ++k)
-            if (holds(views_[k])) held |= std::uint64_t{1} << k;
-        return held;
-    }
-    /// Decides nearly all points in a loop over all views that compilers vectorise.
-    [[nodiscard]] std::uint64_t pyramidsHolding(Point3 place) const {
-        constexpr double kEdge = 1e-9;  // exceeds the margin for rounding
-        const Vec3 way = place - views_.front().frame.origin;
-        const double edge = kEdge * (std::fabs(way.x) + std::fabs(way.y) + std::fabs(way.z));
-        std::array<double, kTogether> beyond;
-        const auto out = [&](const Normals& n, std::size_t k) {
-            return n.x[k] * way.x + n.y[k] * way.y + n.z[k] * way.z;
-        };
-        for (std::size_t k = 0; k < views_.size(); ++k)
-            beyond[k] = std::max(std::max(out(sides_[0], k), out(sides_[1], k)),
-                                 std::max(out(sides_[2], k), out(sides_[3], k)));
-        std::uint64_t held = 0;
-        for (std::size_t k = 0; k < views_.size(); ++k) {
-            if (beyond[k] > edge) continue;
-            const FieldOfView& view = views_[k];
-            const Vec3 local = view.frame.toLocal(place);
-            if (beyond[k] >= -edge && !view.points(local)) continue;
-            const double range = view.is_by_depth ? local.x : std::sqrt(dot(local, local));
-            if (withinRange(range, view.max_range)) held |= std::uint64_t{1} << k;
-        }
-        return held;
-    }
-    [[nodiscard]] bool isInTable(const FieldOfView& view, Point3 place) const {
-        const Vec3 local = view.frame.toLocal(place);
-        const double distance = std::sqrt(dot(local, local));
-        if (!withinRange(distance, view.max_range)) return false;
-        const PictureTable::Answer answer = table_->locate(local, distance);
-        if (answer == PictureTable::Answer::Unsure) return view.points(local);
-        return answer == PictureTable::Answer::Inside;
-    }
-
-    std::span<const FieldOfView> views_;
-    bool is_pyramid_ = false;
-    std::array<Normals, 4> sides_;  // of pyramids
-    std::optional<PictureTable> table_;
-};
 
 }  // namespace
 
@@ -341,20 +292,18 @@ void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOf
                  double height, CellParts& parts, const CellWindow& window) {
     parts.runs.clear();
     parts.first.assign(1, 0);
-    for (std::size_t begin = 0; begin < views.size(); begin += kTogether) {
-        const auto some = views.subspan(begin, std::min(kTogether, views.size() - begin));
+    for (std::size_t begin = 0; begin < views.size(); begin += HeldViews::kMax) {
+        const auto some = views.subspan(begin, std::min(HeldViews::kMax, views.size() - begin));
         const Point3 origin = some[0].frame.origin;
         const auto reach = Reach::of(origin, some[0].farthest(), height - origin.z);
         if (!reach) {
             parts.first.insert(parts.first.end(), some.size(), 0);
             continue;
         }
-        const ViewTest test(some);
-        const auto target_of = [&](Point2 center) {
-            const Point3 place{center.x, center.y, height};
-            return CellTarget{place, test.holding(place)};
-        };
-        addParts(grid, mesh, *reach, some.size(), target_of, parts, window);
+        const HeldViews held(some);
+        const CellWindow near = reach->within(grid, window);
+        addParts(grid, mesh, *reach, some.size(), ViewTargets(grid, held, height, near), parts,
+                 near);
     }
 }
 
