@@ -188,8 +188,8 @@ class ViewTargets {
     void findStrip(int row) {
         first_row_ = row;
         end_row_ = std::min(row + kBlock, window_.end_row);
-        held_.resize(static_cast<std::size_t>((window_.end_column - window_.first_column) *
-                                              (end_row_ - first_row_)));
+        held_.resize(static_cast<std::size_t>(window_.end_column - window_.first_column) *
+                     static_cast<std::size_t>(end_row_ - first_row_));
         for (int column = window_.first_column; column < window_.end_column; column += kBlock)
             settle(column, row, kBlock, views_.all(), 0);
     }

@@ -167,11 +167,7 @@ void RosNode::send() {
         stopped = send_from(ends_.begin(), first);
         has_unsent_ = stopped != first;
     }
-    // Else one topic later than this time: readers lose the last of each burst first.
-    if (has_unsent_)
-        turn_ = stopped->first;
-    else
-        turn_ = first == ends_.end() ? 0 : first->first + 1;
+    turn_ = has_unsent_ ? stopped->first : 0;
     if (has_unsent_) next_send_ = now + kPause;
 }
 
