@@ -239,7 +239,8 @@ class FromJson {
     }
     /// Accepts the counter that headers of ROS 1 have, and its names of the parts of a time.
     static void refuseOthers(const RosStruct& type, const json& value, bool is_time) {
-        for (const auto& [name, member] : value.items()) {
+        for (const auto& member : value.items()) {
+            const std::string& name = member.key();
             const bool is_known = std::ranges::any_of(
                 type.fields, [&](const RosField& field) { return field.name == name; });
             const bool is_old = is_time ? name == "secs" || name == "nsecs" : name == "seq";
