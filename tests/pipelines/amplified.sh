@@ -57,7 +57,7 @@ quick svg_long_ids 89000
 quick svg_css_comments 2000000
 quick svg_css_selectors 400000
 quick sdf_same 12000
-quick ifc_storeys 2000000
+quick ifc_storeys 4000000
 quick ifc_mapped_walls 20000
 quick ifc_mapped_walls 400000
 quick ifc_shared_walls 70000

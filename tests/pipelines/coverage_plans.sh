@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sensors anywhere in real maps and plans, ten thousand each, on walls and on their corners, too:
+# Sensors anywhere in real maps and plans, two thousand each, on walls and on their corners, too:
 # each is measured, and cells and closed forms agree. ISPACE_TEST_DATA names the folder.
 . "$(dirname "$0")/common.sh"
 
@@ -60,10 +60,10 @@ for plan in turtlebot3.yaml willow-full.yaml \
     envc "$ISPACE_TEST_DATA/$plan" -o room.glb
     envc room.glb --info --json >info.json
     envc room.glb --slice 0.15 -o slice.geojson
-    for batch in 1 2 3 4 5 6 7 8 9 10; do
+    for batch in 1 2; do
         python3 sensors.py $batch >layout.3dm
         coverage -q room.glb layout.3dm --grid 200 --json >report.json || fail "$plan, batch $batch"
         python3 judge.py || fail "$plan, batch $batch"
     done
-    echo "$plan: coverage of 10000 sensors measured"
+    echo "$plan: coverage of 2000 sensors measured"
 done

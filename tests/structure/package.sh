@@ -10,9 +10,8 @@ done
 [ -d "$binary_dir/share/completions" ] || skip "a build with sanitizers is not packed"
 
 export DPKG_DEB_COMPRESSOR_TYPE=gzip DPKG_DEB_COMPRESSOR_LEVEL=1
-for run in one two; do
-    "$source_dir/.ci/package" "$binary_dir" "$run" >"$run.log" 2>&1 || fail "$(cat "$run.log")"
-done
+"$source_dir/.ci/package" "$binary_dir" one >log 2>&1 || fail "$(cat log)"
+LINTIAN="" "$source_dir/.ci/package" "$binary_dir" two >log 2>&1 || fail "$(cat log)"
 [ "$(ls one/*.deb | wc -l)" -eq 5 ] || fail "other packages than expected: $(ls one)"
 for package in one/*.deb; do
     cmp "$package" "two/${package#*/}" || fail "the second $package has other bytes"

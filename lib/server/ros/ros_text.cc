@@ -2,6 +2,7 @@
 #include "server/ros/ros_text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -237,13 +238,14 @@ class FromJson {
     [[noreturn]] static void refuse(const std::string& name, const std::string& wanted) {
         throw FormatError({"", 0, 0, excerpt(name) + " is wanted as " + wanted});
     }
-    /// Accepts the counter that headers of ROS 1 have, and its names of the parts of a time.
+    /// Accepts the counter that headers of ROS 1 have, and older names of the parts of a time.
     static void refuseOthers(const RosStruct& type, const json& value, bool is_time) {
         for (const auto& member : value.items()) {
             const std::string& name = member.key();
             const bool is_known = std::ranges::any_of(
                 type.fields, [&](const RosField& field) { return field.name == name; });
-            const bool is_old = is_time ? name == "secs" || name == "nsecs" : name == "seq";
+            const bool is_old = is_time ? std::ranges::find(kOldTimes, name) != kOldTimes.end()
+                                        : name == "seq" && type.name == "std_msgs/Header";
             if (!is_known && !is_old)
                 throw FormatError({"", 0, 0, type.name + " has no member " + excerpt(name)});
         }
@@ -253,8 +255,13 @@ class FromJson {
         if (!value.is_object()) return none;
         const auto found = value.find(name);
         if (found != value.end()) return *found;
-        const auto old = is_time ? value.find(name == "sec" ? "secs" : "nsecs") : value.end();
-        return old != value.end() ? *old : none;
+        if (!is_time) return none;
+        for (const std::string_view old : kOldTimes) {
+            const auto there = value.find(old);
+            if (there != value.end() && old.starts_with('s') == name.starts_with('s'))
+                return *there;
+        }
+        return none;
     }
     void one(const RosField& field, const json& value) {
         static const json null;
@@ -299,6 +306,9 @@ class FromJson {
         if (field.length == 0) out_.count(count);
         for (std::size_t i = 0; i < count; ++i) one(field, given > 0 ? value[i] : none);
     }
+
+    /// Parts of a time, as ROS 1 and Foxglove call them.
+    static constexpr std::array<std::string_view, 3> kOldTimes{"secs", "nsecs", "nsec"};
 
     CdrWriter out_;
 };

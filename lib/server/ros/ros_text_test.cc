@@ -85,6 +85,16 @@ TEST(RosText, ReadsJsonWithDefaults) {
         twistOf(RosType::TwistStamped, rosMessage(RosType::TwistStamped, stamped)).forward));
 }
 
+TEST(RosText, ReadsTimesOfEveryName) {
+    const auto stamped = [](const json& stamp) {
+        return rosMessage(RosType::TwistStamped, {{"header", {{"stamp", stamp}}}});
+    };
+    const std::string today = stamped({{"sec", 3}, {"nanosec", 4}});
+    EXPECT_EQ(stamped({{"secs", 3}, {"nsecs", 4}}), today) << "ROS 1";
+    EXPECT_EQ(stamped({{"sec", 3}, {"nsec", 4}}), today) << "Foxglove Studio";
+    EXPECT_NE(stamped({{"sec", 3}}), today);
+}
+
 TEST(RosText, RefusesValuesOfOtherTypes) {
     const auto refuses = [](RosType type, const char* text) {
         EXPECT_THROW(rosMessage(type, json::parse(text)), FormatError) << text;
@@ -97,6 +107,8 @@ TEST(RosText, RefusesValuesOfOtherTypes) {
     refuses(RosType::TwistStamped, R"({"header":{"frame_id":7}})");
     refuses(RosType::TwistStamped, R"({"header":{"stamp":{"sec":1.5}}})");
     refuses(RosType::TwistStamped, R"({"header":{"stamp":{"sec":1e12}}})");
+    refuses(RosType::Twist, R"({"seq":1})");
+    refuses(RosType::TwistStamped, R"({"header":{"stamp":{"msec":1}}})");
     refuses(RosType::PoseWithCovarianceStamped, R"({"pose":{"covariance":[1]}})");
     refuses(RosType::PoseWithCovarianceStamped, R"({"pose":{"covariance":0}})");
 }

@@ -46,18 +46,8 @@ double figureOf(const nlohmann::json& value, const char* name, double most) {
 /// Returns a name with one leading slash, as topics are called here.
 std::string absolute(const std::string& name) { return name.starts_with('/') ? name : "/" + name; }
 
-/// Writes an id as idOf() returned it, if there is one: a text as a text, a number as a number.
-void writeId(JsonWriter& json, const std::string& id) {
-    if (id.empty()) return;
-    const auto value = nlohmann::json::parse(id);
-    json.key("id");
-    if (value.is_string())
-        json.value(value.get_ref<const std::string&>());
-    else if (value.is_number_integer())
-        json.value(value.get<std::int64_t>());
-    else
-        json.value(value.get<double>());
-}
+/// Returns the member of an answer with an id of idOf(), after a comma; "" for no id.
+std::string idMember(const std::string& id) { return id.empty() ? "" : ",\"id\":" + id; }
 
 /// Returns true if a message of this type has all members of the object.
 bool hasMembersOf(const nlohmann::json& message, RosType type) {
@@ -110,9 +100,7 @@ void RosbridgeDialogue::tell(Level level, const std::string& text, const std::st
     JsonWriter json;
     json.beginObject().key("op").value("status");
     json.key("level").value(kLevels[static_cast<std::size_t>(level)]).key("msg").value(text);
-    writeId(json, id);
-    json.endObject();
-    sendText(json.take());
+    sendText(json.take() + idMember(id) + '}');
 }
 
 struct RosbridgeDialogue::Op {
@@ -274,9 +262,10 @@ void RosbridgeDialogue::answer(const std::string& id, std::string_view service, 
                                std::string_view values) {
     JsonWriter json;
     json.beginObject().key("op").value("service_response");
-    writeId(json, id);
     json.key("service").value(service).key("result").value(is_done).key("values");
-    send({.head = json.take(), .body = std::make_shared<const std::string>(values), .tail = "}"});
+    send({.head = json.take(),
+          .body = std::make_shared<const std::string>(values),
+          .tail = idMember(id) + '}'});
 }
 
 }  // namespace ispace

@@ -203,6 +203,8 @@ TEST(Rosbridge, AnswersIdsThatAreNumbersAsNumbers) {
     EXPECT_EQ(talk.text()["id"], json(9));
     talk.send({{"op", "nonsense"}, {"id", 2.5}});
     EXPECT_EQ(talk.text()["id"], json(2.5));
+    talk.send({{"op", "nonsense"}, {"id", ~std::uint64_t{0}}});
+    EXPECT_EQ(talk.text()["id"], json(~std::uint64_t{0}));
 }
 
 TEST(Rosbridge, ReadsOrdersWithoutAdvertisementByTheirMembers) {
