@@ -31,6 +31,7 @@
 #include <sim_aria/data_logger.h>
 #include <sim_aria/functor_kinds.h>
 #include <sim_aria/hardware.h>
+#include <sim_aria/interpolation.h>
 #include <sim_aria/keys.h>
 #include <sim_aria/laser_connector.h>
 #include <sim_aria/laser_logger.h>

@@ -284,4 +284,38 @@ TEST(SimAriaGeometry, TransformsInvert) {
     EXPECT_EQ(ArLineSegment(0, 0, 10, 0).getDistToLine(ArPose(13, 4)), 5);
 }
 
+ArTime timeOf(long ms) {
+    ArTime time;
+    time.setSec(100);
+    time.setMSec(0);
+    time.addMSec(ms);
+    return time;
+}
+
+TEST(SimAriaInterpolation, PosesBetweenAndAfterReadings) {
+    ArInterpolation poses(3);
+    ArPose pose;
+    EXPECT_EQ(poses.getPose(timeOf(0), &pose), -3) << "no readings";
+    poses.addReading(timeOf(0), ArPose(0, 0, 170));
+    EXPECT_EQ(poses.getPose(timeOf(0), &pose), 1);
+    EXPECT_EQ(poses.getPose(timeOf(1), &pose), -3) << "one reading";
+    poses.addReading(timeOf(100), ArPose(10, 20, -170));
+    ArPoseWithTime newest;
+    EXPECT_EQ(poses.getPose(timeOf(50), &pose, &newest), 1);
+    EXPECT_EQ(pose, ArPose(5, 10, 180)) << "by the shorter turn";
+    EXPECT_TRUE(newest.getTime().isAt(timeOf(100)));
+    EXPECT_EQ(poses.getPose(timeOf(-1), &pose), -2);
+    EXPECT_EQ(poses.getPose(timeOf(200), &pose), 0);
+    EXPECT_EQ(pose, ArPose(20, 40, -150));
+    EXPECT_EQ(poses.getPose(timeOf(5101), &pose), -1) << "more than 50 times the last two's time";
+    poses.setAllowedMSForPrediction(90);
+    EXPECT_EQ(poses.getPose(timeOf(200), &pose), -1);
+    poses.setAllowedMSForPrediction();
+    poses.addReading(timeOf(200), ArPose(10, 20));
+    poses.addReading(timeOf(300), ArPose(10, 20));
+    EXPECT_EQ(poses.getPose(timeOf(50), &pose), -2) << "three readings are kept";
+    poses.reset();
+    EXPECT_EQ(poses.getPose(timeOf(300), &pose), -3);
+}
+
 }  // namespace

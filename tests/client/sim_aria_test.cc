@@ -228,6 +228,13 @@ TEST_F(SimAria, ThePoseIsWhatTheProgramSays) {
     EXPECT_NEAR(robot.getX(), 1000, 1);
     EXPECT_GT(robot.getY(), 2400);
     EXPECT_NEAR(robot.getTh(), 90, 0.1);
+    ArTime before;
+    before.addMSec(-1000);
+    ArPose pose, wheels;
+    EXPECT_EQ(robot.getPoseInterpPosition(before, &pose), 1);
+    EXPECT_EQ(robot.getEncoderPoseInterpPosition(before, &wheels), 1);
+    EXPECT_NEAR(robot.getPose().findDistanceTo(pose), 200, 30);
+    EXPECT_NEAR(robot.getEncoderPose().findDistanceTo(wheels), 200, 30);
 }
 
 TEST_F(SimAria, CommandsOfTheFirmwareMoveIt) {

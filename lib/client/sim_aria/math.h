@@ -92,6 +92,8 @@ class ArPose {
         setTh(th);
     }
     virtual void setPose(ArPose pose) { setPose(pose.myX, pose.myY, pose.myTh); }
+    /// Writes the pose to the log.
+    void log() const;
 
     double findDistanceTo(ArPose to) const { return std::sqrt(squaredFindDistanceTo(to)); }
     double squaredFindDistanceTo(ArPose to) const {

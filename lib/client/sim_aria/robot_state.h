@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <sim_aria/interpolation.h>
 #include <sim_aria/link.h>
 #include <sim_aria/packet.h>
 #include <sim_aria/range_device.h>
@@ -40,6 +41,23 @@ class RobotState {
     /// Pose by the wheels since the connection, independent of moveTo().
     ArPose getEncoderPose() const { return myPacket.pose; }
     ArPose getRawEncoderPose() const { return myPacket.pose; }
+    /// Pose at a time, see ArInterpolation::getPose().
+    int getPoseInterpPosition(ArTime timeStamp, ArPose* position,
+                              ArPoseWithTime* mostRecent = nullptr) {
+        return myPoses.getPose(timeStamp, position, mostRecent);
+    }
+    int getEncoderPoseInterpPosition(ArTime timeStamp, ArPose* position,
+                                     ArPoseWithTime* mostRecent = nullptr) {
+        return myEncoderPoses.getPose(timeStamp, position, mostRecent);
+    }
+    std::size_t getPoseInterpNumReadings() const { return myPoses.getNumberOfReadings(); }
+    void setPoseInterpNumReadings(std::size_t number) { myPoses.setNumberOfReadings(number); }
+    std::size_t getEncoderPoseInterpNumReadings() const {
+        return myEncoderPoses.getNumberOfReadings();
+    }
+    void setEncoderPoseInterpNumReadings(std::size_t number) {
+        myEncoderPoses.setNumberOfReadings(number);
+    }
     /// From the frame of the robot to that of its pose.
     ArTransform getToGlobalTransform() const { return ArTransform(myPose); }
     ArTransform getEncoderTransform() const { return ArTransform(myPacket.pose, myPose); }
@@ -196,6 +214,8 @@ class RobotState {
         myWheelTurn += ArMath::degToRad(turn) / kRadiansPerMm;
         myPacket = packet;
         myPose = pose;
+        myPoses.addReading(ArTime(), pose);
+        myEncoderPoses.addReading(ArTime(), packet.pose);
         myHistory.push_back(Past{packet.time, pose});
         while (myHistory.front().time < packet.time - 2) myHistory.pop_front();
     }
@@ -203,6 +223,8 @@ class RobotState {
         myPacket = Packet();
         myPose = ArPose();
         myHistory.clear();
+        myPoses.reset();
+        myEncoderPoses.reset();
         myDistance = myTurn = myTravel = myWheelTurn = 0;
     }
 
@@ -215,6 +237,7 @@ class RobotState {
     ArRobotConfigPacketReader myConfig;
 
   private:
+    ArInterpolation myPoses, myEncoderPoses;
     static constexpr double kTicks = 128;
     struct Past {
         double time;

@@ -203,4 +203,6 @@ class ArLog {
     }
 };
 
+inline void ArPose::log() const { ArLog::log(ArLog::Terse, "%.0f %.0f %.1f", myX, myY, myTh); }
+
 #endif  // SIM_ARIA_UTIL_H
