@@ -359,6 +359,23 @@ TEST_F(SimAriaActions, ALaserBesideTheCentreSeesTheSameWalls) {
         EXPECT_NEAR(std::max(std::fabs(point->getX() - 1000), std::fabs(point->getY())), 2000, 2);
 }
 
+TEST_F(SimAriaActions, ALaserOfAProgramIsTheRobotsOfThatNumber) {
+    ArSick sick;
+    EXPECT_STREQ(sick.getName(), "sick_1");
+    EXPECT_FALSE(sick.blockingConnect()) << "it is on no robot";
+    robot.addRangeDevice(&sick);
+    ArSimpleConnector connector(static_cast<ArArgumentParser*>(nullptr));
+    EXPECT_TRUE(connector.setupLaser(&sick));
+    sick.runAsync();
+    ASSERT_TRUE(sick.blockingConnect());
+    ArUtil::sleep(300);
+    EXPECT_GT(sick.getReadingCount(), 1);
+    EXPECT_LT(sick.currentReadingPolar(-90, 90), sick.getMaxRange());
+    ArUrg second(2);
+    second.setRobot(&robot);
+    EXPECT_FALSE(second.blockingConnect()) << "the robot has one";
+}
+
 TEST_F(SimAriaActions, LinesAndACornerAreFoundInAScan) {
     ispace::client::World world(server->address());
     // A corner of 135 degrees that points to the robot, 2 m ahead of it.

@@ -110,6 +110,30 @@ TEST_F(SimAria, SpeedsAreWholeAndClamped) {
     EXPECT_EQ(robot.getRotVel(), 0);
 }
 
+TEST_F(SimAria, MaximaAreAtMostTheRobots) {
+    connect();
+    const double top = robot.getAbsoluteMaxTransVel(), turn = robot.getAbsoluteMaxRotVel();
+    EXPECT_GT(top, 750);
+    EXPECT_FALSE(robot.setTransVelMax(top + 400));
+    EXPECT_FALSE(robot.setRotVelMax(turn + 400));
+    EXPECT_EQ(robot.getTransVelMax(), top);
+    EXPECT_EQ(robot.getRotVelMax(), turn);
+    robot.setVel(-2 * top);
+    robot.setRotVel(2 * turn);
+    ArUtil::sleep(500);
+    EXPECT_TRUE(robot.isConnected());
+    EXPECT_LT(robot.getVel(), 0);
+    EXPECT_TRUE(robot.setAbsoluteMaxTransVel(300));
+    EXPECT_EQ(robot.getTransVelMax(), 300) << "it follows";
+    EXPECT_FALSE(robot.setTransVelMax(400));
+    EXPECT_FALSE(robot.setAbsoluteMaxTransVel(top + 1));
+    EXPECT_EQ(robot.getAbsoluteMaxTransVel(), top);
+    EXPECT_FALSE(robot.setTransVelMax(0));
+    EXPECT_TRUE(robot.setTransDecel(200));
+    EXPECT_EQ(robot.getTransDecel(), 200);
+    EXPECT_EQ(robot.getTransAccel(), 300) << "another figure";
+}
+
 TEST_F(SimAria, NothingMovesBeforeMotorsAreEnabled) {
     connect();
     robot.disableMotors();

@@ -8,6 +8,8 @@
 #include <sim_aria/arguments.h>
 #include <sim_aria/robot.h>
 
+class ArLaser;
+
 /// Connects a robot by the command line: -remoteHost (-rh), -remoteRobotTcpPort (-rrtp), -robotPort
 /// (-rp). The variable ISPACE_SIMRUN overrides the server.
 class ArSimpleConnector {
@@ -48,6 +50,7 @@ class ArSimpleConnector {
     }
     /// Chooses and opens the connection.
     bool setupRobot(ArRobot* robot) {
+        myRobot = robot;
         if (mySerialPort.empty()) {
             myTcp.setPort(myHost.c_str(), myPort);
             if (myTcp.openSimple()) {
@@ -66,6 +69,9 @@ class ArSimpleConnector {
                 sim_aria::serverName().empty() ? "127.0.0.1:7001" : sim_aria::serverName().c_str());
         return robot->blockingConnect();
     }
+    /// Lets the laser read from the robot that was set up, unless it has another.
+    bool setupLaser(ArLaser* laser);
+    bool connectLaser(ArLaser* laser);
 
   private:
     void enroll() {
@@ -74,6 +80,7 @@ class ArSimpleConnector {
     }
 
     int myNone = 0;
+    ArRobot* myRobot = nullptr;
     ArArgumentParser myOwn;
     ArArgumentParser* myParser;
     std::string myHost = "localhost", mySerialPort;

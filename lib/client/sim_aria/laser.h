@@ -14,9 +14,10 @@
 /// A laser on a robot of simrun: its current buffer holds the points of the newest scan.
 class ArLaser : public ArRangeDevice {
   public:
-    /// \param id the laser in simrun
-    ArLaser(int number, const std::string& id)
-        : ArRangeDevice(0, 0, ("sim_lms_" + std::to_string(number)).c_str(), 0),
+    /// \param id the laser in simrun; "": the one of this number on the robot
+    ArLaser(int number, const std::string& id, const std::string& name = "sim_lms_",
+            bool appendNumber = true)
+        : ArRangeDevice(0, 0, (name + (appendNumber ? std::to_string(number) : "")).c_str(), 0),
           myNumber(number),
           myId(id),
           myTask(this, &ArLaser::update) {}
@@ -30,6 +31,9 @@ class ArLaser : public ArRangeDevice {
     virtual bool blockingConnect();
     virtual bool asyncConnect() { return blockingConnect(); }
     virtual bool disconnect();
+    /// The robot's cycle reads it, without a thread of its own.
+    void runAsync() {}
+    void stopRunning() {}
 
     /// Bearings of the first and last beam, degrees.
     double getStartDegrees() const { return myStart; }
@@ -76,11 +80,27 @@ class ArLaser : public ArRangeDevice {
     std::list<ArFunctor*> myCallbacks;
 };
 
-/// Names of the kinds of lasers that programs refer to.
-using ArSick = ArLaser;
-using ArLMS1XX = ArLaser;
-using ArLMS2xx = ArLaser;
-using ArUrg = ArLaser;
+/// The kinds of lasers that programs make: the laser of that number on the robot, of any kind.
+class ArLMS2xx : public ArLaser {
+  public:
+    explicit ArLMS2xx(int laserNumber = 1, const char* name = "lms2xx_", bool appendNumber = true)
+        : ArLaser(laserNumber, "", name, appendNumber) {}
+};
+class ArSick : public ArLMS2xx {
+  public:
+    explicit ArSick(int laserNumber = 1, const char* name = "sick_", bool appendNumber = true)
+        : ArLMS2xx(laserNumber, name, appendNumber) {}
+};
+class ArLMS1XX : public ArLaser {
+  public:
+    explicit ArLMS1XX(int laserNumber = 1, const char* name = "lms1XX_", bool appendNumber = true)
+        : ArLaser(laserNumber, "", name, appendNumber) {}
+};
+class ArUrg : public ArLaser {
+  public:
+    explicit ArUrg(int laserNumber = 1, const char* name = "urg_", bool appendNumber = true)
+        : ArLaser(laserNumber, "", name, appendNumber) {}
+};
 
 #include <sim_aria/robot.h>
 

@@ -101,4 +101,13 @@ class ArLaserConnector {
     std::list<std::unique_ptr<ArLaser>> myLasers;
 };
 
+inline bool ArSimpleConnector::setupLaser(ArLaser* laser) {
+    if (!laser->getRobot()) laser->setRobot(myRobot);
+    return laser->getRobot() != nullptr;
+}
+
+inline bool ArSimpleConnector::connectLaser(ArLaser* laser) {
+    return setupLaser(laser) && laser->blockingConnect();
+}
+
 #endif  // SIM_ARIA_LASER_CONNECTOR_H

@@ -4,7 +4,10 @@
 #define SIM_ARIA_LASER_SCAN_H
 
 #include <cmath>
+#include <cstddef>
 #include <list>
+#include <string>
+#include <vector>
 
 #include <sim_aria/laser.h>
 #include <sim_aria/robot.h>
@@ -15,7 +18,11 @@ inline bool ArLaser::blockingConnect() {
     if (!robot) return false;
     robot->lock();
     try {
-        if (robot->link()) {
+        const std::vector<std::string> lasers =
+            robot->link() ? robot->link()->lasers() : std::vector<std::string>();
+        const std::size_t index = static_cast<std::size_t>(myNumber) - 1;
+        if (myId.empty() && index < lasers.size()) myId = lasers[index];
+        if (robot->link() && !myId.empty()) {
             const ispace::client::Fields figures = robot->link()->laser(myId);
             myStart = figures.number("angle_min");
             myEnd = figures.number("angle_max");

@@ -14,10 +14,19 @@ namespace sim_aria {
 /// it reaches distances and headings with speeds that decrease towards the goal.
 class Motion {
   public:
-    double max_vel = 750, max_rot_vel = 100;   ///< mm/s, degrees/s
-    double accel = 300, rot_accel = 100;       ///< mm/s², degrees/s²
-    static constexpr double kMoveDone = 40;    ///< mm
-    static constexpr double kHeadingDone = 3;  ///< degrees
+    double top_vel = 750, top_rot_vel = 100;  ///< of the robot: bounds of the next two
+    double max_vel = 750, max_rot_vel = 100;  ///< mm/s, degrees/s
+    double accel = 300, rot_accel = 100;      ///< mm/s², degrees/s²; stored only
+    double decel = 300, rot_decel = 100;      ///< towards a distance or a heading
+    double move_done = 40;                    ///< mm
+    double heading_done = 3;                  ///< degrees
+
+    /// Sets a maximum, at most the robot's. \return false if it was too high or not positive
+    static bool setMax(double& most, double value, double top) {
+        if (!(value > 0)) return false;
+        most = std::min(value, top);
+        return value <= top;
+    }
 
     void setVel(double value) {
         move_ = Vel;
@@ -49,12 +58,12 @@ class Motion {
 
     bool isMoveDone(const ArPose& at, double delta) const {
         if (move_ != Goal) return true;
-        return std::fabs(distance_) - from_.findDistanceTo(at) <= (delta == 0 ? kMoveDone : delta);
+        return std::fabs(distance_) - from_.findDistanceTo(at) <= (delta == 0 ? move_done : delta);
     }
     bool isHeadingDone(const ArPose& at, double delta) const {
         if (turn_ != Goal) return true;
         return std::fabs(ArMath::subAngle(heading_, at.getTh())) <=
-               (delta == 0 ? kHeadingDone : delta);
+               (delta == 0 ? heading_done : delta);
     }
 
     /// Computes the current speed.
@@ -71,20 +80,20 @@ class Motion {
     double wantedVel(const ArPose& at) const {
         if (move_ != Goal) return move_ == Vel ? rounded(vel_, max_vel) : 0;
         const double rest = std::fabs(distance_) - travelled(at);
-        return std::copysign(1.0, distance_) * approach(rest, max_vel, accel);
+        return std::copysign(1.0, distance_) * approach(rest, max_vel, decel);
     }
     double wantedRotVel(const ArPose& at) const {
         if (turn_ != Goal) return turn_ == Vel ? rounded(rot_vel_, max_rot_vel) : 0;
-        return approach(ArMath::subAngle(heading_, at.getTh()), max_rot_vel, rot_accel);
+        return approach(ArMath::subAngle(heading_, at.getTh()), max_rot_vel, rot_decel);
     }
 
     static double rounded(double value, double most) {
         return std::round(std::max(-most, std::min(most, value)));
     }
     /// Uses half of the deceleration, since poses arrive one cycle late.
-    static double approach(double rest, double most, double accel) {
+    static double approach(double rest, double most, double decel) {
         const double left = std::fabs(rest);
-        const double speed = std::min(std::min(most, std::sqrt(accel * left)), left / kSettle);
+        const double speed = std::min(std::min(most, std::sqrt(decel * left)), left / kSettle);
         return std::copysign(left < kStill ? 0 : std::round(speed), rest);
     }
     /// Distance travelled along the initial heading.

@@ -166,25 +166,43 @@ class ArRobot : public sim_aria::RobotState {
     }
     bool isMoveDone(double delta = 0) const { return myMotion.isMoveDone(myPose, delta); }
     bool isHeadingDone(double delta = 0) const { return myMotion.isHeadingDone(myPose, delta); }
-    bool setTransVelMax(double value) { return set(myMotion.max_vel, value); }
-    bool setRotVelMax(double value) { return set(myMotion.max_rot_vel, value); }
-    bool setAbsoluteMaxTransVel(double value) { return setTransVelMax(value); }
-    bool setAbsoluteMaxRotVel(double value) { return setRotVelMax(value); }
-    /// Used for move() and headings; speeds change as the simulated robot's motors do.
+    void setMoveDoneDist(double mm) { myMotion.move_done = mm; }
+    double getMoveDoneDist() const { return myMotion.move_done; }
+    void setHeadingDoneDiff(double deg) { myMotion.heading_done = deg; }
+    double getHeadingDoneDiff() const { return myMotion.heading_done; }
+    /// Maxima of speed. One above the absolute maximum is lowered to it, with false.
+    bool setTransVelMax(double value) {
+        return myMotion.setMax(myMotion.max_vel, value, myMotion.top_vel);
+    }
+    bool setRotVelMax(double value) {
+        return myMotion.setMax(myMotion.max_rot_vel, value, myMotion.top_rot_vel);
+    }
+    /// Lowers the absolute maximum; the robot's own is the highest.
+    bool setAbsoluteMaxTransVel(double value) {
+        const bool is_good = myMotion.setMax(myMotion.top_vel, value, myConfig.getTransVelTop());
+        return setTransVelMax(std::min(myMotion.max_vel, myMotion.top_vel)) && is_good;
+    }
+    bool setAbsoluteMaxRotVel(double value) {
+        const bool is_good = myMotion.setMax(myMotion.top_rot_vel, value, myConfig.getRotVelTop());
+        return setRotVelMax(std::min(myMotion.max_rot_vel, myMotion.top_rot_vel)) && is_good;
+    }
+    /// Decelerations are used for move() and headings; speeds change as the simulated robot's
+    /// motors do.
     bool setTransAccel(double value) { return set(myMotion.accel, value); }
-    bool setTransDecel(double value) { return set(myMotion.accel, value); }
+    bool setTransDecel(double value) { return set(myMotion.decel, value); }
     bool setRotAccel(double value) { return set(myMotion.rot_accel, value); }
-    bool setRotDecel(double value) { return set(myMotion.rot_accel, value); }
+    bool setRotDecel(double value) { return set(myMotion.rot_decel, value); }
     double getTransVelMax() const { return myMotion.max_vel; }
     double getRotVelMax() const { return myMotion.max_rot_vel; }
-    double getAbsoluteMaxTransVel() const { return myMotion.max_vel; }
-    double getAbsoluteMaxRotVel() const { return myMotion.max_rot_vel; }
+    double getAbsoluteMaxTransVel() const { return myMotion.top_vel; }
+    double getAbsoluteMaxRotVel() const { return myMotion.top_rot_vel; }
     double getTransAccel() const { return myMotion.accel; }
-    double getTransDecel() const { return myMotion.accel; }
+    double getTransDecel() const { return myMotion.decel; }
     double getRotAccel() const { return myMotion.rot_accel; }
-    double getRotDecel() const { return myMotion.rot_accel; }
+    double getRotDecel() const { return myMotion.rot_decel; }
     /// Sets the pose that the program sees.
     void moveTo(ArPose pose);
+    void setDeadReconPose(ArPose pose) { moveTo(pose); }
 
     // Actions: move the robot while it has no direct motion.
     bool addAction(ArAction* action, int priority);

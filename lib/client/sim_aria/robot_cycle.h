@@ -57,10 +57,12 @@ inline void ArRobot::adoptFigures() {
     myParams.myLasers.clear();
     for (const std::string& id : myLink->lasers()) myParams.myLasers.push_back(myLink->mount(id));
     myMotion = sim_aria::Motion();
+    myMotion.top_vel = myConfig.getTransVelTop();
+    myMotion.top_rot_vel = myConfig.getRotVelTop();
     myMotion.max_vel = myConfig.getTransVelMax();
     myMotion.max_rot_vel = myConfig.getRotVelMax();
-    myMotion.accel = myLink->accel();
-    myMotion.rot_accel = myLink->rotAccel();
+    myMotion.accel = myMotion.decel = myLink->accel();
+    myMotion.rot_accel = myMotion.rot_decel = myLink->rotAccel();
 }
 
 inline bool ArRobot::disconnect() {

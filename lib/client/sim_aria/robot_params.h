@@ -62,8 +62,8 @@ class ArRobotConfigPacketReader {
     int getGyroType() const { return 0; }
     bool getHasGyro() const { return false; }
     bool getHasCharger() const { return false; }
-    int getTransVelTop() const { return ArMath::roundInt(myVel); }
-    int getRotVelTop() const { return ArMath::roundInt(myRotVel); }
+    int getTransVelTop() const { return static_cast<int>(myVel + kNear); }
+    int getRotVelTop() const { return static_cast<int>(myRotVel + kNear); }
     int getTransAccelTop() const { return ArMath::roundInt(myAccel); }
     int getRotAccelTop() const { return ArMath::roundInt(myRotAccel); }
     /// Limits until a program sets others, as a Pioneer's firmware has them.
@@ -79,6 +79,7 @@ class ArRobotConfigPacketReader {
   private:
     friend class ArRobot;
 
+    static constexpr double kNear = 1e-6;  // of metres in mm
     std::string myName, mySubType;
     double myVel = 0, myRotVel = 0, myAccel = 0, myRotAccel = 0;
 };

@@ -65,6 +65,9 @@ class RobotState {
     double getOdometerDistance() const { return myDistance; }
     double getOdometerDegrees() const { return myTurn; }
     void resetOdometer() { myDistance = myTurn = 0; }
+    double getTripOdometerDistance() const { return getOdometerDistance(); }
+    double getTripOdometerDegrees() const { return getOdometerDegrees(); }
+    void resetTripOdometer() { resetOdometer(); }
     /// Travel of the wheels since the connection, 128 to a mm.
     long getLeftEncoder() const { return std::lround(kTicks * (myTravel - myWheelTurn)); }
     long getRightEncoder() const { return std::lround(kTicks * (myTravel + myWheelTurn)); }
@@ -101,7 +104,9 @@ class RobotState {
     double getRealBatteryVoltage() const { return 13; }
     double getRealBatteryVoltageNow() const { return 13; }
     bool hasStateOfCharge() const { return false; }
+    bool haveStateOfCharge() const { return false; }
     double getStateOfCharge() const { return 100; }
+    double getStateOfChargeLow() const { return 0; }
     ChargeState getChargeState() const { return CHARGING_NOT; }
     bool isChargerPowerGood() const { return false; }
     bool hasTemperature() const { return false; }
@@ -111,6 +116,12 @@ class RobotState {
     unsigned char getDigOut() const { return 0; }
     int getAnalog() const { return 0; }
     int getAnalogPortSelected() const { return 0; }
+    int getIOAnalog(int /*number*/) const { return 0; }
+    double getIOAnalogVoltage(int /*number*/) const { return 0; }
+    unsigned char getIODigIn(int /*number*/) const { return 0; }
+    unsigned char getIODigOut(int /*number*/) const { return 0; }
+    void requestIOPackets() {}
+    void stopIOPackets() {}
     int getIOAnalogSize() const { return 0; }
     int getIODigInSize() const { return 0; }
     int getIODigOutSize() const { return 0; }
@@ -134,14 +145,18 @@ class RobotState {
         if (number < 0 || number >= getNumSonar()) return nullptr;
         return const_cast<ArSensorReading*>(&mySonars[static_cast<std::size_t>(number)]);
     }
-    /// Minimum range of the sonars that face these directions, mm; -1 without such sonars.
-    int getClosestSonarRange(double startDeg, double endDeg) const {
+    /// The sonar with the minimum range of those that face these directions; -1 without any.
+    int getClosestSonarNumber(double startDeg, double endDeg) const {
         int nearest = -1;
-        for (const ArSensorReading& sonar : mySonars) {
-            if (!ArMath::angleBetween(sonar.getSensorTh(), startDeg, endDeg)) continue;
-            if (nearest < 0 || sonar.getRange() < nearest) nearest = sonar.getRange();
-        }
+        for (int i = 0; i < getNumSonar(); ++i)
+            if (ArMath::angleBetween(getSonarReading(i)->getSensorTh(), startDeg, endDeg) &&
+                (nearest < 0 || getSonarRange(i) < getSonarRange(nearest)))
+                nearest = i;
         return nearest;
+    }
+    /// Its range, mm; -1 without any.
+    int getClosestSonarRange(double startDeg, double endDeg) const {
+        return getSonarRange(getClosestSonarNumber(startDeg, endDeg));
     }
 
     const char* getRobotName() const { return myConfig.getName(); }
@@ -151,6 +166,8 @@ class RobotState {
     double getRobotDiagonal() const { return myParams.getRobotDiagonal(); }
     /// Diameter of its circle.
     double getRobotLength() const { return myParams.getRobotLength(); }
+    double getRobotLengthFront() const { return getRobotLength() / 2; }
+    double getRobotLengthRear() const { return getRobotLength() / 2; }
     double getRobotWidth() const { return myParams.getRobotWidth(); }
     const ArRobotParams* getRobotParams() const { return &myParams; }
     const ArRobotConfigPacketReader* getOrigRobotConfig() const { return &myConfig; }
