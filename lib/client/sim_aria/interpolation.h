@@ -9,7 +9,8 @@
 
 #include <sim_aria/util.h>
 
-/// Poses with their times, and the poses between and shortly after them. Thread-safe.
+/// Poses with their times, and the poses between and shortly after them. Threads may add
+/// readings while others ask for poses.
 class ArInterpolation {
   public:
     explicit ArInterpolation(std::size_t numberOfReadings = 100) : mySize(numberOfReadings) {}
@@ -48,9 +49,7 @@ class ArInterpolation {
         const double t = apart > 0 ? static_cast<double>(a.getTime().mSecSince(timeStamp)) /
                                          static_cast<double>(apart)
                                    : 1;
-        position->setPose(a.getX() + t * (b.getX() - a.getX()),
-                          a.getY() + t * (b.getY() - a.getY()),
-                          a.getTh() + t * ArMath::subAngle(b.getTh(), a.getTh()));
+        *position = sim_aria::between(a, b, t);
         return is_ahead ? 0 : 1;
     }
     void reset() {

@@ -125,4 +125,14 @@ class ArPose {
     double myX, myY, myTh;
 };
 
+namespace sim_aria {
+
+/// Returns the pose at the share t of the way from a to b, by the shorter turn; beyond b for t > 1.
+inline ArPose between(const ArPose& a, const ArPose& b, double t) {
+    return ArPose(a.getX() + t * (b.getX() - a.getX()), a.getY() + t * (b.getY() - a.getY()),
+                  a.getTh() + t * ArMath::subAngle(b.getTh(), a.getTh()));
+}
+
+}  // namespace sim_aria
+
 #endif  // SIM_ARIA_MATH_H

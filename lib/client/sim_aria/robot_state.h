@@ -65,9 +65,6 @@ class RobotState {
     double getOdometerDistance() const { return myDistance; }
     double getOdometerDegrees() const { return myTurn; }
     void resetOdometer() { myDistance = myTurn = 0; }
-    double getTripOdometerDistance() const { return getOdometerDistance(); }
-    double getTripOdometerDegrees() const { return getOdometerDegrees(); }
-    void resetTripOdometer() { resetOdometer(); }
     /// Travel of the wheels since the connection, 128 to a mm.
     long getLeftEncoder() const { return std::lround(kTicks * (myTravel - myWheelTurn)); }
     long getRightEncoder() const { return std::lround(kTicks * (myTravel + myWheelTurn)); }
@@ -182,9 +179,7 @@ class RobotState {
         if (i == 0) return myHistory.front().pose;
         const Past &a = myHistory[i - 1], &b = myHistory[i];
         const double t = (time - a.time) / (b.time - a.time);
-        return ArPose(a.pose.getX() + t * (b.pose.getX() - a.pose.getX()),
-                      a.pose.getY() + t * (b.pose.getY() - a.pose.getY()),
-                      a.pose.getTh() + t * ArMath::subAngle(b.pose.getTh(), a.pose.getTh()));
+        return between(a.pose, b.pose, t);
     }
 
     /// The state as a status packet of a Pioneer.
