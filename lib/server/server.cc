@@ -53,6 +53,10 @@ void Server::serveDds(std::uint32_t domain, RosScenery scenery) {
                                   .wake = [&io = data.io] { asio::post(io, [] {}); }});
 }
 
+void Server::logTopics(ByteSink write, RosScenery scenery) {
+    data_->log.emplace(data_->feedOf(std::move(scenery)), std::move(write));
+}
+
 std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,
                                 const Endpoint& endpoint) {
     Data& data = *data_;
@@ -114,6 +118,7 @@ void Server::run() {
     }
     data.serveClients();
     data.finishRecord();
+    data.finishLog();
     data.end();
 }
 

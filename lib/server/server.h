@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file.h"
 #include "sense/formats/ros_messages.h"
 #include "server/device/wire_session.h"
 #include "server/mqtt/mqtt_client.h"
@@ -102,6 +103,9 @@ class Server {
     /// ServerLimits::allowed. Call at most once, before run(). \param scenery as for serveRos()
     /// \throws FormatError if the module is missing, std::runtime_error
     void serveDds(std::uint32_t domain, RosScenery scenery = {});
+    /// Writes the topics of the running world to an MCAP file, complete when run() returns. Call at
+    /// most once, before run(). \param scenery as for serveRos()
+    void logTopics(ByteSink write, RosScenery scenery = {});
     /// Serves a robot or sensor through the protocol of a real device at a separate endpoint. Call
     /// before run(). \returns "127.0.0.1:10940"
     /// \throws UsageError if the world has no such device, std::system_error naming the endpoint

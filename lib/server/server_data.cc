@@ -114,6 +114,7 @@ void Server::Data::stepped() {
     if (mqtt) mqtt->stepped();
     for (WebServer& web : webs) web.stepped();
     if (node) node->stepped();
+    if (log) log->stepped();
     static_cast<void>(hasUpdates());
     has_news = false;
     next_news = steady_clock::now() + kNewsEvery;
@@ -145,7 +146,8 @@ WallTime Server::Data::nextTurn() const {
 std::chrono::nanoseconds Server::Data::turn() const {
     const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay() ||
                           simulation.paused();
-    if (!may_hold || (serving == 0 && webs.empty() && devices.empty() && !node)) return kTurn;
+    if (!may_hold || (serving == 0 && webs.empty() && devices.empty() && !node && !log))
+        return kTurn;
     const auto has_heavy_sensor = [](Simulation& one) {
         const auto sensors = one.world().sensors();
         return std::any_of(sensors.begin(), sensors.end(), isHeavy);
@@ -174,6 +176,7 @@ void Server::Data::serveClients() {
         if (has_made) node->stepped();
         node->serve();
     }
+    if (log && has_made) log->stepped();
     for (DevicePort& device : devices) {
         device.serve(steady_clock::now());
         if (has_made) device.stepped();
@@ -246,6 +249,14 @@ void Server::Data::finishRecord() {
         for (ServerState* const each : states()) has_come = each->await() || has_come;
         if (!has_come) break;
     }
+}
+
+/// Writes the last step likewise.
+void Server::Data::finishLog() {
+    if (!log) return;
+    log->stepped();
+    while (!state.isAtRest() && state.await()) log->stepped();
+    log->finish();
 }
 
 void Server::Data::end() {

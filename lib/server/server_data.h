@@ -21,6 +21,7 @@
 #include "server/device/device_port.h"
 #include "server/mqtt/mqtt_bridge.h"
 #include "server/ros/ros_feed.h"
+#include "server/ros/ros_log.h"
 #include "server/ros/ros_node.h"
 #include "server/server.h"
 #include "server/web_server.h"
@@ -62,6 +63,7 @@ struct Server::Data {
     void sweep();
     [[nodiscard]] bool isStopped();
     void finishRecord();
+    void finishLog();
     void end();
     void closeAll();
 
@@ -81,6 +83,7 @@ struct Server::Data {
     std::atomic<std::size_t> serving = 0;
     std::optional<RosFeed> feed;
     std::optional<RosNode> node;
+    std::optional<RosLog> log;
     std::list<WebServer> webs;
     PictureFiles pictures;
     std::list<DeviceHost> hosts;

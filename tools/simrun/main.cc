@@ -30,6 +30,7 @@ void claimFiles(const SimrunOptions& options) {
     claimOutput(options.port_file, "--port-file");
     claimOutput(options.junit, "--junit");
     claimOutput(options.report, "--report");
+    claimOutput(options.mcap, "--mcap");
     if (options.record.empty()) return;
     for (const std::string& file : Recorder::filesIn(options.record))
         claimOutput(file, "a file of --record");
@@ -65,6 +66,8 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
     checkRecord(options, world);
     Server server(simulation, options.listen, limitsOf(options, input));
     const ServedAddresses addresses = servePorts(server, options, titleOf(options, input));
+    std::optional<TopicLog> log;
+    if (!options.mcap.empty()) log.emplace(server, simulation, options);
     const StopSignals signals;
     server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;
@@ -82,6 +85,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
         server.run();
         progress->end();
         if (record) record->recorder.end(world);
+        if (log) log->commit();
         report(simulation, options);
         if (replay && replay->isCut())
             warn(options.common, "simrun",

@@ -41,6 +41,7 @@ void mustBeAboutBuildings(const SimrunOptions& options, const BuildingInput& inp
     refuse(options.foxglove.has_value(), "--foxglove");
     refuse(options.rosbridge.has_value(), "--rosbridge");
     refuse(options.ros_domain.has_value(), "--ros2");
+    refuse(!options.mcap.empty(), "--mcap");
     refuse(!options.load_folder.empty(), "--load");
 }
 

@@ -318,7 +318,7 @@ void SimrunCommand::takeDrawing() {
             "DIR)");
     std::vector<std::string> of_runs{"--record", "--expect", "--clock",    "--hold",
                                      "--listen", "--web",    "--foxglove", "--rosbridge",
-                                     "--ros2",   "--mqtt",   "--port-file"};
+                                     "--ros2",   "--mcap",   "--mqtt",     "--port-file"};
     for (const WireProtocol* const protocol : wireProtocols())
         of_runs.push_back("--" + std::string(protocol->name));
     for (const std::string& option : of_runs)
@@ -410,6 +410,9 @@ void SimrunCommand::declareRos() {
     line_.countOr("--ros2", o.ros_domain, 0, 0, kLastDomain,
                   "be a node of ROS 2 in this domain, over DDS, for programs of this machine",
                   Enters::Nothing);
+    line_.file("--mcap", "FILE", o.mcap,
+               "write all topics of ROS 2 to an MCAP file, for Foxglove and ros2 bag",
+               Enters::Nothing);
 }
 
 void SimrunCommand::declareMqtt() {
@@ -447,6 +450,8 @@ void SimrunCommand::takeServer() {
     o.limits.shutdown = o.shutdown.value_or(true);
     o.limits.changes = o.changes.value_or(true);
     o.limits.token_first = !o.listen.is_loopback;
+    if (o.mcap == "-")
+        throw UsageError("--mcap writes to a file: standard output has the addresses of the run");
     o.devices.take(line_, o.ros_domain.has_value(), o.limits);
     for (const auto& [option, endpoint] :
          {std::pair("--foxglove", o.foxglove), {"--rosbridge", o.rosbridge}})

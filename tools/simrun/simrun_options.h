@@ -80,6 +80,7 @@ struct SimrunOptions {
     Endpoint listen;
     std::optional<Endpoint> web, foxglove, rosbridge;
     std::optional<int> ros_domain;  ///< of --ros2
+    std::string mcap;               ///< "" without
     std::optional<MqttOptions> mqtt;
     std::string mqtt_login;  ///< file; "" without
     std::optional<bool> shutdown, changes;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/file.h"
+#include "base/error.h"
 #include "base/json_writer.h"
 #include "io/exporters.h"
 #include "io/glb/glb_write.h"
@@ -75,6 +75,30 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
     }
     out.devices = serveDevices(server, options.devices);
     return out;
+}
+
+TopicLog::TopicLog(Server& server, Simulation& simulation, const SimrunOptions& options)
+    : options_(&options), file_(options.mcap) {
+    server.logTopics(
+        [this](std::string_view bytes) {
+            file_.write(bytes);
+            bytes_ += bytes.size();
+        },
+        rosScenery());
+    simulation.onStep([this, &simulation] {
+        if (bytes_ <= options_->max_recorded || end_ < kMaxTime) return;
+        end_ = simulation.world().time();
+        simulation.finish();
+    });
+}
+
+void TopicLog::commit() {
+    file_.commit();
+    if (end_ == kMaxTime) return;
+    throw FormatError({options_->mcap, 0, 0,
+                       "ended at t=" + formatSimTime(end_) + ", as it has " +
+                           std::to_string(bytes_) + " bytes, wanted at most " +
+                           std::to_string(options_->max_recorded) + " (--record-limit)"});
 }
 
 void announce(const Server& server, const ServedAddresses& addresses) {

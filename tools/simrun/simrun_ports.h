@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
+#include "base/file.h"
 #include "server/server.h"
+#include "sim/simulation.h"
 #include "simrun/simrun_options.h"
 
 namespace ispace {
@@ -18,6 +21,24 @@ struct ServedAddresses {
 /// Opens the ports that options ask for. \param title of the room or the record
 /// \throws std::system_error, UsageError naming the option
 ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title);
+
+/// The file of --mcap. It ends the run once it is larger than --record-limit.
+class TopicLog {
+  public:
+    /// Call before the run. \throws std::system_error
+    TopicLog(Server& server, Simulation& simulation, const SimrunOptions& options);
+    TopicLog(const TopicLog&) = delete;
+    TopicLog& operator=(const TopicLog&) = delete;
+    ~TopicLog() = default;
+    /// Completes the file after the run. \throws FormatError if the limit ended the run
+    void commit();
+
+  private:
+    const SimrunOptions* options_;
+    OutputFile file_;
+    std::uint64_t bytes_ = 0;
+    SimTime end_ = kMaxTime;  // at which the file was full
+};
 
 /// Writes the first line of output: clients can connect now.
 void announce(const Server& server, const ServedAddresses& addresses);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "base/error.h"
@@ -159,7 +158,7 @@ class Mcap final : public FormatBase {
             names_.push_back(takeName(rosName(one.id), one.id));
             first_.push_back(static_cast<std::uint16_t>(channels_.size()));
             for (const RosTopic* topic : topicsOf(one)) addChannel(names_.back(), *topic);
-            if (channels_.size() > std::numeric_limits<std::uint16_t>::max())
+            if (channels_.size() > McapWriter::kMaxChannels)
                 throw UsageError("mcap has 65535 channels, which " +
                                  std::to_string(sensors.read.size()) +
                                  " sensors exceed; choose sensors with --select");

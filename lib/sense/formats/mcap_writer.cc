@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 namespace ispace {
 
@@ -118,6 +119,14 @@ void McapWriter::put(std::string_view bytes) {
     write_(bytes);
 }
 
+std::uint16_t McapWriter::addChannel(McapChannel channel) {
+    const std::size_t index = channels_.size();
+    channels_.push_back(std::move(channel));
+    // Its messages follow in later chunks.
+    put(channelRecord(index));
+    return static_cast<std::uint16_t>(index);
+}
+
 void McapWriter::add(std::string_view messages) {
     while (!messages.empty()) {
         const std::size_t size = kRecordHead + numberAt<std::uint64_t>(messages, 1);
@@ -196,17 +205,20 @@ std::string McapWriter::schemaRecords() const {
     return out;
 }
 
+std::string McapWriter::channelRecord(std::size_t index) const {
+    std::string content, out;
+    appendLittle(content, static_cast<std::uint16_t>(index));
+    appendLittle(content, static_cast<std::uint16_t>(channels_[index].schema + 1));
+    appendText(content, channels_[index].topic);
+    appendText(content, encoding_);
+    appendLittle(content, std::uint32_t{0});  // metadata count
+    appendRecord(out, kChannel, content);
+    return out;
+}
+
 std::string McapWriter::channelRecords() const {
     std::string out;
-    for (std::size_t i = 0; i < channels_.size(); ++i) {
-        std::string content;
-        appendLittle(content, static_cast<std::uint16_t>(i));
-        appendLittle(content, static_cast<std::uint16_t>(channels_[i].schema + 1));
-        appendText(content, channels_[i].topic);
-        appendText(content, encoding_);
-        appendLittle(content, std::uint32_t{0});  // metadata count
-        appendRecord(out, kChannel, content);
-    }
+    for (std::size_t i = 0; i < channels_.size(); ++i) out += channelRecord(i);
     return out;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -37,11 +38,15 @@ enum class McapCompression { None, Zstd };
 /// Written here, since Debian has no library for it.
 class McapWriter {
   public:
+    static constexpr std::size_t kMaxChannels = 65535;
+
     /// Starts a file. \param encoding of the messages, "cdr"
     McapWriter(ByteSink write, std::string_view profile, std::string_view encoding,
                std::vector<McapSchema> schemas, std::vector<McapChannel> channels,
                McapCompression compression = McapCompression::None);
 
+    /// Adds a channel and returns its index. \pre fewer than kMaxChannels
+    std::uint16_t addChannel(McapChannel channel);
     /// Adds whole records of appendMcapMessage(), concatenated.
     void add(std::string_view messages);
     /// Writes the rest of the file.
@@ -60,6 +65,7 @@ class McapWriter {
     void finishChunk();
     [[nodiscard]] std::string_view compressionName() const;
     [[nodiscard]] std::string schemaRecords() const;
+    [[nodiscard]] std::string channelRecord(std::size_t index) const;
     [[nodiscard]] std::string channelRecords() const;
     [[nodiscard]] std::string statisticsRecord() const;
     [[nodiscard]] std::string chunkIndexRecords() const;

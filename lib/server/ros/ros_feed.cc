@@ -223,8 +223,10 @@ void RosFeed::takeFrame(std::size_t sensor) {
     const World& world = state_->simulation().world();
     const auto messages = std::make_shared<std::map<std::uint32_t, std::string>>();
     for (const std::uint32_t number : wanted_) {
-        const RosChannel& channel = entries_.at(number).channel;
-        if (channel.sensor != nullptr && channel.subject == sensor) messages->emplace(number, "");
+        const Entry& entry = entries_.at(number);
+        if (entry.channel.sensor != nullptr && entry.channel.subject == sensor &&
+            entry.period != world.period(sensor))
+            messages->emplace(number, "");
     }
     std::vector<std::pair<std::uint32_t, const RosTopic*>> topics;
     for (const auto& [number, message] : *messages)

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/server.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "base/file.h"
+#include "sense/formats/mcap_writer.h"
+#include "server/ros/ros_feed.h"
+
+namespace ispace {
+
+/// Writes all topics of a running world to an MCAP file, as `ros2 bag record` of the same world
+/// would. Topics that a change of the world adds get channels of their own; those beyond
+/// McapWriter::kMaxChannels are left out.
+class RosLog {
+  public:
+    /// Subscribes to all topics of the feed, which outlives the log. \param write receives the file
+    RosLog(RosFeed& feed, ByteSink write);
+    RosLog(const RosLog&) = delete;
+    RosLog& operator=(const RosLog&) = delete;
+    ~RosLog();
+
+    /// Call after each step or change of the world, and when background jobs have delivered:
+    /// writes the new messages.
+    void stepped();
+    /// Writes the end of the file.
+    void finish();
+
+  private:
+    /// A topic of the feed in the file.
+    struct Line {
+        std::uint16_t channel = 0;
+        std::uint32_t count = 0;  ///< of messages
+        std::int64_t last = 0;    ///< number of the last message in the feed
+    };
+    void sync();
+    void writeNew();
+
+    RosFeed* feed_;
+    McapWriter file_;
+    std::map<std::uint32_t, Line> lines_;  // by number in the feed
+    std::map<std::pair<std::uint64_t, std::uint32_t>, std::string> waiting_;  // by time and topic
+    std::size_t channels_ = 0;
+    std::int64_t version_ = -1;  // of the feed's topics
+};
+
+}  // namespace ispace
