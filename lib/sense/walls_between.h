@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/sense: the walls that sound and radio pass.
+#pragma once
+
+#include "geom/point.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+/// Counts the surfaces between two points, at most 100. Surfaces less than half a metre apart count
+/// as one wall.
+/// \param mesh not a slice
+int wallsBetween(Point3 from, Point3 to, const RayWorld& mesh);
+
+}  // namespace ispace
