@@ -125,8 +125,9 @@ KeySpec pathKey(std::string help) {
 }  // namespace
 
 KeySpec tagKey() {
-    return {
-        .name = "tag", .type = KeyType::Word, .help = "its RFID tag, which `rfid` readers list"};
+    return {.name = "tag",
+            .type = KeyType::Word,
+            .help = "its tag, which sensors such as `rfid` readers list"};
 }
 
 namespace {

@@ -43,7 +43,7 @@ Body screenBody(const Record& record);
 /// Default height of walls and fences, in metres.
 constexpr double kWallHeight = 2.5;
 
-/// Creates the key `tag` of records that carry an RFID tag.
+/// Creates the key `tag` of records that carry a tag for sensors.
 KeySpec tagKey();
 
 /// Returns the schemas of ispace, inside, zone, floor, wall, fence, pillar, table, desk, chair,

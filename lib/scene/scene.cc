@@ -127,7 +127,7 @@ class Resolver {
              const DeviceCatalogue& devices)
         : records_(records),
           ids_(ids),
-          room_{records, ids},
+          room_{records, ids, devices},
           devices_(devices),
           carriers_(records, ids) {}
 

@@ -65,7 +65,7 @@ std::vector<RfidTag> tagsOf(const RoomRecords& room) {
 }
 
 void lookUpTags(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
-    std::get<Rfid>(model).tags = room.shared<RfidTag>([&room] { return tagsOf(room); });
+    std::get<Rfid>(model).tags = sharedTags(room);
 }
 
 /// Builds the flat housing of an antenna.
@@ -76,6 +76,10 @@ std::vector<Mesh> rfidBody() {
 }
 
 }  // namespace
+
+SharedList<RfidTag> sharedTags(const RoomRecords& room) {
+    return room.shared<RfidTag>([&room] { return tagsOf(room); });
+}
 
 const SensorKind Rfid::kKind = {
     .keyword = "rfid",

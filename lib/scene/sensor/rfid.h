@@ -12,9 +12,10 @@
 
 namespace ispace {
 
+struct RoomRecords;
 struct SensorKind;
 
-/// An RFID tag: the key `tag` of a person, a robot or a thing.
+/// The key `tag` of a person, a robot or a thing, which `rfid` and `uwb` read.
 struct RfidTag {
     enum class Carrier { Thing, Robot, Person };
 
@@ -49,6 +50,9 @@ struct Rfid {
 /// else the bare reader's. \throws FormatError with all findings
 Rfid rfidOf(const Record& record, const Record* device = nullptr);
 Rfid withParameters(Rfid base, const Record& record);
+
+/// Returns the tags of a room, one list for all its sensors.
+SharedList<RfidTag> sharedTags(const RoomRecords& room);
 
 /// Returns the field of the antenna at a pose, without occlusion.
 FieldOfView fieldOfView(const Rfid& rfid, const Pose3& pose);

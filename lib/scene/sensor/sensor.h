@@ -98,10 +98,13 @@ struct BearingSpan {
     double range = 0;
 };
 
-/// The records of a scene, before they are resolved, and their ids.
+class DeviceCatalogue;
+
+/// The records of a scene, before they are resolved, their ids, and the devices that they name.
 struct RoomRecords {
     std::span<const Record> records;
     std::span<const std::string> ids;
+    const DeviceCatalogue& devices;
 
     /// Returns a list that the sensors of the room share: what find() finds for the first of them.
     template <typename T, typename Find>
