@@ -163,13 +163,14 @@ struct Candidate {
     Vector3d x;         ///< relative to the centroid of the receivers
     double cost;        ///< sum of squared errors of distances
     Vector3d variance;  ///< for unit errors of distances
-    double outside;     ///< maximum distance from the receivers' cones
+    double outside;     ///< maximum distance from the receivers' cones and the limits of height
 };
 
 /// Locates a tag.
 class Search {
   public:
-    explicit Search(std::span<const Hearing> heard) : heard_(heard), layout_(layoutOf(heard)) {
+    Search(std::span<const Hearing> heard, const PositionLimits& limits)
+        : heard_(heard), limits_(limits), layout_(layoutOf(heard)) {
         for (const Hearing& one : heard_) {
             towards_ += vectorOf(one.axis);
             distances_.push_back(one.distance);
@@ -220,7 +221,8 @@ class Search {
             const Linearised there = linearise(layout_, distances_, x);
             std::optional<Candidate>& of_side = best[(x.dot(normal) >= 0) == is_up ? 0 : 1];
             if (of_side && !(there.cost < of_side->cost)) return;
-            double outside = 0;
+            const double height = placeOf(x).z;
+            double outside = std::max({0.0, limits_.lowest - height, height - limits_.highest});
             for (const Hearing& one : heard_)
                 outside = std::max(outside, outsideOf(one, placeOf(x)));
             of_side = Candidate{x, there.cost, variances(there.normal), outside};
@@ -253,7 +255,7 @@ class Search {
             candidates_.pop_back();
     }
 
-    /// True if all cones contain it, within the errors.
+    /// True if all cones and the limits of height contain it, within the errors.
     [[nodiscard]] bool isHeard(const Candidate& candidate) const {
         const double own = error_ > 0 ? error_ * std::sqrt(candidate.variance.sum()) : 0;
         return candidate.outside <= kClearly * own + rounding_;
@@ -292,6 +294,7 @@ class Search {
     }
 
     std::span<const Hearing> heard_;
+    PositionLimits limits_;
     Layout layout_;
     Vector3d towards_ = Vector3d::Zero();
     std::vector<double> distances_;
@@ -303,9 +306,9 @@ class Search {
 
 }  // namespace
 
-std::optional<PositionFix> locate(std::span<const Hearing> heard) {
-    if (heard.size() < kMinReceivers) return std::nullopt;
-    return Search(heard).run();
+std::optional<PositionFix> locate(std::span<const Hearing> heard, const PositionLimits& limits) {
+    if (heard.size() < limits.receivers) return std::nullopt;
+    return Search(heard, limits).run();
 }
 
 }  // namespace ispace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "sense/ultrasound.h"
@@ -74,6 +75,33 @@ TEST(Locate, ThesisFourReceiversAreTheLeast) {
     receivers.pop_back();
     EXPECT_FALSE(locate(receivers, distancesTo(receivers, tag), kDown));
     EXPECT_FALSE(locate({}, {}, kDown));
+}
+
+TEST(Locate, ThreeDistancesFixAPlaceBetweenHeights) {
+    const Points receivers = {{0, 0, 2.4}, {5, 0, 2.4}, {0, 4, 2.4}};
+    Random random(11);
+    for (int i = 0; i < 50; ++i) {
+        const Point3 tag = random.place({0.2, 0.2, 0.1}, {4.8, 3.8, 1.9});
+        std::vector<Hearing> heard;
+        for (const Point3 receiver : receivers)
+            heard.push_back({receiver, {1, 0, 0}, Angle::degrees(360), distance(receiver, tag)});
+        // The mirror image lies above the room.
+        const auto fix = ispace::locate(heard, {3, 0, 2.5});
+        ASSERT_TRUE(fix);
+        EXPECT_LT(distance(fix->position, tag), 1e-6);
+        EXPECT_LT(fix->pdop, 1e3);
+        // In a higher room nothing tells the two apart: the axes point along the plane.
+        EXPECT_FALSE(ispace::locate(heard, {3, 0, 9}));
+        EXPECT_FALSE(ispace::locate(heard));
+        EXPECT_FALSE(ispace::locate(std::span(heard).first(2), {2, 0, 2.5}));
+        for (Hearing& one : heard) one.axis = kDown;
+        const auto below = ispace::locate(heard, {3, 0, 9});
+        ASSERT_TRUE(below);
+        EXPECT_LT(distance(below->position, tag), 1e-6);
+        EXPECT_EQ(below->pdop, HUGE_VAL) << "of two candidates";
+        // No place in the room fits.
+        EXPECT_FALSE(ispace::locate(heard, {3, 6, 9}));
+    }
 }
 
 TEST(Locate, ReceiversInALineFixNothing) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,6 +47,14 @@ struct Hearing {
     double error = 0;     ///< standard deviation of the distance; 0: exact
 };
 
+/// Demands on a position.
+struct PositionLimits {
+    std::size_t receivers = kMinReceivers;  ///< that measured it, at least; 3 determine a position
+    /// Heights between which it lies, metres; a candidate outside counts as one outside a cone.
+    double lowest = -std::numeric_limits<double>::infinity();
+    double highest = std::numeric_limits<double>::infinity();
+};
+
 /// Computes the position that fits the distances to the receivers best: Gauss-Newton
 /// (Levenberg-Marquardt) from the linear solution, on each side of the best-fitting plane of the
 /// receivers. Receivers near one plane (a ceiling) leave two mirror images as candidates:
@@ -56,11 +65,12 @@ struct Hearing {
 /// - if both remain, the one on the side to which the receivers' axes point on average is returned,
 ///   and the dilution of precision includes the ambiguity.
 ///
-/// Empty with fewer than kMinReceivers, if they do not determine a position (all on one line), if
-/// no candidate is left, or if two are and the axes point along the plane. For a position in the
-/// receivers' plane, the dilution of precision across it is unbounded and may be +infinity. \pre
-/// distances are finite
-std::optional<PositionFix> locate(std::span<const Hearing> heard);
+/// Empty with fewer receivers than `limits` demand, if they do not determine a position (all on one
+/// line), if no candidate is left, or if two are and the axes point along the plane. For a position
+/// in the receivers' plane, the dilution of precision across it is unbounded and may be +infinity.
+/// \pre distances are finite
+std::optional<PositionFix> locate(std::span<const Hearing> heard,
+                                  const PositionLimits& limits = {});
 
 /// One burst of a tag.
 struct Burst {
