@@ -262,4 +262,21 @@ bool PoseBoxes::isInOrder(std::span<const BoxId> boxes, std::size_t which, BoxId
     return true;
 }
 
+void PoseBoxes::write(BoxId id, std::string& text) const {
+    const BoxNode& node = boxes_[id];
+    if (node.child == 0) {
+        text += '.';
+        return;
+    }
+    const PoseBox& half = boxes_[node.child].box;
+    text += half.span != node.box.span ? 'h' : half.at.width() != node.box.at.width() ? 'x' : 'y';
+    for (BoxId child = node.child; child < node.child + 2; ++child) write(child, text);
+}
+
+std::string PoseBoxes::text() const {
+    std::string text;
+    write(0, text);
+    return text;
+}
+
 }  // namespace ispace::poses

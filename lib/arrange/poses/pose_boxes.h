@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "arrange/poses/fat_view.h"
@@ -46,6 +47,8 @@ class PoseBoxes {
     const BoxNode& operator[](BoxId id) const { return boxes_[id]; }
     [[nodiscard]] std::size_t size() const { return boxes_.size(); }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
+    /// Returns the tree as in a certificate.
+    [[nodiscard]] std::string text() const;
 
     /// Halves those boxes that are whole, in parallel, and lowers the bounds of single views in
     /// them and the boxes around them.
@@ -81,6 +84,7 @@ class PoseBoxes {
     /// Returns the whole box in a box whose single views are bounded worst.
     [[nodiscard]] BoxId largestIn(BoxId id) const;
     void addViews(BoxNode& node) const;
+    void write(BoxId id, std::string& text) const;
     /// Growth of a fat view with the size of its box, m2.
     [[nodiscard]] double slackOf(const PoseBox& box) const;
     [[nodiscard]] double turnOf(const PoseBox& box) const;

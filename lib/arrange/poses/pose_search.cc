@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrange/poses/pose_search.h"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "arrange/poses/box_pairs.h"
 #include "arrange/poses/pose_boxes.h"
 #include "base/number.h"
 
@@ -22,20 +22,12 @@ namespace ispace {
 namespace {
 
 using poses::BoxId;
-using poses::BoxNode;
+using poses::BoxPairs;
 using poses::fatViewOf;
 using poses::PoseBox;
 using poses::PoseBoxes;
 using poses::PoseFloor;
 using poses::Sector;
-
-/// A pair of boxes, in the order of the tree, and its subdivision.
-struct PairNode {
-    std::array<BoxId, 2> boxes{};
-    double most = 0;  // bounds the area that two poses in them see together
-    std::uint32_t parent = 0, child = 0, children = 0;  // the first child, and their number
-    bool is_split = false;
-};
 
 struct Tuple {
     double bound = 0;
@@ -63,19 +55,13 @@ class PoseSearcher {
           progress_(progress),
           count_(static_cast<std::size_t>(options.sensors)),
           found_(options.found),
-          boxes_(floor, sector) {}
+          boxes_(floor, sector),
+          pairs_(boxes_) {}
 
     PoseBound run();
 
   private:
     void searchSingle();
-    /// Divides pairs of boxes until two sensors see no more than `enough`, or there are `most`.
-    void searchPairs(double enough, std::size_t most);
-    void splitPairs(const std::vector<std::uint32_t>& ids);
-    void lowerPair(std::uint32_t id);
-    /// Bounds the area that two poses see together, by the pairs.
-    [[nodiscard]] double mostOf(BoxId first, BoxId second) const;
-    [[nodiscard]] double unionOfPair(BoxId first, BoxId second) const;
     void searchTuples();
     [[nodiscard]] double boundOf(const Tuple& tuple, double enough) const;
     /// Tuples that replace one, and the best layout of centres of boxes among them.
@@ -88,13 +74,11 @@ class PoseSearcher {
     [[nodiscard]] double cutoff() const { return found_ / (1 - options_.gap); }
     void improve(const Tuple& tuple);
     [[nodiscard]] bool isFull() const {
-        return boxes_.bytes() + queue_.size() * sizeof(Tuple) + pairs_.size() * sizeof(PairNode) +
+        return boxes_.bytes() + pairs_.bytes() + queue_.size() * sizeof(Tuple) +
                    tree_.size() * sizeof(TupleNode) >
                options_.max_bytes;
     }
     void addToTree(const Tuple& parent, std::size_t which, std::vector<Tuple>& children);
-    void writeBoxes(BoxId id, std::string& text) const;
-    void writePairs(std::uint32_t id, std::string& text) const;
     void writeTuples(std::uint32_t id, std::string& text) const;
 
     const PoseFloor& floor_;
@@ -104,41 +88,14 @@ class PoseSearcher {
     std::size_t count_;
     double found_;
     PoseBoxes boxes_;
-    std::vector<PairNode> pairs_;
+    BoxPairs pairs_;
     std::size_t tuples_ = 0;
     std::vector<TupleNode> tree_;  // with a certificate alone
     std::priority_queue<Tuple, std::vector<Tuple>, IsWorse> queue_;
     double tried_ = 0;   // best layout of centres of boxes, m2
     double closed_ = 0;  // largest bound of a tuple that was not split further
     bool is_complete_ = true;
-    mutable tbb::enumerable_thread_specific<std::vector<std::uint32_t>> stacks_;
 };
-
-double PoseSearcher::mostOf(BoxId first, BoxId second) const {
-    constexpr int kMostVisits = 64;
-    const auto is_apart = [this](BoxId a, BoxId b) {
-        return boxes_[a].high <= boxes_[b].low || boxes_[b].high <= boxes_[a].low;
-    };
-    const auto is_within = [this](BoxId a, BoxId b) {
-        return boxes_[b].low <= boxes_[a].low && boxes_[a].high <= boxes_[b].high;
-    };
-    std::vector<std::uint32_t>& stack = stacks_.local();
-    stack.assign(1, 0);
-    double most = 0;
-    for (int visits = 0; !stack.empty(); ++visits) {
-        const PairNode& pair = pairs_[stack.back()];
-        stack.pop_back();
-        if (pair.most <= most || is_apart(pair.boxes[0], first) || is_apart(pair.boxes[1], second))
-            continue;
-        if (!pair.is_split || visits >= kMostVisits ||
-            (is_within(pair.boxes[0], first) && is_within(pair.boxes[1], second))) {
-            most = pair.most;
-            continue;
-        }
-        for (std::uint32_t i = 0; i < pair.children; ++i) stack.push_back(pair.child + i);
-    }
-    return most;
-}
 
 double PoseSearcher::boundOf(const Tuple& tuple, double enough) const {
     using Known = PoseBoxes::Known;
@@ -173,9 +130,8 @@ double PoseSearcher::boundOf(const Tuple& tuple, double enough) const {
     for (std::size_t i = 0; i < count_; ++i)
         for (std::size_t k = i + 1; k < count_; ++k) {
             Known pair{{tuple.boxes[i], tuple.boxes[k]}, 2, single[i].most + single[k].most};
-            if (!pairs_.empty())
-                pair.most = std::min(pair.most, mostOf(tuple.boxes[i], tuple.boxes[k]));
-            pair.most = std::min(pair.most, unionOfPair(tuple.boxes[i], tuple.boxes[k]));
+            pair.most = std::min(pair.most, pairs_.mostOf(tuple.boxes[i], tuple.boxes[k]));
+            pair.most = std::min(pair.most, pairs_.unionOf(tuple.boxes[i], tuple.boxes[k]));
             sum += pair.most;
             bound = std::min(bound, pair.most + (all - single[i].most - single[k].most));
             if (count_ < 3) continue;
@@ -192,16 +148,6 @@ double PoseSearcher::boundOf(const Tuple& tuple, double enough) const {
     bound = std::min(bound, sum / static_cast<double>(count_ - 1));
     for (unsigned chosen = everyone; chosen-- > 0 && bound > enough;) lower(nullptr, 0, chosen);
     return bound;
-}
-
-/// Bounds what two boxes see together, from their views.
-double PoseSearcher::unionOfPair(BoxId first, BoxId second) const {
-    using Known = PoseBoxes::Known;
-    const Known a{{first}, 1, boxes_[first].most}, b{{second}, 1, boxes_[second].most};
-    const Known both[] = {a, b};
-    const BoxId ids[] = {first, second};
-    return std::min({boxes_.unionOf(both, {}), boxes_.unionOf({}, ids),
-                     boxes_.unionOf({&a, 1}, {&second, 1}), boxes_.unionOf({&b, 1}, {&first, 1})});
 }
 
 PoseSearcher::Children PoseSearcher::childrenOf(const Tuple& tuple, std::size_t which) const {
@@ -221,75 +167,6 @@ PoseSearcher::Children PoseSearcher::childrenOf(const Tuple& tuple, std::size_t 
         children.best = next;
     }
     return children;
-}
-
-void PoseSearcher::lowerPair(std::uint32_t id) {
-    while (true) {
-        PairNode& pair = pairs_[id];
-        double most = 0;
-        for (std::uint32_t i = 0; i < pair.children; ++i)
-            most = std::max(most, pairs_[pair.child + i].most);
-        if (!(most < pair.most)) return;
-        pair.most = most;
-        if (id == 0) return;
-        id = pair.parent;
-    }
-}
-
-void PoseSearcher::splitPairs(const std::vector<std::uint32_t>& ids) {
-    std::vector<std::size_t> which;
-    std::vector<BoxId> to_split;
-    for (const std::uint32_t id : ids) {
-        which.push_back(boxes_.widestOf(pairs_[id].boxes));
-        to_split.push_back(pairs_[id].boxes[which.back()]);
-    }
-    boxes_.splitWithViews(to_split);
-    std::vector<std::vector<PairNode>> made(ids.size());
-    tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
-        const PairNode& pair = pairs_[ids[i]];
-        const BoxId child = boxes_[to_split[i]].child;
-        for (BoxId half = child; half < child + 2; ++half) {
-            if (!boxes_.isInOrder(pair.boxes, which[i], half)) continue;
-            PairNode next{.boxes = pair.boxes, .parent = ids[i]};
-            next.boxes[which[i]] = half;
-            const double both = boxes_[next.boxes[0]].most + boxes_[next.boxes[1]].most;
-            next.most = std::min({pair.most, both, unionOfPair(next.boxes[0], next.boxes[1])});
-            made[i].push_back(next);
-        }
-    });
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-        PairNode& pair = pairs_[ids[i]];
-        pair.is_split = true;
-        pair.child = static_cast<std::uint32_t>(pairs_.size());
-        pair.children = static_cast<std::uint32_t>(made[i].size());
-        pairs_.insert(pairs_.end(), made[i].begin(), made[i].end());
-        lowerPair(ids[i]);
-    }
-}
-
-void PoseSearcher::searchPairs(double enough, std::size_t most) {
-    constexpr std::size_t kBatch = 256;
-    const auto is_less = [this](std::uint32_t a, std::uint32_t b) {
-        return pairs_[a].most != pairs_[b].most ? pairs_[a].most < pairs_[b].most : a > b;
-    };
-    std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, decltype(is_less)> queue(
-        is_less);
-    pairs_.push_back({.boxes = {0, 0}, .most = 2 * boxes_[0].most});
-    queue.push(0);
-    while (!queue.empty() && pairs_.size() < most && !progress_.stopped() && !isFull()) {
-        std::vector<std::uint32_t> batch;
-        while (!queue.empty() && batch.size() < kBatch) {
-            const std::uint32_t id = queue.top();
-            if (pairs_[id].most <= enough) break;
-            queue.pop();
-            if (boxes_.widestOf(pairs_[id].boxes) < 2) batch.push_back(id);
-        }
-        if (batch.empty()) return;
-        splitPairs(batch);
-        for (const std::uint32_t id : batch)
-            for (std::uint32_t i = 0; i < pairs_[id].children; ++i)
-                queue.push(pairs_[id].child + i);
-    }
 }
 
 void PoseSearcher::searchSingle() {
@@ -400,34 +277,6 @@ void PoseSearcher::addToTree(const Tuple& parent, std::size_t which, std::vector
     }
 }
 
-void PoseSearcher::writeBoxes(BoxId id, std::string& text) const {
-    const BoxNode& node = boxes_[id];
-    if (node.child == 0) {
-        text += '.';
-        return;
-    }
-    const PoseBox& half = boxes_[node.child].box;
-    text += half.span != node.box.span ? 'h' : half.at.width() != node.box.at.width() ? 'x' : 'y';
-    for (BoxId child = node.child; child < node.child + 2; ++child) writeBoxes(child, text);
-}
-
-void PoseSearcher::writePairs(std::uint32_t id, std::string& text) const {
-    const PairNode& pair = pairs_[id];
-    if (!pair.is_split) {
-        text += '.';
-        return;
-    }
-    const std::size_t which = boxes_.widestOf(pair.boxes);
-    text += static_cast<char>('0' + which);
-    const BoxId child = boxes_[pair.boxes[which]].child;
-    std::uint32_t next = pair.child;
-    for (BoxId half = child; half < child + 2; ++half)
-        if (next < pair.child + pair.children && pairs_[next].boxes[which] == half)
-            writePairs(next++, text);
-        else
-            text += '-';
-}
-
 void PoseSearcher::writeTuples(std::uint32_t id, std::string& text) const {
     const TupleNode& node = tree_[id];
     text += node.which < 0 ? '.' : static_cast<char>('0' + node.which);
@@ -443,14 +292,14 @@ PoseBound PoseSearcher::run() {
     if (boxes_[0].isBlind()) return {};
     searchSingle();
     constexpr std::size_t kPairs = 400'000;
-    if (count_ > 2) searchPairs(0, kPairs);
+    if (count_ > 2) pairs_.search(kPairs, [this] { return progress_.stopped() || isFull(); });
     searchTuples();
     const double open = queue_.empty() ? 0 : queue_.top().bound;
     const double bound = std::max({closed_, open, found_});
     if (PoseCertificate* certificate = options_.certificate; certificate != nullptr) {
         *certificate = {.bound = bound, .boxes = {}, .pairs = {}, .tuples = {}};
-        writeBoxes(0, certificate->boxes);
-        if (!pairs_.empty()) writePairs(0, certificate->pairs);
+        certificate->boxes = boxes_.text();
+        certificate->pairs = pairs_.text();
         writeTuples(0, certificate->tuples);
     }
     return {bound, found_, boxes_.size(), tuples_, is_complete_};
