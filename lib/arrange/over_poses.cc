@@ -132,7 +132,8 @@ class LayoutTrials {
         : model_(model), floor_(floor), progress_(progress) {
         for (const Placement& placement : arrangement.sensors)
             sensors_.push_back(sensorOf(model.groups(), placement));
-        const ExactGain gain(model.scene(), model.sight(), sensors_, model.options().weights, 1);
+        const ExactGain gain(model.scene(), model.sight(), sensors_, model.options().weights,
+                             model.options().redundancy);
         found_ = gain.value();
         total_ = gain.total();
     }
@@ -148,7 +149,7 @@ class LayoutTrials {
             pose.position.y = at.y;
             pose.heading = Angle::radians(boxes[i].from + boxes[i].span / 2);
         }
-        RefineOptions options;
+        RefineOptions options{.multiplicity = model_.options().redundancy};
         options.is_valid = [this](std::size_t, Point2 p) { return isValid(p); };
         const Refined refined = refine(model_.scene(), model_.sight(), sensors,
                                        model_.options().weights, options, progress_);
@@ -184,9 +185,8 @@ class LayoutTrials {
 void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
                      const ArrangeOptions& options) {
     mustStandAlone(scene, groups, options);
-    if (options.redundancy != 1 || options.is_connected || options.budget || options.beam_step ||
-        !options.judges_inside)
-        refusePoses("all of the indoor floor counts once, for a given number of sensors");
+    if (options.is_connected || options.budget || options.beam_step || !options.judges_inside)
+        refusePoses("all of the indoor floor counts, for a given number of sensors");
     const SensorGroup& group = groups.front();
     const auto* laser = std::get_if<Laser>(&group.model);
     if (laser == nullptr || laser->sweep != SweepAxis::None || group.record.number("tilt") != 0 ||
@@ -195,6 +195,11 @@ void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
     if (group.most > kMostPosed)
         refusePoses("wanted at most " + std::to_string(kMostPosed) + " sensors, found " +
                     std::to_string(group.most));
+    if (group.most < options.redundancy)
+        refusePoses("floor that " + std::to_string(options.redundancy) +
+                    " sensors see takes as many, found " + std::to_string(group.most));
+    if (options.redundancy > 1 && options.wants_certificate)
+        refusePoses("a certificate is about floor that one sensor sees: leave out --certificate");
     (void)floorAt(scene, heightOf(options));
 }
 
@@ -206,6 +211,7 @@ void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& prog
     const poses::Sector sector = sectorOf(laser, cells.box());
     LayoutTrials trials(model, floor, arrangement, progress);
     PoseSearchOptions options{.sensors = model.groups().front().most,
+                              .times = model.options().redundancy,
                               .found = trials.found(),
                               .max_bytes = model.options().max_bytes};
     options.gap = model.options().search.gap > 0 ? model.options().search.gap : kPosesGap;

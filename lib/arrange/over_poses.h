@@ -26,7 +26,7 @@ constexpr double kPosesGap = 0.005;
 
 /// Validates before a search that boundOfPoses() can follow it.
 /// \throws UsageError unless the sensors are level lasers of one kind that stand alone in a room of
-///         straight walls, few enough, and all of its floor counts once
+///         straight walls, few enough, and all of its floor counts
 void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
                      const ArrangeOptions& options);
 

@@ -195,8 +195,10 @@ TEST(OverPoses, RefusesSensorsThatItCannotBound) {
               std::string::npos);
     EXPECT_NE(refusal(room + "cylinder at=0,0 size=1,1,1\n", "laser", options).find("round"),
               std::string::npos);
-    options.redundancy = 2;
-    EXPECT_NE(refusal(room, "laser", options).find("once"), std::string::npos);
+    options.redundancy = 3;
+    EXPECT_NE(refusal(room, "laser:2", options).find("takes as many"), std::string::npos);
+    options.wants_certificate = true;
+    EXPECT_NE(refusal(room, "laser:3", options).find("leave out --certificate"), std::string::npos);
 }
 
 TEST(OverPoses, AllCellsAreNotAllOfTheFloor) {

@@ -2,7 +2,14 @@
 // For tests of proofs over poses: floors.
 #pragma once
 
+#include <span>
+#include <vector>
+
+#include "arrange/poses/fat_view.h"
+#include "geom/overlay/overlay.h"
 #include "geom/polygon.h"
+#include "geom/pose.h"
+#include "geom/visibility/visibility.h"
 
 namespace ispace {
 
@@ -22,5 +29,43 @@ inline Region roomsWithPillar() {
              {0, 5}},
             {{{8, 2}, {8, 3}, {9, 3}, {9, 2}}}};
 }
+
+/// Exact areas that sensors at single poses see.
+class SeenAreas {
+  public:
+    SeenAreas(const Region& region, const poses::Sector& sector)
+        : sector_(sector), map_(wallsOf(region)) {}
+
+    /// Returns the view, with chords, which lie in it, for its arcs.
+    [[nodiscard]] Polygon viewFrom(const Pose2& pose) const {
+        VisibleRegion seen = map_.query(pose.position, sector_.range);
+        if (!sector_.isRound())
+            seen = sectorOf(seen, Angle::radians(pose.heading.radians() + sector_.first),
+                            Angle::radians(sector_.field));
+        Polygon view;
+        if (!seen.is_whole) view.push_back(pose.position);
+        for (const VisibilityEdge& edge : seen.edges) {
+            view.push_back(edge.from);
+            view.push_back(edge.to);
+        }
+        return view;
+    }
+    /// Returns the area that at least `times` poses see.
+    [[nodiscard]] double of(std::span<const Pose2> poses, int times) const {
+        std::vector<Layer> layers;
+        for (const Pose2& pose : poses) layers.push_back({.curves = {curveOf(viewFrom(pose))}});
+        return Overlay(layers).area(
+            [times](const LayerLabel& label) { return label.count >= times; });
+    }
+
+  private:
+    static std::vector<Segment2> wallsOf(const Region& region) {
+        std::vector<Segment2> walls;
+        region.forEachEdge([&](const Segment2& edge) { walls.push_back(edge); });
+        return walls;
+    }
+    poses::Sector sector_;
+    VisibilityMap map_;
+};
 
 }  // namespace ispace

@@ -102,11 +102,11 @@ void ArrangeCommand::settleProof() {
 }
 
 void ArrangeCommand::settleProofOfCoverage() {
-    constexpr const char* kOther[] = {
-        "--mount",  "--tilt",       "--clearance", "--keep-out",   "--keep-in",      "--zone",
-        "--weight", "--redundancy", "--connected", "--budget",     "--judge",        "--reso",
-        "--shard",  "--resume",     "--curve",     "--export-mps", "--alternatives", "--robust",
-        "--crowd",  "--facing",     "--privacy"};
+    constexpr const char* kOther[] = {"--mount",   "--tilt",  "--clearance",  "--keep-out",
+                                      "--keep-in", "--zone",  "--weight",     "--connected",
+                                      "--budget",  "--judge", "--reso",       "--shard",
+                                      "--resume",  "--curve", "--export-mps", "--alternatives",
+                                      "--robust",  "--crowd", "--facing",     "--privacy"};
     for (const char* option : kOther)
         if (line_.given(option))
             throw UsageError(

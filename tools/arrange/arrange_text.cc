@@ -110,14 +110,16 @@ std::string posesText(const Arrangement& arrangement) {
 }
 
 /// Reports a bound of the coverage over all poses.
-std::string posesBoundText(const Arrangement& arrangement) {
+std::string posesBoundText(const ArrangeOptions& how, const Arrangement& arrangement) {
     const PosesBound& proof = *arrangement.poses_bound;
     const double gap = std::max(0.0, (proof.bound - proof.found) / proof.bound);
-    return "arrange: the layout sees " + formatFixed(proof.found, 3) + " m2 (" +
-           percentText(proof.found / proof.floor) + ") by exact area; over all poses at most " +
-           formatFixed(proof.bound, 3) + " m2 (" + percentText(proof.bound / proof.floor) +
-           ", gap " + percentText(gap) + ")" + (arrangement.is_complete ? "" : ", cut short") +
-           '\n';
+    const std::string times =
+        how.redundancy > 1 ? std::to_string(how.redundancy) + " sensors at a time" : "";
+    return "arrange: " + (times.empty() ? "the layout sees" : times + " see") + ' ' +
+           formatFixed(proof.found, 3) + " m2 (" + percentText(proof.found / proof.floor) +
+           ") by exact area; over all poses at most " + formatFixed(proof.bound, 3) + " m2 (" +
+           percentText(proof.bound / proof.floor) + ", gap " + percentText(gap) + ")" +
+           (arrangement.is_complete ? "" : ", cut short") + '\n';
 }
 
 }  // namespace
@@ -170,7 +172,7 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
     if (how.budget)
         text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
                 formatDouble(*how.budget) + '\n';
-    if (arrangement.poses_bound) text += posesBoundText(arrangement);
+    if (arrangement.poses_bound) text += posesBoundText(how, arrangement);
     if (!arrangement.curve.empty()) text += curveText(arrangement.curve);
     return text;
 }

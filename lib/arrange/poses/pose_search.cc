@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "arrange/poses/box_pairs.h"
+#include "arrange/poses/multiple_bound.h"
 #include "arrange/poses/pose_boxes.h"
 #include "base/number.h"
 
@@ -24,6 +25,7 @@ namespace {
 using poses::BoxId;
 using poses::BoxPairs;
 using poses::fatViewOf;
+using poses::MultipleBound;
 using poses::PoseBox;
 using poses::PoseBoxes;
 using poses::PoseFloor;
@@ -56,14 +58,20 @@ class PoseSearcher {
           count_(static_cast<std::size_t>(options.sensors)),
           found_(options.found),
           boxes_(floor, sector),
-          pairs_(boxes_) {}
+          pairs_(boxes_),
+          multiple_(floor, boxes_, count_, static_cast<std::size_t>(options.times)) {}
 
     PoseBound run();
 
   private:
     void searchSingle();
     void searchTuples();
+    [[nodiscard]] std::span<const BoxId> boxesOf(const Tuple& tuple) const {
+        return {tuple.boxes.data(), count_};
+    }
     [[nodiscard]] double boundOf(const Tuple& tuple, double enough) const;
+    /// Bounds it for sensors that see the floor once.
+    [[nodiscard]] double unionBoundOf(const Tuple& tuple, double enough) const;
     /// Tuples that replace one, and the best layout of centres of boxes among them.
     struct Children {
         std::vector<Tuple> tuples;
@@ -89,6 +97,7 @@ class PoseSearcher {
     double found_;
     PoseBoxes boxes_;
     BoxPairs pairs_;
+    MultipleBound multiple_;  // for options.times > 1
     std::size_t tuples_ = 0;
     std::vector<TupleNode> tree_;  // with a certificate alone
     std::priority_queue<Tuple, std::vector<Tuple>, IsWorse> queue_;
@@ -98,6 +107,10 @@ class PoseSearcher {
 };
 
 double PoseSearcher::boundOf(const Tuple& tuple, double enough) const {
+    return options_.times > 1 ? multiple_.of(boxesOf(tuple), enough) : unionBoundOf(tuple, enough);
+}
+
+double PoseSearcher::unionBoundOf(const Tuple& tuple, double enough) const {
     using Known = PoseBoxes::Known;
     double bound = 0;
     std::array<Known, kMostPosed> single{};
@@ -152,7 +165,7 @@ double PoseSearcher::boundOf(const Tuple& tuple, double enough) const {
 
 PoseSearcher::Children PoseSearcher::childrenOf(const Tuple& tuple, std::size_t which) const {
     Children children;
-    const std::span<const BoxId> boxes(tuple.boxes.data(), count_);
+    const std::span<const BoxId> boxes = boxesOf(tuple);
     const BoxId child = boxes_[tuple.boxes[which]].child;
     for (BoxId half = child; half < child + 2; ++half) {
         if (!boxes_.isInOrder(boxes, which, half)) continue;
@@ -161,7 +174,8 @@ PoseSearcher::Children PoseSearcher::childrenOf(const Tuple& tuple, std::size_t 
         next.bound = std::min(tuple.bound, boundOf(next, cutoff()));
         children.tuples.push_back(next);
         if (next.bound <= cutoff()) continue;
-        const double value = boxes_.unionOfCentres({next.boxes.data(), count_});
+        const double value = options_.times > 1 ? multiple_.ofCentres(boxesOf(next))
+                                                : boxes_.unionOfCentres(boxesOf(next));
         if (value <= children.best_value) continue;
         children.best_value = value;
         children.best = next;
@@ -229,14 +243,13 @@ void PoseSearcher::searchTuples() {
             Tuple tuple = queue_.top();
             queue_.pop();
             // Single views may be bounded better by now.
-            double most = 0;
-            for (std::size_t i = 0; i < count_; ++i) most += boxes_[tuple.boxes[i]].most;
+            const double most = multiple_.ofSingles(boxesOf(tuple));
             if (most < tuple.bound) {
                 tuple.bound = most;
                 queue_.push(tuple);
                 continue;
             }
-            const std::size_t widest = boxes_.widestOf({tuple.boxes.data(), count_});
+            const std::size_t widest = boxes_.widestOf(boxesOf(tuple));
             if (widest == count_) {
                 closed_ = std::max(closed_, tuple.bound);
                 continue;
@@ -292,7 +305,8 @@ PoseBound PoseSearcher::run() {
     if (boxes_[0].isBlind()) return {};
     searchSingle();
     constexpr std::size_t kPairs = 400'000;
-    if (count_ > 2) pairs_.search(kPairs, [this] { return progress_.stopped() || isFull(); });
+    if (count_ > 2 && options_.times == 1)
+        pairs_.search(kPairs, [this] { return progress_.stopped() || isFull(); });
     searchTuples();
     const double open = queue_.empty() ? 0 : queue_.top().bound;
     const double bound = std::max({closed_, open, found_});

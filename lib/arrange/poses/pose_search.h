@@ -16,6 +16,7 @@ namespace ispace {
 
 struct PoseSearchOptions {
     int sensors = 1;
+    int times = 1;     ///< floor counts if this many of the sensors see it
     double found = 0;  ///< m2 that some layout sees: what no layout can exceed is not searched
     double gap = 0;    ///< ends once the bound exceeds the layout found by this share of the bound
     std::size_t max_bytes = std::size_t{8} << 30U;  ///< of boxes and tuples
@@ -35,8 +36,8 @@ struct PoseBound {
 /// Largest number of sensors of boundOverPoses().
 constexpr int kMostPosed = 4;
 
-/// Bounds the area that equal sensors see together at any poses on the floor, by branch and bound
-/// over tuples of boxes of poses, one box for each sensor.
+/// Bounds the area that equal sensors see together, or that several of them see, at any poses on
+/// the floor, by branch and bound over tuples of boxes of poses, one box for each sensor.
 ///
 /// All that the poses of a tuple see lies in the union of its fat views (fatViewOf()). No sensor
 /// adds more than the largest single view in its box, which its subdivision bounds, and no two more
@@ -44,9 +45,10 @@ constexpr int kMostPosed = 4;
 /// (coreViewOf()), is counted once. So the bound of a tuple is the least, over all subsets of the
 /// sensors, of their known areas less the overlaps of their cores, and the fat views of the others
 /// outside of these cores. In cells that several views share in part, the union counts the sum of
-/// the parts, up to the floor in the cell.
+/// the parts, up to the floor in the cell. MultipleBound has the bound for several times.
 ///
-/// Deterministic for any number of threads, unless stopped. \pre 1 <= sensors <= kMostPosed
+/// Deterministic for any number of threads, unless stopped. \pre 1 <= times <= sensors <=
+/// kMostPosed
 PoseBound boundOverPoses(const poses::PoseFloor& floor, const poses::Sector& sector,
                          const PoseSearchOptions& options, Progress& progress);
 
