@@ -279,27 +279,24 @@ BoxView BoxViews::viewOf(const PoseBox& box) const { return BoxSight(*this, box)
 
 double BoxViews::unionOf(std::span<const Known> known,
                          std::span<const BoxView* const> views) const {
-    thread_local std::vector<std::uint16_t> counted, sure, own, seen;  // memory is reused
+    thread_local std::vector<std::int32_t> left;  // memory is reused
+    thread_local std::vector<std::uint16_t> own, seen;
     const std::size_t cells = most_.size();
-    for (auto* parts : {&counted, &sure, &own, &seen}) parts->assign(cells, 0);
+    left.assign(most_.begin(), most_.end());
+    for (auto* parts : {&own, &seen}) parts->assign(cells, 0);
     double area = 0;
-    std::int64_t twice = 0, beside = 0;
-    const auto raise = [](std::uint16_t& part, std::uint16_t by) { part = std::max(part, by); };
     for (const Known& sensors : known) {
         area += sensors.area;
         std::size_t begin = cells, end = 0;
         for (const BoxCore* core : sensors.cores) {
             if (core == nullptr) continue;
             for (std::size_t i = 0; i < core->parts.size(); ++i)
-                raise(own[core->first + i], core->parts[i]);
+                own[core->first + i] = std::max(own[core->first + i], core->parts[i]);
             begin = std::min(begin, core->first);
             end = std::max(end, core->first + core->parts.size());
         }
         for (std::size_t i = begin; i < end; ++i) {
-            const int sum = counted[i] + own[i], kept = std::min<int>(sum, most_[i]);
-            twice += sum - kept;
-            counted[i] = static_cast<std::uint16_t>(kept);
-            raise(sure[i], own[i]);
+            left[i] -= own[i];
             own[i] = 0;
         }
     }
@@ -309,11 +306,10 @@ double BoxViews::unionOf(std::span<const Known> known,
             seen[cell] =
                 static_cast<std::uint16_t>(std::min<int>(seen[cell] + view->parts[i], most_[cell]));
         }
-    for (std::size_t i = 0; i < cells && !views.empty(); ++i)
-        beside += std::min<int>(seen[i], most_[i] - sure[i]);
-    const double part = side_ * side_ / kParts;
+    std::int64_t parts = 0;
+    for (std::size_t i = 0; i < cells; ++i) parts += std::min<std::int32_t>(seen[i], left[i]);
     if (!known.empty()) area += 8 * kNoShare * static_cast<double>(cells) * side_ * side_;
-    return area + static_cast<double>(beside - twice) * part;
+    return area + static_cast<double>(parts) * side_ * side_ / kParts;
 }
 
 }  // namespace ispace::poses

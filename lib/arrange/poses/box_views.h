@@ -51,9 +51,8 @@ class BoxViews {
         double area = 0;  ///< m2
         std::array<const BoxCore*, 2> cores{};
     };
-    /// Bounds what sensors see together: known areas less the overlaps of cores, which are counted
-    /// twice, and views outside of the cores. Parts of views add up, to the floor in a cell at
-    /// most.
+    /// Bounds what sensors see together: known areas, and in each cell the views of the others, or
+    /// the floor less all cores of known ones, which the known areas hold already.
     [[nodiscard]] double unionOf(std::span<const Known> known,
                                  std::span<const BoxView* const> views) const;
 

@@ -123,6 +123,24 @@ std::vector<BoxId> dividedBoxes(PoseBoxes& boxes, SeveralPoses& poses, int halvi
     return whole;
 }
 
+/// The least bound of what boxes see together, over all subsets that are known by their areas.
+double leastUnion(const PoseBoxes& boxes, const std::vector<BoxId>& ids) {
+    double least = 0;
+    for (const BoxId id : ids) least += boxes[id].most;
+    for (unsigned chosen = 0; chosen < 1U << ids.size(); ++chosen) {
+        std::vector<PoseBoxes::Known> known;
+        std::vector<BoxId> others;
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            if ((chosen >> i & 1U) != 0)
+                known.push_back({{ids[i]}, 1, boxes[ids[i]].most});
+            else
+                others.push_back(ids[i]);
+        }
+        least = std::min(least, boxes.unionOf(known, others));
+    }
+    return least;
+}
+
 TEST(MultipleBound, PosesInTheBoxesSeeNoMore) {
     const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, kCells);
@@ -143,6 +161,8 @@ TEST(MultipleBound, PosesInTheBoxesSeeNoMore) {
                                         poses.draw(0, static_cast<double>(whole.size()) - 1e-9))]);
                 own.push_back(boxes[ids.back()].box);
             }
+            EXPECT_NEAR(MultipleBound(floor, boxes, sensors, 1).of(ids, 0), leastUnion(boxes, ids),
+                        1e-6);  // allowances for rounding
             for (std::size_t times = 1; times <= sensors; ++times) {
                 const MultipleBound bound(floor, boxes, sensors, times);
                 const double most = bound.of(ids, 0);

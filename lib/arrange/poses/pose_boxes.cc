@@ -22,30 +22,23 @@ ISPACE_SIMD_CLONES void addParts(std::uint8_t* sums, const std::uint8_t* parts,
     }
 }
 
-/// Adds parts as addParts() does, and returns the sum of those beyond `most`.
-ISPACE_SIMD_CLONES std::uint32_t addOver(std::uint8_t* sums, const std::uint8_t* parts,
-                                         const std::uint8_t* most, std::size_t count) {
-    std::uint32_t over = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto sum = static_cast<std::uint8_t>(sums[i] + parts[i]);
-        const std::uint8_t kept = sum < most[i] ? sum : most[i];
-        over += static_cast<std::uint8_t>(sum - kept);
-        sums[i] = kept;
-    }
-    return over;
+/// Takes cores off the floor that is free.
+ISPACE_SIMD_CLONES void takeCore(std::int16_t* __restrict free, const std::uint8_t* core,
+                                 std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) free[i] = static_cast<std::int16_t>(free[i] - core[i]);
 }
 
 ISPACE_SIMD_CLONES void raise(std::uint8_t* sums, const std::uint8_t* parts, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) sums[i] = parts[i] > sums[i] ? parts[i] : sums[i];
 }
 
-/// Returns the sum of parts, of which `sure` of each cell are taken already.
-ISPACE_SIMD_CLONES std::uint32_t sumBeside(const std::uint8_t* parts, const std::uint8_t* sure,
-                                           const std::uint8_t* most, std::size_t count) {
-    std::uint32_t sum = 0;
+/// Returns the sum of parts, in each cell at most those that are free, which may be negative.
+ISPACE_SIMD_CLONES std::int32_t sumWithin(const std::uint8_t* parts, const std::int16_t* free,
+                                          std::size_t count) {
+    std::int32_t sum = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const auto free = static_cast<std::uint8_t>(most[i] - sure[i]);
-        sum += parts[i] < free ? parts[i] : free;
+        const auto part = static_cast<std::int16_t>(parts[i]);
+        sum += part < free[i] ? part : free[i];
     }
     return sum;
 }
@@ -200,41 +193,34 @@ double PoseBoxes::unionOfCentres(std::span<const BoxId> boxes) const {
 }
 
 double PoseBoxes::unionOf(std::span<const Known> known, std::span<const BoxId> others) const {
-    thread_local std::vector<std::uint8_t> sums, sure, own, fat;  // memory is reused
+    thread_local std::vector<std::int16_t> free;  // memory is reused
+    thread_local std::vector<std::uint8_t> own, fat;
     const std::vector<std::uint8_t>& most = floor_.parts();
     double area = 0;
-    std::uint32_t over = 0, rest = 0;
-    sums.assign(most.size(), 0);
-    if (!others.empty()) sure.assign(most.size(), 0);
+    free.assign(most.begin(), most.end());
+    fat.assign(most.size(), 0);
     for (const Known& part : known) {
         area += part.most;
         const CellParts& core = boxes_[part.boxes[0]].core;
-        const std::uint8_t* parts = core.parts.data();
-        std::size_t first = core.first, size = core.parts.size();
-        if (part.count == 2) {
-            own.assign(most.size(), 0);
-            const CellParts& second = boxes_[part.boxes[1]].core;
-            raise(&own[first], parts, size);
-            raise(&own[second.first], second.parts.data(), second.parts.size());
-            parts = own.data();
-            first = 0;
-            size = own.size();
+        if (part.count == 1) {
+            takeCore(&free[core.first], core.parts.data(), core.parts.size());
+            continue;
         }
-        over += addOver(&sums[first], parts, &most[first], size);
-        if (!others.empty()) raise(&sure[first], parts, size);
+        own.assign(most.size(), 0);
+        for (const BoxId id : part.boxes) {
+            const CellParts& one = boxes_[id].core;
+            raise(&own[one.first], one.parts.data(), one.parts.size());
+        }
+        takeCore(free.data(), own.data(), own.size());
     }
-    if (!others.empty()) {
-        fat.assign(most.size(), 0);
-        for (const BoxId id : others) {
-            const CellParts& view = boxes_[id].parts;
-            addParts(&fat[view.first], view.parts.data(), &most[view.first], view.parts.size());
-        }
-        rest = sumBeside(fat.data(), sure.data(), most.data(), most.size());
+    for (const BoxId id : others) {
+        const CellParts& view = boxes_[id].parts;
+        addParts(&fat[view.first], view.parts.data(), &most[view.first], view.parts.size());
     }
     // Cores are rounded down but for kNoShare of a cell.
     if (!known.empty())
         area += 8 * kNoShare * kParts * floor_.partArea() * static_cast<double>(most.size());
-    return area + (static_cast<double>(rest) - static_cast<double>(over)) * floor_.partArea();
+    return area + sumWithin(fat.data(), free.data(), fat.size()) * floor_.partArea();
 }
 
 std::size_t PoseBoxes::widestOf(std::span<const BoxId> boxes) const {

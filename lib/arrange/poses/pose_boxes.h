@@ -72,9 +72,10 @@ class PoseBoxes {
         std::size_t count = 1;
         double most = 0;  // m2
     };
-    /// Bounds the area that the poses of boxes see together. The known parts add the areas that are
-    /// known, less the overlaps of their cores; the others add their fat views outside of the
-    /// cores.
+    /// Bounds the area that the poses of boxes see together: the areas that are known, and in each
+    /// cell the lesser of the fat views of the others and the floor less all cores of the known
+    /// parts. Outside of the cell these add no more than their areas less their cores in it. So a
+    /// core that lies in another one lowers the sum.
     [[nodiscard]] double unionOf(std::span<const Known> known, std::span<const BoxId> others) const;
 
   private:

@@ -43,9 +43,10 @@ constexpr int kMostPosed = 4;
 /// adds more than the largest single view in its box, which its subdivision bounds, and no two more
 /// than the largest view of a pair; what two sensors see in any poses of their boxes, their cores
 /// (coreViewOf()), is counted once. So the bound of a tuple is the least, over all subsets of the
-/// sensors, of their known areas less the overlaps of their cores, and the fat views of the others
-/// outside of these cores. In cells that several views share in part, the union counts the sum of
-/// the parts, up to the floor in the cell. MultipleBound has the bound for several times.
+/// sensors, of their known areas, and in each cell the lesser of the fat views of the others and
+/// the floor less all of their cores. In cells that several views share in part, the union counts
+/// the sum of the parts, up to the floor in the cell. MultipleBound has the bound for several
+/// times.
 ///
 /// Deterministic for any number of threads, unless stopped. \pre 1 <= times <= sensors <=
 /// kMostPosed
