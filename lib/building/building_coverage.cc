@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
+#include <span>
+#include <utility>
 
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "building/building_sight.h"
+#include "coverage/outside_view.h"
 #include "report/coverage_report.h"
 #include "report/map/map.h"
 #include "report/run_report.h"
@@ -41,11 +46,18 @@ std::optional<double> areaOf(const std::optional<double>& share, double area) {
     return share ? std::optional(*share * area) : std::nullopt;
 }
 
-/// Puts the storey before all ids.
-void nameWholly(const Storey& storey, Coverage& coverage) {
-    for (SensorMetrics& sensor : coverage.report.sensors) sensor.id = wholeId(storey, sensor.id);
-    for (ZoneMetrics& zone : coverage.report.zones) zone.id = wholeId(storey, zone.id);
-    for (SensorView& view : coverage.sensors) view.id = wholeId(storey, view.id);
+/// Puts the storey before all ids. \param outside the views into the storey
+void nameWholly(const BuildingScene& building, std::size_t storey,
+                std::span<const StoreyView> outside, Coverage& coverage) {
+    const std::vector<Storey>& storeys = building.document.storeys;
+    const std::size_t own = building.scenes[storey]->sensors.size();
+    for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
+        SensorView& view = coverage.sensors[i];
+        const std::size_t home = view.index < own ? storey : outside[view.index - own].storey;
+        view.id = wholeId(storeys[home], view.id);
+        coverage.report.sensors[i].id = view.id;
+    }
+    for (ZoneMetrics& zone : coverage.report.zones) zone.id = wholeId(storeys[storey], zone.id);
 }
 
 void addUp(BuildingCoverage& building) {
@@ -100,19 +112,24 @@ TextRow tableRow(const std::string& name, std::size_t sensors, double indoor,
 
 BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options) {
     BuildingCoverage measured;
-    std::map<const Scene*, std::size_t> known;
+    const std::vector<std::vector<StoreyView>> outside = viewsBetweenStoreys(building, options);
+    using Views = std::vector<std::shared_ptr<const OutsideView>>;
+    std::map<std::pair<const Scene*, Views>, std::size_t> known;
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         const Scene& scene = *building.scenes[i];
-        const auto [first, is_new] = known.try_emplace(&scene, i);
+        Views views;
+        for (const StoreyView& one : outside[i]) views.push_back(one.view);
+        const auto [first, is_new] = known.try_emplace({&scene, views}, i);
         if (is_new) {
             Worlds worlds(scene.environment);
-            measured.storeys.push_back(measureCoverage(scene, worlds, options));
+            measured.storeys.push_back(measureWithOutside(scene, worlds, options, views));
         } else {
             measured.storeys.push_back(measured.storeys[first->second]);
         }
+        measured.sensors.push_back(measured.storeys.back().sensors.size() - views.size());
     }
     for (std::size_t i = 0; i < building.scenes.size(); ++i)
-        nameWholly(building.document.storeys[i], measured.storeys[i]);
+        nameWholly(building, i, outside[i], measured.storeys[i]);
     addUp(measured);
     return measured;
 }
@@ -150,9 +167,9 @@ std::vector<TextRow> storeyRows(const BuildingScene& building, const BuildingCov
     std::size_t sensors = 0;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         const CoverageReport& report = coverage.storeys[i].report;
-        rows.push_back(tableRow(building.document.storeys[i].id, report.sensors.size(),
+        rows.push_back(tableRow(building.document.storeys[i].id, coverage.sensors[i],
                                 report.indoor_area, report.coverage, report.free_coverage));
-        sensors += report.sensors.size();
+        sensors += coverage.sensors[i];
     }
     rows.push_back(tableRow("building", sensors, coverage.indoor_area, coverage.coverage,
                             coverage.free_coverage));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,14 +16,16 @@ namespace ispace {
 /// The coverage of each storey, and their sums: areas add up, shares are of all floor. Ids in the
 /// reports name the storey, as in "ground/l1".
 struct BuildingCoverage {
-    std::vector<Coverage> storeys;
+    std::vector<Coverage> storeys;          ///< with the views from other storeys
+    std::vector<std::size_t> sensors;       ///< number of those that stand in each storey
     double indoor_area = 0, free_area = 0;  ///< m2
     Metric total_effective_area;            ///< m2
     Metric coverage, free_coverage;         ///< shares; empty if that of a storey is unknown
     std::vector<double> redundancy;         ///< see CoverageReport
 };
 
-/// Measures all storeys; equal ones once.
+/// Measures all storeys; those with equal rooms and views once. Rangers and cameras see through
+/// shafts and over stairs, see viewsBetweenStoreys().
 BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options);
 
 /// Returns the rows of a table, its heads first: storeys, then the building.

@@ -24,7 +24,7 @@ std::string seenText(const Metric& coverage) {
 PageSection buildingSummary(const BuildingPageInput& input) {
     const BuildingCoverage& coverage = input.coverage;
     std::size_t sensors = 0;
-    for (const Coverage& storey : coverage.storeys) sensors += storey.report.sensors.size();
+    for (const std::size_t in_storey : coverage.sensors) sensors += in_storey;
     PageSection section{"summary", "Summary", {}};
     section.blocks.push_back(
         PageText{"The building has " + std::to_string(coverage.storeys.size()) + " storeys with " +

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "coverage/metrics.h"
+#include "coverage/outside_view.h"
 #include "coverage/pixel_density.h"
 #include "coverage/visible_area.h"
 #include "env/level.h"
@@ -331,9 +332,24 @@ void compareExactly(const Coverage& coverage, const Coverage& other, const Regio
     comparison.lost.exact = std::max(0.0, lost);
 }
 
-}  // namespace
+/// Appends the views from outside and restores the order of views, by kind.
+void addOutside(std::span<const std::shared_ptr<const OutsideView>> outside, std::size_t own,
+                const CoverageOptions& options, Coverage& coverage, const Grid& grid,
+                const Scene& scene) {
+    if (outside.empty()) return;
+    for (std::size_t i = 0; i < outside.size(); ++i)
+        coverage.sensors.push_back(sensorViewOf(*outside[i], own + i, grid, options));
+    std::stable_sort(coverage.sensors.begin(), coverage.sensors.end(),
+                     [&](const SensorView& a, const SensorView& b) {
+                         return scene.sensors[a.index].model.index() <
+                                scene.sensors[b.index].model.index();
+                     });
+}
 
-Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options) {
+/// \param scene with the sensors outside after its own
+Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
+                 const CoverageOptions& options,
+                 std::span<const std::shared_ptr<const OutsideView>> outside) {
     const Environment& environment = scene.environment;
     Coverage coverage;
     const Grid grid = gridOver(environment.limits(), options.cells);
@@ -341,13 +357,14 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     const auto level = environment.level(options.height);
     CoverageReport& report = coverage.report;
     FloorCurves floor;
-    runBoth([&] { coverage.sensors = Viewer(scene, worlds, grid, options).run(); },
+    runBoth([&] { coverage.sensors = Viewer(own, worlds, grid, options).run(); },
             [&] {
                 coverage.target = makeTarget(environment, options.cells, options.height);
                 report.free_area = totalArea(level->freeFloor());
                 if (options.exact) floor = floorCurvesOf(environment, level->freeFloor());
                 static_cast<void>(scene.digest());  // cached, in parallel with the views
             });
+    addOutside(outside, own.sensors.size(), options, coverage, grid, scene);
     coverage.sets = setsOf(coverage.sensors, grid);
 
     report.digest = scene.digest();
@@ -368,6 +385,20 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
     addDensities(coverage, environment, level->freeFloor(), zones, options.whole_densities);
     if (options.parallax) addParallax(coverage, environment, *options.parallax);
     return coverage;
+}
+
+}  // namespace
+
+Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options) {
+    return measure(scene, scene, worlds, options, {});
+}
+
+Coverage measureWithOutside(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+                            std::span<const std::shared_ptr<const OutsideView>> outside) {
+    if (outside.empty()) return measureCoverage(scene, worlds, options);
+    Scene joined = scene;
+    for (const auto& view : outside) joined.sensors.push_back(view->sensor);
+    return measure(joined, scene, worlds, options, outside);
 }
 
 void compare(Coverage& coverage, const Coverage& other, const Regions& indoor,

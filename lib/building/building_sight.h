@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sight between the storeys of a building, through shafts and over stairs.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "building/building_scene.h"
+#include "coverage/coverage.h"
+#include "coverage/outside_view.h"
+#include "env/environment.h"
+#include "geom/polygon.h"
+
+namespace ispace {
+
+/// Sensors see into other storeys up to this distance, metres.
+constexpr double kSightBetweenStoreys = 50;
+
+/// An opening in the floor of a storey, to the storey below.
+struct FloorOpening {
+    std::size_t below = 0, above = 0;  ///< storeys
+    Polygon outline;                   ///< in the building, counter-clockwise
+    /// Of stairs: the edge of the lowest step and that of the highest one, each from the right of
+    /// those who go up to their left. Between them the steps block sight.
+    std::vector<Segment2> flight = {};
+};
+
+/// Returns the openings of shafts and of straight stairs, in the order of the passages. Storeys
+/// that are level have no opening between them.
+std::vector<FloorOpening> floorOpenings(const BuildingScene& building);
+
+/// Returns the room of the lowest of some storeys, with the bodies, floors and openings of the
+/// others in their positions above it. Floors and ceilings have no thickness, and openings are
+/// closed at the sides between the storey below and the floor. \pre `storeys` ascend
+Environment joinedRoom(const BuildingScene& building, std::span<const FloorOpening> openings,
+                       std::span<const std::size_t> storeys);
+
+/// The view of a sensor into another storey.
+struct StoreyView {
+    std::size_t storey = 0;  ///< of the sensor
+    std::shared_ptr<const OutsideView> view;
+};
+
+/// Computes the views of rangers and cameras into other storeys, up to kSightBetweenStoreys: for
+/// each storey those that see any of its plane, by storey and in the order of the sensors. A plane
+/// on the floor is not seen from below. Views in equal surroundings are computed once and share
+/// memory. Storeys without openings cost no time.
+std::vector<std::vector<StoreyView>> viewsBetweenStoreys(const BuildingScene& building,
+                                                         const CoverageOptions& options);
+
+}  // namespace ispace

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/building_sight.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "building/building_coverage.h"
+#include "record/text.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+namespace {
+
+constexpr const char* kFence =
+    "{fence: {id: f, path: [[0, 0], [8, 0], [8, 6], [0, 6]], closed: yes, height: 2.5}}";
+constexpr const char* kShaft =
+    "- shaft: {storeys: 'ground,upper', path: [[3, 2], [5, 2], [5, 4], [3, 4]]}\n";
+
+BuildingScene sceneOf(const std::string& text) {
+    return makeBuildingScene(readBuilding(text, "house.yaml", {}), {}, {});
+}
+
+/// Returns a building whose floors are 3 m apart; records of the rooms, and passages.
+BuildingScene towerOf(const std::string& ground, const std::string& upper,
+                      const std::string& passages, const std::string& height = "3",
+                      const std::string& frame = "") {
+    const auto room = [](const std::string& more) {
+        return "[" + std::string(kFence) + (more.empty() ? "" : ", " + more) + "]";
+    };
+    return sceneOf("- storey: {id: ground, height: " + height + ", records: " + room(ground) +
+                   "}\n- storey: {id: upper, z: 3, height: 3" + frame +
+                   ", records: " + room(upper) + "}\n" + passages);
+}
+
+/// Returns the area of the only view into a storey; 0 without one.
+double areaSeen(const BuildingScene& building, std::size_t storey, double plane = 0) {
+    const auto views = viewsBetweenStoreys(building, {.plane = plane});
+    if (views[storey].empty()) return 0;
+    EXPECT_EQ(views[storey].size(), 1U);
+    return signedArea(views[storey].front().view->region);
+}
+
+const std::string kDown = "{camera: {id: c, at: [4, 3, 2], tilt: -90, fov: 120}}";
+const std::string kUp = "{camera: {id: c, at: [4, 3, 1], tilt: 90, fov: 120}}";
+
+TEST(BuildingSight, ShaftFramesTheFloorBelow) {
+    // The eye is 2 m above a square of 2 m, and 5 m above the floor that it sees.
+    EXPECT_NEAR(areaSeen(towerOf("", kDown, kShaft), 0), 25, 1e-4);
+    EXPECT_EQ(areaSeen(towerOf("", kDown, kShaft), 1), 0);
+    EXPECT_EQ(areaSeen(towerOf("", kDown, ""), 0), 0);
+}
+
+TEST(BuildingSight, DepthOfTheFloorNarrowsTheOpening) {
+    // The storey is 2.5 m high: the lower rim of the opening is 2.5 m below the eye.
+    EXPECT_NEAR(areaSeen(towerOf("", kDown, kShaft, "2.5"), 0), 16, 1e-4);
+}
+
+TEST(BuildingSight, LooksUpAtPlanesAboveTheFloor) {
+    EXPECT_NEAR(areaSeen(towerOf(kUp, "", kShaft), 1, 1), 9, 1e-4);
+    EXPECT_EQ(areaSeen(towerOf(kUp, "", kShaft), 1, 0), 0);
+}
+
+TEST(BuildingSight, HoldsInTurnedStoreys) {
+    // The room above is turned about the building's origin and moved back; its camera stands over
+    // the same point: (4, 3) in the building is (1, 2) there.
+    const std::string camera = "{camera: {id: c, at: [1, 2, 2], tilt: -90, fov: 120, heading: 0}}";
+    const BuildingScene building = towerOf("", camera, kShaft, "3", ", at: [6, 2], heading: 90");
+    EXPECT_NEAR(areaSeen(building, 0), 25, 1e-4);
+    const auto views = viewsBetweenStoreys(building, {});
+    const Point3 eye = views[0].front().view->sensor.pose.position;
+    EXPECT_NEAR(eye.x, 4, 1e-9);
+    EXPECT_NEAR(eye.y, 3, 1e-9);
+    EXPECT_NEAR(eye.z, 5, 1e-9);
+}
+
+TEST(BuildingSight, CeilingsAreOpenAboveAShaft) {
+    const auto building = [](const char* ceiling) {
+        const std::string room = "{ispace: {size: [8, 6, 3], at: [4, 3], ceiling: ";
+        return sceneOf("- storey: {id: ground, height: 3, records: [" + room + ceiling + "}}, " +
+                       kUp + "]}\n- storey: {id: upper, z: 3, height: 3, records: [" + kFence +
+                       "]}\n" + kShaft);
+    };
+    EXPECT_NEAR(areaSeen(building("no"), 1, 1), 9, 1e-4);
+    EXPECT_NEAR(areaSeen(building("yes"), 1, 1), 9, 1e-4);
+}
+
+TEST(BuildingSight, StepsHideTheFloorBelowThem) {
+    const std::string stairs =
+        "- stairs: {storeys: 'ground,upper', at: [4, 2], heading: 90, size: [2, 2]}\n";
+    // A line of sight leads k aside along the steps for each metre down; for k > -0.2 it meets them
+    // (5 - z) = 3.5 / (1 + 1.5 k) below the eye, if it is less than a metre from their middle
+    // there.
+    const double hidden = 2 / 3.5 * ((0.5 + 0.75 * 0.25) - (-0.2 + 0.75 * 0.04));
+    EXPECT_NEAR(areaSeen(towerOf("", kDown, stairs), 0), 25 * (1 - hidden), 1e-4);
+    // From before the lowest step, sight goes over all of them.
+    const std::string camera =
+        "{camera: {id: c, at: [4, 0.5, 1], heading: 90, tilt: 50, fov: 100}}";
+    const double over = areaSeen(towerOf(camera, "", stairs), 1, 1.5);
+    EXPECT_GT(over, 0.5);
+    EXPECT_NEAR(areaSeen(towerOf(camera, "", kShaft), 1, 1.5), over, 1e-6);
+}
+
+TEST(BuildingSight, LasersSeeTheirStoreyAlone) {
+    const std::string laser = "{laser: {id: l, at: [4, 3, 2], tilt: -90}}";
+    EXPECT_TRUE(viewsBetweenStoreys(towerOf("", laser, kShaft), {})[0].empty());
+}
+
+TEST(BuildingSight, ReportsNameTheStoreyOfTheSensor) {
+    const BuildingCoverage coverage = measureBuilding(towerOf("", kDown, kShaft), {});
+    ASSERT_EQ(coverage.storeys[0].report.sensors.size(), 1U);
+    EXPECT_EQ(coverage.storeys[0].report.sensors[0].id, "upper/c");
+    EXPECT_EQ(coverage.storeys[1].report.sensors[0].id, "upper/c");
+    EXPECT_EQ(coverage.sensors, (std::vector<std::size_t>{0, 1}));
+    EXPECT_NEAR(coverage.storeys[0].report.coverage.exact.value(), 25.0 / 48, 1e-5);
+    EXPECT_NEAR(coverage.storeys[0].report.coverage.grid.value(), 25.0 / 48, 0.01);
+}
+
+/// Rays in each room by itself agree: they leave one in the opening and go on in the other.
+TEST(BuildingSight, AgreesWithRaysOfBothRooms) {
+    const std::string things =
+        "{desk: {at: [2.6, 3], size: [1.4, 0.7]}}, {pillar: {at: [5.6, 3.2], size: [0.4, 0.4], "
+        "height: 2}}";
+    const std::string above =
+        "{cube: {at: [4.2, 2.3], size: [0.5, 0.3, 0.8]}}, "
+        "{camera: {id: c, at: [3.2, 4.4, 1.7], heading: -70, tilt: -60, fov: 110}}";
+    const BuildingScene building = towerOf(things, above, kShaft);
+    const auto views = viewsBetweenStoreys(building, {.plane = 0.3});
+    ASSERT_EQ(views[0].size(), 1U);
+    const OutsideView& view = *views[0].front().view;
+    const FieldOfView field = *fieldOfView(view.sensor);
+    const Point3 eye = view.sensor.pose.position;
+    const RayWorld below = RayWorld::ofEnvironment(building.scenes[0]->environment);
+    const RayWorld over = RayWorld::ofEnvironment(building.scenes[1]->environment);
+    const Grid grid = gridOf({0, 0}, 0.05, 160, 120);
+    const CellSet cells = sensorViewOf(view, 0, grid, {.plane = 0.3}).cells;
+    std::size_t wrong = 0, seen_cells = 0;
+    for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+        const Point2 p = grid.center(cell);
+        const Point3 target{p.x, p.y, 0.3};
+        const Vec3 way = target - eye;
+        const Point3 cut = eye + (3 - eye.z) / way.z * way;
+        const bool in_shaft = cut.x > 3 && cut.x < 5 && cut.y > 2 && cut.y < 4;
+        bool is_seen = in_shaft && field.holds(target);
+        if (is_seen) {
+            std::array<std::uint8_t, 1> free{};
+            const std::array<Point3, 1> end{Point3{cut.x, cut.y, 0}};
+            over.query({eye.x, eye.y, eye.z - 3}, end, free);
+            is_seen = free[0] != 0;
+            const std::array<Point3, 1> last{target};
+            below.query(cut, last, free);
+            is_seen = is_seen && free[0] != 0;
+        }
+        seen_cells += is_seen ? 1 : 0;
+        wrong += is_seen != cells.test(cell) ? 1 : 0;
+    }
+    EXPECT_GT(seen_cells, 1000U);
+    EXPECT_LE(wrong, 4U);  // on the rim, where rays and areas round differently
+}
+
+/// 200 equal storeys around a shaft, with a camera in it on each.
+TEST(BuildingSight, EqualStoreysShareViews) {
+    std::string text = "- storey: {id: s0, height: 3, records: &room [" + std::string(kFence) +
+                       ", " + kDown + "]}\n";
+    std::string storeys = "s0";
+    for (int i = 1; i < 200; ++i) {
+        const std::string id = "s" + std::to_string(i);
+        text += "- storey: {id: " + id + ", z: " + std::to_string(3 * i) +
+                ", height: 3, records: *room}\n";
+        storeys += "," + id;
+    }
+    text += "- shaft: {storeys: '" + storeys + "', path: [[3, 2], [5, 2], [5, 4], [3, 4]]}\n";
+    const BuildingScene building = sceneOf(text);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto views = viewsBetweenStoreys(building, {});
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
+    std::set<const OutsideView*> known;
+    std::size_t uses = 0;
+    for (const auto& of_storey : views)
+        for (const StoreyView& one : of_storey) {
+            known.insert(one.view.get());
+            ++uses;
+        }
+    EXPECT_LE(known.size(), kSightBetweenStoreys / 3);
+    EXPECT_GT(uses, 190 * known.size());
+    // The floor k storeys below is seen through k openings, of which the last is the narrowest.
+    EXPECT_NEAR(signedArea(views[100].front().view->region), 25, 1e-3);
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The openings between storeys, and several storeys as one room.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "building/building_sight.h"
+#include "env/body.h"
+#include "env/mesh.h"
+#include "env/walls.h"
+#include "geom/overlay/overlay.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace {
+
+namespace {
+
+Polygon counterClockwise(Polygon outline) {
+    if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
+    return outline;
+}
+
+/// Returns the opening of a flight that leads straight ahead; without outline for others.
+FloorOpening openingOf(const Record& stairs) {
+    const Point2 foot = pointOf(stairs.tuple("at"));
+    const Pose2 frame{foot, stairs.angle("heading")};
+    const double width = stairs.tuple("size")[0], run = stairs.tuple("size")[1];
+    constexpr double kStraight = 1e-3;
+    FloorOpening opening;
+    if (stairs.has("top") &&
+        distance(pointOf(stairs.tuple("top")), frame * Point2{run, 0}) > kStraight)
+        return opening;
+    const Point2 right = frame * Point2{0, -width / 2}, left = frame * Point2{0, width / 2};
+    const Point2 far_right = frame * Point2{run, -width / 2};
+    const Point2 far_left = frame * Point2{run, width / 2};
+    opening.outline = {right, far_right, far_left, left};
+    opening.flight = {{right, left}, {far_right, far_left}};
+    return opening;
+}
+
+FloorOpening openingOfShaft(const Record& shaft) {
+    FloorOpening opening;
+    for (const Tuple& corner : shaft.list("path")) opening.outline.push_back(pointOf(corner));
+    opening.outline = counterClockwise(std::move(opening.outline));
+    return opening;
+}
+
+/// Returns the area less the openings.
+std::vector<Region> cutOut(const std::vector<Curve>& area, const std::vector<Polygon>& openings) {
+    std::vector<Layer> layers = {{.curves = area, .counts = false, .marks = 1}};
+    for (const Polygon& opening : openings) layers.push_back({.curves = {curveOf(opening)}});
+    return Overlay(layers).regions(
+        [](const LayerLabel& label) { return label.marks == 1 && label.count == 0; });
+}
+
+/// Collects triangles in the frame of a room.
+class Triangles {
+  public:
+    void add(Point3 a, Point3 b, Point3 c) {
+        const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
+        for (const Point3 p : {a, b, c})
+            mesh_.vertices.push_back(
+                {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+        mesh_.triangles.push_back({first, first + 1, first + 2});
+    }
+    void addLevel(const std::vector<Region>& regions, double z) {
+        for (const Region& region : regions) {
+            const Triangulation parts = triangulate(region);
+            const auto at = [&](std::uint32_t i) {
+                return Point3{parts.vertices[i].x, parts.vertices[i].y, z};
+            };
+            for (const auto& [a, b, c] : parts.triangles) add(at(a), at(b), at(c));
+        }
+    }
+    void addSheet(const Segment2& line, double bottom, double top) {
+        addQuad(line, bottom, line, top);
+    }
+    /// Adds a plane strip between two parallel edges, each at a height.
+    void addQuad(const Segment2& low, double bottom, const Segment2& high, double top) {
+        const Point3 a{low.a.x, low.a.y, bottom}, b{low.b.x, low.b.y, bottom};
+        const Point3 c{high.b.x, high.b.y, top}, d{high.a.x, high.a.y, top};
+        add(a, b, c);
+        add(a, c, d);
+    }
+    [[nodiscard]] bool empty() const { return mesh_.triangles.empty(); }
+    TriangleMesh take() { return std::move(mesh_); }
+
+  private:
+    TriangleMesh mesh_;
+};
+
+/// Builds what stands above a storey: other storeys, and its own ceiling with its openings.
+class Surroundings {
+  public:
+    Surroundings(const BuildingScene& building, std::span<const FloorOpening> openings,
+                 std::span<const std::size_t> storeys)
+        : building_(building),
+          storeys_(storeys),
+          base_(building.document.storeys[storeys.front()]) {
+        for (const FloorOpening& opening : openings)
+            if (isHere(opening.below) && isHere(opening.above)) openings_.push_back(&opening);
+    }
+
+    Environment room() {
+        const Scene& base = *building_.scenes[storeys_.front()];
+        std::vector<Record> records = base.records;
+        std::vector<std::string> ids = base.ids;
+        if (const auto above = outlinesIn(storeys_.front(), false); !above.empty())
+            for (Record& record : records) {
+                if (record.keyword() != "ispace" || !record.flag("ceiling")) continue;
+                for (const Plate& plate : bodyOf(record).plates)
+                    addCeiling(plate, storeys_.front(), above);
+                record.set("ceiling", false);
+            }
+        for (const std::size_t storey : storeys_.subspan(1)) addStorey(storey);
+        addSides();
+        for (const FloorOpening* const opening : openings_) addSteps(*opening);
+        if (!triangles_.empty()) {
+            Record mesh(*sceneSchemas().find("mesh"));
+            mesh.set("file", std::string("storeys"));
+            mesh.set("up", std::string("z"));
+            mesh.setMesh(std::make_shared<const TriangleMesh>(triangles_.take()));
+            records.push_back(std::move(mesh));
+            ids.emplace_back("storeys");
+        }
+        return Environment(records, ids, base.environment);
+    }
+
+  private:
+    [[nodiscard]] bool isHere(std::size_t storey) const {
+        return std::find(storeys_.begin(), storeys_.end(), storey) != storeys_.end();
+    }
+    [[nodiscard]] double floorOf(std::size_t storey) const {
+        return building_.document.storeys[storey].floor - base_.floor;
+    }
+    /// Converts a point of a storey to the frame of the lowest one.
+    [[nodiscard]] Point2 placeOf(std::size_t storey, Point2 p) const {
+        return inStorey(base_, building_.document.storeys[storey].building_from_storey * p);
+    }
+    [[nodiscard]] Polygon inBase(Polygon outline) const {
+        for (Point2& p : outline) p = inStorey(base_, p);
+        return outline;
+    }
+    /// Returns the openings in the floor of a storey, or those above it.
+    [[nodiscard]] std::vector<Polygon> outlinesIn(std::size_t storey, bool in_floor) const {
+        std::vector<Polygon> outlines;
+        for (const FloorOpening* const opening : openings_)
+            if ((in_floor ? opening->above : opening->below) == storey)
+                outlines.push_back(inBase(opening->outline));
+        return outlines;
+    }
+
+    void addCeiling(const Plate& plate, std::size_t storey, const std::vector<Polygon>& above) {
+        Polygon outline = plate.outline;
+        for (Point2& p : outline) p = placeOf(storey, p);
+        triangles_.addLevel(cutOut({curveOf(outline)}, above), floorOf(storey) + plate.z);
+    }
+
+    void addStorey(std::size_t storey) {
+        const Environment& room = building_.scenes[storey]->environment;
+        const double floor = floorOf(storey);
+        std::vector<Curve> indoor;
+        for (Polygon outline : curvesOf(room.indoor())) {
+            for (Point2& p : outline) p = placeOf(storey, p);
+            indoor.push_back(curveOf(outline));
+        }
+        triangles_.addLevel(cutOut(indoor, outlinesIn(storey, true)), floor);
+        const std::vector<Polygon> above = outlinesIn(storey, false);
+        for (const Element& element : room.elements()) {
+            Body body = element.body;
+            for (const Plate& plate : body.plates)
+                if (plate.material == Material::Ceiling) addCeiling(plate, storey, above);
+            std::erase_if(body.plates, [](const Plate& plate) {
+                return plate.visual_only || plate.material == Material::Ceiling;
+            });
+            for (const Mesh& mesh : meshesOf(body, Surfaces::Opaque)) addMesh(storey, mesh);
+        }
+    }
+
+    void addMesh(std::size_t storey, const Mesh& mesh) {
+        const double floor = floorOf(storey);
+        const auto at = [&](std::uint32_t i) {
+            const Point3& p = mesh.vertices[i];
+            const Point2 place = placeOf(storey, p.onFloor());
+            return Point3{place.x, place.y, floor + p.z};
+        };
+        for (const auto& [a, b, c] : mesh.triangles) triangles_.add(at(a), at(b), at(c));
+    }
+
+    /// Closes the openings at their sides, between a storey and the floor above it. Openings that
+    /// overlap have common sides.
+    void addSides() {
+        std::map<std::pair<std::size_t, std::size_t>, std::vector<Layer>> joints;
+        for (const FloorOpening* const opening : openings_)
+            joints[{opening->below, opening->above}].push_back(
+                {.curves = {curveOf(inBase(opening->outline))}});
+        for (const auto& [joint, layers] : joints) {
+            const double bottom = floorOf(joint.first) + building_.height(joint.first);
+            const double top = floorOf(joint.second);
+            if (!(bottom < top)) continue;
+            const Overlay overlay(layers);
+            for (const Region& region :
+                 overlay.regions([](const LayerLabel& label) { return label.count > 0; }))
+                region.forEachEdge(
+                    [&](const Segment2& side) { triangles_.addSheet(side, bottom, top); });
+        }
+    }
+
+    /// Adds the steps of stairs, as a plane.
+    void addSteps(const FloorOpening& opening) {
+        if (opening.flight.size() != 2) return;
+        const auto edge = [&](const Segment2& step) {
+            return Segment2{inStorey(base_, step.a), inStorey(base_, step.b)};
+        };
+        triangles_.addQuad(edge(opening.flight[0]), floorOf(opening.below), edge(opening.flight[1]),
+                           floorOf(opening.above));
+    }
+
+    const BuildingScene& building_;
+    std::span<const std::size_t> storeys_;
+    const Storey& base_;
+    std::vector<const FloorOpening*> openings_;
+    Triangles triangles_;
+};
+
+}  // namespace
+
+std::vector<FloorOpening> floorOpenings(const BuildingScene& building) {
+    std::vector<FloorOpening> openings;
+    for (const StoreyPassage& passage : building.document.passages) {
+        const bool is_shaft = passage.record.keyword() == "shaft";
+        if (!is_shaft && passage.record.keyword() != "stairs") continue;
+        FloorOpening opening =
+            is_shaft ? openingOfShaft(passage.record) : openingOf(passage.record);
+        if (opening.outline.size() < 3 || signedArea(opening.outline) == 0) continue;
+        for (std::size_t k = 0; k + 1 < passage.storeys.size(); ++k) {
+            opening.below = passage.storeys[k];
+            opening.above = passage.storeys[k + 1];
+            const auto& storeys = building.document.storeys;
+            if (storeys[opening.below].floor < storeys[opening.above].floor)
+                openings.push_back(opening);
+        }
+    }
+    return openings;
+}
+
+Environment joinedRoom(const BuildingScene& building, std::span<const FloorOpening> openings,
+                       std::span<const std::size_t> storeys) {
+    return Surroundings(building, openings, storeys).room();
+}
+
+}  // namespace ispace

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "coverage/coverage.h"
+#include "coverage/shadow_footprint.h"
+#include "geom/curve.h"
+#include "scene/sensor/sensor.h"
+
+namespace ispace {
+
+/// The view that a sensor has of a room in which it does not stand, through openings.
+struct OutsideView {
+    Sensor sensor;              ///< in the frame of the room that it sees
+    std::vector<Curve> region;  ///< on the plane, at the requested density
+    std::vector<Curve> whole;   ///< at any density
+};
+
+/// Returns true for a sensor whose view into other rooms is known: one that sees by itself, in a
+/// field of view with a closed form. Lasers scan their own room.
+bool seesOutside(const Sensor& sensor);
+
+/// Computes the regions of a view. \param caster of the bodies of both rooms and those between
+/// \param sensor in the frame of the caster \param density see CoverageOptions
+/// \param reach limit of the range, metres
+OutsideView viewThrough(const ShadowCaster& caster, const Sensor& sensor, double plane,
+                        double density, double reach);
+
+/// Maps sensor and regions to the frame in which that of the view lies at `pose`, `lift` metres
+/// above its floor.
+OutsideView moved(OutsideView view, const Pose2& pose, double lift);
+
+/// Measures a scene as measureCoverage() does, with the views of sensors that stand outside of its
+/// room. Their indices follow those of the scene's own sensors.
+Coverage measureWithOutside(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+                            std::span<const std::shared_ptr<const OutsideView>> outside);
+
+/// Returns the view by cells and in closed form, as measureCoverage() has it of a sensor of the
+/// room. \param index see SensorView
+SensorView sensorViewOf(const OutsideView& view, std::size_t index, const Grid& grid,
+                        const CoverageOptions& options);
+
+}  // namespace ispace
