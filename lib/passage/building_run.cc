@@ -214,6 +214,20 @@ std::string BuildingRun::whereText(std::size_t room) const {
     return "storey=" + storey_id(nearest) + " in=" + in.id + " z=" + formatFixed(z, 3);
 }
 
+RoomFrame BuildingRun::frameOf(std::size_t room) const {
+    const Data::Room& in = data_->rooms[room];
+    const std::vector<Storey>& storeys = data_->building.document.storeys;
+    if (in.storey) {
+        const Storey& storey = storeys[*in.storey];
+        const Pose2& frame = storey.building_from_storey;
+        return {{{frame.position.x, frame.position.y, storey.floor}, frame.heading, {}, {}}, true};
+    }
+    const StoreyLink& passage = data_->passages[in.passage];
+    const double z = passage.is_lift ? data_->lifts[in.passage].height(in.world->time())
+                                     : storeys[passage.storeys[in.flight]].floor;
+    return {{{0, 0, z}, {}, {}, {}}, false};
+}
+
 std::optional<std::size_t> BuildingRun::Data::stopNamed(const StoreyLink& lift,
                                                         std::string_view storey) const {
     for (std::size_t stop = 0; stop < lift.storeys.size(); ++stop)

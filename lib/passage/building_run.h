@@ -85,6 +85,8 @@ class BuildingRun final : public JoinedWorlds {
     [[nodiscard]] std::span<const JoinedRoom> rooms() const override;
     [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view mover) const override;
     [[nodiscard]] std::string whereText(std::size_t room) const override;
+    /// A flight of stairs is at the height of the storey below it.
+    [[nodiscard]] RoomFrame frameOf(std::size_t room) const override;
     TripAnswer travel(const std::string& mover, TripPlan plan) override;
     TripAnswer ride(const std::string& mover, std::string_view lift,
                     std::string_view storey) override;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geom/point.h"
+#include "geom/pose.h"
 #include "scene/room_state.h"
 #include "sim/simulation.h"
 
@@ -19,6 +20,12 @@ namespace ispace {
 struct JoinedRoom {
     std::string id;
     Simulation* simulation = nullptr;  ///< the first one leads the others
+};
+
+/// Where a room is now, in the coordinates of all worlds.
+struct RoomFrame {
+    Pose3 pose;              ///< of the room's frame, on its floor
+    bool is_storey = false;  ///< else it is the cabin of a lift, which moves, or a flight of stairs
 };
 
 /// A point of one of the worlds.
@@ -88,6 +95,7 @@ class JoinedWorlds {
     /// Returns the keys of a reply that tell where a mover of a room is: "storey=upper", or
     /// "storey=upper in=l1 z=2.100".
     [[nodiscard]] virtual std::string whereText(std::size_t room) const = 0;
+    [[nodiscard]] virtual RoomFrame frameOf(std::size_t room) const = 0;
 
     /// Sends a mover by the fastest way to the points of a plan. \pre the speed is one that it can
     /// go

@@ -38,10 +38,6 @@ void mustBeAboutBuildings(const SimrunOptions& options, const BuildingInput& inp
     refuse(!options.zones.empty(), "--zone");
     refuse(!options.report.empty(), "--report");
     refuse(options.suggestions.has_value(), "--suggest");
-    refuse(options.foxglove.has_value(), "--foxglove");
-    refuse(options.rosbridge.has_value(), "--rosbridge");
-    refuse(options.ros_domain.has_value(), "--ros2");
-    refuse(!options.mcap.empty(), "--mcap");
     refuse(!options.load_folder.empty(), "--load");
 }
 

@@ -313,7 +313,7 @@ void FoxgloveDialogue::callService(std::string_view payload) {
 void FoxgloveDialogue::sendParameters(const std::set<std::string>& names, const std::string& id) {
     JsonWriter json;
     json.beginObject().key("op").value("parameterValues").key("parameters").beginArray();
-    for (const RosParameter& one : rosParameters(state().simulation())) {
+    for (const RosParameter& one : rosParameters(state().simulation(), feed().isOfOneRoom())) {
         if (!names.empty() && !names.contains(one.name)) continue;
         json.beginObject().key("name").value(one.name).key("value");
         std::visit([&json](const auto& value) { json.value(value); }, one.value);
@@ -338,7 +338,8 @@ void FoxgloveDialogue::setParameters(const Json& request) {
     std::set<std::string> names;
     for (const Json& one : member(request, "parameters")) {
         const std::string name = textOf(member(one, "name"));
-        const auto line = requestToSet(state().simulation(), name, member(one, "value"));
+        const auto line =
+            requestToSet(state().simulation(), feed().isOfOneRoom(), name, member(one, "value"));
         if (!line) {
             tell(Level::Error, excerpt(name) + " cannot be set to this");
             if (!id.empty()) sendParameters({name}, id);
@@ -361,7 +362,8 @@ void FoxgloveDialogue::watchParameters(const Json& request) {
     const Json& names = member(request, "parameterNames");
     for (const Json& one : names) watch(textOf(one));
     if (!names.empty()) return;
-    for (const RosParameter& one : rosParameters(state().simulation())) watch(one.name);
+    for (const RosParameter& one : rosParameters(state().simulation(), feed().isOfOneRoom()))
+        watch(one.name);
 }
 
 void FoxgloveDialogue::unwatchParameters(const Json& request) {
@@ -382,11 +384,15 @@ void FoxgloveDialogue::fetchAsset(const Json& request) {
         head += why;
         send({.head = std::move(head), .body = bytes, .is_text = false});
     };
-    if (textOf(member(request, "uri")) != kRosRoom)
-        return answer(nullptr, "the only asset is package://ispace/room.glb");
+    const std::vector<std::string> meshes = feed().meshes();
+    const auto mesh = std::find(meshes.begin(), meshes.end(), textOf(member(request, "uri")));
+    if (mesh == meshes.end())
+        return answer(nullptr, (meshes.size() == 1 ? "the only asset is " : "the first asset is ") +
+                                   meshes.front());
     if (fetches_ >= kMaxFetches) return answer(nullptr, "too many assets at once");
     ++fetches_;
-    feed().fetchRoom([self = std::weak_ptr(self_), answer](auto mesh) {
+    const auto which = static_cast<std::size_t>(mesh - meshes.begin());
+    feed().fetchRoom(which, [self = std::weak_ptr(self_), answer](auto mesh) {
         const auto dialogue = self.lock();
         if (!dialogue) return;
         --(*dialogue)->fetches_;

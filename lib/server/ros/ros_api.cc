@@ -143,7 +143,8 @@ void writeTime(const Question& question, JsonWriter& out) {
 
 void writeParameterNames(const Question& question, JsonWriter& out) {
     out.key("names").beginArray();
-    for (const RosParameter& one : rosParameters(question.simulation)) out.value(one.name);
+    for (const RosParameter& one : rosParameters(question.simulation, question.feed.isOfOneRoom()))
+        out.value(one.name);
     out.endArray();
 }
 
@@ -151,7 +152,7 @@ void writeParameterNames(const Question& question, JsonWriter& out) {
 void writeParameter(const Question& question, JsonWriter& out) {
     const std::string name = question.argument("name");
     JsonWriter value;
-    for (const RosParameter& one : rosParameters(question.simulation))
+    for (const RosParameter& one : rosParameters(question.simulation, question.feed.isOfOneRoom()))
         if (one.name == name) std::visit([&](const auto& it) { value.value(it); }, one.value);
     out.key("value").value(value.text().empty() ? question.argument("default") : value.text());
 }

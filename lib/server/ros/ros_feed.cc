@@ -29,21 +29,43 @@ std::shared_ptr<const std::string> RosMessage::cbor() const {
 
 RosFeed::RosFeed(ServerState& state, RosScenery scenery)
     : state_(&state), scenery_(std::move(scenery)) {
+    if (const ServedRooms* const served = state.rooms()) {
+        for (const JoinedRoom& room : served->worlds->rooms())
+            worlds_.push_back({.id = room.id, .simulation = room.simulation});
+        for (ServerState* const each : served->states) rooms_.push_back({.state = each});
+    } else {
+        worlds_.push_back({.id = "", .simulation = &state.simulation()});
+        rooms_.push_back({.state = &state});
+    }
     sync();
 }
 
-/// Topics that remain keep their numbers and subscriptions.
-void RosFeed::sync() {
-    const World& world = state_->simulation().world();
-    if (std::exchange(changes_, world.changes()) == world.changes()) return;
-    frames_.emplace(world);
-    map_.reset();
+/// Returns true if any world has changed since the last call.
+bool RosFeed::hasChanged() {
+    bool is_changed = false;
+    for (Room& room : rooms_) {
+        const std::int64_t changes = room.state->simulation().world().changes();
+        if (std::exchange(room.changes, changes) == changes) continue;
+        room.map.reset();
+        room.sonar_steps = -1;
+        is_changed = true;
+    }
+    return is_changed;
+}
+
+/// Updates the positions of rooms.
+void RosFeed::place() {
+    const ServedRooms* const served = state_->rooms();
+    if (served == nullptr) return;
+    for (std::size_t i = 0; i < worlds_.size(); ++i) worlds_[i].frame = served->worlds->frameOf(i);
+}
+
+/// Gives each channel its number: that which it had, else a new one.
+void RosFeed::number(Entries& entries, bool& is_changed) {
     std::map<std::pair<std::string, RosType>, std::uint32_t> known;
     for (const auto& [number, entry] : entries_)
         known.emplace(std::pair(entry.channel.topic, entry.channel.type), number);
-    Entries entries;
-    bool is_changed = false;
-    for (RosChannel& channel : rosChannels(world, *frames_)) {
+    for (RosChannel& channel : rosChannels(worlds_)) {
         const auto old = known.find({channel.topic, channel.type});
         const bool is_new = old == known.end();
         const std::uint32_t number = is_new ? next_number_++ : old->second;
@@ -55,6 +77,16 @@ void RosFeed::sync() {
             entry.periods.emplace(entry.channel.rate);
         is_changed = is_changed || is_new;
     }
+}
+
+/// Topics that remain keep their numbers and subscriptions.
+void RosFeed::sync() {
+    if (!hasChanged()) return;
+    place();
+    nameFrames(worlds_);
+    Entries entries;
+    bool is_changed = false;
+    number(entries, is_changed);
     is_changed = is_changed || entries.size() != entries_.size();
     entries_ = std::move(entries);
     if (!is_changed) return;
@@ -105,29 +137,33 @@ void RosFeed::unwant(std::uint32_t number) {
 void RosFeed::stepped() {
     if (clients_ == 0 && wanted_.empty()) return;
     sync();
+    place();
     for (const std::uint32_t number : wanted_) update(entries_.at(number));
     takeFrames();
 }
 
 /// Computes the message of the current period, unless a background job does.
 void RosFeed::update(Entry& entry) {
-    const World& world = state_->simulation().world();
     const RosChannel& channel = entry.channel;
     if (channel.isInput()) return;
+    const World& world = worlds_[channel.room].world();
     if (channel.sensor != nullptr) {
         const Sensor& sensor = world.sensors()[channel.subject];
         if (isHeavy(sensor)) return;
         const SensorReading& reading = world.reading(channel.subject);
         if (reading.seq == entry.period) return;
-        return publish(
-            entry, reading.seq,
-            rosMessageOf(*channel.sensor, sensor, reading, frames_->sensors[channel.subject]));
+        const RosFrames& frames = worlds_[channel.room].frames;
+        return publish(entry, reading.seq,
+                       rosMessageOf(*channel.sensor, sensor, reading,
+                                    frames.sensors[channel.subject], frames.room));
     }
     const std::int64_t period =
         entry.periods ? entry.periods->newest(world.time()) : std::int64_t{0};
     if (period == entry.period) return;
-    if (channel.type == RosType::OccupancyGrid && !map_) return drawMap();
-    publish(entry, period, channel.row->encode(moment(), channel.subject, channel.part));
+    if (channel.type == RosType::OccupancyGrid && !rooms_[channel.room].map)
+        return drawMap(channel.room);
+    publish(entry, period,
+            channel.row->encode(moment(channel.room), channel.subject, channel.part));
 }
 
 void RosFeed::publish(Entry& entry, std::int64_t period, std::string message) {
@@ -138,62 +174,75 @@ void RosFeed::publish(Entry& entry, std::int64_t period, std::string message) {
         std::move(message));
 }
 
-RosMoment RosFeed::moment() {
-    World& world = state_->simulation().world();
-    const auto refresh = [this, &world] {
-        if (std::exchange(sonar_steps_, world.steps()) == world.steps()) return;
-        sonars_.assign(world.robots().size(), {});
-        bumpers_.assign(world.robots().size(), {});
+RosMoment RosFeed::moment(std::size_t index) {
+    Room& room = rooms_[index];
+    World& world = room.state->simulation().world();
+    const auto refresh = [&room, &world] {
+        if (std::exchange(room.sonar_steps, world.steps()) == world.steps()) return;
+        room.sonars.assign(world.robots().size(), {});
+        room.bumpers.assign(world.robots().size(), {});
     };
-    return {.simulation = state_->simulation(),
-            .frames = *frames_,
-            .map = map_,
-            .has_room = scenery_.room != nullptr,
-            .sonars = [this, &world, refresh](std::size_t robot) -> const std::vector<float>& {
+    return {.rooms = worlds_,
+            .room = worlds_[index],
+            .map = room.map,
+            .has_mesh = scenery_.room != nullptr,
+            .sonars = [&room, &world, refresh](std::size_t robot) -> const std::vector<float>& {
                 refresh();
-                if (sonars_[robot].empty()) sonars_[robot] = world.sonar(robot);
-                return sonars_[robot];
+                if (room.sonars[robot].empty()) room.sonars[robot] = world.sonar(robot);
+                return room.sonars[robot];
             },
-            .bumpers = [this, &world, refresh](std::size_t robot) -> const std::vector<bool>& {
+            .bumpers = [&room, &world, refresh](std::size_t robot) -> const std::vector<bool>& {
                 refresh();
-                if (bumpers_[robot].empty()) bumpers_[robot] = world.bumper(robot);
-                return bumpers_[robot];
+                if (room.bumpers[robot].empty()) room.bumpers[robot] = world.bumper(robot);
+                return room.bumpers[robot];
             }};
 }
 
-/// Computes the map in the background, then publishes it.
-void RosFeed::drawMap() {
-    if (!scenery_.map || std::exchange(is_drawing_, true)) return;
+/// Computes the map of a room in the background, then publishes it.
+void RosFeed::drawMap(std::size_t index) {
+    Room& room = rooms_[index];
+    if (!scenery_.map || std::exchange(room.is_drawing, true)) return;
     const auto map = std::make_shared<RosGrid>();
-    state_->runInBackground(
-        {[map, draw = scenery_.map, scene = state_->simulation().world().sharedScene()] {
+    room.state->runInBackground(
+        {[map, draw = scenery_.map, scene = worlds_[index].world().sharedScene()] {
              *map = draw(*scene);
          },
-         [self = std::weak_ptr(self_), map, changes = changes_](const std::exception_ptr& failure) {
+         [self = std::weak_ptr(self_), map, index,
+          changes = room.changes](const std::exception_ptr& failure) {
              const auto feed = self.lock();
              if (!feed) return;
-             (*feed)->is_drawing_ = false;
-             if (changes != (*feed)->changes_) return;
+             Room& of = (*feed)->rooms_[index];
+             of.is_drawing = false;
+             if (changes != of.changes) return;
              // A room without a map, such as one that is too large, has an empty one.
-             (*feed)->map_ = failure ? RosGrid() : std::move(*map);
+             of.map = failure ? RosGrid() : std::move(*map);
          }});
 }
 
-void RosFeed::fetchRoom(std::function<void(std::shared_ptr<const std::string>)> deliver) {
-    if (room_ && room_changes_ == changes_) return deliver(room_);
+std::vector<std::string> RosFeed::meshes() const {
+    std::vector<std::string> uris;
+    for (const RosRoom& room : worlds_) uris.push_back(room.mesh());
+    return uris;
+}
+
+void RosFeed::fetchRoom(std::size_t which,
+                        std::function<void(std::shared_ptr<const std::string>)> deliver) {
+    Room& room = rooms_[which];
+    if (room.mesh && room.mesh_changes == room.changes) return deliver(room.mesh);
     if (!scenery_.room) return deliver(std::make_shared<const std::string>());
     const auto mesh = std::make_shared<std::string>();
-    state_->runInBackground(
-        {[mesh, draw = scenery_.room, scene = state_->simulation().world().sharedScene()] {
+    room.state->runInBackground(
+        {[mesh, draw = scenery_.room, scene = worlds_[which].world().sharedScene()] {
              *mesh = draw(*scene);
          },
-         [self = std::weak_ptr(self_), mesh, changes = changes_,
+         [self = std::weak_ptr(self_), mesh, which, changes = room.changes,
           deliver = std::move(deliver)](const std::exception_ptr& failure) {
              const auto feed = self.lock();
              if (!feed) return;
              if (failure) mesh->clear();
-             (*feed)->room_ = mesh;
-             (*feed)->room_changes_ = changes;
+             Room& of = (*feed)->rooms_[which];
+             of.mesh = mesh;
+             of.mesh_changes = changes;
              deliver(mesh);
          }});
 }
@@ -201,59 +250,61 @@ void RosFeed::fetchRoom(std::function<void(std::shared_ptr<const std::string>)> 
 /// Begins the next frame that a reader waits for.
 void RosFeed::takeFrames() {
     if (is_taking_) return;
-    const World& world = state_->simulation().world();
-    std::set<std::size_t> due;
+    std::set<SensorOfRoom> due;
     for (const std::uint32_t number : wanted_) {
         const Entry& entry = entries_.at(number);
+        if (entry.channel.sensor == nullptr) continue;
+        const World& world = worlds_[entry.channel.room].world();
         const std::size_t sensor = entry.channel.subject;
-        if (entry.channel.sensor != nullptr && isHeavy(world.sensors()[sensor]) &&
-            entry.period != world.period(sensor))
-            due.insert(sensor);
+        if (isHeavy(world.sensors()[sensor]) && entry.period != world.period(sensor))
+            due.insert({entry.channel.room, sensor});
     }
     if (due.empty()) return;
     const auto next = due.lower_bound(turn_);
-    const std::size_t sensor = next == due.end() ? *due.begin() : *next;
-    turn_ = sensor + 1;
-    takeFrame(sensor);
+    const SensorOfRoom which = next == due.end() ? *due.begin() : *next;
+    turn_ = {which.first, which.second + 1};
+    takeFrame(which);
 }
 
 /// Reads a heavy sensor in the background, and encodes all its wanted topics there.
-void RosFeed::takeFrame(std::size_t sensor) {
+void RosFeed::takeFrame(SensorOfRoom which) {
     is_taking_ = true;
-    const World& world = state_->simulation().world();
+    const auto [room, sensor] = which;
+    const World& world = worlds_[room].world();
     const auto messages = std::make_shared<std::map<std::uint32_t, std::string>>();
+    std::vector<std::pair<std::uint32_t, const RosTopic*>> topics;
     for (const std::uint32_t number : wanted_) {
         const Entry& entry = entries_.at(number);
-        if (entry.channel.sensor != nullptr && entry.channel.subject == sensor &&
-            entry.period != world.period(sensor))
-            messages->emplace(number, "");
+        const RosChannel& channel = entry.channel;
+        if (channel.sensor == nullptr || SensorOfRoom(channel.room, channel.subject) != which ||
+            entry.period == world.period(sensor))
+            continue;
+        messages->emplace(number, "");
+        topics.emplace_back(number, channel.sensor);
     }
-    std::vector<std::pair<std::uint32_t, const RosTopic*>> topics;
-    for (const auto& [number, message] : *messages)
-        topics.emplace_back(number, entries_[number].channel.sensor);
-    state_->takeFrame({.sensor = sensor,
-                       .use =
-                           [messages, topics, model = world.sensors()[sensor],
-                            frame = frames_->sensors[sensor]](const SensorReading& reading) {
-                               for (const auto& [number, topic] : topics)
-                                   (*messages)[number] =
-                                       rosMessageOf(*topic, model, reading, frame);
-                           },
-                       .deliver =
-                           [self = std::weak_ptr(self_), messages, changes = changes_,
-                            period = world.period(sensor)](const std::exception_ptr& failure) {
-                               const auto feed = self.lock();
-                               if (!feed) return;
-                               (*feed)->is_taking_ = false;
-                               if (changes != (*feed)->state_->simulation().world().changes())
-                                   return;
-                               for (auto& [number, message] : *messages) {
-                                   const auto found = (*feed)->entries_.find(number);
-                                   if (found == (*feed)->entries_.end()) continue;
-                                   (*feed)->publish(found->second, period,
-                                                    failure ? std::string() : std::move(message));
-                               }
-                           }});
+    rooms_[room].state->takeFrame(
+        {.sensor = sensor,
+         .use =
+             [messages, topics, model = world.sensors()[sensor],
+              frame = worlds_[room].frames.sensors[sensor],
+              in = worlds_[room].frames.room](const SensorReading& reading) {
+                 for (const auto& [number, topic] : topics)
+                     (*messages)[number] = rosMessageOf(*topic, model, reading, frame, in);
+             },
+         .deliver =
+             [self = std::weak_ptr(self_), messages, room = room, changes = rooms_[room].changes,
+              period = world.period(sensor)](const std::exception_ptr& failure) {
+                 const auto feed = self.lock();
+                 if (!feed) return;
+                 (*feed)->is_taking_ = false;
+                 if (changes != (*feed)->worlds_[room].world().changes()) return;
+                 for (auto& [number, message] : *messages) {
+                     const auto found = (*feed)->entries_.find(number);
+                     if (found == (*feed)->entries_.end()) continue;
+                     (*feed)->publish(found->second, period,
+                                      failure ? std::string() : std::move(message));
+                 }
+             }});
 }
 
 }  // namespace ispace

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "server/ros/ros_topics.h"
@@ -43,8 +44,9 @@ class RosMessage {
     mutable std::shared_ptr<const std::string> json_, cbor_;
 };
 
-/// The topics of a running world and their newest messages. Only messages of wanted topics are
-/// computed: at the rate of their row, and at each reading of a sensor.
+/// The topics of a running world, or of all worlds of a run, and their newest messages. Only
+/// messages of wanted topics are computed: at the rate of their row, and at each reading of a
+/// sensor.
 ///
 /// Pictures and depth frames are taken in the background, one at a time, in turn.
 class RosFeed {
@@ -81,38 +83,54 @@ class RosFeed {
     /// Returns true if all clients together have as many subscriptions as they may.
     [[nodiscard]] bool isFull() const;
 
-    [[nodiscard]] const RosFrames& frames() const { return *frames_; }
-    /// Computes the mesh of the room in the background. `deliver` gets "" on failure.
-    void fetchRoom(std::function<void(std::shared_ptr<const std::string> mesh)> deliver);
+    /// False for the run of a building, in which clients do not change the rooms.
+    [[nodiscard]] bool isOfOneRoom() const { return state_->rooms() == nullptr; }
+    /// Returns the URIs of meshes of rooms.
+    [[nodiscard]] std::vector<std::string> meshes() const;
+    /// Computes the mesh of a room in the background. `deliver` gets "" on failure.
+    /// \param which index in meshes()
+    void fetchRoom(std::size_t which,
+                   std::function<void(std::shared_ptr<const std::string> mesh)> deliver);
 
   private:
+    /// The state of a world of the run, and derived data of it.
+    struct Room {
+        ServerState* state = nullptr;
+        std::int64_t changes = -1;  // change count of the world that the channels describe
+        std::optional<RosGrid> map = {};
+        bool is_drawing = false;  // the map
+        // Of the robots at `sonar_steps`, computed when needed.
+        std::vector<std::vector<float>> sonars = {};
+        std::vector<std::vector<bool>> bumpers = {};
+        std::int64_t sonar_steps = -1;
+        std::shared_ptr<const std::string> mesh = {};  // of the world `mesh_changes`
+        std::int64_t mesh_changes = -1;
+    };
+    /// A sensor by room and index.
+    using SensorOfRoom = std::pair<std::size_t, std::size_t>;
+
     void update(Entry& entry);
     void publish(Entry& entry, std::int64_t period, std::string message);
-    void drawMap();
+    [[nodiscard]] bool hasChanged();
+    void number(Entries& entries, bool& is_changed);
+    void place();
+    void drawMap(std::size_t room);
     void takeFrames();
-    void takeFrame(std::size_t sensor);
-    [[nodiscard]] RosMoment moment();
+    void takeFrame(SensorOfRoom which);
+    [[nodiscard]] RosMoment moment(std::size_t room);
 
     ServerState* state_;
     RosScenery scenery_;
-    std::optional<RosFrames> frames_;
+    std::vector<RosRoom> worlds_;  // of the run
+    std::vector<Room> rooms_;      // in the same order
     Entries entries_;
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> numbers_;  // by topic
     std::set<std::uint32_t> wanted_;                                          // topics
     std::size_t clients_ = 0, subscriptions_ = 0;
     std::uint32_t next_number_ = 1;
     std::int64_t version_ = 0, messages_ = 0;
-    std::int64_t changes_ = -1;  // change count of the world that entries_ describe
-    std::optional<RosGrid> map_;
-    bool is_drawing_ = false;  // the map
-    bool is_taking_ = false;   // a frame
-    std::size_t turn_ = 0;     // sensor whose frame is next
-    // Of the robots at `sonar_steps_`, computed when needed.
-    std::vector<std::vector<float>> sonars_;
-    std::vector<std::vector<bool>> bumpers_;
-    std::int64_t sonar_steps_ = -1;
-    std::shared_ptr<const std::string> room_;  // mesh of the world `room_changes_`
-    std::int64_t room_changes_ = -1;
+    bool is_taking_ = false;  // a frame
+    SensorOfRoom turn_{};     // whose frame is next
     // Guards deliveries of background jobs that outlive the feed.
     std::shared_ptr<RosFeed*> self_ = std::make_shared<RosFeed*>(this);
 };

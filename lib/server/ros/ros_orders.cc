@@ -25,8 +25,21 @@ RosOrders::RosOrders(ServerState& state, std::function<void(const std::string&)>
     : state_(&state), tell_(std::move(tell)), session_(state) {}
 
 RosOrders::~RosOrders() {
-    state_->sync();
-    for (const auto& [robot, driven] : driven_) state_->release(robot, driven.hold);
+    for (const auto& [robot, driven] : driven_) release(robot, driven.hold);
+}
+
+ServerState& RosOrders::stateOf(std::size_t room) {
+    return state_->rooms() == nullptr ? *state_ : *state_->rooms()->states[room];
+}
+
+ServerState& RosOrders::stateOf(const std::string& robot) { return *state_->find(robot).state; }
+
+void RosOrders::release(const std::string& robot, std::int64_t hold) {
+    ServerState& state = stateOf(robot);
+    state.sync();
+    if (state_->rooms() != nullptr && state.holds(robot, hold))
+        state_->rooms()->worlds->abandonTrip(robot);
+    state.release(robot, hold);
 }
 
 bool RosOrders::present(std::string_view token) {
@@ -89,7 +102,8 @@ void RosOrders::takeAnswer() {
 
 void RosOrders::obey(const RosChannel& channel, std::string_view message) {
     const RosOrder order = channel.row->decode(channel.type, message);
-    const std::string robot = state_->simulation().world().robots()[channel.subject].id;
+    const World& world = stateOf(channel.room).simulation().world();
+    const std::string robot = world.robots()[channel.subject].id;
     if (state_->simulation().isReplay())
         return tell_("this run is a replay: robots go as recorded");
     if (const auto* twist = std::get_if<RosTwist>(&order)) return drive(robot, *twist);
@@ -97,14 +111,15 @@ void RosOrders::obey(const RosChannel& channel, std::string_view message) {
 }
 
 void RosOrders::drive(const std::string& robot, const RosTwist& twist) {
-    World& world = state_->simulation().world();
+    ServerState& state = stateOf(robot);
+    World& world = state.simulation().world();
     if (!std::isfinite(twist.forward + twist.left + twist.turn.radians()))
         return tell_("the speeds of " + robot + " must be numbers");
-    state_->sync();
+    state.sync();
     const auto index = world.robotNamed(robot);
     Driven& driven = driven_[robot];
-    if (driven.hold == 0 || !state_->holds(robot, driven.hold)) {
-        const auto hold = state_->hold(robot);
+    if (driven.hold == 0 || !state.holds(robot, driven.hold)) {
+        const auto hold = state.hold(robot);
         if (!hold || !index) {
             driven_.erase(robot);
             return tell_("robot " + robot + " is held by another client");
@@ -112,6 +127,10 @@ void RosOrders::drive(const std::string& robot, const RosTwist& twist) {
         driven.hold = *hold;
     }
     driven.last = world.time();
+    if (state_->rooms() != nullptr)
+        if (const std::string busy = state_->rooms()->worlds->endTrip(robot, Outcome::Replaced);
+            !busy.empty())
+            return tell_(robot + ": " + busy);
     const RobotModel& model = world.robots()[*index].model;
     const auto give = [&](Verb verb, double value, double most) {
         const Command command{.verb = verb, .value = std::clamp(value, -most, most)};
@@ -141,14 +160,13 @@ void RosOrders::place(const std::string& robot, const RosPose& pose) {
 void RosOrders::watch() {
     if (driven_.empty()) return;
     const SimTime now = state_->simulation().world().time();
-    state_->sync();
     for (auto robot = driven_.begin(); robot != driven_.end();) {
         const SimTime since = now - robot->second.last;
         if (since >= SimTime(0) && since < kRosSilence) {
             ++robot;
             continue;
         }
-        state_->release(robot->first, robot->second.hold);
+        release(robot->first, robot->second.hold);
         robot = driven_.erase(robot);
     }
 }

@@ -34,7 +34,7 @@ inline constexpr SimTime kRosSilence = std::chrono::milliseconds(1500);
 /// Orders of one client of topics to robots, and its requests to the world.
 ///
 /// A robot is held while orders come; it stops and is free again when none has come for
-/// kRosSilence.
+/// kRosSilence. Among several worlds, orders find it in whichever it is.
 class RosOrders {
   public:
     /// \param tell reports a failure that answers no request
@@ -71,7 +71,10 @@ class RosOrders {
     };
     void answerRequests();
     void takeAnswer();
+    [[nodiscard]] ServerState& stateOf(std::size_t room);
+    [[nodiscard]] ServerState& stateOf(const std::string& robot);
     void drive(const std::string& robot, const RosTwist& twist);
+    void release(const std::string& robot, std::int64_t hold);
     void place(const std::string& robot, const RosPose& pose);
     void watch();
 

@@ -15,9 +15,10 @@ constexpr const char *kPaused = "clock.paused", *kRate = "clock.rate";
 
 }  // namespace
 
-std::vector<RosParameter> rosParameters(const Simulation& simulation) {
+std::vector<RosParameter> rosParameters(const Simulation& simulation, bool with_things) {
     const World& world = simulation.world();
     std::vector<RosParameter> out{{kPaused, simulation.paused()}, {kRate, simulation.clock().rate}};
+    if (!with_things) return out;
     for (std::size_t i = 0; i < world.movers().size(); ++i) {
         const Pose2 pose = world.status(i).pose;
         const std::string& id = world.movers()[i].id;
@@ -33,9 +34,9 @@ std::vector<RosParameter> rosParameters(const Simulation& simulation) {
     return out;
 }
 
-std::optional<std::string> requestToSet(const Simulation& simulation, const std::string& name,
-                                        const nlohmann::json& value) {
-    const std::vector<RosParameter> all = rosParameters(simulation);
+std::optional<std::string> requestToSet(const Simulation& simulation, bool with_things,
+                                        const std::string& name, const nlohmann::json& value) {
+    const std::vector<RosParameter> all = rosParameters(simulation, with_things);
     const auto known = std::find_if(all.begin(), all.end(),
                                     [&](const RosParameter& one) { return one.name == name; });
     if (known == all.end() || name == kRate) return std::nullopt;

@@ -18,11 +18,12 @@ struct RosParameter {
     std::string name;
     std::variant<bool, double, std::vector<double>> value;
 };
-std::vector<RosParameter> rosParameters(const Simulation& simulation);
+/// \param with_things else those of the clock alone
+std::vector<RosParameter> rosParameters(const Simulation& simulation, bool with_things = true);
 
 /// Returns the request that sets a parameter: "SET r1.at=1,2", "PAUSE". Empty if there is no such
 /// parameter, it cannot be set, or the value has another type.
-std::optional<std::string> requestToSet(const Simulation& simulation, const std::string& name,
-                                        const nlohmann::json& value);
+std::optional<std::string> requestToSet(const Simulation& simulation, bool with_things,
+                                        const std::string& name, const nlohmann::json& value);
 
 }  // namespace ispace

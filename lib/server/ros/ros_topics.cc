@@ -5,10 +5,12 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "scene/robot.h"
+#include "server/server_state.h"
 #include "sim/sensor_reading.h"
 
 namespace ispace {
@@ -47,6 +49,45 @@ RosFrames::RosFrames(const World& world) {
     }
 }
 
+std::string RosRoom::topic(std::string_view name) const {
+    return (id.empty() ? "/" : '/' + frames.room + '/') + std::string(name);
+}
+
+std::string RosRoom::mesh() const {
+    return "package://ispace/" + (id.empty() ? std::string("room") : frames.room) + ".glb";
+}
+
+void nameFrames(std::span<RosRoom> rooms) {
+    if (rooms.size() == 1 && rooms.front().id.empty()) {
+        rooms.front().frames = RosFrames(rooms.front().world());
+        return;
+    }
+    std::set<std::string> taken{std::string(kRosWorld)};
+    // By id, in whichever room a thing is now. Odometry frames are named after all movers.
+    std::map<std::string, std::string> movers, odometries, sensors;
+    for (RosRoom& room : rooms) {
+        room.frames = {};
+        room.frames.room = uniqueName(taken, rosName(room.id));
+        for (const Mover& mover : room.world().movers()) movers[mover.id];
+        for (const PlacedRobot& robot : room.world().robots()) odometries[robot.id];
+        for (const Sensor& sensor : room.world().sensors())
+            if (!rosTopicsOf(sensor).empty()) sensors[nameAcross(room.id, sensor.id)];
+    }
+    for (auto& [id, name] : movers) name = uniqueName(taken, rosName(id));
+    for (auto& [id, name] : odometries) name = uniqueName(taken, movers[id] + "_odom");
+    for (auto& [id, name] : sensors) name = uniqueName(taken, rosName(id));
+    for (RosRoom& room : rooms) {
+        for (const Mover& mover : room.world().movers())
+            room.frames.movers.push_back(movers[mover.id]);
+        for (const PlacedRobot& robot : room.world().robots())
+            room.frames.odometries.push_back(odometries[robot.id]);
+        for (const Sensor& sensor : room.world().sensors()) {
+            const auto named = sensors.find(nameAcross(room.id, sensor.id));
+            room.frames.sensors.push_back(named == sensors.end() ? "" : named->second);
+        }
+    }
+}
+
 std::string RosFrames::sonar(std::size_t robot, std::size_t which) const {
     return movers[robot] + "_sonar_" + std::to_string(which);
 }
@@ -67,13 +108,13 @@ std::vector<const RosTopic*> rosTopicsOf(const Sensor& sensor) {
 }
 
 std::string rosMessageOf(const RosTopic& topic, const Sensor& sensor, const SensorReading& reading,
-                         std::string_view frame) {
+                         std::string_view frame, std::string_view room) {
     const ReadingKind& kind = readingKind(sensor.model);
     SimTime time = reading.time;
     if (kind.delay != nullptr)
         time += SimTime(std::llround(kind.delay(sensor, 0) * 1e9));  // of the first beam
     const std::string optical = std::string(frame) + kOptical;
-    if (topic.frame == RosFrame::World) frame = kRosWorld;
+    if (topic.frame == RosFrame::World) frame = room;
     if (topic.frame == RosFrame::Optical) frame = optical;
     return topic.message({rosTimeOf(time), frame}, viewOf(sensor, reading));
 }
@@ -81,40 +122,49 @@ std::string rosMessageOf(const RosTopic& topic, const Sensor& sensor, const Sens
 namespace {
 
 std::string clockOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
-    return clockMessage(rosTimeOf(moment.world().time()));
+    return clockMessage(moment.now());
 }
 
-/// Movers, odometry frames, and swept lasers, which move on their mounts.
-std::string movingFrames(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
-    const World& world = moment.world();
-    const RosFrames& frames = moment.frames;
-    const RosHeader now = moment.header();
-    std::vector<RosTransform> out;
+/// Adds movers, odometry frames, and swept lasers, which move on their mounts.
+void addMoving(const RosRoom& room, std::uint64_t now, std::vector<RosTransform>& out) {
+    const World& world = room.world();
+    const RosFrames& frames = room.frames;
     for (std::size_t i = 0; i < world.movers().size(); ++i) {
         const Pose2 pose = world.status(i).pose;
-        if (i >= world.robots().size()) {
-            addMoverFrame(out, now.nanoseconds, frames.movers[i], pose);
-            continue;
-        }
-        addRobotFrames(out, now.nanoseconds, frames.odometries[i], frames.movers[i], pose,
-                       world.odometry(i).pose);
+        if (i >= world.robots().size())
+            addMoverFrame(out, now, frames.movers[i], pose);
+        else
+            addRobotFrames(out, now, frames.odometries[i], frames.movers[i], pose,
+                           world.odometry(i).pose);
     }
+    for (RosTransform& one : out)
+        if (one.header.frame == kRosWorld) one.header.frame = frames.room;
     for (std::size_t i = 0; i < world.sensors().size(); ++i)
         if (isSwept(world.sensors()[i]))
-            out.push_back({now, frames.sensors[i], world.reading(i).pose});
+            out.push_back({{now, frames.room}, frames.sensors[i], world.reading(i).pose});
+}
+
+/// Adds the frames of rooms among several: storeys, or all that may move.
+void addRooms(const RosMoment& moment, bool are_storeys, std::vector<RosTransform>& out) {
+    for (const RosRoom& room : moment.rooms)
+        if (!room.id.empty() && room.frame.is_storey == are_storeys)
+            out.push_back({{moment.now(), kRosWorld}, room.frames.room, room.frame.pose});
+}
+
+std::string movingFrames(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
+    std::vector<RosTransform> out;
+    for (const RosRoom& room : moment.rooms) addMoving(room, moment.now(), out);
+    addRooms(moment, false, out);
     return transformsMessage(out);
 }
 
-/// Sensors on their carriers or in the room, optical frames, and sonars.
-std::string fixedFrames(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
-    const World& world = moment.world();
-    const RosFrames& frames = moment.frames;
-    const RosHeader in_world = moment.header();
-    const auto on = [&](std::size_t mover) {
-        return RosHeader{in_world.nanoseconds, frames.movers[mover]};
-    };
-    std::deque<std::string> names;  // of which the transforms have views
-    std::vector<RosTransform> out;
+/// Adds sensors on their carriers or in the room, optical frames, and sonars. \param names of
+/// which the transforms have views
+void addFixed(const RosRoom& room, std::uint64_t now, std::deque<std::string>& names,
+              std::vector<RosTransform>& out) {
+    const World& world = room.world();
+    const RosFrames& frames = room.frames;
+    const auto on = [&](std::size_t mover) { return RosHeader{now, frames.movers[mover]}; };
     for (std::size_t i = 0; i < world.sensors().size(); ++i) {
         const Sensor& sensor = world.sensors()[i];
         if (frames.sensors[i].empty()) continue;
@@ -126,11 +176,11 @@ std::string fixedFrames(const RosMoment& moment, std::size_t /*robot*/, std::siz
             out.push_back({on(mover), frames.sensors[i],
                            poseOn(world.people()[*sensor.person].pose, sensor.pose)});
         } else if (!isSwept(sensor)) {
-            out.push_back({in_world, frames.sensors[i], sensor.pose});
+            out.push_back({{now, frames.room}, frames.sensors[i], sensor.pose});
         }
         if (!hasOptical(sensor)) continue;
         names.push_back(frames.sensors[i] + kOptical);
-        out.push_back({{in_world.nanoseconds, frames.sensors[i]}, names.back(), Pose3(), true});
+        out.push_back({{now, frames.sensors[i]}, names.back(), Pose3(), true});
     }
     for (std::size_t robot = 0; robot < world.robots().size(); ++robot) {
         const RobotModel& model = world.robots()[robot].model;
@@ -145,6 +195,13 @@ std::string fixedFrames(const RosMoment& moment, std::size_t /*robot*/, std::siz
                             {}}});
         }
     }
+}
+
+std::string fixedFrames(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
+    std::deque<std::string> names;
+    std::vector<RosTransform> out;
+    for (const RosRoom& room : moment.rooms) addFixed(room, moment.now(), names, out);
+    addRooms(moment, true, out);
     return transformsMessage(out);
 }
 
@@ -153,7 +210,7 @@ std::string mapOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*
 }
 
 std::string roomOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
-    return moment.has_room ? roomMessage(moment.header(), kRosRoom) : "";
+    return moment.has_mesh ? roomMessage(moment.header(), moment.room.mesh()) : "";
 }
 
 std::string peopleOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
@@ -167,8 +224,7 @@ std::string peopleOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t
 }
 
 std::string diagnosticsOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
-    const Simulation& simulation = moment.simulation;
-    const World& world = moment.world();
+    const Simulation& simulation = *moment.room.simulation;
     const bool is_late = simulation.lost() > SimTime(0);
     std::vector<RosDiagnostic> all{
         {.name = "simrun: clock",
@@ -176,27 +232,28 @@ std::string diagnosticsOf(const RosMoment& moment, std::size_t /*robot*/, std::s
                     : simulation.paused() ? "paused"
                                           : "running",
          .is_warning = is_late,
-         .values = {{"steps", std::to_string(world.steps())},
+         .values = {{"steps", std::to_string(moment.world().steps())},
                     {"lost seconds", formatMilliseconds(simulation.lost())},
                     {"late steps", std::to_string(simulation.lateness().late)}}}};
-    for (std::size_t i = 0; i < world.robots().size(); ++i) {
-        const bool is_stalled = world.isStalled(i);
-        all.push_back({.name = "simrun: robot " + world.robots()[i].id,
-                       .message = is_stalled ? "ran into a body" : "free",
-                       .is_warning = is_stalled});
-    }
-    return diagnosticsMessage({moment.header().nanoseconds, ""}, all);
+    for (const RosRoom& room : moment.rooms)
+        for (std::size_t i = 0; i < room.world().robots().size(); ++i) {
+            const bool is_stalled = room.world().isStalled(i);
+            all.push_back({.name = "simrun: robot " + room.world().robots()[i].id,
+                           .message = is_stalled ? "ran into a body" : "free",
+                           .is_warning = is_stalled});
+        }
+    return diagnosticsMessage({moment.now(), ""}, all);
 }
 
 std::string odometryOf(const RosMoment& moment, std::size_t robot, std::size_t /*part*/) {
     const Odometry odometry = moment.world().odometry(robot);
-    return odometryMessage({moment.header().nanoseconds, moment.frames.odometries[robot]},
-                           moment.frames.movers[robot], odometry.pose,
+    return odometryMessage({moment.now(), moment.frames().odometries[robot]},
+                           moment.frames().movers[robot], odometry.pose,
                            {odometry.speed, odometry.sidespeed, odometry.rotspeed});
 }
 
 std::string sonarOf(const RosMoment& moment, std::size_t robot, std::size_t part) {
-    return rangeMessage({moment.header().nanoseconds, moment.frames.sonar(robot, part)},
+    return rangeMessage({moment.now(), moment.frames().sonar(robot, part)},
                         moment.world().robots()[robot].model.sonar, moment.sonars(robot)[part]);
 }
 
@@ -216,9 +273,9 @@ constexpr RosRow kRows[] = {
     {"clock", RosType::Clock, Of::World, 50, kNewest, clockOf},
     {"tf", RosType::TFMessage, Of::World, 50, kTransforms, movingFrames},
     {"tf_static", RosType::TFMessage, Of::World, 0, kLatched, fixedFrames},
-    {"map", RosType::OccupancyGrid, Of::World, 0, kLatched, mapOf},
-    {"room", RosType::MarkerArray, Of::World, 0, kLatched, roomOf},
-    {"people", RosType::MarkerArray, Of::World, 10, kDefault, peopleOf},
+    {"map", RosType::OccupancyGrid, Of::Room, 0, kLatched, mapOf},
+    {"room", RosType::MarkerArray, Of::Room, 0, kLatched, roomOf},
+    {"people", RosType::MarkerArray, Of::Room, 10, kDefault, peopleOf},
     {"diagnostics", RosType::DiagnosticArray, Of::World, 1, kDefault, diagnosticsOf},
     {"odom", RosType::Odometry, Of::Robot, 50, kDefault, odometryOf},
     {"sonar", RosType::Range, Of::Sonar, 10, kSensorData, sonarOf},
@@ -229,15 +286,17 @@ constexpr RosRow kRows[] = {
 // NOLINTEND(readability-magic-numbers)
 
 /// Adds the channels of a row about one robot.
-void addOf(const RosRow& row, const std::string& name, const RobotModel& model, std::size_t robot,
+void addOf(const RosRow& row, const RosRoom& room, std::size_t index, std::size_t robot,
            std::vector<RosChannel>& out) {
-    RosChannel channel{.topic = "/" + name + "/" + std::string(row.name),
+    RosChannel channel{.topic = "/" + room.frames.movers[robot] + "/" + std::string(row.name),
                        .type = row.type,
                        .rate = row.rate,
                        .quality = row.quality,
+                       .room = index,
                        .subject = robot,
                        .row = &row};
     if (row.subject == Of::Robot) return out.push_back(std::move(channel));
+    const RobotModel& model = room.world().robots()[robot].model;
     const std::size_t parts =
         row.subject == Of::Sonar ? model.sonar.places.size() : model.bumpers.size();
     const std::string topic = channel.topic;
@@ -247,34 +306,56 @@ void addOf(const RosRow& row, const std::string& name, const RobotModel& model, 
     }
 }
 
+/// Adds the channels of a row, of all rooms.
+void addOf(const RosRow& row, std::span<const RosRoom> rooms, std::vector<RosChannel>& out) {
+    if (row.subject == Of::World)
+        out.push_back({.topic = "/" + std::string(row.name),
+                       .type = row.type,
+                       .rate = row.rate,
+                       .quality = row.quality,
+                       .row = &row});
+    std::size_t robots = 0;
+    for (std::size_t k = 0; k < rooms.size(); ++k) {
+        const RosRoom& room = rooms[k];
+        // A latched row is about the room itself.
+        if (row.subject == Of::Room && (room.frame.is_storey || !row.quality.is_latched))
+            out.push_back({.topic = room.topic(row.name),
+                           .type = row.type,
+                           .rate = row.rate,
+                           .quality = row.quality,
+                           .room = k,
+                           .row = &row});
+        if (row.subject == Of::World || row.subject == Of::Room) continue;
+        for (std::size_t i = 0; i < room.world().robots().size(); ++i) addOf(row, room, k, i, out);
+        robots += room.world().robots().size();
+    }
+    // Programs for one robot know no name of it.
+    if (row.decode == nullptr || robots != 1) return;
+    const std::size_t room = out.back().room;
+    out.push_back(
+        {.topic = "/" + std::string(row.name), .type = row.type, .room = room, .row = &row});
+}
+
 }  // namespace
 
 std::span<const RosRow> rosRows() { return kRows; }
 
-std::vector<RosChannel> rosChannels(const World& world, const RosFrames& frames) {
+std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms) {
     std::vector<RosChannel> out;
-    for (const RosRow& row : kRows) {
-        const std::size_t robots = row.subject == Of::World ? 0 : world.robots().size();
-        if (row.subject == Of::World)
-            out.push_back({.topic = "/" + std::string(row.name),
-                           .type = row.type,
-                           .rate = row.rate,
-                           .quality = row.quality,
-                           .row = &row});
-        for (std::size_t i = 0; i < robots; ++i)
-            addOf(row, frames.movers[i], world.robots()[i].model, i, out);
-        // Programs for one robot know no name of it.
-        if (row.decode != nullptr && robots == 1)
-            out.push_back({.topic = "/" + std::string(row.name), .type = row.type, .row = &row});
-    }
-    for (std::size_t i = 0; i < world.sensors().size(); ++i) {
-        const Sensor& sensor = world.sensors()[i];
-        for (const RosTopic* topic : rosTopicsOf(sensor))
-            out.push_back({.topic = "/" + frames.sensors[i] + "/" + std::string(topic->name),
-                           .type = topic->type,
-                           .rate = periodRate(sensor),
-                           .subject = i,
-                           .sensor = topic});
+    for (const RosRow& row : kRows) addOf(row, rooms, out);
+    for (std::size_t k = 0; k < rooms.size(); ++k) {
+        const World& world = rooms[k].world();
+        for (std::size_t i = 0; i < world.sensors().size(); ++i) {
+            const Sensor& sensor = world.sensors()[i];
+            for (const RosTopic* topic : rosTopicsOf(sensor))
+                out.push_back(
+                    {.topic = "/" + rooms[k].frames.sensors[i] + "/" + std::string(topic->name),
+                     .type = topic->type,
+                     .rate = periodRate(sensor),
+                     .room = k,
+                     .subject = i,
+                     .sensor = topic});
+        }
     }
     return out;
 }

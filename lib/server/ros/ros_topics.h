@@ -16,6 +16,7 @@
 
 #include "sense/formats/reading_fields.h"
 #include "sense/formats/ros_messages.h"
+#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
 
 namespace ispace {
@@ -30,16 +31,32 @@ inline constexpr RosQuality kSensorData{.depth = 5};
 
 /// The frames of a scene, by index of World::movers() and World::sensors(). Names are unique.
 struct RosFrames {
+    RosFrames() = default;
     explicit RosFrames(const World& world);
 
+    std::string room = std::string(kRosWorld);    ///< of all that stands in the scene
     std::vector<std::string> movers, odometries;  ///< of robots alone: odometries
     std::vector<std::string> sensors;             ///< of mats and gates: ""
     /// Returns the frame of one sonar: "r1_sonar_3".
     [[nodiscard]] std::string sonar(std::size_t robot, std::size_t which) const;
 };
 
-/// URI of the room's mesh in /room.
-inline constexpr std::string_view kRosRoom = "package://ispace/room.glb";
+/// A world of the run, at a moment.
+struct RosRoom {
+    std::string id;  ///< "": the only one
+    const Simulation* simulation = nullptr;
+    RoomFrame frame = {{}, true};  ///< in the frame of all worlds
+    RosFrames frames = {};
+
+    [[nodiscard]] const World& world() const { return simulation->world(); }
+    /// Returns the topic of a row about rooms: "/map", "/ground/map".
+    [[nodiscard]] std::string topic(std::string_view name) const;
+    /// Returns the URI of its mesh in /room: "package://ispace/room.glb", ".../ground.glb".
+    [[nodiscard]] std::string mesh() const;
+};
+/// Sets the frames of the worlds of a run: of several, each room has one of its name, and ids are
+/// those across the worlds. A mover keeps its frames wherever it goes.
+void nameFrames(std::span<RosRoom> rooms);
 
 /// Returns nanoseconds as ROS counts them, at most 2^31 seconds.
 std::uint64_t rosTimeOf(SimTime time);
@@ -47,20 +64,23 @@ std::uint64_t rosTimeOf(SimTime time);
 /// The topics of a sensor, in the order of its row.
 std::vector<const RosTopic*> rosTopicsOf(const Sensor& sensor);
 /// Writes the message of a topic; "" if this reading has none. \param frame of the sensor
+/// \param room frame of its room
 std::string rosMessageOf(const RosTopic& topic, const Sensor& sensor, const SensorReading& reading,
-                         std::string_view frame);
+                         std::string_view frame, std::string_view room = kRosWorld);
 
-/// The world between two steps. Sonars and bumpers are computed when needed.
+/// The worlds between two steps. Sonars and bumpers are computed when needed.
 struct RosMoment {
-    const Simulation& simulation;
-    const RosFrames& frames;
-    const std::optional<RosGrid>& map;  ///< empty until it is computed
-    bool has_room = false;              ///< there is a mesh of the room
+    std::span<const RosRoom> rooms;     ///< of the run
+    const RosRoom& room;                ///< that of the channel
+    const std::optional<RosGrid>& map;  ///< of the room; empty until it is computed
+    bool has_mesh = false;              ///< there is a mesh of the room
     std::function<const std::vector<float>&(std::size_t robot)> sonars;
     std::function<const std::vector<bool>&(std::size_t robot)> bumpers;
 
-    [[nodiscard]] const World& world() const { return simulation.world(); }
-    [[nodiscard]] RosHeader header() const { return {rosTimeOf(world().time()), kRosWorld}; }
+    [[nodiscard]] const World& world() const { return room.world(); }
+    [[nodiscard]] const RosFrames& frames() const { return room.frames; }
+    [[nodiscard]] std::uint64_t now() const { return rosTimeOf(world().time()); }
+    [[nodiscard]] RosHeader header() const { return {now(), frames().room}; }
 };
 
 /// A message to a robot: its speeds, or its pose in the world.
@@ -71,7 +91,8 @@ struct RosRow {
     std::string_view name;  ///< after the subject's name
     RosType type;
     enum class Of {
-        World,
+        World,  ///< /NAME, of all worlds
+        Room,   ///< /NAME, of several worlds /ground/NAME
         Robot,  ///< /r1/NAME
         Sonar,  ///< /r1/NAME_0, ...
         Bumper
@@ -92,14 +113,16 @@ struct RosChannel {
     RosType type = RosType::Clock;
     double rate = 0;
     RosQuality quality = kSensorData;
-    std::size_t subject = 0;           ///< index of the robot or the sensor
+    std::size_t room = 0;              ///< index of the world
+    std::size_t subject = 0;           ///< index of the robot or the sensor in it
     std::size_t part = 0;              ///< of the sonar or bumper
     const RosRow* row = nullptr;       ///< null: a sensor's topic
     const RosTopic* sensor = nullptr;  ///< null: a row's topic
 
     [[nodiscard]] bool isInput() const { return row != nullptr && row->decode != nullptr; }
 };
-/// Returns all topics of the world, rows first. Inputs that accept two types are two channels.
-std::vector<RosChannel> rosChannels(const World& world, const RosFrames& frames);
+/// Returns all topics of the worlds, rows first. Inputs that accept two types are two channels.
+/// Cabins of lifts and flights of stairs have neither map nor mesh.
+std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms);
 
 }  // namespace ispace

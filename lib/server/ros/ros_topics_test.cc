@@ -29,7 +29,7 @@ std::vector<Words> linesOf(const std::string& text) {
 
 std::string topicOf(const RosRow& row) {
     const std::string name(row.name);
-    if (row.subject == RosRow::Of::World) return "/" + name;
+    if (row.subject == RosRow::Of::World || row.subject == RosRow::Of::Room) return "/" + name;
     return "/R/" + name + (row.subject == RosRow::Of::Robot ? "" : "_N");
 }
 

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Topics of a run with several worlds.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "server/ros/ros_feed.h"
+#include "server/ros/ros_orders.h"
+#include "sim/joined_worlds.h"
+#include "support/test_layout.h"
+
+namespace ispace {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kRoom = "ispace size=8,6\n";
+constexpr const char* kRobot =
+    "robot id=ground/r1 at=1,2 heading=90\nlaser id=ground/eye on=ground/r1 at=0,0,0.3 fov=4\n";
+constexpr const char* kFixed = "laser id=l at=-3,-2 fov=4 step=2 range=0.1,7.002\n";
+
+/// Two storeys in steps of 0.1 s, the upper one turned and moved, and the cabin of a lift. The
+/// robot begins on the lower one.
+class ThreeRooms final : public JoinedWorlds {
+  public:
+    ThreeRooms() {
+        simulations_[0].lead(simulations_[1]);
+        simulations_[0].lead(simulations_[2]);
+    }
+
+    /// Moves the robot between two rooms.
+    void go(std::size_t from, std::size_t to) {
+        worlds_[from].change(testing::scene(kRoom, kFixed));
+        worlds_[to].change(testing::scene(kRoom, std::string(kFixed) + kRobot));
+        at_ = to;
+        for (const Observer& observer : observers_) observer("ground/r1", from, to);
+    }
+    double cabin = 0;  ///< height
+    std::string busy;  ///< reason of endTrip()
+    std::vector<Outcome> ends;
+
+    [[nodiscard]] std::span<const JoinedRoom> rooms() const override { return rooms_; }
+    [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view mover) const override {
+        return mover == "ground/r1" ? std::optional(at_) : std::nullopt;
+    }
+    [[nodiscard]] std::string whereText(std::size_t /*room*/) const override { return ""; }
+    [[nodiscard]] RoomFrame frameOf(std::size_t room) const override {
+        if (room == 2) return {{{0, 0, cabin}, {}, {}, {}}, false};
+        if (room == 1) return {{{10, 0, 3}, Angle::degrees(90), {}, {}}, true};
+        return {{}, true};
+    }
+    TripAnswer travel(const std::string& /*mover*/, TripPlan /*plan*/) override { return {}; }
+    TripAnswer ride(const std::string& /*mover*/, std::string_view /*lift*/,
+                    std::string_view /*storey*/) override {
+        return {};
+    }
+    std::string endTrip(const std::string& /*mover*/, Outcome outcome) override {
+        ends.push_back(outcome);
+        return busy;
+    }
+    void abandonTrip(const std::string& /*mover*/) override { ends.push_back(Outcome::Stopped); }
+    std::string call(std::string_view /*lift*/, std::string_view /*storey*/) override { return ""; }
+    [[nodiscard]] std::vector<LiftState> lifts() const override { return {}; }
+    [[nodiscard]] std::span<const TripEnd> tripEnds() const override { return {}; }
+    void onMove(Observer observer) override { observers_.push_back(std::move(observer)); }
+
+    World& world(std::size_t room) { return worlds_[room]; }
+    Simulation& simulation(std::size_t room) { return simulations_[room]; }
+
+  private:
+    static constexpr auto kStep = std::chrono::milliseconds(100);
+    static World worldOf(const std::string& layout) {
+        return {std::make_shared<const Scene>(testing::scene(kRoom, layout)), kStep};
+    }
+    World worlds_[3] = {worldOf(std::string(kFixed) + kRobot), worldOf(kFixed), worldOf(kFixed)};
+    Simulation simulations_[3] = {Simulation(worlds_[0], {}, {Clock::Kind::Step, 1}, {}),
+                                  Simulation(worlds_[1], {}, {Clock::Kind::Fast, 1}, {}),
+                                  Simulation(worlds_[2], {}, {Clock::Kind::Fast, 1}, {})};
+    std::vector<JoinedRoom> rooms_ = {
+        {"ground", &simulations_[0]}, {"upper", &simulations_[1]}, {"l1", &simulations_[2]}};
+    std::vector<Observer> observers_;
+    std::size_t at_ = 0;
+};
+
+struct Served {
+    Served() {
+        for (std::size_t i = 0; i < 3; ++i) states.emplace_back(worlds.simulation(i));
+        for (ServerState& state : states) served.states.push_back(&state);
+        served.worlds = &worlds;
+        for (ServerState& state : states) state.joinRooms(served);
+        worlds.onMove([this](const std::string& mover, std::size_t from, std::size_t to) {
+            states[to].takeOver(states[from], mover);
+        });
+        feed.emplace(states.front(), RosScenery{});
+    }
+    void step() {
+        worlds.simulation(0).allow(1);
+        worlds.simulation(0).run({}, std::chrono::nanoseconds(0));
+        feed->stepped();
+    }
+    const RosFeed::Entry& entry(const std::string& topic) const {
+        return feed->entries().at(feed->numbersOf(topic).front());
+    }
+    json newest(const std::string& topic) {
+        const std::uint32_t number = feed->numbersOf(topic).front();
+        feed->want(number);
+        const auto& message = feed->entries().at(number).newest;
+        return message ? json::parse(*message->json()) : json();
+    }
+    /// Returns the newest transforms by the frame that they are of.
+    std::map<std::string, json> transforms() {
+        std::map<std::string, json> all;
+        for (const char* topic : {"/tf", "/tf_static"}) {
+            const json message = newest(topic);
+            for (const json& one : message["transforms"]) {
+                EXPECT_FALSE(all.contains(one["child_frame_id"])) << one["child_frame_id"];
+                all[one["child_frame_id"]] = one;
+            }
+        }
+        return all;
+    }
+
+    ThreeRooms worlds;
+    std::deque<ServerState> states;
+    ServedRooms served;
+    std::optional<RosFeed> feed;
+};
+
+TEST(RosRooms, HaveTopicsOfTheirStoreysAndThings) {
+    const Served served;
+    std::set<std::string> topics;
+    for (const auto& [number, entry] : served.feed->entries()) topics.insert(entry.channel.topic);
+    for (const char* topic :
+         {"/clock", "/tf", "/tf_static", "/diagnostics", "/ground/map", "/upper/map", "/upper/room",
+          "/upper/people", "/l1/people", "/ground_r1/odom", "/ground_r1/cmd_vel", "/cmd_vel",
+          "/ground_eye/scan", "/ground_l/scan", "/upper_l/scan"})
+        EXPECT_TRUE(topics.contains(topic)) << topic;
+    for (const char* topic : {"/map", "/people", "/l1/map", "/l1/room", "/l/scan"})
+        EXPECT_FALSE(topics.contains(topic)) << topic;
+}
+
+TEST(RosRooms, StandInOneMapAtTheirHeights) {
+    Served served;
+    served.step();
+    auto frames = served.transforms();
+    EXPECT_EQ(frames["upper"]["header"]["frame_id"], "map");
+    EXPECT_EQ(frames["upper"]["transform"]["translation"],
+              json({{"x", 10.0}, {"y", 0.0}, {"z", 3.0}}));
+    EXPECT_NEAR(frames["upper"]["transform"]["rotation"]["z"].get<double>(), std::sqrt(0.5), 1e-9);
+    EXPECT_EQ(frames["upper_l"]["header"]["frame_id"], "upper");
+    EXPECT_EQ(frames["ground_r1_odom"]["header"]["frame_id"], "ground");
+    EXPECT_EQ(frames["ground_r1"]["header"]["frame_id"], "ground_r1_odom");
+    EXPECT_EQ(frames["ground_eye"]["header"]["frame_id"], "ground_r1");
+    served.worlds.cabin = 1.5;
+    served.step();
+    EXPECT_EQ(served.transforms()["l1"]["transform"]["translation"]["z"], 1.5);
+    EXPECT_EQ(served.newest("/upper_l/scan")["header"]["frame_id"], "upper_l");
+    EXPECT_EQ(served.newest("/ground/people")["markers"][0]["header"]["frame_id"], "ground");
+}
+
+TEST(RosRooms, FollowARobotToAnotherStorey) {
+    Served served;
+    const std::uint32_t odometry = served.feed->numbersOf("/ground_r1/odom").front();
+    served.feed->want(odometry);
+    served.worlds.go(0, 1);
+    served.step();
+    EXPECT_EQ(served.feed->numbersOf("/ground_r1/odom").front(), odometry);
+    EXPECT_EQ(served.entry("/ground_r1/odom").channel.room, 1U);
+    EXPECT_TRUE(served.entry("/ground_r1/odom").newest);
+    EXPECT_EQ(served.transforms()["ground_r1_odom"]["header"]["frame_id"], "upper");
+}
+
+TEST(RosRooms, OrdersFindTheRobotWhereverItIs) {
+    Served served;
+    std::vector<std::string> told;
+    RosOrders orders(served.states.front(), [&](const std::string& text) { told.push_back(text); });
+    const auto drive = [&] {
+        served.feed->sync();
+        const RosChannel& channel = served.entry("/ground_r1/cmd_vel").channel;
+        std::string message{"\0\1\0\0", 4};
+        const double speed = 0.25, none = 0;
+        message.append(reinterpret_cast<const char*>(&speed), sizeof speed);
+        for (int i = 0; i < 5; ++i)
+            message.append(reinterpret_cast<const char*>(&none), sizeof none);
+        orders.obey(channel, message);
+    };
+    drive();
+    served.step();
+    orders.stepped();
+    EXPECT_GT(served.worlds.world(0).status(0).speed, 0);
+    served.worlds.go(0, 1);
+    drive();
+    for (int i = 0; i < 5; ++i) served.step();
+    EXPECT_GT(served.worlds.world(1).status(0).speed, 0);
+    EXPECT_EQ(told, std::vector<std::string>());
+    // Silence stops it there, and frees it.
+    for (int i = 0; i < 20; ++i) {
+        served.step();
+        orders.stepped();
+    }
+    EXPECT_FALSE(orders.isDriving());
+    EXPECT_EQ(served.worlds.ends.back(), Outcome::Stopped);
+    EXPECT_EQ(served.worlds.world(1).status(0).speed, 0);
+    EXPECT_TRUE(served.states[1].hold("ground/r1"));
+    served.worlds.busy = "it is in the lift l1";
+    served.states[1].release("ground/r1", 2);
+    drive();
+    EXPECT_EQ(told.back(), "ground/r1: it is in the lift l1");
+}
+
+}  // namespace
+}  // namespace ispace
