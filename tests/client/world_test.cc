@@ -31,7 +31,8 @@ TEST(Building, LeadsRobotsByLifts) {
     const Motion trip = robot.goTo("upper", {9, 6});
     world.step(std::lround(70 / world.dt()));
     EXPECT_TRUE(robot.wait(trip).done);
-    EXPECT_EQ(robot.status().fields.text("storey"), "upper");
+    EXPECT_EQ(robot.status().storey, "upper");
+    EXPECT_EQ(robot.status().passage, "");
     world.call("l1", "ground");
     const std::vector<Lift> lifts = world.lifts();
     ASSERT_EQ(lifts.size(), 1U);
@@ -50,8 +51,9 @@ TEST(Building, ARobotLeftAloneInALiftStopsBehindIt) {
     {
         Robot robot(server.address(), "ground/r1");
         robot.goTo("upper", {9, 6});
-        for (int i = 0; i < 120 && robot.status().fields.text("in", "") != "l1"; ++i) simulate(0.5);
-        ASSERT_EQ(robot.status().fields.text("in", ""), "l1");
+        for (int i = 0; i < 120 && robot.status().passage != "l1"; ++i) simulate(0.5);
+        ASSERT_EQ(robot.status().passage, "l1");
+        EXPECT_EQ(robot.status().storey, "ground");
         EXPECT_THROW(robot.forward(1), Refused);
         EXPECT_THROW(robot.goTo("ground", {9, 6}), Refused);
     }

@@ -29,6 +29,8 @@ struct Status {
     double accel = 0;     ///< m/s²
     double rotaccel = 0;  ///< degrees/s²
     bool stall = false;   ///< it has run into a body, and stands until its next motion
+    std::string storey;   ///< of a building; in a lift that whose floor is nearest; "" in a room
+    std::string passage;  ///< the lift or the flight of stairs in which it is; "": on the storey
     Fields fields;        ///< all fields of the answer
 };
 
@@ -146,6 +148,8 @@ class Mover {
         status.accel = fields.number("accel");
         status.rotaccel = fields.number("rotaccel");
         status.stall = fields.flag("stall");
+        status.storey = fields.text("storey", "");
+        status.passage = fields.text("in", "");
         status.fields = fields;
         return status;
     }

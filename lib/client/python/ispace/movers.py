@@ -27,6 +27,8 @@ class Status:
     rotaccel: float  #: degrees/s²
     stall: bool  #: it has run into something, and stands until its next motion
     fields: Fields  #: all that the server says
+    storey: str = ""  #: of a building; in a lift that whose floor is nearest; "" in a room
+    passage: str = ""  #: the lift or the flight of stairs in which it is; "": on the storey
 
 
 @dataclass(frozen=True)
@@ -175,6 +177,8 @@ class Mover(Client):
             fields.number("rotaccel"),
             fields.flag("stall"),
             fields,
+            fields.get("storey", ""),
+            fields.get("in", ""),
         )
 
     def wait(self, motion: Motion, timeout: float = math.inf) -> End:
