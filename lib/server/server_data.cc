@@ -242,20 +242,23 @@ bool Server::Data::isStopped() {
     return ::poll(&signal, 1, 0) > 0;
 }
 
+/// Waits a moment for frames; false once a signal has ended the run.
+bool Server::Data::await() {
+    bool has_come = false;
+    for (ServerState* const each : states()) has_come = each->await() || has_come;
+    return has_come;
+}
+
 /// Writes the last step, with its frames unless a signal has ended the run.
 void Server::Data::finishRecord() {
-    while (!simulation.finishRecord(WallTime::max())) {
-        bool has_come = false;
-        for (ServerState* const each : states()) has_come = each->await() || has_come;
-        if (!has_come) break;
-    }
+    while (!simulation.finishRecord(WallTime::max()) && await()) continue;
 }
 
 /// Writes the last step likewise.
 void Server::Data::finishLog() {
     if (!log) return;
     log->stepped();
-    while (!state.isAtRest() && state.await()) log->stepped();
+    while (!state.areAllAtRest() && await()) log->stepped();
     log->finish();
 }
 

@@ -62,6 +62,7 @@ struct Server::Data {
     void relieve();
     void sweep();
     [[nodiscard]] bool isStopped();
+    bool await();
     void finishRecord();
     void finishLog();
     void end();

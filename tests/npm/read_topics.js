@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads an MCAP file of `simrun --mcap` with Foxglove's libraries and holds its topics against the record of the
-// same run: node read_topics.js FILE.mcap RUN
+// same run, if given: node read_topics.js FILE.mcap [RUN]
 // Prints a line for each topic: its name, its type, and the number of its messages. Exit status: 0 all is equal.
 'use strict';
 
@@ -42,7 +42,13 @@ async function main() {
     if (topic.endsWith('/scan')) scans.set(`${time} ${topic.split('/')[1]}`, content.ranges);
     if (topic === '/people') people = content.markers.length;
   }
-  const run = process.argv[3];
+  if (process.argv[3]) console.log(`compared ${compare(process.argv[3], frames, scans)}`);
+  console.log(`people ${people}`);
+  for (const row of [...counts.keys()].sort()) console.log(`${row} ${counts.get(row)}`);
+}
+
+/// Compares people's positions and scans with those of a record; returns their number.
+function compare(run, frames, scans) {
   const rows = fs.readFileSync(path.join(run, 'people.csv'), 'utf8').trim().split('\n').slice(1);
   let compared = 0;
   for (const line of rows) {
@@ -62,9 +68,7 @@ async function main() {
       `beam ${i} of ${line.sensor} at ${line.t}`));
     ++compared;
   }
-  console.log(`compared ${compared}`);
-  console.log(`people ${people}`);
-  for (const row of [...counts.keys()].sort()) console.log(`${row} ${counts.get(row)}`);
+  return compared;
 }
 
 main().catch((error) => {

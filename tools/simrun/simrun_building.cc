@@ -171,6 +171,8 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     Server server(simulation, options.listen, limitsOf(options), &run);
     const ServedAddresses addresses =
         servePorts(server, options, baseName(input->environment_operand));
+    std::optional<TopicLog> log;
+    if (!options.mcap.empty()) log.emplace(server, simulation, options);
     const StopSignals signals;
     server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;
@@ -188,6 +190,7 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     progress->end();
     for (std::size_t i = 0; i < records.size(); ++i)
         records[i]->recorder.end(run.rooms()[i].simulation->world());
+    if (log) log->commit();
     report(simulation, options);
     for (std::size_t i = 0; i < run.rooms().size(); ++i)
         if (run.replay(i) != nullptr && run.replay(i)->isCut())
