@@ -32,8 +32,10 @@ StoreyedDocument readRmfSite(const YamlNode& top, const std::string& operand,
 /// Reads all storeys of an IFC building that have walls or spaces, see readIfc().
 ///
 /// A flight of stairs from one of them to the next becomes `stairs`: the file gives the box around
-/// it, and the end with free floor before it is the foot.
-/// \throws FormatError as readIfc(), and if no storey has walls
+/// it, and the end with free floor before it is the foot. A transport element becomes a `lift` of
+/// the storeys with a door before one side of its box; one with a single door is left out.
+/// \throws FormatError as readIfc(), if no storey has walls, and if lifts and doors take more than
+///         a budget
 StoreyedDocument readIfcBuilding(std::string_view bytes, const std::string& operand,
                                  const ImportOptions& options);
 

@@ -11,6 +11,7 @@
 #include "building/building_imports.h"
 #include "building/building_scene.h"
 #include "building/building_schemas.h"
+#include "env/walls.h"
 #include "io/ifc/ifc_import.h"
 #include "io/import_records.h"
 #include "scene/placement_schemas.h"
@@ -24,6 +25,11 @@ namespace {
 constexpr double kStep = 0.6, kHandrail = 1.5;
 /// Boxes narrower or lower than this are railings and landings, metres.
 constexpr double kNarrowest = 0.5, kLowest = 1.0;
+/// Doors of a lift lie this far before its cabin, behind the wall of its shaft, or within it.
+constexpr double kBeforeCabin = 0.8, kIntoCabin = 0.3;
+constexpr std::size_t kSides = 4;  // of a cabin
+/// Cabins drawn on several storeys that are nearer to each other are one lift.
+constexpr double kSameShaft = 0.5;
 
 /// Finds the highest storey whose floor lies at a height, or below it by a distance.
 std::optional<std::size_t> floorAt(const StoreyedDocument& building, double height, double below) {
@@ -82,6 +88,91 @@ std::vector<Record> flightsOf(const StoreyedDocument& building, const IfcStoreys
     return flights;
 }
 
+/// A door of a storey, between the points of its opening, in the building.
+struct StoreyDoor {
+    std::size_t storey = 0;
+    Point2 from, to;
+};
+
+std::vector<StoreyDoor> doorsOf(const StoreyedDocument& building) {
+    std::vector<StoreyDoor> doors;
+    for (std::size_t i = 0; i < building.storeys.size(); ++i)
+        for (const Record& record : building.storeys[i].room->records)
+            if (record.keyword() == "door" && record.has("from") && record.has("to"))
+                doors.push_back({i, pointOf(record.tuple("from")), pointOf(record.tuple("to"))});
+    return doors;
+}
+
+/// The doors of a lift on one side of its cabin.
+struct LiftSide {
+    Vec2 out;                          // direction in which one leaves
+    double across = 0, along = 0;      // size of the cabin
+    double door = 0;                   // the narrowest of its doors
+    std::vector<std::size_t> storeys;  // ascending
+};
+
+/// Returns the side of a cabin with the most doors before it; the first of equal ones.
+LiftSide sideOf(const BuildingBox& cabin, const std::vector<StoreyDoor>& doors) {
+    LiftSide best;
+    for (std::size_t quarter = 0; quarter < kSides; ++quarter) {
+        LiftSide side;
+        side.out = quarter % 2 == 0 ? cabin.along : Vec2{-cabin.along.y, cabin.along.x};
+        if (quarter >= 2) side.out = -1 * side.out;
+        side.along = quarter % 2 == 0 ? cabin.length : cabin.width;
+        side.across = quarter % 2 == 0 ? cabin.width : cabin.length;
+        side.door = side.across;
+        for (const StoreyDoor& door : doors) {
+            const Vec2 way = door.from + 0.5 * (door.to - door.from) - cabin.center;
+            const double gap = dot(way, side.out) - side.along / 2;
+            if (gap < -kIntoCabin || gap > kBeforeCabin ||
+                std::abs(cross(side.out, way)) > side.across / 2)
+                continue;
+            side.door = std::min(side.door, std::abs(cross(side.out, door.to - door.from)));
+            if (side.storeys.empty() || side.storeys.back() != door.storey)
+                side.storeys.push_back(door.storey);
+        }
+        if (side.storeys.size() > best.storeys.size() && side.door > 0) best = side;
+    }
+    return best;
+}
+
+/// Finds the lifts: transport elements, one above the other or as high as a shaft, that have doors
+/// on two storeys or more. \param left_out counts the others
+/// \throws FormatError if comparing them with all doors takes more than the budget
+std::vector<Record> liftsOf(const StoreyedDocument& building, const IfcStoreys& all,
+                            const std::string& operand, Budget& work, ImportRecords& names,
+                            std::size_t& left_out) {
+    const std::vector<StoreyDoor> doors = doorsOf(building);
+    std::vector<Record> lifts;
+    std::vector<Point2> known;
+    for (const BuildingBox& box : all.lifts) {
+        if (!work.take(kSides * (1 + doors.size()) + known.size()))
+            throw FormatError({displayName(operand), 0, 0,
+                               "lifts and doors of the building make " + work.excess()});
+        if (std::any_of(known.begin(), known.end(),
+                        [&](Point2 center) { return distance(center, box.center) < kSameShaft; }))
+            continue;
+        const LiftSide side = sideOf(box, doors);
+        if (side.storeys.size() < 2) {
+            ++left_out;
+            continue;
+        }
+        known.push_back(box.center);
+        std::string storeys;
+        for (const std::size_t storey : side.storeys)
+            storeys += (storeys.empty() ? "" : ",") + building.storeys[storey].id;
+        Record record(*buildingSchemas().find("lift"));
+        record.set("id", names.freeId("lift", "lift"));
+        record.set("storeys", storeys);
+        record.set("at", Tuple{wholeMicrometres(box.center.x), wholeMicrometres(box.center.y)});
+        record.set("heading", nineDecimals(directionOf(side.out.x, side.out.y).degrees()));
+        record.set("size", Tuple{wholeMicrometres(side.across), wholeMicrometres(side.along)});
+        record.set("door", wholeMicrometres(side.door));
+        lifts.push_back(std::move(record));
+    }
+    return lifts;
+}
+
 }  // namespace
 
 StoreyedDocument readIfcBuilding(std::string_view bytes, const std::string& operand,
@@ -103,16 +194,20 @@ StoreyedDocument readIfcBuilding(std::string_view bytes, const std::string& oper
             {std::move(record), std::make_shared<const Document>(std::move(storey.room))});
     }
     StoreyedDocument building = makeBuilding(std::move(storeys), {}, operand);
-    std::vector<Record> flights = flightsOf(building, all, names);
-    if (!flights.empty()) {
+    std::vector<Record> passages = flightsOf(building, all, names);
+    Budget work(bytes.size(), options.max_work);
+    std::size_t left_out = 0;
+    for (Record& lift : liftsOf(building, all, operand, work, names, left_out))
+        passages.push_back(std::move(lift));
+    if (!passages.empty()) {
         std::vector<StoreyInput> inputs;
         for (const Storey& storey : building.storeys)
             inputs.push_back({storey.record, storey.room});
-        building = makeBuilding(std::move(inputs), std::move(flights), operand);
+        building = makeBuilding(std::move(inputs), std::move(passages), operand);
     }
-    if (!all.lifts.empty())
-        all.notes.push_back(countText(all.lifts.size(), "transport element") +
-                            " left out: the file does not tell the doors of lifts");
+    if (left_out > 0)
+        all.notes.push_back(countText(left_out, "transport element") +
+                            " left out: lifts have doors on two storeys or more");
     building.notes.insert(building.notes.begin(), all.notes.begin(), all.notes.end());
     building.warnings.insert(building.warnings.begin(), all.warnings.begin(), all.warnings.end());
     return building;
