@@ -19,27 +19,8 @@ namespace ispace {
 
 namespace {
 
-/// Most floors between a sensor and the storey that it sees.
-constexpr std::size_t kMostFloors = 16;
-
 /// Heights and positions of surroundings that differ by less are equal, metres.
 constexpr double kEqualWithin = 1e-9;
-
-/// Returns, for each storey, which others one reaches from it upwards through openings.
-std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,
-                                            std::span<const FloorOpening> openings) {
-    std::vector<std::vector<bool>> reached(storeys, std::vector<bool>(storeys));
-    std::vector<std::vector<std::size_t>> above(storeys);
-    for (const FloorOpening& opening : openings) above[opening.below].push_back(opening.above);
-    // The lowest storey is the first.
-    for (std::size_t i = storeys; i-- > 0;)
-        for (const std::size_t next : above[i]) {
-            reached[i][next] = true;
-            for (std::size_t k = next + 1; k < storeys; ++k)
-                if (reached[next][k]) reached[i][k] = true;
-        }
-    return reached;
-}
 
 /// Numbers that are equal for storeys in equal surroundings.
 using Surroundings = std::vector<std::int64_t>;
@@ -150,7 +131,7 @@ class StoreyViews {
             box.add(own.low);
             box.add(own.high);
         }
-        if (floors.size() > kMostFloors) return false;
+        if (floors.size() > kSightThroughFloors) return false;
         Box2 seen{{-range, -range}, {range, range}};  // on the plane, about the foot
         for (const auto& [height, box] : floors) {
             const double share = (plane - eye) / (height - eye);

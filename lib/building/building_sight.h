@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,9 @@ namespace ispace {
 
 /// Sensors see into other storeys up to this distance, metres.
 constexpr double kSightBetweenStoreys = 50;
+
+/// Most floors between a sensor and the storey that it sees.
+constexpr std::size_t kSightThroughFloors = 16;
 
 /// An opening in the floor of a storey, to the storey below.
 struct FloorOpening {
@@ -36,6 +40,17 @@ std::vector<FloorOpening> floorOpenings(const BuildingScene& building);
 /// closed at the sides between the storey below and the floor. \pre `storeys` ascend
 Environment joinedRoom(const BuildingScene& building, std::span<const FloorOpening> openings,
                        std::span<const std::size_t> storeys);
+
+/// Returns, for each storey, which others one reaches from it upwards through openings.
+std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,
+                                            std::span<const FloorOpening> openings);
+
+/// Returns the room of a storey in its frame, with openings in its floor and ceiling, and the
+/// storeys above and below that its sensors may see through them, robots and people included. Its
+/// floor ends at the openings, and so does its indoor region. Empty for a storey without openings.
+std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
+                                                std::span<const FloorOpening> openings,
+                                                std::size_t storey);
 
 /// The view of a sensor into another storey.
 struct StoreyView {

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -160,6 +162,31 @@ TEST(BuildingSight, AgreesWithRaysOfBothRooms) {
     }
     EXPECT_GT(seen_cells, 1000U);
     EXPECT_LE(wrong, 4U);  // on the rim, where rays and areas round differently
+}
+
+/// Returns the distance to the first surface along a vector.
+double castTo(const Environment& room, Point3 from, Vec3 way) {
+    Directions directions;
+    directions.resize(1);
+    directions.set(0, 1 / length(way) * way);
+    std::array<float, 1> range{};
+    RayWorld::ofEnvironment(room).cast(from, directions, 100, range);
+    return static_cast<double>(range[0]);
+}
+
+TEST(BuildingSight, RaysPassOpeningsInTheRoomWithItsSurroundings) {
+    const BuildingScene building = towerOf("{robot: {id: r, at: [4.6, 3]}}", "", kShaft);
+    const std::vector<FloorOpening> openings = floorOpenings(building);
+    const Environment upper = roomWithSurroundings(building, openings, 1).value();
+    EXPECT_NEAR(upper.indoor().area(), 48 - 4, 1e-6);
+    EXPECT_NEAR(castTo(upper, {3.5, 3, 2}, {0, 0, -1}), 5, 1e-5);
+    EXPECT_NEAR(castTo(upper, {2.5, 3, 2}, {0, 0, -1}), 2, 1e-5);
+    EXPECT_LT(castTo(upper, {4.6, 3, 2}, {0, 0, -1}), 4.9);  // the robot below
+    const Environment ground = roomWithSurroundings(building, openings, 0).value();
+    EXPECT_NEAR(castTo(ground, {2.5, 3, 1}, {0, 0, 1}), 2, 1e-5);
+    EXPECT_EQ(castTo(ground, {3.5, 3, 1}, {0, 0, 1}), std::numeric_limits<double>::infinity());
+    EXPECT_NEAR(castTo(ground, {3.5, 2.2, 1}, {0, 3.8, 4.3}), std::hypot(3.8, 4.3), 1e-4);
+    EXPECT_FALSE(roomWithSurroundings(towerOf("", "", ""), {}, 0));
 }
 
 /// 200 equal storeys around a shaft, with a camera in it on each.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "env/mesh.h"
 #include "env/walls.h"
 #include "geom/overlay/overlay.h"
+#include "scene/bodies.h"
 #include "scene/placement_schemas.h"
 
 namespace ispace {
@@ -91,30 +93,38 @@ class Triangles {
     TriangleMesh mesh_;
 };
 
-/// Builds what stands above a storey: other storeys, and its own ceiling with its openings.
+/// Builds what stands above and below a storey: other storeys, and its own floor and ceiling with
+/// their openings.
 class Surroundings {
   public:
+    /// \param own the storey in whose frame the room is
     Surroundings(const BuildingScene& building, std::span<const FloorOpening> openings,
-                 std::span<const std::size_t> storeys)
+                 std::span<const std::size_t> storeys, std::size_t own, bool with_movers)
         : building_(building),
           storeys_(storeys),
-          base_(building.document.storeys[storeys.front()]) {
+          own_(own),
+          with_movers_(with_movers),
+          base_(building.document.storeys[own]) {
         for (const FloorOpening& opening : openings)
             if (isHere(opening.below) && isHere(opening.above)) openings_.push_back(&opening);
     }
 
     Environment room() {
-        const Scene& base = *building_.scenes[storeys_.front()];
+        const Scene& base = *building_.scenes[own_];
         std::vector<Record> records = base.records;
         std::vector<std::string> ids = base.ids;
-        if (const auto above = outlinesIn(storeys_.front(), false); !above.empty())
+        if (const auto above = outlinesIn(own_, false); !above.empty())
             for (Record& record : records) {
                 if (record.keyword() != "ispace" || !record.flag("ceiling")) continue;
-                for (const Plate& plate : bodyOf(record).plates)
-                    addCeiling(plate, storeys_.front(), above);
+                for (const Plate& plate : bodyOf(record).plates) addCeiling(plate, own_, above);
                 record.set("ceiling", false);
             }
-        for (const std::size_t storey : storeys_.subspan(1)) addStorey(storey);
+        if (const auto below = outlinesIn(own_, true); !below.empty()) {
+            openFloor(base.environment, below, records);
+            ids = assignIds(records);
+        }
+        for (const std::size_t storey : storeys_)
+            if (storey != own_) addStorey(storey);
         addSides();
         for (const FloorOpening* const opening : openings_) addSteps(*opening);
         if (!triangles_.empty()) {
@@ -152,6 +162,40 @@ class Surroundings {
         return outlines;
     }
 
+    /// Takes the openings out of the floor: faces of their own, without a point known to be inside.
+    static void openFloor(const Environment& room, const std::vector<Polygon>& openings,
+                          std::vector<Record>& records) {
+        std::vector<Layer> layers = {
+            {.curves = curvesWithArcs(room.indoor()), .counts = false, .marks = 1}};
+        for (const Polygon& opening : openings) layers.push_back({.curves = {curveOf(opening)}});
+        const Overlay overlay(layers);
+        const auto is_floor = [](const LayerLabel& label) {
+            return label.marks == 1 && label.count == 0;
+        };
+        const auto is_open = [](const LayerLabel& label) {
+            return label.marks == 1 && label.count > 0;
+        };
+        const std::vector<Region> floor = overlay.regions(is_floor);
+        if (floor.empty()) return;  // a room without floor has none to see through
+        std::erase_if(records, [](const Record& record) { return record.keyword() == "inside"; });
+        for (const Region& part : floor) {
+            const Point2 place = interiorPoint(part);
+            Record inside(*sceneSchemas().find("inside"));
+            inside.set("at", Tuple{place.x, place.y});
+            records.push_back(std::move(inside));
+        }
+        constexpr double kFlat = 1e-6;  // a rim that is hardly a body
+        for (const Region& part : overlay.regions(is_open)) {
+            TupleList path;
+            for (const Point2 corner : part.outline) path.push_back({corner.x, corner.y});
+            Record rim(*sceneSchemas().find("fence"));
+            rim.set("path", path);
+            rim.set("closed", true);
+            rim.set("height", kFlat);
+            records.push_back(std::move(rim));
+        }
+    }
+
     void addCeiling(const Plate& plate, std::size_t storey, const std::vector<Polygon>& above) {
         Polygon outline = plate.outline;
         for (Point2& p : outline) p = placeOf(storey, p);
@@ -176,6 +220,21 @@ class Surroundings {
                 return plate.visual_only || plate.material == Material::Ceiling;
             });
             for (const Mesh& mesh : meshesOf(body, Surfaces::Opaque)) addMesh(storey, mesh);
+        }
+        if (with_movers_) addMovers(storey);
+    }
+
+    /// Adds robots and people of a storey, as they stand at the start.
+    void addMovers(std::size_t storey) {
+        const Scene& scene = *building_.scenes[storey];
+        for (const PlacedRecord& placed : scene.placed) {
+            const std::string& keyword = scene.records[placed.record].keyword();
+            if (keyword != "robot" && keyword != "human") continue;
+            const Frame3 frame(placed.pose);
+            for (Mesh& mesh : bodyOf(scene, placed)) {
+                for (Point3& p : mesh.vertices) p = frame.origin + frame * Vec3{p.x, p.y, p.z};
+                addMesh(storey, mesh);
+            }
         }
     }
 
@@ -220,6 +279,8 @@ class Surroundings {
 
     const BuildingScene& building_;
     std::span<const std::size_t> storeys_;
+    std::size_t own_;
+    bool with_movers_;
     const Storey& base_;
     std::vector<const FloorOpening*> openings_;
     Triangles triangles_;
@@ -246,9 +307,50 @@ std::vector<FloorOpening> floorOpenings(const BuildingScene& building) {
     return openings;
 }
 
+std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,
+                                            std::span<const FloorOpening> openings) {
+    std::vector<std::vector<bool>> reached(storeys, std::vector<bool>(storeys));
+    std::vector<std::vector<std::size_t>> above(storeys);
+    for (const FloorOpening& opening : openings) above[opening.below].push_back(opening.above);
+    // The lowest storey is the first.
+    for (std::size_t i = storeys; i-- > 0;)
+        for (const std::size_t next : above[i]) {
+            reached[i][next] = true;
+            for (std::size_t k = next + 1; k < storeys; ++k)
+                if (reached[next][k]) reached[i][k] = true;
+        }
+    return reached;
+}
+
 Environment joinedRoom(const BuildingScene& building, std::span<const FloorOpening> openings,
                        std::span<const std::size_t> storeys) {
-    return Surroundings(building, openings, storeys).room();
+    return Surroundings(building, openings, storeys, storeys.front(), false).room();
+}
+
+std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
+                                                std::span<const FloorOpening> openings,
+                                                std::size_t storey) {
+    const auto above = storeysAbove(building.scenes.size(), openings);
+    const auto floor_of = [&](std::size_t i) { return building.document.storeys[i].floor; };
+    std::vector<std::size_t> near;
+    std::set<double> up, down;  // heights of floors on the way
+    const auto is_near = [&](std::size_t i) {
+        return std::fabs(floor_of(i) - floor_of(storey)) <= kSightBetweenStoreys;
+    };
+    for (std::size_t i = storey + 1; i < building.scenes.size(); ++i)
+        if (above[storey][i] && is_near(i)) {
+            up.insert(floor_of(i));
+            if (up.size() <= kSightThroughFloors) near.push_back(i);
+        }
+    near.push_back(storey);
+    for (std::size_t i = storey; i-- > 0;)
+        if (above[i][storey] && is_near(i)) {
+            down.insert(floor_of(i));
+            if (down.size() <= kSightThroughFloors) near.push_back(i);
+        }
+    if (near.size() == 1) return std::nullopt;
+    std::sort(near.begin(), near.end());
+    return Surroundings(building, openings, near, storey, true).room();
 }
 
 }  // namespace ispace

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "building/building_sight.h"
 #include "cli/building_operands.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
@@ -41,6 +42,24 @@ struct StoreySensors {
     SceneInput input;
     Sensors sensors;
 };
+
+/// Returns true if any of the sensors looks out of its own plane.
+bool looksAround(const Sensors& sensors) {
+    return std::any_of(sensors.read.begin(), sensors.read.end(), [](const Sensor& sensor) {
+        return kindOf(sensor.model).stopped_by == Surfaces::Opaque &&
+               (!sensor.is<Laser>() || !scansSlice(sensor));
+    });
+}
+
+/// Returns the scene of a storey, in which sensors see through openings if they look around.
+Scene sceneOf(const BuildingScene& building, std::span<const FloorOpening> openings,
+              const StoreySensors& one) {
+    Scene scene = *building.scenes[one.storey];
+    if (openings.empty() || !looksAround(one.sensors)) return scene;
+    if (auto room = roomWithSurroundings(building, openings, one.storey))
+        scene.environment = *std::move(room);
+    return scene;
+}
 
 /// Returns the storeys with sensors to read.
 std::vector<std::unique_ptr<StoreySensors>> sensorsIn(const ScanToolOptions& options,
@@ -83,11 +102,10 @@ void warnOfSensors(const ScanToolOptions& options, const BuildingInput& input) {
     }
 }
 
-/// Takes all readings of a storey. \return their number
+/// Takes all readings of a storey. \param scene see sceneOf() \return their number
 std::int64_t readStorey(const ScanToolOptions& options, const StoreySensors& one,
-                        const ReadingFormat& format, Packing packing,
+                        const Scene& scene, const ReadingFormat& format, Packing packing,
                         const std::function<void(Readings&)>& write) {
-    const Scene& scene = one.input.scene;
     Worlds worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
     TakerOptions taking{.celsius = options.celsius, .velocities = startVelocities(scene)};
@@ -126,7 +144,9 @@ bool scanBuilding(const ScanCommand& command) {
     const bool is_set = OutputSet::of(options.common.output).has_value();
     std::optional<OutputFile> file;
     std::int64_t done = 0;
+    const std::vector<FloorOpening> openings = floorOpenings(input.building);
     for (const auto& one : sensorsIn(options, input)) {
+        const Scene scene = sceneOf(input.building, openings, *one);
         command.checkSensors(one->sensors.read);
         const auto format =
             makeFormat(options.format, one->sensors, formatOptions(command, options, one->input));
@@ -135,7 +155,7 @@ bool scanBuilding(const ScanCommand& command) {
             const std::int64_t count =
                 StillSource(one->sensors, options.frames.value_or(1)).count();
             const auto delivery = makeDelivery(options, one->sensors, *format, count);
-            done += readStorey(options, *one, *format, delivery->how(),
+            done += readStorey(options, *one, scene, *format, delivery->how(),
                                [&](Readings& readings) { delivery->write(readings); });
             delivery->commit();
             continue;
@@ -143,7 +163,7 @@ bool scanBuilding(const ScanCommand& command) {
         mustHoldStoreys(options, *format);
         // One header: those of the storeys are equal.
         if (!file) file.emplace(options.common.output).write(format->header());
-        done += readStorey(options, *one, *format, Packing::Stream,
+        done += readStorey(options, *one, scene, *format, Packing::Stream,
                            [&](Readings& readings) { file->write(readings.text); });
     }
     if (file) file->commit();
