@@ -23,6 +23,7 @@ BuildingRun::Data::Data(const BuildingScene& the_building, const BuildingRunOpti
         leader.beforeStep([this] { advance(); });
     else
         replay();
+    if (options.replay.empty()) beginRecordedTrips();
     leader.beforeStep([this] {
         if (lift_recorder) lift_recorder->record(rooms.front().world->time(), lifts);
     });
@@ -99,6 +100,28 @@ void BuildingRun::Data::addTravellers() {
     }
 }
 
+/// Begins the trips of records, in the order of ids.
+void BuildingRun::Data::beginRecordedTrips() {
+    Diagnostics findings;
+    for (const auto& [id, who] : travellers) {
+        const Record& own = who.records.front();
+        if (!own.has("trip")) continue;
+        std::vector<std::string> words = {"PATH", own.text("trip")};
+        if (own.flag("loop")) words.emplace_back("loop=yes");
+        if (own.has("pause")) words.push_back("pause=" + formatDouble(own.number("pause")));
+        const std::vector<std::string_view> texts(words.begin(), words.end());
+        ParsedTrip parsed = parseTrip(texts, joined, who.room);
+        std::string fault = own.has("path") ? "give `path` or `trip`, not both" : parsed.fault;
+        if (fault.empty()) {
+            BuildingTrip trip;
+            trip.plan = std::move(parsed.plan);
+            fault = begin(id, std::move(trip)).refusal;
+        }
+        if (!fault.empty()) findings.add(own.finding("trip", id + ": " + fault));
+    }
+    findings.throwIfAny();
+}
+
 RobotStatus BuildingRun::Data::statusOf(const Traveller& who) const {
     const World& world = *rooms[who.room].world;
     return world.status(world.moverNamed(who.id).value());
@@ -147,7 +170,7 @@ bool BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose2& pose
     own.set("at", Tuple{pose.position.x, pose.position.y});
     own.set("heading", wrapped(pose.heading).degrees());
     // The way of its record is one of its first storey.
-    for (const char* key : {"path", "loop", "pause", "walk"}) own.erase(key);
+    for (const char* key : {"path", "trip", "loop", "pause", "walk"}) own.erase(key);
     std::vector<Record> added = entered.scene().records;
     std::vector<std::string> requests;
     for (const Record& record : who.records) {

@@ -49,6 +49,8 @@ RunInfo recordedInfo(const std::string& folder, const StoreyedDocument& building
 /// one queue for each lift, and enter one by one, those that leave first. A mover in a cabin stands
 /// where it leaves a way out to those that get out before it.
 ///
+/// The `trip` of a record begins with the run, with its `loop` and `pause`.
+///
 /// A mover with walk=wander wanders on a storey for one to three minutes, then goes to a random
 /// point of another one, if it finds a way, and wanders there, until a command ends that.
 ///
@@ -62,8 +64,8 @@ class BuildingRun final : public JoinedWorlds {
   public:
     static constexpr double kPersonMass = 75;
 
-    /// \throws FormatError as World does, with the storey; as Replay, for records of other steps,
-    /// and if no mover is in any of them
+    /// \throws FormatError as World does, with the storey; for trips without a way; as Replay, for
+    /// records of other steps, and if no mover is in any of them
     BuildingRun(const BuildingScene& building, const BuildingRunOptions& options);
     ~BuildingRun() override;
     BuildingRun(const BuildingRun&) = delete;

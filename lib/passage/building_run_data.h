@@ -111,6 +111,7 @@ struct BuildingRun::Data {
     void locate();
 
     // Trips.
+    void beginRecordedTrips();
     TripAnswer begin(const std::string& mover, BuildingTrip trip);
     [[nodiscard]] std::optional<Route> routeFrom(const Traveller& who, std::size_t storey,
                                                  Point2 at, const BuildingTrip& trip,

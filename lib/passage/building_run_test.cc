@@ -52,6 +52,47 @@ TEST(BuildingRun, ARobotTakesTheLift) {
     EXPECT_NEAR(distance(poseOf(run, "ground/r1").position, {9, 6}), 0, 0.02);
 }
 
+TEST(BuildingRun, TripsOfRecordsBeginWithTheRun) {
+    const BuildingScene building = buildingOf(
+        "robot id=ground/r1 at=6,4 trip=\"8,4;upper/9,6\" pause=2\n"
+        "human id=upper/h at=6,4 trip=\"ground/9,6;upper/6,5\" loop=yes\n");
+    BuildingRun run(building, optionsOf());
+    const auto end = await(run, "ground/r1", 120);
+    ASSERT_TRUE(end);
+    EXPECT_EQ(end->outcome, Outcome::Done);
+    EXPECT_EQ(run.roomOf("ground/r1"), 1U);
+    EXPECT_NEAR(distance(poseOf(run, "ground/r1").position, {9, 6}), 0, 0.02);
+    // The person goes down and up again and again.
+    std::size_t changes = 0;
+    std::size_t room = run.roomOf("upper/h").value();
+    for (int i = 0; i < 12000; ++i) {
+        step(run);
+        if (const std::size_t now = run.roomOf("upper/h").value(); now != room) {
+            room = now;
+            ++changes;
+        }
+    }
+    EXPECT_GT(changes, 6U);
+}
+
+TEST(BuildingRun, TripsOfRecordsWithoutAWayAreErrors) {
+    const auto error = [](const std::string& layout) -> std::string {
+        const BuildingScene building = buildingOf(layout);
+        try {
+            const BuildingRun run(building, optionsOf());
+        } catch (const FormatError& failure) {
+            return failure.diagnostics().front().message;
+        }
+        return "";
+    };
+    EXPECT_EQ(error("robot id=ground/r1 at=6,4 trip=\"uper/9,6\"\n"),
+              "ground/r1: no storey `uper`");
+    EXPECT_EQ(error("robot id=ground/r1 at=6,4 trip=\"upper/9,6\" path=1,1\n"),
+              "ground/r1: give `path` or `trip`, not both");
+    EXPECT_NE(error("robot id=ground/r1 at=6,4 trip=\"upper/90,6\"\n").find("no way"),
+              std::string::npos);
+}
+
 TEST(BuildingRun, ARobotClimbsOnlyIfItsRecordSaysSo) {
     const std::string stairs_only =
         std::string(kBuilding).substr(0, std::string(kBuilding).find("- lift")) +

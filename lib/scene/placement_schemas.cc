@@ -152,14 +152,18 @@ void addCourse(std::vector<KeySpec>& keys) {
                     .lower = -kMaxDistance,
                     .upper = kMaxDistance,
                     .role = Role::MotionPlan});
+    keys.push_back({.name = "trip",
+                    .type = KeyType::Text,
+                    .help = "points of a building, such as 3,4;upper/1,2, to which it goes by "
+                            "stairs and lifts"});
     keys.push_back({.name = "loop",
                     .type = KeyType::Flag,
-                    .help = "from the last point of path to the first, again and again",
+                    .help = "from the last point of path or trip to the first, again and again",
                     .default_value = false});
     KeySpec pause{.name = "pause",
                   .type = KeyType::Number,
                   .unit = Unit::Time,
-                  .help = "to stay at each point of path",
+                  .help = "to stay at each point of path or trip",
                   .default_value = 0.0,
                   .lower = 0,
                   .upper = 1e6};

@@ -106,6 +106,7 @@ void run(const SimrunCommand& command, JunitFile& junit) {
     warn(options.common, "simrun",
          sceneWarnings(input.scene, {.checks = {"unplaced", "outside", "buried", "paths"}}));
     std::optional<Replay> replay = openReplay(options, input.scene);
+    if (!replay) warnOfTrips(input.scene, options.common);
     if (!options.drawing.format.empty() && replay) warnOfChanges(*replay, options.common);
     if (!options.drawing.format.empty())
         return drawRecord(options, input.scene, titleOf(options, input));

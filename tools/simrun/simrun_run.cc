@@ -353,6 +353,19 @@ void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options)
          "odometry_noise or start_noise");
 }
 
+void warnOfTrips(const Scene& scene, const CommonOptions& options) {
+    for (const PlacedRecord& placed : scene.placed) {
+        const Record& record = scene.records[placed.record];
+        if (record.schema().find("trip") == nullptr || !record.has("trip")) continue;
+        Diagnostic finding = record.finding(
+            "trip", record.keyword() + ' ' + scene.ids[placed.record] +
+                        " stands: its trip is over storeys, and this run has one; run the "
+                        "building without --storey");
+        finding.severity = Severity::Warning;
+        warn(options, kTool, std::span<const Diagnostic>(&finding, 1));
+    }
+}
+
 void LagLog::tell() {
     using std::chrono::steady_clock;
     constexpr std::chrono::seconds kCalm(1);  // without a loss, before the run counts as keeping up

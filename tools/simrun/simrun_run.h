@@ -121,6 +121,9 @@ class LagLog {
     int count_ = 0;  // number of delays
 };
 
+/// Warns of movers with a trip over storeys, in the run of one room.
+void warnOfTrips(const Scene& scene, const CommonOptions& options);
+
 /// Warns that no sensor has noise, nor an autonomous robot.
 void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options);
 
