@@ -56,9 +56,7 @@ std::vector<Region> floorFor(const Scene& scene, const Laser& laser, double heig
     return floor;
 }
 
-void mustStandAlone(const Scene& scene, const std::vector<SensorGroup>& groups,
-                    const ArrangeOptions& options) {
-    if (!options.weights.isUniform()) refusePoses("zones and weights are not supported");
+void mustStandAlone(const Scene& scene, const std::vector<SensorGroup>& groups) {
     if (groups.size() != 1) refusePoses("give one kind of sensor");
     for (const Sensor& sensor : scene.sensors)
         if (kindOf(sensor.model).perceives)
@@ -68,7 +66,8 @@ void mustStandAlone(const Scene& scene, const std::vector<SensorGroup>& groups,
 const Laser& laserOf(const Scene& scene, const std::vector<SensorGroup>& groups,
                      const ArrangeOptions& options) {
     if (options.target != 1) refusePoses("needs --target 100%");
-    mustStandAlone(scene, groups, options);
+    if (!options.weights.isUniform()) refusePoses("zones and weights are not supported");
+    mustStandAlone(scene, groups);
     const auto* laser = std::get_if<Laser>(&groups.front().model);
     if (laser == nullptr || !laser->seesAround())
         refusePoses("wanted level lasers that see all around, as laser,range=1000,fov=360");
@@ -182,11 +181,46 @@ class LayoutTrials {
 
 }  // namespace
 
+poses::FloorWeighting weightingOf(const FloorWeights& weights) {
+    using Piece = poses::FloorWeighting::Piece;
+    poses::FloorWeighting result;
+    const auto add = [](const std::vector<Region>& regions, double weight,
+                        std::vector<Piece>& pieces) {
+        for (const Region& region : regions) {
+            const Triangulation mesh = triangulate(region);
+            for (const auto& [a, b, c] : mesh.triangles)
+                pieces.push_back({{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, weight});
+        }
+    };
+    std::vector<Polygon> zones;  // the last one decides
+    for (std::size_t i = weights.weights.size(); i-- > 0;) {
+        const auto& [zone, weight] = weights.weights[i];
+        add(difference(Region{zone.outline, {}}, zones), weight, result.pieces);
+        zones.push_back(zone.outline);
+    }
+    if (weights.targets.empty()) return result;
+    result.elsewhere = 0;
+    std::vector<Piece> targets, counted;
+    std::vector<Polygon> before;
+    for (const NamedZone& target : weights.targets) {
+        const Regions own{difference(Region{target.outline, {}}, before)};
+        add(own.parts, 1, targets);
+        add(difference(own, zones), 1, counted);
+        before.push_back(target.outline);
+    }
+    for (const Piece& piece : result.pieces)
+        for (const Piece& target : targets)
+            if (Polygon both = sharedByConvex(piece.outline, target.outline); both.size() > 2)
+                counted.push_back({std::move(both), piece.weight});
+    result.pieces = std::move(counted);
+    return result;
+}
+
 void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
                      const ArrangeOptions& options) {
-    mustStandAlone(scene, groups, options);
+    mustStandAlone(scene, groups);
     if (options.is_connected || options.budget || options.beam_step || !options.judges_inside)
-        refusePoses("all of the indoor floor counts, for a given number of sensors");
+        refusePoses("indoor floor counts, for a given number of sensors");
     const SensorGroup& group = groups.front();
     const auto* laser = std::get_if<Laser>(&group.model);
     if (laser == nullptr || laser->sweep != SweepAxis::None || group.record.number("tilt") != 0 ||
@@ -200,6 +234,8 @@ void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
                     " sensors see takes as many, found " + std::to_string(group.most));
     if (options.redundancy > 1 && options.wants_certificate)
         refusePoses("a certificate is about floor that one sensor sees: leave out --certificate");
+    if (!options.weights.isUniform() && options.wants_certificate)
+        refusePoses("a certificate is about all of the floor: leave out --certificate");
     (void)floorAt(scene, heightOf(options));
 }
 
@@ -207,7 +243,7 @@ void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& prog
     if (arrangement.sensors.empty()) return;
     const std::vector<Region> floor = floorAt(model.scene(), heightOf(model.options()));
     const auto& laser = std::get<Laser>(model.groups().front().model);
-    const poses::PoseFloor cells(floor, kCells);
+    const poses::PoseFloor cells(floor, kCells, weightingOf(model.options().weights));
     const poses::Sector sector = sectorOf(laser, cells.box());
     LayoutTrials trials(model, floor, arrangement, progress);
     PoseSearchOptions options{.sensors = model.groups().front().most,

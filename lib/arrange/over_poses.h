@@ -6,6 +6,7 @@
 
 #include "arrange/arrange.h"
 #include "arrange/poses/certificate.h"
+#include "arrange/poses/fat_view.h"
 #include "arrange/sensor_group.h"
 #include "base/error.h"
 #include "scene/scene.h"
@@ -24,9 +25,12 @@ class MeasuredScene;
 /// Gap at which a bound of coverage over all poses is close enough, unless another is given.
 constexpr double kPosesGap = 0.005;
 
+/// Divides zones into convex pieces of one weight.
+poses::FloorWeighting weightingOf(const FloorWeights& weights);
+
 /// Validates before a search that boundOfPoses() can follow it.
 /// \throws UsageError unless the sensors are level lasers of one kind that stand alone in a room of
-///         straight walls, few enough, and all of its floor counts
+///         straight walls, few enough for the proof
 void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
                      const ArrangeOptions& options);
 

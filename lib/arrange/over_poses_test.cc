@@ -130,6 +130,55 @@ TEST(OverPoses, BoundsTheCoverageOfAnyPoses) {
     EXPECT_GE(result.number("bound"), result.number("value"));
 }
 
+TEST(OverPoses, TheLastZoneOfAPointDecidesItsWeight) {
+    const auto zone = [](double x0, double y0, double x1, double y1) {
+        return NamedZone{
+            "", {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}, {(x0 + x1) / 2, (y0 + y1) / 2}};
+    };
+    const auto weightAt = [](const poses::FloorWeighting& weighting, Point2 p) {
+        double weight = weighting.elsewhere;
+        int pieces = 0;
+        for (const auto& piece : weighting.pieces) {
+            if (Region{piece.outline, {}}.locate(p) != Side::Inside) continue;
+            weight = piece.weight;
+            ++pieces;
+        }
+        EXPECT_LE(pieces, 1);
+        return weight;
+    };
+    FloorWeights weights;
+    weights.weights = {{zone(0, 0, 4, 4), 2}, {zone(2, 2, 6, 6), 5}, {zone(2.9, 2.9, 3.4, 3.4), 0}};
+    const poses::FloorWeighting all = weightingOf(weights);
+    EXPECT_EQ(weightAt(all, {1.1, 1.2}), 2);
+    EXPECT_EQ(weightAt(all, {2.3, 2.6}), 5);
+    EXPECT_EQ(weightAt(all, {3.1, 3.2}), 0);
+    EXPECT_EQ(weightAt(all, {7.3, 1.1}), 1);
+    weights.targets = {zone(3, 0, 8, 3), zone(3.2, 1, 9, 4)};
+    const poses::FloorWeighting some = weightingOf(weights);
+    EXPECT_EQ(weightAt(some, {1.1, 1.2}), 0);
+    EXPECT_EQ(weightAt(some, {3.3, 1.2}), 2);
+    EXPECT_EQ(weightAt(some, {3.1, 3.2}), 0);
+    EXPECT_EQ(weightAt(some, {3.9, 3.7}), 5);
+    EXPECT_EQ(weightAt(some, {7.3, 1.1}), 1);
+    EXPECT_EQ(weightAt(some, {7.3, 3.6}), 1);
+    EXPECT_EQ(weightAt(some, {7.3, 4.6}), 0);
+}
+
+TEST(OverPoses, BoundsWeightedFloor) {
+    const Scene scene = roomScene("#env 1\nispace size=12,8\n");
+    ArrangeOptions options = coarse();
+    options.refine = options.over_poses = true;
+    options.weights.weights = {{{"", {{-3, -2}, {3, -2}, {3, 2}, {-3, 2}}, {0, 0}}, 4}};
+    const auto groups = groupsOf(scene, {"laser,range=2,fov=90:2"});
+    const Arrangement found = arranged(scene, groups, options);
+    ASSERT_TRUE(found.poses_bound);
+    EXPECT_NEAR(found.poses_bound->bound, 4 * 2 * std::numbers::pi, 1e-6);
+    EXPECT_NEAR(found.poses_bound->found, 8 * std::numbers::pi, 0.005 * 8 * std::numbers::pi);
+    EXPECT_NEAR(found.poses_bound->floor, 96 + 3 * 24, 1e-6);
+    options.wants_certificate = true;
+    EXPECT_THROW(arranged(scene, groups, options), UsageError);
+}
+
 TEST(OverPoses, ChecksTheCertificateForALayout) {
     const Scene scene = roomScene("#env 1\nispace size=5,4\n");
     ArrangeOptions options = coarse();

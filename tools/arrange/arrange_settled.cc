@@ -102,15 +102,14 @@ void ArrangeCommand::settleProof() {
 }
 
 void ArrangeCommand::settleProofOfCoverage() {
-    constexpr const char* kOther[] = {"--mount",   "--tilt",  "--clearance",  "--keep-out",
-                                      "--keep-in", "--zone",  "--weight",     "--connected",
-                                      "--budget",  "--judge", "--reso",       "--shard",
-                                      "--resume",  "--curve", "--export-mps", "--alternatives",
-                                      "--robust",  "--crowd", "--facing",     "--privacy"};
+    constexpr const char* kOther[] = {
+        "--mount",      "--tilt",         "--clearance", "--keep-out", "--keep-in", "--connected",
+        "--budget",     "--judge",        "--reso",      "--shard",    "--resume",  "--curve",
+        "--export-mps", "--alternatives", "--robust",    "--crowd",    "--facing",  "--privacy"};
     for (const char* option : kOther)
         if (line_.given(option))
             throw UsageError(
-                "--proof poses bounds what sensors in any poses see of all the floor: leave out " +
+                "--proof poses bounds what sensors in any poses on the floor see: leave out " +
                 std::string(option));
     options_.how.refine = true;
 }

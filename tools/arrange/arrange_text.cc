@@ -115,9 +115,10 @@ std::string posesBoundText(const ArrangeOptions& how, const Arrangement& arrange
     const double gap = std::max(0.0, (proof.bound - proof.found) / proof.bound);
     const std::string times =
         how.redundancy > 1 ? std::to_string(how.redundancy) + " sensors at a time" : "";
+    const std::string unit = how.weights.isUniform() ? " m2" : " m2 by weight";
     return "arrange: " + (times.empty() ? "the layout sees" : times + " see") + ' ' +
-           formatFixed(proof.found, 3) + " m2 (" + percentText(proof.found / proof.floor) +
-           ") by exact area; over all poses at most " + formatFixed(proof.bound, 3) + " m2 (" +
+           formatFixed(proof.found, 3) + unit + " (" + percentText(proof.found / proof.floor) +
+           ") by exact area; over all poses at most " + formatFixed(proof.bound, 3) + unit + " (" +
            percentText(proof.bound / proof.floor) + ", gap " + percentText(gap) + ")" +
            (arrangement.is_complete ? "" : ", cut short") + '\n';
 }

@@ -128,7 +128,7 @@ void WeakView::addField() {
 }
 
 void WeakView::count(const Outline& polygon) {
-    area_ += areaOf(polygon);
+    area_ += floor_.weigh(polygon);
     if (tally_ != nullptr) tally_->add(polygon);
 }
 
@@ -275,7 +275,7 @@ std::optional<double> WeakView::compute() {
             add({corners.begin(), corners.end()});
         }
     }
-    return std::min(area_, sector_.area());
+    return std::min(area_, sector_.area() * floor_.mostWeight());
 }
 
 }  // namespace
@@ -288,8 +288,10 @@ FatView fatViewOf(const PoseFloor& floor, const Sector& sector, const PoseBox& b
     tally.round(view.parts);
     // Views around several sides of a hole overlap: the sum of their areas may exceed that of
     // cells.
-    const auto parts = std::accumulate(view.parts.begin(), view.parts.end(), std::uint64_t{0});
-    view.area = std::min(*area, static_cast<double>(parts) * floor.partArea());
+    view.area = std::min(*area, floor.weightOf([&view](std::size_t first, std::size_t count) {
+        const auto begin = view.parts.begin() + static_cast<std::ptrdiff_t>(first);
+        return std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(count), std::uint64_t{0});
+    }));
     return view;
 }
 

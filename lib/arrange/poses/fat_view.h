@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "arrange/poses/convex.h"
 #include "geom/polygon.h"
 
 namespace ispace::poses {
@@ -41,11 +42,24 @@ struct PoseBox {
     double from = 0, span = 0;  ///< radians
 };
 
+/// The weight of each part of a floor.
+struct FloorWeighting {
+    double elsewhere = 1;  ///< outside of all pieces
+    struct Piece {
+        Outline outline;  ///< convex, counter-clockwise; the interiors of pieces are disjoint
+        double weight = 1;
+    };
+    std::vector<Piece> pieces = {};  ///< may reach beyond the floor
+};
+
 /// A floor as triangles, and as square cells of known area.
+///
+/// With weights each cell is divided by them: a layer of cells has floor of one weight.
 class PoseFloor {
   public:
     /// \param most number of cells that the box around the floor is divided into, at most
-    PoseFloor(std::span<const Region> regions, std::size_t most);
+    PoseFloor(std::span<const Region> regions, std::size_t most,
+              const FloorWeighting& weighting = {});
 
     using Corners = std::array<Point2, 3>;
     struct Triangle {
@@ -57,11 +71,23 @@ class PoseFloor {
     [[nodiscard]] Corners cornersOf(std::size_t triangle) const;
     [[nodiscard]] const Box2& box() const { return box_; }
     [[nodiscard]] double area() const { return area_; }
+    /// Returns the area times weight of a counter-clockwise convex polygon on the floor.
+    [[nodiscard]] double weigh(const Outline& polygon) const;
+    [[nodiscard]] double mostWeight() const { return most_weight_; }
 
     /// Area of one part of a cell, m2.
     [[nodiscard]] double partArea() const { return side_ * side_ / kParts; }
-    /// Parts of each cell that are floor, rounded up; cells row by row.
+    /// Parts of each cell that are floor, rounded up; cells row by row, layer by layer.
     [[nodiscard]] const std::vector<std::uint8_t>& parts() const { return parts_; }
+    /// Computes the area times weight of parts of all cells.
+    /// \param sum (first, count) returns the number of parts in these cells
+    template <typename Sum>
+    [[nodiscard]] double weightOf(Sum sum) const {
+        double weight = 0;
+        for (const Layer& layer : layers_)
+            weight += layer.weight * static_cast<double>(sum(layer.begin, layer.rows * columns_));
+        return weight * partArea();
+    }
     [[nodiscard]] std::size_t columns() const { return columns_; }
     [[nodiscard]] std::size_t rows() const { return rows_; }
 
@@ -72,32 +98,56 @@ class PoseFloor {
         explicit Tally(const PoseFloor& floor);
         void clear();
         /// Adds a counter-clockwise convex polygon within the floor's box.
-        void add(std::span<const Point2> polygon);
+        void add(const Outline& polygon);
         /// Converts to parts of cells, rounded up, and at most those that are floor.
         void round(std::vector<std::uint8_t>& parts) const;
         /// Converts to parts of cells, rounded down but for kNoShare of a cell.
         void roundDown(std::vector<std::uint8_t>& parts) const;
 
       private:
-        void addEdge(Point2 a, Point2 b);
+        void addTo(std::size_t layer, const Outline& polygon, double sign);
+        void addEdge(std::size_t layer, Point2 a, Point2 b, double sign);
         template <typename Share>
         void convert(std::vector<std::uint8_t>& parts, Share share) const;
         const PoseFloor& floor_;
-        std::vector<double> sums_;
+        std::vector<std::vector<double>> sums_;  // of layers
+        Outline clipped_, spare_;
     };
 
   private:
+    /// Cells of some rows.
+    struct Layer {
+        double weight = 1;
+        std::size_t first_row = 0, rows = 0;
+        std::size_t begin = 0;  // of parts
+    };
+    static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+    /// A piece of other weight than elsewhere.
+    struct Piece {
+        std::vector<HalfPlane> sides;
+        Box2 box;
+        double weight = 1;
+        std::size_t layer = kNone;  // none: its floor does not count
+    };
+    void addLayers(const FloorWeighting& weighting);
+    /// Clips a polygon to a piece; returns false if they share no area.
+    static bool clipTo(const Piece& piece, const Outline& polygon, Outline& clipped,
+                       Outline& spare);
+
     std::vector<Point2> points_;
     std::vector<Triangle> triangles_;
     Box2 box_;
-    double side_ = 1, area_ = 0;
+    double side_ = 1, area_ = 0, elsewhere_ = 1, most_weight_ = 1;
     std::size_t columns_ = 1, rows_ = 1;
+    std::vector<Piece> pieces_;
+    std::vector<Layer> layers_;
+    std::size_t rest_ = 0;  // layer of the floor outside of all pieces, or kNone
     std::vector<std::uint8_t> parts_;
 };
 
 /// Bounds of the floor that single poses of a box see.
 struct FatView {
-    double area = 0;  ///< m2: an upper bound of the area that any pose of the box sees
+    double area = 0;  ///< m2, times weight: an upper bound of what any pose of the box sees
     std::vector<std::uint8_t> parts;  ///< of cells; every point seen by some pose lies in them
     [[nodiscard]] bool empty() const { return parts.empty(); }
 };
@@ -106,7 +156,8 @@ struct FatView {
 /// visibility of the rectangle through the portals of the triangulation, within range of it, and in
 /// its field of view at some heading. Empty if the box holds no floor.
 FatView fatViewOf(const PoseFloor& floor, const Sector& sector, const PoseBox& box);
-/// Returns the area of that superset, or a little more, in less time; 0 if the box holds no floor.
+/// Returns the weighted area of that superset, or a little more, in less time; 0 if the box holds
+/// no floor.
 double fatAreaOf(const PoseFloor& floor, const Sector& sector, const PoseBox& box);
 
 }  // namespace ispace::poses

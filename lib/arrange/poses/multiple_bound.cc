@@ -122,10 +122,13 @@ double MultipleBound::boundFor(const Prices& prices, std::span<const BoxId> boxe
         }
         lowerTo(views.least.data(), view, factors, cells);
     }
-    const double part = floor_.partArea();
     // Cores are rounded down but for kNoShare of a cell.
-    area += 2 * kUnit * kMostBoxes * kNoShare * kParts * part * static_cast<double>(cells);
-    return (area + sumOfLeast(views.least.data(), cells) * part) / kUnit;
+    area += 2 * kUnit * kMostBoxes * kNoShare * kParts * floor_.partArea() * floor_.mostWeight() *
+            static_cast<double>(cells);
+    return (area + floor_.weightOf([&views](std::size_t first, std::size_t count) {
+               return sumOfLeast(&views.least[first], count);
+           })) /
+           kUnit;
 }
 
 double MultipleBound::of(std::span<const BoxId> boxes, double enough) const {
@@ -155,9 +158,11 @@ double MultipleBound::ofCentres(std::span<const BoxId> boxes) const {
         for (std::size_t rank = 0; rank < times_; ++rank)
             sortInto(views.fat[rank].data(), view.data(), cells);
     }
-    std::uint64_t sum = 0;
-    for (const std::uint8_t parts : views.fat[times_ - 1]) sum += parts;
-    return static_cast<double>(sum) * floor_.partArea();
+    return floor_.weightOf([&](std::size_t first, std::size_t count) {
+        std::uint64_t sum = 0;
+        for (std::size_t i = first; i < first + count; ++i) sum += views.fat[times_ - 1][i];
+        return sum;
+    });
 }
 
 }  // namespace ispace::poses

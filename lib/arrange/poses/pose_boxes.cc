@@ -189,7 +189,8 @@ double PoseBoxes::unionOfCentres(std::span<const BoxId> boxes) const {
         const CellParts& view = boxes_[id].centre;
         addParts(&sums[view.first], view.parts.data(), &most[view.first], view.parts.size());
     }
-    return sumOf(sums.data(), sums.size()) * floor_.partArea();
+    return floor_.weightOf(
+        [](std::size_t first, std::size_t count) { return sumOf(&sums[first], count); });
 }
 
 double PoseBoxes::unionOf(std::span<const Known> known, std::span<const BoxId> others) const {
@@ -219,8 +220,11 @@ double PoseBoxes::unionOf(std::span<const Known> known, std::span<const BoxId> o
     }
     // Cores are rounded down but for kNoShare of a cell.
     if (!known.empty())
-        area += 8 * kNoShare * kParts * floor_.partArea() * static_cast<double>(most.size());
-    return area + sumWithin(fat.data(), free.data(), fat.size()) * floor_.partArea();
+        area += 8 * kNoShare * kParts * floor_.partArea() * floor_.mostWeight() *
+                static_cast<double>(most.size());
+    return area + floor_.weightOf([](std::size_t first, std::size_t count) {
+        return sumWithin(&fat[first], &free[first], count);
+    });
 }
 
 std::size_t PoseBoxes::widestOf(std::span<const BoxId> boxes) const {

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "arrange/poses/pose_search.h"
+#include "geom/overlay/overlay.h"
+#include "support/test_pose_floors.h"
+#include "support/test_problems.h"
+
+namespace ispace::poses {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr std::size_t kCells = 1500;
+
+Polygon rectangleOf(double left, double low, double right, double high) {
+    return {{left, low}, {right, low}, {right, high}, {left, high}};
+}
+
+FloorWeighting weighting() {
+    return {.elsewhere = 1,
+            .pieces = {{rectangleOf(1, 1, 4.3, 3.7), 3},
+                       {{{6.05, 0}, {10, 0.3}, {8.5, 4}}, 0.25},
+                       {rectangleOf(-1, 4.1, 12, 4.6), 0},
+                       {rectangleOf(4.5, 1, 5.1, 2), 3}}};
+}
+
+double weightedParts(const PoseFloor& floor, const std::vector<std::uint8_t>& parts) {
+    return floor.weightOf([&](std::size_t first, std::size_t count) {
+        return std::accumulate(&parts[first], &parts[first] + count, std::uint64_t{0});
+    });
+}
+
+/// Area by weight of floor in some of the outlines.
+class WeightedAreas {
+  public:
+    WeightedAreas(const Region& region, FloorWeighting weighting)
+        : region_(region), weighting_(std::move(weighting)) {}
+
+    [[nodiscard]] double of(const std::vector<Polygon>& views, int times) const {
+        std::vector<Layer> layers;
+        for (std::size_t i = 0; i < weighting_.pieces.size(); ++i)
+            layers.push_back({.curves = {curveOf(weighting_.pieces[i].outline)},
+                              .counts = false,
+                              .marks = std::uint64_t{2} << i});
+        std::vector<Curve> floor;
+        for (const Polygon& curve : curvesOf(region_)) floor.push_back(curveOf(curve));
+        layers.push_back({.curves = floor, .counts = false, .marks = 1});
+        for (const Polygon& view : views) layers.push_back({.curves = {curveOf(view)}});
+        double sum = 0;
+        Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
+            if (label.count < times || (label.marks & 1U) == 0) return;
+            double weight = weighting_.elsewhere;
+            for (std::size_t i = 0; i < weighting_.pieces.size(); ++i)
+                if ((label.marks >> (i + 1) & 1U) != 0) weight = weighting_.pieces[i].weight;
+            sum += weight * area;
+        });
+        return sum;
+    }
+
+  private:
+    const Region& region_;
+    FloorWeighting weighting_;
+};
+
+TEST(PoseWeights, LayersHoldTheFloorOfTheirWeights) {
+    const Region region = roomsWithPillar();
+    const PoseFloor floor({&region, 1}, kCells, weighting());
+    const double exact = WeightedAreas(region, weighting()).of({rectangleOf(-1, -1, 20, 20)}, 1);
+    double weighed = 0;
+    for (std::size_t i = 0; i < floor.triangles().size(); ++i) {
+        const PoseFloor::Corners corners = floor.cornersOf(i);
+        weighed += floor.weigh({corners.begin(), corners.end()});
+    }
+    EXPECT_NEAR(weighed, exact, 1e-6);
+    EXPECT_GE(weightedParts(floor, floor.parts()), exact - 1e-6);
+    EXPECT_LE(weightedParts(floor, floor.parts()), exact * 1.01);
+    EXPECT_EQ(floor.mostWeight(), 3);
+}
+
+TEST(PoseWeights, ASectorThatFitsInAZoneHasItsClosedForm) {
+    const Region region = {rectangleOf(0, 0, 9, 7), {}};
+    const Sector sector{1, 2 * kPi / 3, 0};
+    for (const double elsewhere : {0.0, 2.5}) {
+        const PoseFloor floor({&region, 1}, kCells,
+                              {.elsewhere = elsewhere, .pieces = {{rectangleOf(3, 2, 7, 5), 4}}});
+        const double one = 4 * kPi / 3;
+        for (const int sensors : {1, 2}) {
+            StopWhen silent(afterAsking(400));
+            const PoseBound found =
+                boundOverPoses(floor, sector, {.sensors = sensors, .found = sensors * one}, silent);
+            EXPECT_NEAR(found.bound, sensors * one, 1e-9) << elsewhere << ' ' << sensors;
+            EXPECT_TRUE(found.is_complete);
+        }
+    }
+}
+
+TEST(PoseWeights, FloorThatDoesNotCountAddsNone) {
+    // All of the zone is seen from anywhere in the room.
+    const Region region = {rectangleOf(0, 0, 9, 7), {}};
+    const PoseFloor floor({&region, 1}, kCells,
+                          {.elsewhere = 0, .pieces = {{rectangleOf(1.03, 1, 2, 2.37), 2}}});
+    const double zone = 2 * 0.97 * 1.37;
+    StopWhen stop(afterAsking(200));
+    const PoseBound found =
+        boundOverPoses(floor, {20, 2 * kPi, 0}, {.sensors = 2, .found = zone, .gap = 0.02}, stop);
+    EXPECT_GE(found.bound, zone);
+    EXPECT_LE(found.bound, zone * 1.02);  // parts of cells are rounded up
+    const PoseFloor none({&region, 1}, kCells, {.elsewhere = 0});
+    EXPECT_EQ(boundOverPoses(none, {20, 2 * kPi, 0}, {.sensors = 2}, stop).bound, 0);
+}
+
+TEST(PoseWeights, AWeightOfAllFloorScalesTheBound) {
+    const Region region = roomsWithPillar();
+    const auto bound = [&](const FloorWeighting& weights) {
+        const PoseFloor floor({&region, 1}, kCells, weights);
+        StopWhen stop(afterAsking(30));
+        return boundOverPoses(floor, {3, 2, 0}, {.sensors = 2}, stop).bound;
+    };
+    const double plain = bound({});
+    EXPECT_NEAR(bound({.elsewhere = 2}), 2 * plain, 1e-9);
+    EXPECT_EQ(bound({.elsewhere = 1, .pieces = {{rectangleOf(1, 1, 3, 3), 1}}}), plain);
+}
+
+TEST(PoseWeights, NeverBelowRandomLayouts) {
+    const Region region = roomsWithPillar();
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> x(0, 11), y(0, 5), turn(0, 360);
+    FloorWeighting targets = weighting();
+    targets.elsewhere = 0;
+    for (const FloorWeighting& weights : {weighting(), targets})
+        for (const auto& [sensors, times] : {std::pair(1, 1), {2, 1}, {3, 1}, {3, 2}}) {
+            const Sector sector{2.5, sensors == 2 ? 4.0 : 2.0, 0};
+            const WeightedAreas areas(region, weights);
+            const SeenAreas seen(region, sector);
+            double best = 0;
+            for (int i = 0; i < 200; ++i) {
+                std::vector<Polygon> views;
+                while (views.size() < static_cast<std::size_t>(sensors)) {
+                    const Point2 p{x(random), y(random)};
+                    if (region.locate(p) != Side::Inside) continue;
+                    views.push_back(seen.viewFrom({p, Angle::degrees(turn(random))}));
+                }
+                best = std::max(best, areas.of(views, times));
+            }
+            const PoseFloor floor({&region, 1}, kCells, weights);
+            for (const int rounds : {0, 3, 40}) {
+                StopWhen stop(afterAsking(rounds));
+                const PoseBound found = boundOverPoses(
+                    floor, sector, {.sensors = sensors, .times = times, .found = best}, stop);
+                EXPECT_GE(found.bound, best) << sensors << ' ' << times << ' ' << rounds;
+                EXPECT_LE(found.bound, (rounds == 40 ? 3 : 20) * best);
+            }
+        }
+}
+
+}  // namespace
+}  // namespace ispace::poses
