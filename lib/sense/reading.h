@@ -23,6 +23,7 @@
 #include "sense/sound_level.h"
 #include "sense/trajectory.h"
 #include "sense/ultrasound.h"
+#include "sense/uwb_ranges.h"
 
 namespace ispace {
 
@@ -68,11 +69,11 @@ struct ContactState {
 /// SensorModel.
 using ReadingValue =
     std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState, ContactState,
-                 RfidTags, SoundLevel, Illuminance, Inertia, MatState, GateState>;
+                 RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
 using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState,
-                             ContactState, RfidTags, SoundLevel, Illuminance, Inertia>;
+                             ContactState, RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

@@ -243,6 +243,21 @@ class Sensors(unittest.TestCase):
                 self.assertGreater(lux.scan().lux, 100)
                 self.assertAlmostEqual(microphone.scan().level, 70 - 20 * math.log10(2), delta=0.05)
 
+    def test_uwb(self):
+        with self.run_.world() as world:
+            world.add("cube id=k2 at=1.2,1.2 size=0.1,0.1,0.09 tag=key")
+            world.add("human id=h6 at=-1,1 heading=0 tag=anna height=1.8")
+            for i, place in enumerate(("1.9,1.9,1.8", "-1.9,1.9,1.9", "-1.9,-1.9,2", "1.9,-1.9,1.2")):
+                world.add(f"uwb id=a{i} at={place}")
+            world.advance(1)
+            with ispace.Uwb(self.run_.address, "a0") as uwb:
+                anna, key = uwb.scan().tags
+                self.assertEqual((anna.tag, key.tag), ("anna", "key"))
+                self.assertAlmostEqual(key.range, math.dist((1.9, 1.9, 1.8), (1.2, 1.2, 0.11)), delta=0.02)
+                self.assertFalse(key.blocked)
+                self.assertLess(math.dist(key.position, (1.2, 1.2, 0.11)), 0.02)
+                self.assertEqual(uwb.info.number("loss"), 6)
+
     def test_pir_and_states(self):
         with self.run_.world() as world:
             world.add("pir id=s1 at=1.2,1.8,1.2 heading=-90 range=1.2 fov=50,60 hold=0.5")

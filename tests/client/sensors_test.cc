@@ -134,6 +134,26 @@ TEST_F(Sensors, ASmartRoomReportsTagsLightSoundAndMotion) {
     EXPECT_NEAR(Microphone(server.address(), "o1").scan().level, 70 - 20 * std::log10(2), 0.05);
 }
 
+TEST_F(Sensors, AnchorsMeasureRangesAndLocate) {
+    world.add("cube id=k1 at=1.2,1.2 size=0.1,0.1,0.09 tag=key");
+    for (const char* anchor : {"a0 at=1.9,1.9,1.8", "a1 at=-1.9,1.9,1.9", "a2 at=-1.9,-1.9,2"})
+        world.add(std::string("uwb id=") + anchor);
+    simulate(1);
+    Uwb uwb(server.address(), "a0");
+    EXPECT_EQ(uwb.info().number("loss"), 6);
+    const TagRanges seen = uwb.scan();
+    ASSERT_EQ(seen.tags.size(), 1U);
+    EXPECT_EQ(seen.tags[0].tag, "key");
+    EXPECT_NEAR(seen.tags[0].range, std::hypot(0.7, 0.7, 1.69), 0.02);
+    EXPECT_FALSE(seen.tags[0].is_blocked);
+    ASSERT_TRUE(seen.tags[0].is_located);
+    EXPECT_NEAR(seen.tags[0].x, 1.2, 0.01);
+    EXPECT_NEAR(seen.tags[0].y, 1.2, 0.01);
+    world.remove("a2");
+    simulate(1);
+    EXPECT_FALSE(uwb.scan().tags.at(0).is_located);
+}
+
 TEST_F(Sensors, ARobotHasSonarsAndBumpers) {
     world.add("robot id=r5 at=1.5,-1.2 sonar=0.2,0,0;0,-0.2,-90 bumpers=-45,45;135,225");
     Robot robot(server.address(), "r5");

@@ -24,7 +24,7 @@ for scene in "$scenes"/*.env; do
 done
 envc "$data/map.yaml" -q --rooms list --json >map.rooms.json
 envc "$data/drawings/flat.svg" -q --rooms list -o flat.rooms.json
-for layout in ultrasound ranger; do
+for layout in ultrasound ranger uwb; do
     scan "$data/square.env" "$data/$layout.3dm" --any-environment -q -o "$layout.jsonl"
     coverage "$data/square.env" "$data/$layout.3dm" --any-environment -q --report "$layout.json" >/dev/null
 done

@@ -16,6 +16,7 @@
 #include "scene/sensor/ranger.h"
 #include "scene/sensor/rfid.h"
 #include "scene/sensor/ultrasound.h"
+#include "scene/sensor/uwb.h"
 
 namespace ispace {
 
@@ -23,6 +24,6 @@ namespace ispace {
 /// in this order. Only this header, the sources of the kinds and the computation of readings
 /// distinguish kinds.
 using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Pir, Contact, Rfid,
-                                 Microphone, Lux, Imu, Mat, Gate>;
+                                 Uwb, Microphone, Lux, Imu, Mat, Gate>;
 
 }  // namespace ispace

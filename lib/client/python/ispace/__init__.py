@@ -58,6 +58,7 @@ from .smart_room import (
     SoundLevel,
     TagList,
 )
+from .uwb import TagRange, TagRanges, Uwb
 from .world import Event, Lift, World
 
 __all__ = [
@@ -119,9 +120,12 @@ __all__ = [
     "Status",
     "Tag",
     "TagList",
+    "TagRange",
+    "TagRanges",
     "Timeout",
     "ToolError",
     "Ultrasound",
+    "Uwb",
     "World",
     "__version__",
     "arrange",

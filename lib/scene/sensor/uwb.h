@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "geom/pose.h"
+#include "record/record.h"
+#include "scene/sensor/field_of_view.h"
+#include "scene/sensor/rfid.h"
+#include "scene/sensor/sensor_keys.h"
+#include "scene/sensor/shared_list.h"
+
+namespace ispace {
+
+struct SensorKind;
+
+/// Anchors that locate a tag: those that have it in line of sight, at least.
+constexpr std::size_t kMinAnchors = 3;
+
+/// The radio of an ultra-wideband anchor. It measures in all directions, and through walls.
+struct UwbRadio {
+    double min_range = 0, max_range = 50;  ///< in line of sight
+    double loss = 6;                       ///< dB that each wall or mover between takes
+    RangeNoise noise;                      ///< in line of sight: `bias`, `sigma`, `dropout`
+    /// Added by each wall or mover between: the mean of the error, and its standard deviation.
+    double blocked_bias = 0, blocked_sigma = 0;
+
+    friend bool operator==(const UwbRadio&, const UwbRadio&) = default;
+};
+
+/// An anchor of the room that stands by itself, whose ranges locate tags.
+struct UwbAnchor {
+    std::string id;
+    Pose3 pose;
+    UwbRadio radio;
+    friend bool operator==(const UwbAnchor&, const UwbAnchor&) = default;
+};
+
+/// An ultra-wideband anchor, which measures the ranges of tags.
+struct Uwb : UwbRadio {
+    std::string model;  ///< "" for the bare anchor
+    double rate = 10;   ///< rounds a second
+    SharedList<RfidTag> tags;
+    SharedList<UwbAnchor> anchors;  ///< those of the room that stand, this one included
+
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    /// Walls between stop a ray each.
+    [[nodiscard]] std::size_t rays() const { return 1 + 4 * tags.size() * (1 + anchors.size()); }
+    [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return true; }
+    [[nodiscard]] bool isNoisy() const {
+        return !noise.isNone() || blocked_bias > 0 || blocked_sigma > 0;
+    }
+    static const SensorKind kKind;
+    friend bool operator==(const Uwb&, const Uwb&) = default;
+};
+
+/// Reads the parameters of a `uwb` record, without tags and anchors: its explicit keys, else its
+/// model's, else the bare anchor's. \throws FormatError with all findings
+Uwb uwbOf(const Record& record, const Record* device = nullptr);
+Uwb withParameters(Uwb base, const Record& record);
+
+/// Returns the ball in which an anchor measures in line of sight.
+FieldOfView fieldOfView(const Uwb& uwb, const Pose3& pose);
+
+}  // namespace ispace

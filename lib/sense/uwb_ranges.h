@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sense/moment.h"
+#include "sense/ultrasound.h"
+
+namespace ispace {
+
+struct ReadingKind;
+
+/// The range of one tag, and the position of the tag by all anchors of the room.
+struct UwbRange {
+    std::string tag;
+    double range = 0;         ///< metres
+    bool is_blocked = false;  ///< a wall or a mover is between
+    std::optional<PositionFix> fix = {};
+};
+
+/// One round of ranges of an anchor.
+struct UwbRanges {
+    double time = 0;  ///< seconds
+    int frame = 0;
+    Pose3 pose;
+    std::vector<UwbRange> tags;  ///< sorted, each once: the nearest of those of one text
+
+    static const ReadingKind kKind;
+};
+
+/// Measures the ranges of the tags that an anchor reaches. The tag of a thing lies above the middle
+/// of its top, that of a robot too; a person wears it on the chest, and is a mover between for
+/// anchors behind. Each wall (see wallsBetween(), sense/walls_between.h) or mover between divides
+/// the greatest range by 10^(loss/20), and with noise adds to the error; all movers count once.
+///
+/// The position comes from the anchors that stand in the room and have the tag in line of sight, at
+/// least kMinAnchors, by locate() within the height of the room. Of two candidates in it, the one
+/// below or in front of the anchors is taken.
+///
+/// Noise depends on seed, anchor, tag and frame alone: anchors of one rate compute one position.
+UwbRanges readingOf(const Uwb& uwb, const Moment& now);
+
+}  // namespace ispace

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/uwb_ranges.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/test_readings.h"
+
+namespace ispace {
+namespace {
+
+/// Returns the readings of all anchors in a room of 12 m and 2.5 m height.
+std::vector<UwbRanges> rangesIn(const std::string& room, const std::string& layout,
+                                const TakerOptions& options = {}, int frame = 0) {
+    const Scene scene = testing::scene("ispace size=12,12,2.5\n" + room, layout);
+    std::vector<UwbRanges> all;
+    for (const Reading& reading : testing::readings(scene, options, frame))
+        all.push_back(std::get<UwbRanges>(reading));
+    return all;
+}
+
+/// Returns the ranges of the first anchor.
+std::vector<UwbRange> tagsIn(const std::string& room, const std::string& layout,
+                             const TakerOptions& options = {}, int frame = 0) {
+    return rangesIn(room, layout, options, frame).front().tags;
+}
+
+constexpr const char* kCrate = "cube at=4,0 size=0.4,0.4,0.99 tag=crate\n";  // its tag: 4,0,1
+
+TEST(UwbRanges, AreThoseOfPeopleRobotsAndThings) {
+    const auto tags = tagsIn(kCrate,
+                             "uwb at=0,0,1\n"
+                             "robot model=pioneer-2dx at=2,-2 tag=r7\n"
+                             "human at=2,2 heading=-135 tag=anna height=1.8\n"
+                             "human at=-2,2\n");
+    ASSERT_EQ(tags.size(), 3U);
+    EXPECT_EQ(tags[0].tag, "anna");
+    EXPECT_EQ(tags[1].tag, "crate");
+    EXPECT_EQ(tags[2].tag, "r7");
+    EXPECT_NEAR(tags[1].range, 4, 1e-9);
+    // On the chest, before the middle; above the top.
+    EXPECT_GT(tags[0].range, std::hypot(1.8, 1.8));
+    EXPECT_LT(tags[0].range, std::hypot(2, 2));
+    EXPECT_GT(tags[2].range, std::hypot(2, 2));
+    for (const UwbRange& one : tags) {
+        EXPECT_FALSE(one.is_blocked) << one.tag;
+        EXPECT_FALSE(one.fix) << "by one anchor";
+    }
+    // Of two tags with one text, the nearest.
+    const auto twins = tagsIn(kCrate, "uwb at=0,0,1\nhuman at=2,0.8 tag=crate\n");
+    ASSERT_EQ(twins.size(), 1U);
+    EXPECT_LT(twins[0].range, 3);
+}
+
+TEST(UwbRanges, WallsShortenTheReach) {
+    const std::string wall = "wall from=2,-6 to=2,6\n";
+    const auto tags = tagsIn(wall + kCrate, "uwb at=0,0,1 range=8\n");
+    ASSERT_EQ(tags.size(), 1U);
+    EXPECT_TRUE(tags[0].is_blocked);
+    EXPECT_NEAR(tags[0].range, 4, 1e-9) << "without noise the distance";
+    // 6.0206 dB halve the range.
+    EXPECT_EQ(tagsIn(wall + kCrate, "uwb at=0,0,1 range=8 loss=6.1\n").size(), 0U);
+    EXPECT_EQ(tagsIn(wall + kCrate, "uwb at=0,0,1 range=7.9 loss=6\n").size(), 0U);
+    EXPECT_EQ(tagsIn(kCrate, "uwb at=0,0,1 range=4\n").size(), 1U) << "ends are included";
+    EXPECT_EQ(tagsIn(kCrate, "uwb at=0,0,1 range=3.9\n").size(), 0U);
+    EXPECT_EQ(tagsIn(kCrate, "uwb at=0,0,1 range=4.1,9\n").size(), 0U);
+    const std::string door = "door at=2,0 open=yes\n";
+    EXPECT_FALSE(tagsIn(wall + door + kCrate, "uwb at=0,0,1 range=8\n")[0].is_blocked);
+    // An anchor on the wall itself.
+    EXPECT_FALSE(tagsIn(kCrate, "uwb at=-6,0,1\n")[0].is_blocked);
+}
+
+TEST(UwbRanges, PeopleBlockThem) {
+    const auto blocked = [](const std::string& people) {
+        const auto tags = tagsIn("", "uwb at=0,0,1.2\n" + people);
+        return tags.size() == 1 && tags[0].is_blocked;
+    };
+    EXPECT_FALSE(blocked("human at=4,0 heading=180 tag=anna\n"));
+    EXPECT_TRUE(blocked("human at=4,0 heading=0 tag=anna\n")) << "her own back";
+    EXPECT_TRUE(blocked("human at=4,0 heading=180 tag=anna\nhuman at=2,0\n"));
+    EXPECT_FALSE(blocked("human at=4,0 heading=180 tag=anna\nhuman at=2,1\n"));
+    // The carrier of the anchor does not.
+    const auto tags = tagsIn(kCrate, "uwb at=0,0,1 on=h1\nhuman id=h1\n");
+    ASSERT_EQ(tags.size(), 1U);
+    EXPECT_FALSE(tags[0].is_blocked);
+}
+
+TEST(UwbRanges, ThreeAnchorsInSightLocateATag) {
+    // Along three axes: each distance is a coordinate, and the errors of all are alike.
+    const std::string thing = "cube at=0,0 size=0.2,0.2,0.99 tag=t\n";
+    const std::string three = "uwb id=a at=3,0,1\nuwb id=b at=0,3,1\n", third = "uwb at=0,0,2.4\n";
+    const auto all = rangesIn(thing, three + third);
+    ASSERT_EQ(all.size(), 3U);
+    for (const UwbRanges& one : all) {
+        ASSERT_TRUE(one.tags.at(0).fix);
+        const PositionFix& fix = *one.tags[0].fix;
+        EXPECT_LT(length(fix.position - Point3{0, 0, 1}), 1e-6);
+        EXPECT_NEAR(fix.pdop, std::sqrt(3.0), 1e-6);
+        EXPECT_NEAR(fix.hdop, std::sqrt(2.0), 1e-6);
+        EXPECT_NEAR(fix.vdop, 1, 1e-6);
+        EXPECT_NEAR(fix.residual, 0, 1e-9);
+    }
+    EXPECT_FALSE(tagsIn(thing, three)[0].fix) << "two";
+    EXPECT_FALSE(tagsIn(thing + "wall from=-1,2 to=1,2\n", three + third)[0].fix)
+        << "one of them does not see it";
+    EXPECT_FALSE(tagsIn(thing, three + "robot id=r at=-3,0\nuwb at=0,0,1 on=r\n")[0].fix)
+        << "one of them drives";
+    EXPECT_FALSE(tagsIn(thing, three + "uwb at=0,0,2.4 range=1.3\n")[0].fix)
+        << "one of them does not reach it";
+    EXPECT_TRUE(tagsIn(thing, three + third + "uwb at=5,5,2 range=1\n")[0].fix);
+}
+
+TEST(UwbRanges, HaveErrorsInSightAndLargerOnesThroughWalls) {
+    const std::string keys = "uwb at=0,0,1 bias=0.1 sigma=0.05 blocked=0.4,0.2\n";
+    constexpr int kFrames = 600;
+    for (const bool blocked : {false, true}) {
+        const std::string room = blocked ? std::string("wall from=2,-6 to=2,6\n") + kCrate : kCrate;
+        double sum = 0, squares = 0;
+        for (int frame = 0; frame < kFrames; ++frame) {
+            const double error = tagsIn(room, keys, {.noise_seed = 3}, frame).at(0).range - 4;
+            sum += error;
+            squares += error * error;
+        }
+        const double mean = sum / kFrames, sigma = std::sqrt(squares / kFrames - mean * mean);
+        const double expected = blocked ? std::hypot(0.05, 0.2) : 0.05;
+        EXPECT_NEAR(mean, blocked ? 0.5 : 0.1, 5 * expected / std::sqrt(1.0 * kFrames));
+        EXPECT_NEAR(sigma, expected, 5 * expected / std::sqrt(2.0 * kFrames));
+    }
+    int heard = 0;
+    for (int frame = 0; frame < kFrames; ++frame)
+        heard += static_cast<int>(
+            tagsIn(kCrate, "uwb at=0,0,1 dropout=25%\n", {.noise_seed = 3}, frame).size());
+    EXPECT_NEAR(heard, 0.75 * kFrames, 5 * 10.6);
+    EXPECT_EQ(tagsIn(kCrate, "uwb at=0,0,1 sigma=9\n")[0].range, tagsIn(kCrate, keys)[0].range);
+}
+
+TEST(UwbRanges, AllAnchorsComputeThePositionOfTheRangesThatTheyReport) {
+    const std::string anchors =
+        "uwb id=a at=-5,-5,2.2 sigma=0.05\nuwb id=b at=5,-5,2.3 model=dwm1000\n"
+        "uwb id=c at=5,5,1.2 sigma=0.05\nuwb id=d at=-5,5,2.4 sigma=0.05\n";
+    const std::vector<Point3> at = {{-5, -5, 2.2}, {5, -5, 2.3}, {5, 5, 1.2}, {-5, 5, 2.4}};
+    for (int frame = 0; frame < 5; ++frame) {
+        const auto all = rangesIn(kCrate, anchors, {.noise_seed = 8}, frame);
+        std::vector<Hearing> heard;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            heard.push_back(
+                {at[i], {0, 0, -1}, Angle::degrees(360), all[i].tags.at(0).range, 0.05});
+        const auto expected = locate(heard, {3, 0, 2.5});
+        ASSERT_TRUE(expected);
+        EXPECT_GT(length(expected->position - Point3{4, 0, 1}), 1e-3) << "ranges have errors";
+        for (const UwbRanges& one : all) {
+            ASSERT_TRUE(one.tags[0].fix);
+            EXPECT_LT(length(one.tags[0].fix->position - expected->position), 1e-6);
+        }
+    }
+}
+
+TEST(Uwb, ReadsItsKeys) {
+    const auto read = [](const std::string& keys) {
+        const Record record = testing::sensorRecord("uwb " + keys);
+        return uwbOf(record, testing::deviceFor(record));
+    };
+    EXPECT_EQ(read(""), Uwb());
+    EXPECT_FALSE(Uwb().isNoisy());
+    const Uwb uwb =
+        read("range=0.2,30 loss=9 bias=-0.02 sigma=0.03 blocked=0.3,0.2 dropout=2% rate=5");
+    EXPECT_EQ(uwb.min_range, 0.2);
+    EXPECT_EQ(uwb.max_range, 30);
+    EXPECT_EQ(uwb.loss, 9);
+    EXPECT_EQ(uwb.noise.bias, -0.02);
+    EXPECT_EQ(uwb.noise.sigma[0], 0.03);
+    EXPECT_EQ(uwb.noise.dropout, 0.02);
+    EXPECT_EQ(uwb.blocked_bias, 0.3);
+    EXPECT_EQ(uwb.blocked_sigma, 0.2);
+    EXPECT_EQ(uwb.rate, 5);
+    EXPECT_TRUE(uwb.isNoisy());
+    EXPECT_TRUE(read("model=dwm1000").isNoisy());
+    EXPECT_NE(testing::findings([&] { return read("range=3,2"); }).find("above the greatest"),
+              std::string::npos);
+    EXPECT_NE(testing::findings([&] { return read("blocked=1"); }), "");
+}
+
+}  // namespace
+}  // namespace ispace
