@@ -116,6 +116,8 @@ SightErrors errorsOf(const Receiver& receiver, double range) {
     return {distanceSigma(receiver.noise, range), 0};
 }
 
+SightErrors errorsOf(const Uwb& uwb, double range) { return {distanceSigma(uwb.noise, range), 0}; }
+
 template <typename Model>
 SightErrors errorsOf(const Model& /*model*/, double /*range*/) {
     return {};

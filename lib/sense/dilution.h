@@ -44,7 +44,7 @@ constexpr double kLeastSigma = 0.001;
 /// Returns the information of one reading about a point that the sensor sees:
 /// - lasers, rangers, radars: a distance, by their noise, and the direction;
 /// - cameras: the direction;
-/// - receivers: the distance of a tag.
+/// - receivers, anchors: the distance of a tag.
 ///
 /// Distances err by `sigma` and the rounding to `resolution`, and by kLeastSigma at least;
 /// directions by `angle_sigma` and the rounding to beams or pixels. Rounding counts as uniform.
