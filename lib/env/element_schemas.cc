@@ -269,6 +269,71 @@ void addInfra(std::vector<Schema>& out) {
                           countKey("cols", "bars across", 3, 1000)}));
 }
 
+KeySpec levelKey() {
+    return {.name = "level",
+            .type = KeyType::Number,
+            .unit = Unit::Share,
+            .help = "share of its full light",
+            .default_value = 1.0,
+            .lower = 0,
+            .upper = 1};
+}
+
+KeySpec lightColorKey(Tuple standard) {
+    return {.name = "color",
+            .type = KeyType::Tuple,
+            .help = "red,green,blue of its light, each from 0 to 1",
+            .default_value = std::move(standard),
+            .min_count = 3,
+            .max_count = 3,
+            .lower = 0,
+            .upper = 1};
+}
+
+Schema projectorSchema() {
+    const auto turn = [](std::string name, std::string help, double limit) {
+        return KeySpec{.name = std::move(name),
+                       .type = KeyType::Number,
+                       .unit = Unit::Angle,
+                       .help = std::move(help),
+                       .default_value = 0.0,
+                       .lower = -limit,
+                       .upper = limit};
+    };
+    constexpr double kWidest = 170;
+    KeySpec heading = headingKey();
+    heading.help = "direction that it faces at pan=0, from +x";
+    KeySpec fov{.name = "fov",
+                .type = KeyType::Tuple,
+                .unit = Unit::Angle,
+                .help = "full angles of its light across and upright",
+                .default_value = Tuple{36, 21},
+                .min_count = 2,
+                .max_count = 2,
+                .lower = 0,
+                .upper = kWidest,
+                .lower_open = true};
+    return schema("projector", RecordType::Infra,
+                  "a projector that turns, whose picture or plain light pictures show on walls, "
+                  "floor and people; it has no body",
+                  {floorAtKey(),
+                   heightKey(2.2, "height of its lens above the floor"),
+                   std::move(heading),
+                   flagKey("on", "it shines"),
+                   levelKey(),
+                   lightColorKey({1, 1, 1}),
+                   turn("pan", "turn of its axis to the left of its heading", 180),
+                   turn("tilt", "turn of its axis upwards", 90),
+                   std::move(fov),
+                   {.name = "lumens",
+                    .type = KeyType::Number,
+                    .help = "its full light, lumens",
+                    .default_value = 1000.0,
+                    .lower = 0,
+                    .upper = 1e6},
+                   textureKey("that it throws, through which its light passes")});
+}
+
 /// Actuators: their states are keys, see stateKeys().
 void addAppliances(std::vector<Schema>& out) {
     out.push_back(schema("lamp", RecordType::Infra,
@@ -276,27 +341,15 @@ void addAppliances(std::vector<Schema>& out) {
                          "room has no other light than these",
                          {floorAtKey(),
                           flagKey("on", "it shines"),
-                          {.name = "level",
-                           .type = KeyType::Number,
-                           .unit = Unit::Share,
-                           .help = "share of its full light",
-                           .default_value = 1.0,
-                           .lower = 0,
-                           .upper = 1},
-                          {.name = "color",
-                           .type = KeyType::Tuple,
-                           .help = "red,green,blue of its light, each from 0 to 1",
-                           .default_value = Tuple{1, 1, 0.97},
-                           .min_count = 3,
-                           .max_count = 3,
-                           .lower = 0,
-                           .upper = 1},
+                          levelKey(),
+                          lightColorKey({1, 1, 0.97}),
                           {.name = "lumens",
                            .type = KeyType::Number,
                            .help = "its full light for light meters, lumens",
                            .default_value = 3600.0,
                            .lower = 0,
                            .upper = 1e6}}));
+    out.push_back(projectorSchema());
     out.push_back(schema("speaker", RecordType::Infra,
                          "a speaker, which microphones hear; it has no body",
                          {floorAtKey(),

@@ -11,9 +11,11 @@ namespace ispace {
 
 namespace {
 
-constexpr StateKey kStateKeys[] = {{"door", "open"}, {"window", "open"}, {"window", "blind"},
-                                   {"lamp", "on"},   {"lamp", "level"},  {"lamp", "color"},
-                                   {"switch", "on"}, {"speaker", "on"},  {"speaker", "volume"}};
+constexpr StateKey kStateKeys[] = {
+    {"door", "open"},       {"window", "open"},   {"window", "blind"},   {"lamp", "on"},
+    {"lamp", "level"},      {"lamp", "color"},    {"projector", "on"},   {"projector", "level"},
+    {"projector", "color"}, {"projector", "pan"}, {"projector", "tilt"}, {"switch", "on"},
+    {"speaker", "on"},      {"speaker", "volume"}};
 
 std::string valueText(const Record& record, std::string_view key) {
     const KeySpec& spec = *record.schema().find(key);

@@ -13,13 +13,15 @@ namespace {
 
 const char* const kRoom =
     "ispace size=6,6\ndoor id=d1 at=0,3\nlamp id=l1 at=1,1 on=yes level=40%\nswitch id=b1\nspeaker "
-    "id=a1\n";
+    "id=a1\nprojector id=q1 pan=30 tilt=-10\n";
 
 TEST(RoomState, HasARowForEachStateKey) {
     const Scene room = testing::scene(kRoom, "robot id=r1\n");
     const std::vector<RoomState> expected = {
-        {"d1", "open", "0"}, {"l1", "on", "1"}, {"l1", "level", "0.4"}, {"l1", "color", "1,1,0.97"},
-        {"b1", "on", "0"},   {"a1", "on", "0"}, {"a1", "volume", "70"}};
+        {"d1", "open", "0"},         {"l1", "on", "1"},   {"l1", "level", "0.4"},
+        {"l1", "color", "1,1,0.97"}, {"b1", "on", "0"},   {"a1", "on", "0"},
+        {"a1", "volume", "70"},      {"q1", "on", "0"},   {"q1", "level", "1"},
+        {"q1", "color", "1,1,1"},    {"q1", "pan", "30"}, {"q1", "tilt", "-10"}};
     EXPECT_EQ(roomStates(room), expected);
     EXPECT_TRUE(isActuator("lamp"));
     EXPECT_FALSE(isActuator("robot"));
@@ -40,6 +42,7 @@ TEST(RoomState, EditsAreChecked) {
     EXPECT_EQ(stateEdit(room, "b1", "on=1"), "b1.on=yes");
     EXPECT_EQ(stateEdit(room, "l1", "on=off"), "l1.on=off");
     EXPECT_EQ(stateEdit(room, "l1", "level=1"), "l1.level=1");
+    EXPECT_EQ(stateEdit(room, "q1", "pan=-20"), "q1.pan=-20");
     const auto refusal = [&](const char* id, const char* assignment) {
         try {
             stateEdit(room, id, assignment);

@@ -37,6 +37,7 @@ struct Component {
     std::string_view keyword, component, device_class;
 };
 constexpr Component kComponents[] = {{"lamp", "light", ""},
+                                     {"projector", "light", ""},
                                      {"switch", "switch", ""},
                                      {"speaker", "switch", ""},
                                      {"door", "cover", "door"},

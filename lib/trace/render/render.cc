@@ -12,6 +12,7 @@
 #include "trace/render/light_tracer.h"
 #include "trace/render/lights.h"
 #include "trace/render/shading.h"
+#include "trace/render/thrown_light.h"
 
 namespace ispace {
 
@@ -238,6 +239,8 @@ class TileWorker {
         if (!job_.shading.meetsSurface(tile_, lane)) return job_.shading.background(tile_, lane);
         const SurfacePoint point = job_.shading.surface(tile_, lane);
         light = lightAt(point, pixel, at);
+        const Rgb thrown = thrownLight(job_.scene, point);
+        for (std::size_t k = 0; k < 3; ++k) light[k] += thrown[k];
         return job_.shading.lit(point, light);
     }
 

@@ -211,7 +211,21 @@ class StillBuilder {
         }
     }
 
+    /// Reads its picture even if it is off: an unreadable one is reported at once.
+    void addProjector(const Record& record) {
+        ThrownPicture picture;
+        if (hasTexture(record)) picture.texture = reader_.read(record, still_.textures, findings_);
+        const auto beam = projectorBeam(record);
+        if (!beam) return;
+        picture.beam = *beam;
+        picture.beam.lens.origin = beam->lens.origin + still_.shift;
+        const Tuple& color = record.tuple("color");
+        for (std::size_t k = 0; k < 3; ++k) picture.color[k] = static_cast<float>(color[k]);
+        still_.thrown.push_back(picture);
+    }
+
     void addElement(const Element& element) {
+        if (element.record.keyword() == "projector") return addProjector(element.record);
         const auto known = labels_.find(element.id);
         const std::uint32_t label = known == labels_.end() ? 0 : known->second;
         const FaceRange faces = addFaces(element);

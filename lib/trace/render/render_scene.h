@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "env/mesh.h"
+#include "env/projector.h"
 #include "geom/pose.h"
 #include "scene/scene.h"
 #include "trace/embree_bodies.h"
@@ -91,6 +92,15 @@ struct Covering {
     [[nodiscard]] std::optional<std::uint32_t> paintAt(Point2 place) const;
 };
 
+/// The light of a `projector` that is on.
+struct ThrownPicture {
+    static constexpr std::uint32_t kPlain = ~0U;
+
+    ProjectorBeam beam;  ///< relative to the middle of the plan
+    Rgb color{};
+    std::uint32_t texture = kPlain;
+};
+
 /// Static surfaces, and the shapes of movable ones.
 struct StillSurfaces {
     /// In the frame of Scene::placed, by its index.
@@ -112,6 +122,7 @@ struct StillSurfaces {
     std::optional<SurfaceSet> glass;  ///< clear glass, which light passes
     std::optional<SurfaceSet> paint;  ///< see PaintedMesh
     Lamps lamps;
+    std::vector<ThrownPicture> thrown;
     std::vector<Figure> figures;
     double extent = 1;  ///< of the plan, metres
     bool has_ceiling = false;
