@@ -44,12 +44,24 @@ double lightOf(const Lux::Light& light, double height, const Moment& now) {
     return light.lumens / std::numbers::pi * lux / static_cast<double>(points.size());
 }
 
+/// Computes the illuminance by a projector, of a white picture.
+double lightOf(const ProjectorBeam& beam, const Moment& now) {
+    const Point3 spot = now.pose.position, lens = beam.lens.origin;
+    const auto light = beam.spotAt(spot, Frame3(now.pose).forward);
+    if (!light) return 0;
+    std::uint8_t is_free = 0;
+    now.mesh().query(spot, std::span(&lens, 1), std::span(&is_free, 1));
+    const bool is_lit = is_free != 0 && !now.bodies.between(spot, lens, carrierOf(now.sensor));
+    return is_lit ? light->lux : 0;
+}
+
 }  // namespace
 
 Illuminance readingOf(const Lux& lux, const Moment& now) {
     Illuminance reading{now.time, now.frame, now.pose, 0};
     const double height = Lamps::heightIn(now.worlds.environment());
     for (const Lux::Light& light : lux.lights) reading.lux += lightOf(light, height, now);
+    for (const ProjectorBeam& beam : lux.beams) reading.lux += lightOf(beam, now);
     if (now.options.noise_seed) {
         std::array<float, 1> normal{};
         RandomKey constant = now.noiseKey();

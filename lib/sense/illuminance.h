@@ -19,7 +19,8 @@ struct Illuminance {
 
 /// Computes the direct light of the lamps, which pictures show too: square panels under the ceiling
 /// that radiate downwards by Lambert's law. Opaque surfaces and movers cast shadows; a panel may be
-/// hidden in part. Light that surfaces throw back, and daylight, are not in it.
+/// hidden in part. Projectors add the light of a white picture. Light that surfaces throw back, and
+/// daylight, are not in it.
 Illuminance readingOf(const Lux& lux, const Moment& now);
 
 }  // namespace ispace

@@ -63,6 +63,20 @@ TEST(Illuminance, FurnitureWallsAndPeopleCastShadows) {
     EXPECT_EQ(luxIn(kLamp, "lux at=-2,0,1\nhuman at=-1.5,1\n"), luxIn(kLamp, "lux at=-2,0,1\n"));
 }
 
+TEST(Illuminance, HasTheLightOfProjectors) {
+    // At 3 m a picture of 2 * 3 * tan(30 deg) by 2 * 3 * tan(15 deg), seen head-on.
+    const double area = 36 * std::tan(std::numbers::pi / 6) * std::tan(std::numbers::pi / 12);
+    const std::string beam = "projector at=-3,0 height=1 on=yes fov=60,30 lumens=2000";
+    EXPECT_NEAR(luxIn(beam + '\n', "lux at=0,0,1 heading=180\n"), 2000 / area, 1e-6);
+    EXPECT_NEAR(luxIn(beam + " level=20%\n", "lux at=0,1.5,1 heading=180\n"), 400 / area, 1e-6);
+    EXPECT_EQ(luxIn(beam + " pan=31\n", "lux at=0,0,1 heading=180\n"), 0);
+    EXPECT_EQ(luxIn(beam + '\n', "lux at=0,0,1\n"), 0) << "it faces away";
+    EXPECT_EQ(luxIn(beam + "\nwall from=-1,-3 to=-1,3\n", "lux at=0,0,1 heading=180\n"), 0);
+    EXPECT_EQ(luxIn(beam + '\n', "lux at=0,0,1 heading=180\nhuman at=-1,0\n"), 0);
+    EXPECT_NEAR(luxIn(kLamp + beam + '\n', "lux at=-1,0,1 heading=180\n"),
+                luxIn(kLamp, "lux at=-1,0,1 heading=180\n") + 2000 / area * 9 / 4, 1e-6);
+}
+
 TEST(Illuminance, HasAConstantFactorAndSteps) {
     const auto measured = [](int seed, int frame, const std::string& keys) {
         return luxIn(kLamp, "lux at=0,0,0.5 tilt=90 " + keys + '\n',

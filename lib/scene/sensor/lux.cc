@@ -15,11 +15,7 @@ Lux withParameters(Lux base, const Record& record) {
     return base;
 }
 
-Lux luxOf(const Record& record, const Record* device) { return parametersOf<Lux>(record, device); }
-
-namespace {
-
-void addLuxKeys(std::vector<KeySpec>& keys) {
+void addLightKeys(std::vector<KeySpec>& keys) {
     constexpr double kBrightest = 1e6;
     keys.push_back(
         positiveKey("max", Unit::None, "greatest illuminance that it tells, lux", kBrightest));
@@ -34,6 +30,14 @@ void addLuxKeys(std::vector<KeySpec>& keys) {
                     .help = "standard deviation of its constant factor, with --noise",
                     .lower = 0,
                     .upper = 1});
+}
+
+Lux luxOf(const Record& record, const Record* device) { return parametersOf<Lux>(record, device); }
+
+namespace {
+
+void addLuxKeys(std::vector<KeySpec>& keys) {
+    addLightKeys(keys);
     keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
 }
 
@@ -48,8 +52,17 @@ std::vector<Lux::Light> lightsOf(const RoomRecords& room) {
     return lights;
 }
 
-void lookUpLamps(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
-    std::get<Lux>(model).lights = room.shared<Lux::Light>([&room] { return lightsOf(room); });
+std::vector<ProjectorBeam> beamsOf(const RoomRecords& room) {
+    std::vector<ProjectorBeam> beams;
+    for (const Record& record : room.records) {
+        if (record.keyword() != "projector") continue;
+        if (auto beam = projectorBeam(record)) beams.push_back(*beam);
+    }
+    return beams;
+}
+
+void lookUp(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
+    lookUpLights(std::get<Lux>(model), room);
 }
 
 std::vector<Mesh> luxBody() {
@@ -60,10 +73,17 @@ std::vector<Mesh> luxBody() {
 
 }  // namespace
 
+void lookUpLights(Lux& lux, const RoomRecords& room) {
+    lux.lights = room.shared<Lux::Light>([&room] { return lightsOf(room); });
+    lux.beams = room.shared<ProjectorBeam>([&room] { return beamsOf(room); });
+}
+
 const SensorKind Lux::kKind = {
     .keyword = "lux",
     .noun = "light meter",
-    .help = "light meter, which reports the light of lamps on a spot; bare: max=100000 rate=1",
+    .help =
+        "light meter, which reports the light of lamps and projectors on a spot; bare: max=100000 "
+        "rate=1",
     .heading_help = "direction that the spot faces, from +x",
     .device_help = "a light meter one can buy",
     .sign = SensorSign::Square,
@@ -72,7 +92,7 @@ const SensorKind Lux::kKind = {
     .read = [](const Record& record, const Record* device) -> SensorModel {
         return luxOf(record, device);
     },
-    .look_up = lookUpLamps,
+    .look_up = lookUp,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         return {"-", "180", "-", formatDouble(std::get<Lux>(model).rate)};
     },

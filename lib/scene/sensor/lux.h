@@ -5,15 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "env/projector.h"
 #include "geom/pose.h"
 #include "record/record.h"
+#include "record/schema.h"
 #include "scene/sensor/shared_list.h"
 
 namespace ispace {
 
+struct RoomRecords;
 struct SensorKind;
 
-/// A light meter: the illuminance by lamps at a spot that faces along its axis.
+/// A light meter: the illuminance by lamps and projectors at a spot that faces along its axis.
 struct Lux {
     /// A lamp that is on.
     struct Light {
@@ -29,10 +32,11 @@ struct Lux {
     double rate = 1;           ///< readings a second
     double max_range = 0;      ///< it covers no floor
     SharedList<Light> lights;  ///< of the scene
+    SharedList<ProjectorBeam> beams;
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
-    [[nodiscard]] std::size_t rays() const { return 16 * (1 + lights.size()); }
+    [[nodiscard]] std::size_t rays() const { return 16 * (1 + lights.size()) + beams.size(); }
     [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
     [[nodiscard]] bool isNoisy() const { return resolution > 0 || error > 0; }
     static const SensorKind kKind;
@@ -43,5 +47,10 @@ struct Lux {
 /// else the bare meter's.
 Lux luxOf(const Record& record, const Record* device = nullptr);
 Lux withParameters(Lux base, const Record& record);
+
+/// Adds the keys `max`, `resolution` and `error`.
+void addLightKeys(std::vector<KeySpec>& keys);
+/// Looks up the lights of a room, lists that all its meters share.
+void lookUpLights(Lux& lux, const RoomRecords& room);
 
 }  // namespace ispace
