@@ -14,6 +14,7 @@
 #include "sense/illuminance.h"
 #include "sense/inertia.h"
 #include "sense/moment.h"
+#include "sense/mote_report.h"
 #include "sense/photo.h"
 #include "sense/pir_state.h"
 #include "sense/radar_frame.h"
@@ -67,13 +68,14 @@ struct ContactState {
 
 /// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
 /// SensorModel.
-using ReadingValue =
-    std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState, ContactState,
-                 RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia, MatState, GateState>;
+using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState,
+                                  ContactState, RfidTags, UwbRanges, SoundLevel, Illuminance,
+                                  Inertia, MoteReport, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
-using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState,
-                             ContactState, RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia>;
+using Reading =
+    std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState, ContactState,
+                 RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia, MoteReport>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

@@ -243,6 +243,19 @@ class Sensors(unittest.TestCase):
                 self.assertGreater(lux.scan().lux, 100)
                 self.assertAlmostEqual(microphone.scan().level, 70 - 20 * math.log10(2), delta=0.05)
 
+    def test_mote(self):
+        with self.run_.world() as world:
+            world.add("lamp id=l8 at=0,0 on=yes")
+            world.add("mote id=n1 at=0,0,0.5 tilt=90 radio=2")
+            world.add("mote id=n2 at=1,0,0.5")
+            world.add("mote id=n3 at=-1.9,-1.9,0.5")
+            world.advance(1)
+            with ispace.Mote(self.run_.address, "n1") as mote:
+                report = mote.scan()
+                self.assertGreater(report.lux, 100)
+                self.assertEqual(list(report.neighbours), ["n2"])
+                self.assertAlmostEqual(report.neighbours["n2"], 20 * math.log10(2), delta=0.06)
+
     def test_uwb(self):
         with self.run_.world() as world:
             world.add("cube id=k2 at=1.2,1.2 size=0.1,0.1,0.09 tag=key")

@@ -134,6 +134,18 @@ TEST_F(Sensors, ASmartRoomReportsTagsLightSoundAndMotion) {
     EXPECT_NEAR(Microphone(server.address(), "o1").scan().level, 70 - 20 * std::log10(2), 0.05);
 }
 
+TEST_F(Sensors, AMoteReportsLightAndNeighbours) {
+    world.add("lamp id=l8 at=0,0 on=yes");
+    world.add("mote id=n1 at=0,0,0.5 tilt=90 radio=2");
+    world.add("mote id=n2 at=1,0,0.5");
+    world.add("mote id=n3 at=-1.9,-1.9,0.5");
+    simulate(1);
+    const MoteReport report = Mote(server.address(), "n1").scan();
+    EXPECT_GT(report.lux, 100);
+    EXPECT_EQ(report.neighbours, std::vector<std::string>({"n2"}));
+    EXPECT_NEAR(report.margins.at(0), 20 * std::log10(2.0), 0.06);
+}
+
 TEST_F(Sensors, AnchorsMeasureRangesAndLocate) {
     world.add("cube id=k1 at=1.2,1.2 size=0.1,0.1,0.09 tag=key");
     for (const char* anchor : {"a0 at=1.9,1.9,1.8", "a1 at=-1.9,1.9,1.9", "a2 at=-1.9,-1.9,2"})

@@ -11,6 +11,7 @@
 #include "scene/sensor/laser.h"
 #include "scene/sensor/lux.h"
 #include "scene/sensor/microphone.h"
+#include "scene/sensor/mote.h"
 #include "scene/sensor/pir.h"
 #include "scene/sensor/radar.h"
 #include "scene/sensor/ranger.h"
@@ -24,6 +25,6 @@ namespace ispace {
 /// in this order. Only this header, the sources of the kinds and the computation of readings
 /// distinguish kinds.
 using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Pir, Contact, Rfid,
-                                 Uwb, Microphone, Lux, Imu, Mat, Gate>;
+                                 Uwb, Microphone, Lux, Imu, Mote, Mat, Gate>;
 
 }  // namespace ispace

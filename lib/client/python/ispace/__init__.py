@@ -32,6 +32,7 @@ from .errors import (
     ToolError,
 )
 from .filters import CoverageReport, Figure, Layout, Object, Record, arrange, coverage, info, scan
+from .mote import Mote, MoteReport
 from .movers import Bumper, End, Limits, Motion, Odometry, Person, Robot, Sonar, Status
 from .pir import Pir, Presence
 from .radar import Detection, Detections, Radar
@@ -93,6 +94,8 @@ __all__ = [
     "Mat",
     "Message",
     "Microphone",
+    "Mote",
+    "MoteReport",
     "Motion",
     "Object",
     "Odometry",

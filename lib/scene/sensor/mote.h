@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include "geom/pose.h"
+#include "record/record.h"
+#include "scene/sensor/lux.h"
+#include "scene/sensor/shared_list.h"
+
+namespace ispace {
+
+struct SensorKind;
+
+/// A mote of the room, as the others hear it.
+struct MoteRadio {
+    static constexpr std::size_t kStands = std::numeric_limits<std::size_t>::max();
+
+    std::string id;
+    Point3 at;                      ///< if it is carried, z alone counts
+    std::size_t carrier = kStands;  ///< index among the scene's robots or people
+    bool is_on_person = false;
+    friend bool operator==(const MoteRadio&, const MoteRadio&) = default;
+};
+
+/// A node of a wireless sensor network: it measures light, and hears other nodes.
+struct Mote {
+    std::string model;     ///< "" for the bare mote
+    Lux meter;             ///< its light sensor, which faces along the mote's axis
+    double radio = 30;     ///< metres: from farther nodes it hears none, without walls between
+    double loss = 6;       ///< dB that each wall between takes
+    double rate = 1;       ///< readings a second
+    double max_range = 0;  ///< it covers no floor
+    SharedList<MoteRadio> motes;  ///< of the room, this one included
+
+    [[nodiscard]] double readingRate() const { return rate; }
+    [[nodiscard]] static double readingTime() { return 0; }
+    /// Walls between stop a ray each.
+    [[nodiscard]] std::size_t rays() const { return meter.rays() + 4 * motes.size(); }
+    [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
+    [[nodiscard]] bool isNoisy() const { return meter.isNoisy(); }
+    static const SensorKind kKind;
+    friend bool operator==(const Mote&, const Mote&) = default;
+};
+
+/// Reads the parameters of a `mote` record, without lights and motes: its explicit keys, else its
+/// model's, else the bare mote's.
+Mote moteOf(const Record& record, const Record* device = nullptr);
+Mote withParameters(Mote base, const Record& record);
+
+}  // namespace ispace

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sense/moment.h"
+
+namespace ispace {
+
+struct ReadingKind;
+
+/// A mote that another hears.
+struct Neighbour {
+    std::string mote;   ///< id
+    double margin = 0;  ///< dB above the weakest signal that is heard
+};
+
+/// A reading of a mote.
+struct MoteReport {
+    double time = 0;  ///< seconds
+    int frame = 0;
+    Pose3 pose;
+    double lux = 0;                     ///< as a `lux` at its pose reports
+    std::vector<Neighbour> neighbours;  ///< in the order of the scene
+
+    static const ReadingKind kKind;
+};
+
+/// Measures the light on a mote and lists the motes that it hears: those whose signal, in free
+/// space and less `loss` for each wall between (see wallsBetween(), sense/walls_between.h), is as
+/// strong as over `radio` metres. Movers weaken no signal. A mote on a robot or a person sends from
+/// the axis of the mover's body, at the height of its record.
+MoteReport readingOf(const Mote& mote, const Moment& now);
+
+}  // namespace ispace

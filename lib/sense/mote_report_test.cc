@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/mote_report.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/test_readings.h"
+
+namespace ispace {
+namespace {
+
+/// Returns the reports of all motes in a room of 40 x 12 m.
+std::vector<MoteReport> reportsIn(const std::string& room, const std::string& layout,
+                                  const TakerOptions& options = {}) {
+    const Scene scene = testing::scene("ispace size=40,12,2.5 ceiling=yes\n" + room, layout);
+    std::vector<MoteReport> all;
+    for (const Reading& reading : testing::readings(scene, options))
+        if (const auto* report = std::get_if<MoteReport>(&reading)) all.push_back(*report);
+    return all;
+}
+
+/// Returns the neighbours of the first mote, separated by blanks.
+std::string heardIn(const std::string& room, const std::string& layout) {
+    const auto reports = reportsIn(room, layout);
+    std::string ids;
+    for (const Neighbour& one : reports.front().neighbours)
+        ids.append(ids.empty() ? "" : " ").append(one.mote);
+    return ids;
+}
+
+TEST(MoteReport, ListsTheMotesInRadioRange) {
+    const std::string three =
+        "mote id=a at=-10,0,1 radio=12\nmote id=b at=0,0,1\nmote id=c at=10,0,1\n";
+    EXPECT_EQ(heardIn("", three), "b");
+    const auto all = reportsIn("", three);
+    ASSERT_EQ(all.size(), 3U);
+    ASSERT_EQ(all[1].neighbours.size(), 2U);
+    // In free space: 20 lg(30 / 10).
+    EXPECT_NEAR(all[1].neighbours[0].margin, 9.5424, 1e-4);
+    EXPECT_NEAR(all[0].neighbours[0].margin, 20 * std::log10(1.2), 1e-9);
+    EXPECT_EQ(heardIn("", "mote id=a at=0,0 radio=10\nmote id=b at=10,0\n"), "b")
+        << "ends are included";
+    EXPECT_EQ(heardIn("", "mote id=a at=0,0\n"), "");
+    EXPECT_EQ(heardIn("", "mote id=a at=0,0\nmote id=b at=0,0\n"), "b");
+    EXPECT_EQ(heardIn("", "mote id=a at=0,0\nmote id=b\n"), "") << "it has no position yet";
+}
+
+TEST(MoteReport, WallsWeakenSignals) {
+    const std::string wall = "wall from=2,-6 to=2,6\n", two = "mote id=b at=4,0,1\n";
+    const auto margin = [&](const std::string& room, const std::string& keys) {
+        const auto reports = reportsIn(room, "mote id=a at=0,0,1 " + keys + '\n' + two);
+        return reports.front().neighbours.empty() ? -1 : reports.front().neighbours[0].margin;
+    };
+    const double free = 20 * std::log10(30 / 4.0);
+    EXPECT_NEAR(margin("", ""), free, 1e-9);
+    EXPECT_NEAR(margin(wall, ""), free - 6, 1e-9);
+    EXPECT_NEAR(margin(wall, "loss=11"), free - 11, 1e-9);
+    EXPECT_NEAR(margin(wall + "wall from=3,-6 to=3,6\n", "loss=8"), free - 16, 1e-9);
+    EXPECT_EQ(margin(wall, "loss=18"), -1);
+    EXPECT_NEAR(margin(wall + "door at=2,0 open=yes\n", "loss=18"), free, 1e-9);
+}
+
+TEST(MoteReport, MotesStandOnFurnitureAndMove) {
+    EXPECT_EQ(heardIn("cube id=k at=5,2 heading=90 size=1,1,0.8\n",
+                      "mote id=a at=0,0,0.9 radio=5.01\nmote id=b on=k at=-2,0,0.1\n"),
+              "b")
+        << "two metres to the right of the cube, as high as the other";
+    // By the middle of the carrier.
+    const auto reports = reportsIn("",
+                                   "mote id=a at=0,0,0.3 radio=5\n"
+                                   "robot id=r1 at=-9,0\n"
+                                   "robot id=r2 model=pioneer-2dx at=4,0\n"
+                                   "human id=h at=0,3\n"
+                                   "mote id=b on=r2 at=0,0,0.3\n"
+                                   "mote id=c on=h at=0,0,0.3\n"
+                                   "mote id=d on=r1 at=0,0,0.3\n");
+    ASSERT_EQ(reports.size(), 4U);
+    ASSERT_EQ(reports[0].neighbours.size(), 2U);
+    EXPECT_EQ(reports[0].neighbours[0].mote, "b");
+    EXPECT_EQ(reports[0].neighbours[1].mote, "c");
+    EXPECT_NEAR(reports[0].neighbours[1].margin, 20 * std::log10(5 / 3.0), 1e-6);
+}
+
+TEST(MoteReport, MeasuresLightAsAMeterDoes) {
+    const std::string room =
+        "lamp at=1,0 on=yes\nprojector at=-3,0 height=1 on=yes fov=60,40\ncube at=0.6,0.6 "
+        "size=0.4\n";
+    for (const std::string place : {"at=0,0,0.5 tilt=90", "at=2,1,1 heading=180"}) {
+        const Scene scene = testing::scene("ispace size=40,12,2.5 ceiling=yes\n" + room,
+                                           "mote id=m max=1000 error=0.1 resolution=2 " + place +
+                                               "\nlux id=l max=1000 " + place + "\n");
+        const auto readings = testing::readings(scene);
+        const double lux = std::get<Illuminance>(readings[1]).lux;
+        EXPECT_GT(lux, 5);
+        EXPECT_EQ(std::get<MoteReport>(readings[0]).lux, lux);
+        const auto noisy = testing::readings(scene, {.noise_seed = 4});
+        const double measured = std::get<MoteReport>(noisy[0]).lux;
+        EXPECT_NE(measured, lux);
+        EXPECT_EQ(std::fmod(measured, 2), 0);
+    }
+}
+
+TEST(Mote, ReadsItsKeys) {
+    const auto read = [](const std::string& keys) {
+        const Record record = testing::sensorRecord("mote " + keys);
+        return moteOf(record, testing::deviceFor(record));
+    };
+    EXPECT_EQ(read(""), Mote());
+    EXPECT_FALSE(Mote().isNoisy());
+    const Mote mote = read("radio=12 loss=9 max=500 resolution=2 error=5% rate=4");
+    EXPECT_EQ(mote.radio, 12);
+    EXPECT_EQ(mote.loss, 9);
+    EXPECT_EQ(mote.meter.max, 500);
+    EXPECT_EQ(mote.meter.resolution, 2);
+    EXPECT_EQ(mote.meter.error, 0.05);
+    EXPECT_EQ(mote.rate, 4);
+    EXPECT_TRUE(mote.isNoisy());
+    EXPECT_GT(read("model=telosb").radio, 10);
+    EXPECT_NE(testing::findings([&] { return read("radio=0"); }), "");
+}
+
+}  // namespace
+}  // namespace ispace
