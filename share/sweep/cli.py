@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import json
 import os
 import re
 import signal
@@ -34,18 +35,21 @@ def main(version: str, arguments: Sequence[str] | None = None) -> int:
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _stop)
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    # Selected at once, so that errors of the command line have that form.
+    say = _Speaker(version if _wants_json_errors(words) else None)
     try:
-        _run(_parse(arguments, version), version)
+        _run(_parse(arguments, version), version, say)
         return 0
     except UsageError as error:
-        _say([str(error)])
+        say([str(error)], 2)
         return 2
     except DataError as error:
-        _say(error.findings)
+        say(error.findings, 1)
         return 1
     except OSError as error:
         name = f"{os.fsdecode(error.filename)}: " if error.filename else ""
-        _say([f"{name}error: {os.strerror(error.errno or 0)}"])
+        say([f"{name}error: {os.strerror(error.errno or 0)}"], 1)
         return 1
     except _Stopped as stopped:
         signal.signal(stopped.number, signal.SIG_DFL)
@@ -65,11 +69,39 @@ def _stop(number: int, _frame: object) -> NoReturn:
     raise _Stopped(number)
 
 
-def _say(messages: Iterable[str]) -> None:
-    """Messages, a line each, whatever they quote."""
-    for message in messages:
-        line = "".join(letter if letter.isprintable() else "?" for letter in message)
-        print(f"{TOOL}: {line}".encode(errors="backslashreplace").decode(), file=sys.stderr)
+def _wants_json_errors(words: list[str]) -> bool:
+    pairs = zip(words, words[1:])
+    return "--errors=json" in words or ("--errors", "json") in pairs
+
+
+class _Speaker:
+    """Writes messages to stderr, each as a line for people or as JSON, as the other tools do."""
+
+    def __init__(self, json_version: str | None) -> None:
+        self.version = json_version
+
+    def __call__(self, messages: Iterable[str], status: int = 0) -> None:
+        for message in messages:
+            line = f"{TOOL}: {_printable(message)}" if self.version is None else self._object(message, status)
+            print(line.encode(errors="backslashreplace").decode(), file=sys.stderr)
+
+    def _object(self, message: str, status: int) -> str:
+        found = re.match(r"(?:(?P<file>[^:]+):(?:(?P<line>\d+):(?:(?P<column>\d+):)?)? )?"
+                         r"(?P<severity>error|warning): ", message)
+        words: dict[str, object] = {"schema": "ispace-message/1", "tool": TOOL, "version": self.version,
+                                    "severity": found["severity"] if found else "error"}
+        if status:
+            words["status"] = status
+        if found and found["file"]:
+            words["file"] = _printable(found["file"])
+            words.update({key: int(found[key]) for key in ("line", "column") if found[key]})
+        words["message"] = _printable(message[found.end():] if found else message)
+        return json.dumps(words, separators=(",", ":"))
+
+
+def _printable(text: str) -> str:
+    """One line, whatever it quotes."""
+    return "".join(letter if letter.isprintable() else "?" for letter in text)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -82,7 +114,9 @@ def _parse(arguments: Sequence[str] | None, version: str) -> argparse.Namespace:
     parser = _Parser(
         prog=TOOL, usage=f"{TOOL} ACTION SWEEP [OPTION]...", allow_abbrev=False, add_help=False,
         formatter_class=lambda prog: argparse.RawDescriptionHelpFormatter(prog, max_help_position=28, width=100),
-        description=f"Lists the jobs of a sweep, and joins their results.\n\nactions:\n{what}")
+        description=f"Lists the jobs of a sweep, and joins their results.\n\nactions:\n{what}",
+        epilog="examples:\n  ispace-sweep commands sweep.yaml | sh\n      run all jobs, one after another\n"
+               "  ispace-sweep join sweep.yaml -o results.csv\n      join their reports in a table\n")
     parser.add_argument("action", metavar="ACTION", nargs="?", help=argparse.SUPPRESS)
     parser.add_argument("sweep", metavar="SWEEP", nargs="?", help=argparse.SUPPRESS)
     add = parser.add_argument
@@ -101,6 +135,8 @@ def _parse(arguments: Sequence[str] | None, version: str) -> argparse.Namespace:
     add("--by", metavar="AXIS", help="a curve for each choice of AXIS")
     add("--over", metavar="AXIS", help="a heat map with the choices of AXIS up its side")
     add("-q", "--quiet", action="store_true", help="report only errors")
+    add("--errors", metavar="text|json", choices=["text", "json"], default="text",
+        help="errors on stderr as lines for people, or as JSON objects (default: text)")
     add("-h", "--help", action="store_true", help="show this help and exit")
     add("-V", "--version", action="store_true", help="show version and licence and exit")
     options = parser.parse_intermixed_args(arguments)
@@ -108,6 +144,10 @@ def _parse(arguments: Sequence[str] | None, version: str) -> argparse.Namespace:
         parser.print_help()
         sys.exit(0)
     if options.version:
+        if options.json:
+            print(json.dumps({"schema": "ispace-version/1", "tool": TOOL, "version": version,
+                              "licence": "GPL-3.0-or-later"}, separators=(",", ":")))
+            sys.exit(0)
         print(f"{TOOL} (ispace) {version}\nLicence GPL-3.0-or-later; there is no warranty.")
         sys.exit(0)
     _check(options)
@@ -140,7 +180,7 @@ def _check(options: argparse.Namespace) -> None:
             raise UsageError(f"`{options.x}` can lie one way alone")
 
 
-def _run(options: argparse.Namespace, version: str) -> None:
+def _run(options: argparse.Namespace, version: str, say: _Speaker) -> None:
     from .reader import read_sweep  # slow imports wait until an action requires them
 
     if options.output != "-" and options.sweep != "-" and _same_file(options.output, options.sweep):
@@ -152,7 +192,7 @@ def _run(options: argparse.Namespace, version: str) -> None:
             for line in _lines(sweep, jobs, options, version):
                 write(line.encode("utf-8", "surrogateescape") + b"\n")
         return
-    _report(sweep, jobs, options, version)
+    _report(sweep, jobs, options, version, say)
 
 
 def _lines(sweep: Sweep, jobs: Iterable[Job], options: argparse.Namespace, version: str) -> Iterator[str]:
@@ -170,7 +210,7 @@ def _lines(sweep: Sweep, jobs: Iterable[Job], options: argparse.Namespace, versi
     return listing.commands(sweep, jobs, writer, options.missing)
 
 
-def _report(sweep: Sweep, jobs: list[Job], options: argparse.Namespace, version: str) -> None:
+def _report(sweep: Sweep, jobs: list[Job], options: argparse.Namespace, version: str, say: _Speaker) -> None:
     from . import tables
     from .results import join
 
@@ -186,7 +226,7 @@ def _report(sweep: Sweep, jobs: list[Job], options: argparse.Namespace, version:
     if not rows:
         raise DataError(["error: no job is done yet"])
     if len(rows) < len(jobs) and not options.quiet:
-        _say([f"warning: {len(jobs) - len(rows)} of {len(jobs)} jobs are not done"])
+        say([f"warning: {len(jobs) - len(rows)} of {len(jobs)} jobs are not done"])
     if options.action == "join":
         if options.raw and form != "csv":
             raise UsageError("--raw is for csv")

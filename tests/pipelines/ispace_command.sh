@@ -34,6 +34,19 @@ expect_error 2 ispace ''
 expect_error 2 ispace $'sc\nan'
 expect_status 1 sh -c 'ispace --help >/dev/full'
 
+# Every program writes its errors as JSON on request, and its version.
+programs="$tools ispace golden-diff"
+! /usr/bin/python3 -c 'import yaml' 2>/dev/null || programs+=" ispace-sweep"
+for program in $programs; do
+    expect_status 2 "$program" --errors json --bogus
+    [ "$(wc -l <err)" -eq 1 ] && has "^{\"schema\":\"ispace-message/1\",\"tool\":\"$program\",.*\"severity\":\"error\",\"status\":2,.*}$" <err ||
+        fail "$program: $(cat err)"
+    "$program" --version --json | has "^{\"schema\":\"ispace-version/1\",\"tool\":\"$program\"," || fail "$program: no version"
+done
+expect_status 2 ispace --errors json scan --bogus
+has '"tool":"scan"' <err || fail "ispace --errors json scan: $(cat err)"
+expect_status 2 ispace --errors yaml scan
+
 # The page is the one of this installation, by a man that is in PATH.
 mkdir bin
 printf '#!/bin/sh\necho "$@"\n' >bin/man
@@ -60,7 +73,7 @@ grep -q 'ispace: .*usr/bin/envc: error: No such file' err || fail "$(cat err)"
 
 # Help and page name the same options; the page's example runs.
 page=$binary_dir/share/man/man1/ispace.1
-for option in $(ispace --help | grep -oE -- '^  -.*  ' | tr -d ','); do
+for option in $(ispace --help | grep -oE -- '^  -.*  ' | tr ' ,' '\n\n' | grep '^-'); do
     grep -qF -- "${option//-/\\-}" "$page" || fail "the page lacks $option"
 done
 cp "$scenes/crowded.env" .

@@ -23,6 +23,7 @@ struct Options {
     Tolerance tolerance;
     std::vector<std::string> ignored;
     bool history = false, quiet = false;
+    std::string errors = "text";  ///< parse() has selected the form already
 };
 
 auto takeTolerance(double& variable) {
@@ -38,8 +39,13 @@ Options parseOptions(int argc, const char* const* argv) {
     CommandLine line("golden-diff", "EXPECTED ACTUAL",
                      "Compare two files that the tools wrote: numbers within a tolerance, history "
                      "left out, everything else byte by byte; PNGs by their pixels. - is stdin.");
+    line.example("golden-diff expected.json actual.json --abs 1e-6 --ignore digest,version",
+                 "report the keys of JSON that differ, but for these two");
+    line.example("coverage room.env layout.3dm -o map.png && golden-diff expected.png map.png",
+                 "compare two pictures by their pixels");
     line.exitStatus("0 no difference, 1 a difference, 2 trouble, as with diff");
     line.operands(o.operands, 2);
+    line.group("Comparison");
     line.parsed("--abs", "X", takeTolerance(o.tolerance.absolute),
                 "how far two numbers may lie apart (default 1e-9)", Enters::Nothing);
     line.parsed("--rel", "Y", takeTolerance(o.tolerance.relative),
@@ -49,7 +55,11 @@ Options parseOptions(int argc, const char* const* argv) {
                "(sensors.*.model)",
                Enters::Nothing);
     line.flag("--history", o.history, "compare history, too", Enters::Nothing);
+    line.group("Report");
     line.flag("-q,--quiet", o.quiet, "report by the exit status alone", Enters::Nothing);
+    line.choice("--errors", o.errors, {"text", "json"},
+                "errors on stderr as lines for people, or as a JSON object each (default text)",
+                Enters::Nothing);
     line.parse(argc, argv);
     if (o.operands.size() != 2) throw UsageError("two files are wanted, EXPECTED and ACTUAL");
     if (o.operands[0] == "-" && o.operands[1] == "-")

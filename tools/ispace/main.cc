@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/json_writer.h"
 #include "base/message.h"
 #include "cli/run_tool.h"
 
@@ -43,8 +44,13 @@ constexpr std::string_view kRest =
     "\nPages: those of the tools, and env, 3dm, yaml (formats), protocol, wire,\n"
     "stability, golden-diff, sweep.\n"
     "\nOptions:\n"
-    "  -h, --help     show this help and exit\n"
-    "  -V, --version  show version and licence and exit\n"
+    "  --errors text|json  messages on stderr as lines for people, or as a JSON\n"
+    "                      object each, here and of TOOL (default text)\n"
+    "  -h, --help          show this help and exit\n"
+    "  -V, --version       show version and licence and exit; with --json as JSON\n"
+    "\nExamples:\n"
+    "  ispace coverage room.env layout.3dm -o map.png\n"
+    "  ispace help scan\n"
     "\nDetails: man ispace\n";
 
 std::string helpText() {
@@ -112,8 +118,31 @@ std::string pageFile(const std::string& page) {
     }
 }
 
+/// Takes `--errors FORM` from the front: it holds for this program, and for the tool that follows.
+void takeErrors(std::vector<std::string>& words) {
+    constexpr std::string_view kErrors = "--errors";
+    if (words.empty() || !words.front().starts_with(kErrors)) return;
+    std::string form = words.front().substr(kErrors.size());
+    const bool is_pair = form.empty() && words.size() > 1;
+    form = is_pair ? words[1] : form.starts_with('=') ? form.substr(1) : "";
+    if (form != "text" && form != "json")
+        throw UsageError("--errors: " + excerpt(form) + " is not text or json");
+    words.erase(words.begin(), words.begin() + (is_pair ? 2 : 1));
+    if (form == "json") selectMessageForm(MessageForm::Json);
+    if (!words.empty() && isTool(words.front()))
+        words.insert(words.begin() + 1, std::string(kErrors) + '=' + form);
+}
+
+std::string versionObject() {
+    JsonWriter json;
+    beginReport(json, "ispace-version/1", "ispace").key("licence").value("GPL-3.0-or-later");
+    json.endObject();
+    return json.take() + '\n';
+}
+
 /// Returns only on errors: another program replaces this one.
-void run(const std::vector<std::string>& words) {
+void run(std::vector<std::string> words) {
+    takeErrors(words);
     std::vector<std::string> known = {"help"};
     for (const Tool& tool : kTools) known.emplace_back(tool.name);
     if (words.empty()) throw UsageError("which tool? (see ispace --help)");
@@ -121,6 +150,8 @@ void run(const std::vector<std::string>& words) {
     if (isTool(first)) become(programOf(first).string(), words);
     const bool is_help = first == "help" || first == "-h" || first == "--help";
     const bool is_version = first == "-V" || first == "--version";
+    if (is_version && words.size() == 2 && words.back() == "--json")
+        throw TextRequested{versionObject()};
     if (words.size() > (first == "help" ? 2 : 1) && (is_help || is_version))
         throw UsageError("too many operands: " + shellQuote(words.back()) + " (see ispace --help)");
     if (first == "help") openPage(words.size() == 1 ? "ispace" : words[1]);
