@@ -29,8 +29,7 @@ constexpr std::size_t kMaxChanges = 8;  ///< of Together
 constexpr double kWorthwhile = 1e-3;    ///< share of the indoor floor
 constexpr double kNegligible = 0.01;    ///< share of the indoor floor that may be lost
 constexpr double kNearWall = 0.1;       ///< of a sensor on a wall, metres
-constexpr double kShifts[] = {0.1, 0.25, 0.5, 1};
-constexpr double kPieceShifts[] = {0.5, 1, 2};
+constexpr double kShifts[] = {0.1, 0.25, 0.5, 1}, kPieceShifts[] = {0.5, 1, 2};
 constexpr int kDirections = 8;
 constexpr int kTurnStep = 15;  ///< degrees; then single degrees about the best
 
@@ -430,15 +429,17 @@ std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& cover
     const MeasuredState now{scene, coverage};
     progress.begin("suggestions", 0);
     std::vector<Suggestion> gains = adviser.moves(now);
-    const bool falls_short = adviser.missing(coverage) > 0;
     std::optional<Suggestion> whole;
-    if (falls_short) whole = adviser.together(now, gains);
+    if (adviser.missing(coverage) > 0) whole = adviser.together(now, gains);
     if (auto piece = adviser.furniture(now)) gains.push_back(std::move(*piece));
     const double least = kWorthwhile * coverage.report.indoor_area;
     std::erase_if(gains, [&](const Suggestion& suggestion) { return suggestion.gained < least; });
     std::stable_sort(gains.begin(), gains.end(),
                      [](const Suggestion& a, const Suggestion& b) { return a.gained > b.gained; });
-    if (whole) gains.insert(gains.begin(), std::move(*whole));
+    if (whole) {  // told once if it is a single change
+        std::erase_if(gains, [&](const Suggestion& one) { return one.text == whole->text; });
+        gains.insert(gains.begin(), std::move(*whole));
+    }
     if (auto cheaper = adviser.replacement(now)) gains.push_back(std::move(*cheaper));
     if (auto useless = adviser.removal(now)) gains.push_back(std::move(*useless));
     progress.end();

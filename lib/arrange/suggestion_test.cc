@@ -96,6 +96,16 @@ TEST(Suggestions, MeetARequirement) {
     EXPECT_GE(together.edits.size(), 2U) << "two discs of 3 m have less than 90 % of 48 m2";
 }
 
+TEST(Suggestions, TellOneAdditionThatMeetsAllOnce) {
+    const std::vector<Requirement> wanted = {parseRequirement("70%")};
+    const Advised advised = adviseOn(kHall, "laser id=l at=-2,0 fov=360 range=3.2\n", wanted);
+    ASSERT_FALSE(advised.suggestions.empty());
+    EXPECT_EQ(advised.suggestions.front().kind, Suggestion::Kind::Together);
+    EXPECT_EQ(advised.suggestions.front().edits.size(), 1U);
+    for (std::size_t i = 1; i < advised.suggestions.size(); ++i)
+        EXPECT_NE(advised.suggestions[i].text, advised.suggestions.front().text);
+}
+
 TEST(Suggestions, AreNoneForASceneThatSeesAll) {
     const Advised advised = adviseOn(kHall, "laser id=l at=0,0 fov=360 range=20\n");
     EXPECT_TRUE(advised.suggestions.empty());
