@@ -32,7 +32,7 @@ PageTable casesOf(const RobustChoice& robust, const RobustValues& values) {
                 (robust.of == RobustChoice::Of::Crowd ? " crowds" : " mountings");
     }
     table.rows.push_back({std::move(worst), percentText(values.worst)});
-    table.rows.push_back({"mean", percentText(values.mean)});
+    table.rows.push_back({"mean", meanText(robust, values)});
     return table;
 }
 
@@ -158,7 +158,7 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
     if (work.input.environment_operand != "-") page.name = baseName(work.input.environment_operand);
     page.more.push_back(resultOf(options, work, arrangement));
     if (work.how.target)
-        page.requirements.push_back({percentText(*work.how.target), arrangement.is_reached,
+        page.requirements.push_back({formatPercent(*work.how.target), arrangement.is_reached,
                                      "the sensors cover " + percentText(arrangement.coverage)});
     const ReportPage pages = coveragePage(page);
     return suffixOf(options.report_file) == "pdf" ? pdfOf(pages) : htmlOf(pages);

@@ -35,7 +35,9 @@ void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,
 /// Returns the result, its gap, and the objective of the bound: one or more lines for stderr.
 std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement);
 
-/// Returns the reason why a target was not reached, as a sentence without full stop.
+/// Returns the mean over the cases of a robust search, with its standard error for random cases.
+std::string meanText(const RobustChoice& robust, const RobustValues& values);
+
 /// Returns the name of one of several outputs: "best-2.3dm".
 std::string numberedFile(const std::string& output, std::size_t number);
 /// Returns a line for each alternative, with its value and gap; "" without.
@@ -44,6 +46,7 @@ std::string alternativesText(const std::string& output, const Arrangement& arran
 /// is proven optimal.
 double gapOf(const Arrangement& arrangement);
 
+/// Returns the reason why a target was not reached, as a sentence without full stop.
 std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement);
 
 /// Lists redundant sensors as a sentence without full stop; "" without any.

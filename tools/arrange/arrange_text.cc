@@ -8,6 +8,7 @@
 #include "arrange/arrange_run.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "coverage/robustness.h"
 #include "report/coverage_report.h"
 #include "report/curve_chart.h"
 
@@ -48,6 +49,20 @@ std::string cellsGapText(const Arrangement& arrangement) {
            " (--cell M sets the size of cells)\n";
 }
 
+}  // namespace
+
+std::string meanText(const RobustChoice& robust, const RobustValues& values) {
+    std::string text = percentText(values.mean);
+    const bool is_random =
+        robust.of == RobustChoice::Of::Crowd || robust.of == RobustChoice::Of::Mounting;
+    if (!is_random || values.shares.size() < 2) return text;
+    FigureSpread spread;
+    spread.values = values.shares;
+    return text + " with a standard error of " + percentText(spread.standardError());
+}
+
+namespace {
+
 /// Reports the values in the cases.
 std::string robustText(const ArrangeOptions& how, const Arrangement& arrangement) {
     const RobustValues& values = *arrangement.robust;
@@ -73,7 +88,7 @@ std::string robustText(const ArrangeOptions& how, const Arrangement& arrangement
                     : " mountings");
     }
     return "arrange: " + text + "; worst " + percentText(values.worst) + ", mean " +
-           percentText(values.mean) + '\n';
+           meanText(robust, values) + '\n';
 }
 
 /// Reports an objective other than coverage in metres.
