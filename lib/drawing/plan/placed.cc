@@ -19,6 +19,21 @@ Box2 boxAround(Point2 p, double half_width, double half_height) {
     return {{p.x - half_width, p.y - half_height}, {p.x + half_width, p.y + half_height}};
 }
 
+/// Returns true if part of a line is in the box.
+bool crosses(const Segment2& line, const Box2& box) {
+    double from = 0, to = 1;
+    const Vec2 way = line.b - line.a;
+    const auto clip = [&](double start, double step, double low, double high) {
+        if (step == 0) return start > low && start < high;
+        const double a = (low - start) / step, b = (high - start) / step;
+        from = std::max(from, std::min(a, b));
+        to = std::min(to, std::max(a, b));
+        return from < to;
+    };
+    return clip(line.a.x, way.x, box.low.x, box.high.x) &&
+           clip(line.a.y, way.y, box.low.y, box.high.y);
+}
+
 /// Fills the mark's body about the origin, y up.
 void fillBody(Picture& picture, SensorSign sign, double radius, Color color, double rim = 0) {
     Polygon curve;
@@ -123,7 +138,7 @@ std::optional<Point2> LabelPlacer::placeLabel(Point2 page, Angle heading, double
                 best = middle;
             }
         }
-        if (best || crowd) break;
+        if (least < 1 || crowd) break;  // farther away only from marks and lines
     }
     if (best) labels_.push_back(boxAround(*best, half_width, half_height));
     return best;
@@ -139,16 +154,18 @@ void drawMarkLabel(Picture& picture, Point2 mark, Point2 middle, const std::stri
     picture.text({middle.x, middle.y + 0.36 * style.size}, text, style);
 }
 
-bool LabelPlacer::take(const Box2& box) {
-    if (costOf(box) > 0) return false;
+bool LabelPlacer::take(const Box2& box, bool over_lines) {
+    if (costOf(box, over_lines) > 0) return false;
     labels_.push_back(box);
     return true;
 }
 
-double LabelPlacer::costOf(const Box2& box) const {
+double LabelPlacer::costOf(const Box2& box, bool over_lines) const {
     double cost = frame_.contains(box) ? 0 : 100;
     for (const Box2& label : labels_) cost += label.overlaps(box) ? 100 : 0;
     for (const Box2& mark : marks_) cost += mark.overlaps(box) ? 5 : 0;
+    const auto is_crossed = [&box](const Segment2& line) { return crosses(line, box); };
+    if (!over_lines && std::any_of(lines_.begin(), lines_.end(), is_crossed)) cost += 2;
     return cost;
 }
 

@@ -35,6 +35,28 @@ TEST(LabelPlacer, LabelsWithoutSpaceBesideTheirMarksLieFartherAway) {
     EXPECT_GE(labelsAt(3, {398, 398}, false).size(), 2U);
 }
 
+TEST(LabelPlacer, LabelsLieBesideWallsAndMarks) {
+    // A wall runs behind the mark, where the label would lie.
+    LabelPlacer free({{0, 0}, {400, 400}}, kEm), walled({{0, 0}, {400, 400}}, kEm);
+    walled.addLine({{0, 195}, {190, 205}});
+    const auto behind = free.placeLabel({200, 200}, Angle(), kTextWidth, kEm, false);
+    const auto aside = walled.placeLabel({200, 200}, Angle(), kTextWidth, kEm, false);
+    ASSERT_TRUE(behind && aside);
+    EXPECT_LT(behind->x, 200 - kTextWidth / 2);
+    EXPECT_EQ(behind->y, 200);
+    EXPECT_GT(std::abs(aside->y - 200), kEm / 2);
+    // Only where a line is asked not to count.
+    const Box2 on_wall{{100, 195}, {120, 205}};
+    EXPECT_FALSE(walled.take(on_wall));
+    EXPECT_TRUE(walled.take(on_wall, true));
+    EXPECT_FALSE(walled.take(on_wall, true)) << "taken";
+    // A line that ends before a box, or passes a corner, does not cross it.
+    LabelPlacer near({{0, 0}, {400, 400}}, kEm);
+    near.addLine({{0, 0}, {90, 90}});
+    near.addLine({{90, 140}, {140, 190}});
+    EXPECT_TRUE(near.take({{100, 100}, {120, 120}}));
+}
+
 TEST(LabelPlacer, ALineJoinsAMarkAndItsDistantLabel) {
     const TextStyle style{kEm, true, Align::Center, palette::kInk, {}};
     Picture near(400, 400), far(400, 400);

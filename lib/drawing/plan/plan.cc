@@ -183,7 +183,9 @@ Picture planPicture(const Scene& scene, const PlanOptions& options) {
             }
     std::vector<std::string> notes;
     if (on_paper) notes.push_back("1:" + formatDouble(paperScale(box)));
-    if (options.slice) notes.push_back("obstacles at " + formatDouble(*options.slice) + " m");
+    if (options.slice)
+        notes.push_back("obstacles at " + formatDouble(std::round(1000 * *options.slice) / 1000) +
+                        " m");
     const Page page = on_paper ? layOut(box, kPaperText, 1000 / paperScale(box),
                                         !options.title.empty(), 40 * kPaperText)
                                : layOutScreen(box, options);

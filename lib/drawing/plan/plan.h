@@ -73,6 +73,8 @@ class LabelPlacer {
 
     /// Adds a mark and its arrow, which labels should not cover.
     void addMark(Point2 page, std::optional<Angle> heading);
+    /// Adds a line, such as a wall, which labels cover only where nothing else is free.
+    void addLine(const Segment2& page_line) { lines_.push_back(page_line); }
     /// Finds the position of a sign of this radius: at the point, or the nearest free one around
     /// it.
     Point2 placeSign(Point2 page, double radius);
@@ -81,15 +83,16 @@ class LabelPlacer {
     /// their marks only, and cover no mark.
     std::optional<Point2> placeLabel(Point2 page, Angle heading, double width, double size,
                                      bool crowd);
-    /// Reserves a box and returns true if it is free.
-    bool take(const Box2& box);
+    /// Reserves a box and returns true if it is free. \param over_lines lines do not count
+    bool take(const Box2& box, bool over_lines = false);
 
   private:
-    [[nodiscard]] double costOf(const Box2& box) const;
+    [[nodiscard]] double costOf(const Box2& box, bool over_lines = false) const;
 
     Box2 frame_;
     double em_;
     std::vector<Box2> marks_, labels_;
+    std::vector<Segment2> lines_;
 };
 
 /// Style of a plan, and its position on the page.

@@ -112,6 +112,18 @@ void drawSensors(Picture& picture, const MapPicture& map, const Box2& frame, boo
     }
 }
 
+/// Adds the walls, which labels should not cover.
+void addWallLines(const MapPicture& map, LabelPlacer& places) {
+    const Slice slice = map.scene.environment.slice(map.coverage.target.height);
+    const auto add = [&](const Segment2& line) {
+        places.addLine({map.view * line.a, map.view * line.b});
+    };
+    for (const Segment2& line : slice.sheets) add(line);
+    for (std::size_t i = 0; i < slice.solids.size(); ++i)
+        if (isWall(map.scene.environment.elements()[slice.solid_owners[i]]))
+            forEachEdge(slice.solids[i], add);
+}
+
 void drawIds(Picture& picture, const MapPicture& map, const Box2& frame, LabelPlacer& places) {
     const std::vector<SensorView>& sensors = map.coverage.sensors;
     const bool crowd = sensors.size() > kCrowd;
@@ -233,6 +245,7 @@ std::size_t markedSpots(const MapPicture& map) {
 
 void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame) {
     LabelPlacer places(frame, map.em);
+    if (map.coverage.sensors.size() <= kCrowd) addWallLines(map, places);
     picture.pushLayer("sensors");
     if (map.other != nullptr) {
         const MapPicture other{map.scene, *map.other, map.options, nullptr, map.em, map.view};
