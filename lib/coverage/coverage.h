@@ -55,7 +55,7 @@ struct Metric {
 
 /// Metrics of a camera's view of the plane.
 struct PictureMetrics {
-    /// Area with at least the pixels of each of pixelDensities(), m2, of the whole field of view,
+    /// Area with at least the pixels of each of densityClasses(), m2, of the whole field of view,
     /// independent of the requested density.
     std::vector<Metric> areas;
     /// Distances in the plane from the sensor's foot to the nearest and farthest covered point;
@@ -81,7 +81,7 @@ struct ZoneMetrics {
     std::vector<Metric> densities = {};  ///< as DensityMetrics::indoor, of the indoor part
 };
 
-/// Shares of the floor seen by cameras with at least the pixels of each of pixelDensities(),
+/// Shares of the floor seen by cameras with at least the pixels of each of densityClasses(),
 /// independent of the requested density. Empty without cameras.
 struct DensityMetrics {
     Metric seen;  ///< share of the indoor region seen by any camera at the requested density
@@ -158,7 +158,7 @@ struct SensorView {
     /// Exact region: disjoint curves with the seen floor on their left; empty if unknown.
     std::optional<std::vector<Curve>> region = {};
     std::vector<float> beams = {};  ///< of a laser, as castBeams returns them
-    /// Of a camera: the floor seen with the pixels of each of pixelDensities().
+    /// Of a camera: the floor seen with the pixels of each of densityClasses().
     std::vector<CoveredSet> classes = {};
 
     /// True for a sensor that covers floor only together with others.
@@ -180,7 +180,7 @@ struct Coverage {
     /// requested.
     std::optional<Overlay> overlay;
     /// Overlays of indoor region and free floor (marks as above), the cameras' views (kCameraMark),
-    /// the floor with the pixels of each of pixelDensities() (classMark), and some zones each
+    /// the floor with the pixels of each of densityClasses() (classMark), and some zones each
     /// (densityZoneMark). Empty without cameras, or if the region of one is unknown.
     std::vector<Overlay> density_overlays;
     bool are_densities_whole = false;  ///< see CoverageOptions::whole_densities

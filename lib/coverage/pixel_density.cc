@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes pixel densities of all cameras, and the parallax from the angles between their axes.
+// Computes pixel densities of all cameras.
 #include "coverage/pixel_density.h"
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include "base/error.h"
@@ -17,6 +16,7 @@
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 #include "geom/tolerance.h"
+#include "scene/sensor/density_classes.h"
 
 namespace ispace {
 
@@ -109,15 +109,39 @@ double FloorDensity::integral(std::span<const Curve> curves) const {
     return sum;
 }
 
+namespace {
+
+/// Bounds of the density in a view.
+struct DensityRange {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+};
+
+/// Finds bounds at the vertices, where depth and distance are greatest, and at the foot. Chords
+/// replace arcs: a margin covers their error.
+DensityRange densityRange(const FloorDensity& density, const std::vector<Curve>& region,
+                          Point2 foot) {
+    constexpr double kMargin = 1.01;
+    DensityRange range{.most = density.at(foot) * kMargin};
+    for (const Curve& curve : region)
+        for (const Point2 p : chords(curve, kConicError)) {
+            const double pixels = density.at(p);
+            range.least = std::min(range.least, pixels / kMargin);
+            range.most = std::max(range.most, pixels * kMargin);
+        }
+    return range;
+}
+
+}  // namespace
+
 std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
                                   const CoveredSet& view) {
-    const auto classes = pixelDensities();
+    const auto classes = densityClasses();
     std::vector<CoveredSet> sets(classes.size());
     for (CoveredSet& set : sets) set.cells = CellSet(grid.size());
     view.cells.forEach([&](std::size_t cell) {
         const double pixels = density.at(grid.center(cell));
-        for (std::size_t i = 0; i < classes.size() && pixels >= classes[i].pixels_per_metre; ++i)
-            sets[i].cells.set(cell);
+        for (std::size_t i = 0; i < classes.size(); ++i)
+            if (pixels >= classes[i].pixels_per_metre) sets[i].cells.set(cell);
     });
     if (!view.region) return sets;
     for (CoveredSet& set : sets) set.region.emplace();
@@ -126,13 +150,23 @@ std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
     constexpr double kAround = 1;
     box = {{box.low.x - kAround, box.low.y - kAround},
            {box.high.x + kAround, box.high.y + kAround}};
+    const DensityRange range = densityRange(density, *view.region, density.foot());
     std::vector<Layer> layers = {{.curves = *view.region}};
-    for (std::size_t i = 0; i < classes.size(); ++i)
-        layers.push_back({.curves = density.least(classes[i].pixels_per_metre, box),
-                          .counts = false,
-                          .marks = classMark(i)});
+    std::vector<std::size_t> cut;  // classes whose bound may cross the view
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+        const double wanted = classes[i].pixels_per_metre;
+        if (wanted > range.most) continue;
+        if (wanted <= range.least) {
+            sets[i].region = *view.region;
+            continue;
+        }
+        cut.push_back(i);
+        layers.push_back(
+            {.curves = density.least(wanted, box), .counts = false, .marks = classMark(i)});
+    }
+    if (cut.empty()) return sets;
     const Overlay overlay(layers);
-    for (std::size_t i = 0; i < classes.size(); ++i)
+    for (const std::size_t i : cut)
         sets[i].region = overlay.curves([i](const LayerLabel& label) {
             return label.count > 0 && (label.marks & classMark(i)) != 0;
         });
@@ -188,14 +222,14 @@ PictureMetrics pictureMetricsOf(const FloorDensity& density, const Grid& grid, P
     return metrics;
 }
 
-namespace {
-
 std::vector<const SensorView*> camerasOf(const Coverage& coverage) {
     std::vector<const SensorView*> cameras;
     for (const SensorView& view : coverage.sensors)
         if (!view.classes.empty()) cameras.push_back(&view);
     return cameras;
 }
+
+namespace {
 
 /// Finds curves and walls that may bound floor seen by a camera.
 class SeenBoxes {
@@ -223,6 +257,26 @@ class SeenBoxes {
     BoxTree tree_;
 };
 
+/// Adds the layers of a camera's view and of its classes. These are parts of each other: those of
+/// one area are the same, and share a layer.
+void addNested(const SensorView& view, std::vector<Layer>& layers) {
+    std::vector<std::pair<double, std::size_t>> known;  // area, layer
+    const auto add = [&](const std::vector<Curve>& region, std::uint64_t mark) {
+        if (region.empty()) return;
+        const double area = signedArea(region);
+        for (const auto& [other, layer] : known)
+            if (other == area && layers[layer].curves.size() == region.size()) {
+                layers[layer].marks |= mark;
+                return;
+            }
+        known.emplace_back(area, layers.size());
+        layers.push_back(markLayer(region, mark));
+    };
+    add(*view.region, kCameraMark);
+    for (std::size_t i = 0; i < view.classes.size(); ++i)
+        add(*view.classes[i].region, classMark(i));
+}
+
 /// Builds the overlay of as many zones from `first` on as fit. Floor away from all cameras may lack
 /// its marks unless `is_whole`: it is no part of any metric of densities.
 Overlay densityOverlay(const Coverage& coverage, const Environment& environment,
@@ -237,11 +291,7 @@ Overlay densityOverlay(const Coverage& coverage, const Environment& environment,
         for (Curve& curve : curvesWithArcs(piece))
             if (is_kept(bounds(curve))) free.push_back(std::move(curve));
     layers.push_back(markLayer(std::move(free), kFreeMark));
-    for (const SensorView* view : cameras) {
-        layers.push_back(markLayer(*view->region, kCameraMark));
-        for (std::size_t i = 0; i < view->classes.size(); ++i)
-            layers.push_back(markLayer(*view->classes[i].region, classMark(i)));
-    }
+    for (const SensorView* view : cameras) addNested(*view, layers);
     for (std::size_t i = 0; i < zones.size(); ++i) {
         Polygon outline = zones[i].outline;
         if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
@@ -254,7 +304,7 @@ Overlay densityOverlay(const Coverage& coverage, const Environment& environment,
 
 /// Sets the exact shares of the indoor region, the free floor, and the zones from `first` on.
 void addShares(CoverageReport& report, const Overlay& overlay, std::size_t first) {
-    const std::size_t classes = pixelDensities().size();
+    const std::size_t classes = densityClasses().size();
     const std::size_t zones = std::min(kDensityZones, report.zones.size() - first);
     double seen = 0;
     std::vector<double> indoor(classes), free(classes), by_zone(classes * zones);
@@ -293,7 +343,7 @@ void addDensities(Coverage& coverage, const Environment& environment,
     const std::vector<const SensorView*> cameras = camerasOf(coverage);
     if (cameras.empty()) return;
     CoverageReport& report = coverage.report;
-    const std::size_t classes = pixelDensities().size();
+    const std::size_t classes = densityClasses().size();
     report.densities.indoor.resize(classes);
     report.densities.free.resize(classes);
     CellSet seen(coverage.target.grid.size());
@@ -328,96 +378,6 @@ void addDensities(Coverage& coverage, const Environment& environment,
     }
     for (std::size_t i = 0; i < coverage.density_overlays.size(); ++i)
         addShares(report, coverage.density_overlays[i], i * kDensityZones);
-}
-
-namespace {
-
-/// A set of cameras, a bit each.
-using CameraBits = std::uint64_t;
-constexpr std::size_t kMaxExact = 60;
-
-/// Decides whether a set of cameras holds `count` with axes that differ pairwise by enough.
-class AxisPairs {
-  public:
-    AxisPairs(const std::vector<const SensorView*>& cameras, const ParallaxChoice& choice)
-        : wanted_(choice.cameras), apart_(cameras.size()) {
-        const double most = cos(choice.least) + kUnitTolerance;
-        for (std::size_t i = 0; i < cameras.size(); ++i)
-            for (std::size_t k = 0; k < cameras.size(); ++k)
-                if (i != k &&
-                    dot(Frame3(cameras[i]->pose).forward, Frame3(cameras[k]->pose).forward) <= most)
-                    apart_[i].push_back(k);
-    }
-    /// `seen_by[i]` is true if camera i is in the set.
-    [[nodiscard]] bool isEnough(const std::vector<bool>& seen_by) const {
-        std::vector<std::size_t> all;
-        for (std::size_t i = 0; i < seen_by.size(); ++i)
-            if (seen_by[i]) all.push_back(i);
-        return canChoose(all, wanted_);
-    }
-
-  private:
-    /// True if `count` of these cameras differ pairwise by enough.
-    [[nodiscard]] bool canChoose(const std::vector<std::size_t>& from, int count) const {
-        if (count <= 0) return true;
-        if (from.size() < static_cast<std::size_t>(count)) return false;
-        for (std::size_t i = 0; i < from.size(); ++i) {
-            std::vector<std::size_t> rest;
-            for (std::size_t k = i + 1; k < from.size(); ++k)
-                if (std::binary_search(apart_[from[i]].begin(), apart_[from[i]].end(), from[k]))
-                    rest.push_back(from[k]);
-            if (canChoose(rest, count - 1)) return true;
-        }
-        return false;
-    }
-
-    int wanted_;
-    std::vector<std::vector<std::size_t>> apart_;
-};
-
-std::optional<double> exactShare(const std::vector<const SensorView*>& cameras,
-                                 const AxisPairs& pairs, const Environment& environment,
-                                 double indoor_area) {
-    if (cameras.size() > kMaxExact) return std::nullopt;
-    constexpr CameraBits kIndoor = CameraBits{1} << 63U;
-    std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoor)};
-    for (std::size_t i = 0; i < cameras.size(); ++i) {
-        if (!cameras[i]->region) return std::nullopt;
-        layers.push_back(markLayer(*cameras[i]->region, CameraBits{1} << i));
-    }
-    std::unordered_map<CameraBits, bool> known;
-    const auto is_enough = [&](CameraBits marks) {
-        const auto found = known.find(marks);
-        if (found != known.end()) return found->second;
-        std::vector<bool> seen_by(cameras.size());
-        for (std::size_t i = 0; i < cameras.size(); ++i) seen_by[i] = ((marks >> i) & 1U) != 0;
-        return known[marks] = pairs.isEnough(seen_by);
-    };
-    try {
-        const double area = Overlay(layers).area([&](const LayerLabel& label) {
-            return (label.marks & kIndoor) != 0 && is_enough(label.marks & ~kIndoor);
-        });
-        return shareOf(area, indoor_area);
-    } catch (const FormatError&) {
-        return std::nullopt;
-    }
-}
-
-}  // namespace
-
-void addParallax(Coverage& coverage, const Environment& environment, const ParallaxChoice& choice) {
-    const std::vector<const SensorView*> cameras = camerasOf(coverage);
-    const AxisPairs pairs(cameras, choice);
-    CoverageReport& report = coverage.report;
-    report.parallax = choice;
-    CellSet cells(coverage.target.grid.size());
-    std::vector<bool> seen_by(cameras.size());
-    coverage.target.indoor.forEach([&](std::size_t cell) {
-        for (std::size_t i = 0; i < cameras.size(); ++i) seen_by[i] = cameras[i]->cells.test(cell);
-        if (pairs.isEnough(seen_by)) cells.set(cell);
-    });
-    report.parallax_coverage.grid = coveredShare(cells, coverage.target.indoor);
-    report.parallax_coverage.exact = exactShare(cameras, pairs, environment, report.indoor_area);
 }
 
 }  // namespace ispace

@@ -23,6 +23,8 @@ class FloorDensity {
     /// Returns the part of `box` with at least this density, for a fisheye or mirror a disc about
     /// the foot. Empty curves if it is lower everywhere.
     [[nodiscard]] std::vector<Curve> least(double pixels_per_metre, const Box2& box) const;
+    /// Returns the point of the plane below or above the camera.
+    [[nodiscard]] Point2 foot() const { return foot_; }
     /// Integrates the density over the area of curves, in pixels times metres. Chords replace arcs.
     [[nodiscard]] double integral(std::span<const Curve> curves) const;
 
@@ -37,7 +39,10 @@ class FloorDensity {
     double slope_;  ///< change of depth per metre along the plane
 };
 
-/// Returns the parts of a view with the pixels of each of pixelDensities(). \param view at density
+/// Returns the views of cameras.
+std::vector<const SensorView*> camerasOf(const Coverage& coverage);
+
+/// Returns the parts of a view with the pixels of each of densityClasses(). \param view at density
 /// 0, so that `region` and `cells` contain the parts of any density
 std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
                                   const CoveredSet& view);

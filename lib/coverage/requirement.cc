@@ -31,7 +31,7 @@ RequiredFigure densityFigure(const Requirement& requirement, const CoverageRepor
     const auto of = [index](const std::vector<Metric>& metrics) {
         return metrics.empty() ? Metric{.grid = 0, .exact = 0} : metrics[index];
     };
-    const std::string name(pixelDensities()[index].name);
+    const std::string name(className(index, requirement.standard));
     switch (requirement.of) {
         case Requirement::Of::Free:
             return {"free coverage to " + name, of(report.densities.free), report.free_area};
@@ -70,16 +70,6 @@ std::optional<UncoveredSpot> largestWithout(const Requirement& requirement,
     return UncoveredSpot{interiorPoint(pieces[largest]), areas[largest]};
 }
 
-/// Finds an index by a name of pixelDensities().
-std::optional<std::size_t> densityIndex(std::string_view name) {
-    if (name.empty() || (name.front() >= '0' && name.front() <= '9')) return std::nullopt;
-    const auto pixels = pixelDensityOf(name);
-    const auto classes = pixelDensities();
-    for (std::size_t i = 0; i < classes.size(); ++i)
-        if (pixels == classes[i].pixels_per_metre) return i;
-    return std::nullopt;
-}
-
 /// Formats an area, with more digits if two would be 0.00.
 std::string squareMetres(double area) { return formatFixed(area, area < 0.01 ? 6 : 2) + " m2"; }
 
@@ -87,13 +77,14 @@ std::string squareMetres(double area) { return formatFixed(area, area < 0.01 ? 6
 
 Requirement parseRequirement(std::string_view text) {
     const auto colon = text.find(':');
-    if (const auto density =
-            colon == std::string_view::npos ? std::nullopt : densityIndex(text.substr(0, colon))) {
+    if (const auto found =
+            colon == std::string_view::npos ? std::nullopt : findClass(text.substr(0, colon))) {
         const std::string rest(text.substr(colon + 1));
         const bool names_zone = rest.find('=') != std::string::npos && !rest.starts_with("zone:");
         Requirement requirement = parseRequirement(names_zone ? "zone:" + rest : rest);
         if (requirement.density) throw UsageError('`' + std::string(text) + "` has two classes");
-        requirement.density = density;
+        requirement.density = found->index;
+        requirement.standard = found->standard;
         return requirement;
     }
     constexpr std::string_view kFree = "free:", kZone = "zone:";
@@ -110,10 +101,24 @@ Requirement parseRequirement(std::string_view text) {
 
 std::string requirementText(const Requirement& requirement) {
     std::string text;
-    if (requirement.density) text.append(pixelDensities()[*requirement.density].name) += ':';
+    if (requirement.density)
+        text.append(className(*requirement.density, requirement.standard)) += ':';
     if (requirement.of == Requirement::Of::Free) text += "free:";
     if (requirement.of == Requirement::Of::Zone) text += "zone:" + requirement.zone + '=';
     return text + formatPercent(requirement.share);
+}
+
+std::string requirementPhrase(const Requirement& requirement) {
+    std::string text = formatPercent(requirement.share) + " of ";
+    text += requirement.of == Requirement::Of::Zone   ? "zone " + printable(requirement.zone)
+            : requirement.of == Requirement::Of::Free ? "the free floor"
+                                                      : "the indoor floor";
+    if (!requirement.density) return text;
+    const std::string pixels =
+        formatDouble(densityClasses()[*requirement.density].pixels_per_metre);
+    return text.append(" at ")
+        .append(className(*requirement.density, requirement.standard))
+        .append(" (" + pixels + " px/m)");
 }
 
 void mustHaveZone(const Requirement& requirement, const Environment& environment) {
@@ -159,10 +164,11 @@ Verdict checkRequirement(const Requirement& requirement, const Coverage& coverag
     std::string text = what + " is " + percent(share, requirement.share) +
                        (metric.exact ? " (exact)" : " (by cells)");
     const std::string required = formatPercent(requirement.share);
+    const double margin = share - requirement.share;
     if (share >= requirement.share - (metric.exact ? kExactError : 0))
-        return {true, text + ", as required (" + required + ")"};
+        return {true, text + ", as required (" + required + ")", 0, margin};
     text += ", below the required " + required;
-    if (area <= 0) return {false, text + ": it has no floor in the room"};
+    if (area <= 0) return {false, text + ": it has no floor in the room", 0, margin};
     const double missing = (requirement.share - share) * area;
     text += ": " + squareMetres(missing) + " are missing";
     std::optional<UncoveredSpot> largest;
@@ -170,13 +176,13 @@ Verdict checkRequirement(const Requirement& requirement, const Coverage& coverag
         largest = largestWithout(requirement, coverage);
     else if (requirement.of != Requirement::Of::Zone && !report.unseen.empty())
         largest = report.unseen.front();
-    if (!largest) return {false, text, missing};
+    if (!largest) return {false, text, missing, margin};
     const UncoveredSpot& spot = *largest;
     return {false,
             text + "; the largest " + (requirement.density ? "such" : "unseen") + " spot has " +
                 squareMetres(spot.area) + " around (" + formatFixed(spot.place.x, 2) + ", " +
                 formatFixed(spot.place.y, 2) + ")",
-            missing};
+            missing, margin};
 }
 
 }  // namespace ispace

@@ -7,18 +7,21 @@
 #include <string_view>
 
 #include "coverage/coverage.h"
+#include "scene/sensor/density_classes.h"
 
 namespace ispace {
 
 /// A required coverage: `95%` of the indoor region, `free:95%` of the free floor, or
 /// `zone:NAME=95%` of a zone. A prefix with the name of a density class, such as `identify:90%`,
-/// `identify:free:90%` and `identify:NAME=100%`, requires cameras with the pixels of that class.
+/// `discern:free:90%` and `validate:NAME=100%`, requires cameras with the pixels of that class.
 struct Requirement {
     enum class Of { Indoor, Free, Zone };
     Of of = Of::Indoor;
     std::string zone = {};
     double share = 0;
-    std::optional<std::size_t> density = {};  ///< index in pixelDensities()
+    std::optional<std::size_t> density = {};  ///< index in densityClasses()
+    /// The standard of the name by which the class was given.
+    DensityStandard standard = DensityStandard::Classes2015;
     friend bool operator==(const Requirement&, const Requirement&) = default;
 };
 
@@ -27,6 +30,9 @@ Requirement parseRequirement(std::string_view text);
 
 /// Returns the text that parseRequirement() reads: "identify:free:95%".
 std::string requirementText(const Requirement& requirement);
+
+/// Returns the requirement in words: "95% of zone door at identify (250 px/m)".
+std::string requirementPhrase(const Requirement& requirement);
 
 /// Checks the zone's name. \throws UsageError for a zone that the room does not have, with the
 /// nearest name
@@ -56,6 +62,7 @@ struct Verdict {
     bool is_met = false;
     std::string text;
     double missing = 0;  ///< covered floor that is required besides, m2; 0 if unknown
+    std::optional<double> margin = {};  ///< measured less required share; empty if unknown
 };
 
 /// Compares with the exact metric if it is known, else with the one by cells; if both are unknown,

@@ -21,22 +21,38 @@ TEST(ParseRequirement, KnowsAllForms) {
     EXPECT_EQ(parseRequirement("recognize:free:50%"), (Requirement{Of::Free, "", 0.5, 3}));
     EXPECT_EQ(parseRequirement("identify:door=100%"), (Requirement{Of::Zone, "door", 1, 4}));
     EXPECT_EQ(parseRequirement("identify:zone:door=1"), (Requirement{Of::Zone, "door", 1, 4}));
+    // The levels of 2025; two have the densities of classes of 2015, and keep their names.
+    constexpr auto kLevels = DensityStandard::Levels2025;
+    EXPECT_EQ(parseRequirement("overview:90%"), (Requirement{Of::Indoor, "", 0.9, 6, kLevels}));
+    EXPECT_EQ(parseRequirement("discern:door=90%"),
+              (Requirement{Of::Zone, "door", 0.9, 8, kLevels}));
+    EXPECT_EQ(parseRequirement("perceive:free:1"), (Requirement{Of::Free, "", 1, 3, kLevels}));
+    EXPECT_EQ(parseRequirement("scrutinize:5%"), (Requirement{Of::Indoor, "", 0.05, 10, kLevels}));
 }
 
 TEST(ParseRequirement, ReadsWhatItIsWrittenAs) {
     EXPECT_EQ(requirementText({Of::Indoor, "", 0.95}), "95%");
     EXPECT_EQ(requirementText({Of::Zone, "door", 1, 4}), "identify:zone:door=100%");
-    for (const char* text :
-         {"0.125", "free:50%", "zone:a=b=0", "monitor:95%", "recognize:free:50%"}) {
+    EXPECT_EQ(requirementText(parseRequirement("characterize:95%")), "characterise:95%");
+    for (const char* text : {"0.125", "free:50%", "zone:a=b=0", "monitor:95%", "recognize:free:50%",
+                             "outline:95%", "validate:free:50%", "perceive:zone:a=1"}) {
         const Requirement requirement = parseRequirement(text);
         EXPECT_EQ(parseRequirement(requirementText(requirement)), requirement) << text;
     }
 }
 
+TEST(ParseRequirement, IsWrittenInWords) {
+    EXPECT_EQ(requirementPhrase(parseRequirement("0.95")), "95% of the indoor floor");
+    EXPECT_EQ(requirementPhrase(parseRequirement("discern:free:80%")),
+              "80% of the free floor at discern (80 px/m)");
+    EXPECT_EQ(requirementPhrase(parseRequirement("identify:door=1")),
+              "100% of zone door at identify (250 px/m)");
+}
+
 TEST(ParseRequirement, RefusesTheRest) {
     for (const char* text : {"", "95", "120%", "-1%", "free", "free:", "free:95", "zone:", "zone:a",
                              "zone:=95%", "zone:a=", "zone:a=95", "room:95%", "nan%", "identify",
-                             "identify:", "identify:detect:1", "250:95%"})
+                             "identify:", "identify:detect:1", "discern:detect:1", "250:95%"})
         EXPECT_THROW(parseRequirement(text), UsageError) << text;
 }
 

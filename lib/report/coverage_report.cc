@@ -8,6 +8,7 @@
 #include "base/number.h"
 #include "report/presence_report.h"
 #include "report/run_report.h"
+#include "scene/sensor/density_classes.h"
 
 namespace ispace {
 
@@ -40,9 +41,10 @@ void writeClasses(JsonWriter& json, const char* key, const char* figure,
     if (metrics.empty()) return;
     json.key(key).beginArray();
     for (std::size_t i = 0; i < metrics.size(); ++i) {
-        const PixelDensity& one = pixelDensities()[i];
+        const DensityClass& one = densityClasses()[i];
         json.beginObject();
         json.key("class").value(std::string(one.name));
+        if (!one.level.empty()) json.key("level").value(std::string(one.level));
         write(json, "pixels_per_metre", one.pixels_per_metre);
         write(json, figure, metrics[i]);
         json.endObject();
@@ -228,9 +230,10 @@ void addRedundancy(const CoverageReport& report, std::vector<TextRow>& rows) {
     }
 }
 
+/// Classes include finer ones.
 std::string classText(std::size_t index) {
-    const PixelDensity& one = pixelDensities()[index];
-    return std::string(one.name) + ", " + formatDouble(one.pixels_per_metre) + " px/m";
+    return classNames(index) + ", from " + formatDouble(densityClasses()[index].pixels_per_metre) +
+           " px/m up";
 }
 
 std::string metricTable(const CoverageReport& report) {
@@ -240,8 +243,9 @@ std::string metricTable(const CoverageReport& report) {
                                  row("coverage", report.coverage, percent),
                                  row("free coverage", report.free_coverage, percent)};
     addRedundancy(report, rows);
-    for (std::size_t i = 0; i < report.densities.indoor.size(); ++i)
-        rows.push_back(row(classText(i), report.densities.indoor[i], percent));
+    if (!report.densities.indoor.empty())
+        for (const std::size_t i : classesByDensity())
+            rows.push_back(row(classText(i), report.densities.indoor[i], percent));
     if (report.parallax)
         rows.push_back(row(
             "by " + std::to_string(report.parallax->cameras) + " cameras, axes at least " +
@@ -271,8 +275,8 @@ std::string sensorTable(const std::vector<SensorMetrics>& sensors) {
     return aligned(rows, "llr");
 }
 
-/// Returns a table of the cameras' distances and pixel densities; "" without cameras. Areas are
-/// exact if known.
+/// Returns a table of the cameras' distances and pixel densities, then one of the areas by the
+/// levels of 2025; "" without cameras. Areas are exact if known.
 std::string cameraTable(const std::vector<SensorMetrics>& sensors) {
     const auto best = [](const Metric& metric) {
         return metric.exact ? metric.exact : metric.grid;
@@ -281,17 +285,27 @@ std::string cameraTable(const std::vector<SensorMetrics>& sensors) {
         return value ? formatFixed(*value, decimals) + unit : "-";
     };
     std::vector<TextRow> rows = {{"camera", "nearest", "farthest", "mean density"}};
-    for (const PixelDensity& one : pixelDensities()) rows.front().emplace_back(one.name);
+    std::vector<TextRow> levels = {{"camera"}};
+    using enum DensityStandard;
+    for (const std::size_t i : classesOf(Classes2015))
+        rows.front().emplace_back(className(i, Classes2015));
+    for (const std::size_t i : classesOf(Levels2025))
+        levels.front().emplace_back(className(i, Levels2025));
     for (const SensorMetrics& sensor : sensors) {
         if (!sensor.picture) continue;
         const PictureMetrics& picture = *sensor.picture;
         TextRow row = {printable(sensor.id), text(picture.nearest, " m", 2),
                        text(picture.farthest, " m", 2),
                        text(best(picture.mean_density), " px/m", 1)};
-        for (const Metric& metric : picture.areas) row.push_back(text(best(metric), " m2", 2));
+        levels.push_back({row.front()});
+        for (const std::size_t i : classesOf(Classes2015))
+            row.push_back(text(best(picture.areas[i]), " m2", 2));
+        for (const std::size_t i : classesOf(Levels2025))
+            levels.back().push_back(text(best(picture.areas[i]), " m2", 2));
         rows.push_back(std::move(row));
     }
-    return rows.size() > 1 ? "\n" + aligned(rows, "lr") : "";
+    if (rows.size() == 1) return "";
+    return "\n" + aligned(rows, "lr") + '\n' + aligned(levels, "lr");
 }
 
 std::string piecesText(const CoverageReport& report) {

@@ -187,8 +187,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.group("Requirements, comparison, advice");
     line.texts("--require", "SHARE", words.requirements,
                "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
-               "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class identify:95%, "
-               "identify:NAME=95%",
+               "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class or level "
+               "identify:95%, discern:NAME=95%",
                Enters::History);
     line.texts("--facing", "ZONE,DEG[,HEADING][=SHARE]", words.facing,
                "report the share of a zone where cameras see faces: within this angle of the "
@@ -249,9 +249,10 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     constexpr int kMinWidth = 200, kMaxWidth = 10000;
     line.count("--width", "PIXELS", o.map.width, kMinWidth, kMaxWidth, "width of a PNG or SVG",
                Enters::History);
-    line.choice("--color", words.color, {"redundancy", "sensor", "density"},
+    line.choice("--color", words.color, {"redundancy", "sensor", "density", "levels"},
                 "colour the floor by how many sensors see it, by which, or by the pixels a metre "
-                "that cameras have there (default redundancy)",
+                "that cameras have there, in the classes of EN 62676-4:2015 or the levels of IEC "
+                "62676-4:2025 (default redundancy)",
                 Enters::History);
     line.choice("--fans", words.fans, {"contours", "beams"},
                 "how views are drawn (default contours)", Enters::History);
@@ -274,6 +275,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     if (words.cells_by == "beams") o.measure.cells_by = CellRule::Beams;
     if (words.color == "sensor") o.map.color = MapColor::Sensor;
     if (words.color == "density") o.map.color = MapColor::Density;
+    if (words.color == "levels") o.map.color = MapColor::Levels;
     if (words.fans == "beams") o.map.fans = FanStyle::Beams;
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)

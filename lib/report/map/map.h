@@ -17,7 +17,8 @@ namespace ispace {
 enum class MapColor {
     Redundancy,  ///< number of sensors that see the floor
     Sensor,      ///< the sensor that sees it; overlaps are hatched or mixed
-    Density,     ///< pixels a metre of the best camera, by the classes of the standard
+    Density,     ///< pixels a metre of the best camera, by the classes of EN 62676-4:2015
+    Levels,      ///< likewise, by the levels of IEC 62676-4:2025
 };
 
 /// Style of a sensor's view.

@@ -137,18 +137,22 @@ void drawBySensor(Picture& picture, const MapPicture& map) {
     if (sets.size() > 1) drawShared(picture, map, sets);
 }
 
-/// Returns the indoor floor that cameras see with the pixels of a class, exact if known.
+/// Returns the indoor floor that cameras see with the pixels of a class, as densityColor() counts
+/// them, exact if known.
 Curves densityCurves(const MapPicture& map, std::size_t density_class) {
     const Coverage& coverage = map.coverage;
+    const auto classes = classesOf(standardOf(map.options.color));
     if (!coverage.density_overlays.empty()) {
         const std::uint64_t wanted =
-            kIndoorMark | (density_class == 0 ? kCameraMark : classMark(density_class - 1));
+            kIndoorMark |
+            (density_class == 0 ? kCameraMark : classMark(classes[density_class - 1]));
         return drawable(
             map,
             curvesOf(coverage.density_overlays.front().regions(
                 [wanted](const LayerLabel& label) { return (label.marks & wanted) == wanted; })));
     }
-    if (density_class > 0) return curvesOfCells(map, cellsOfClass(coverage, density_class - 1));
+    if (density_class > 0)
+        return curvesOfCells(map, cellsOfClass(coverage, classes[density_class - 1]));
     CellSet cells(coverage.target.grid.size());
     for (const SensorView& view : coverage.sensors)
         if (!view.classes.empty()) cells |= view.cells;
@@ -156,8 +160,9 @@ Curves densityCurves(const MapPicture& map, std::size_t density_class) {
 }
 
 void drawDensity(Picture& picture, const MapPicture& map) {
-    for (std::size_t i = 0; i <= pixelDensities().size(); ++i)
-        picture.area(densityCurves(map, i), {densityColor(i)});
+    const DensityStandard standard = standardOf(map.options.color);
+    for (std::size_t i = 0; i <= classesOf(standard).size(); ++i)
+        picture.area(densityCurves(map, i), {densityColor(i, standard)});
 }
 
 /// Draws common, gained and lost floor. Gained and lost floor are drawn over the common floor,
@@ -263,17 +268,23 @@ Shades shadesFor(const CoverageReport& report, std::uint32_t scale) {
     return shades;
 }
 
-Color densityColor(std::size_t density_class) {
-    return sequentialColor(static_cast<int>(density_class) + 1,
-                           static_cast<int>(pixelDensities().size()) + 1);
+DensityStandard standardOf(MapColor color) {
+    return color == MapColor::Levels ? DensityStandard::Levels2025 : DensityStandard::Classes2015;
 }
 
-Metric shareOfDensity(const CoverageReport& report, std::size_t density_class) {
+Color densityColor(std::size_t density_class, DensityStandard standard) {
+    return sequentialColor(static_cast<int>(density_class) + 1,
+                           static_cast<int>(classesOf(standard).size()) + 1);
+}
+
+Metric shareOfDensity(const CoverageReport& report, std::size_t density_class,
+                      DensityStandard standard) {
     const DensityMetrics& all = report.densities;
     if (all.indoor.empty()) return {.grid = 0, .exact = 0};
-    const Metric& least = density_class == 0 ? all.seen : all.indoor[density_class - 1];
-    if (density_class == all.indoor.size()) return least;
-    const Metric& better = all.indoor[density_class];
+    const auto classes = classesOf(standard);
+    const Metric& least = density_class == 0 ? all.seen : all.indoor[classes[density_class - 1]];
+    if (density_class == classes.size()) return least;
+    const Metric& better = all.indoor[classes[density_class]];
     const auto difference = [](const std::optional<double>& a, const std::optional<double>& b) {
         return a && b ? std::optional(std::max(0.0, *a - *b)) : std::nullopt;
     };
@@ -300,7 +311,7 @@ void drawCoverage(Picture& picture, const MapPicture& map) {
         drawComparison(picture, map);
     else if (map.options.color == MapColor::Sensor)
         drawBySensor(picture, map);
-    else if (map.options.color == MapColor::Density)
+    else if (map.options.color == MapColor::Density || map.options.color == MapColor::Levels)
         drawDensity(picture, map);
     else
         drawRedundancy(picture, map);

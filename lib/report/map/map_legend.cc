@@ -121,10 +121,12 @@ LegendBlock bySensorBlock(const CoverageReport& report, std::size_t sets) {
     return block;
 }
 
-/// Lists the density classes; skips those without floor.
-LegendBlock densityBlock(const CoverageReport& report) {
+/// Lists the classes of a standard, each without the finer ones; skips those without floor.
+LegendBlock densityBlock(const CoverageReport& report, DensityStandard standard) {
     const Metric& seen = report.densities.seen;
-    LegendBlock block = metricBlock("Pixels a metre", seen.exact.has_value());
+    LegendBlock block = metricBlock(
+        standard == DensityStandard::Levels2025 ? "Pixels a metre, 2025" : "Pixels a metre, 2015",
+        seen.exact.has_value());
     const auto add = [&](Color color, std::string text, const Metric& share) {
         LegendItem item{Sign::Patch, color, palette::kObjectEdge, std::move(text), ""};
         setMetric(item, block, share, percent);
@@ -135,13 +137,17 @@ LegendBlock densityBlock(const CoverageReport& report) {
     };
     add(palette::kFloor, "no camera", {rest(seen.grid), rest(seen.exact)});
     constexpr double kMinShare = 1e-6;
-    const auto classes = pixelDensities();
+    const auto classes = classesOf(standard);
     for (std::size_t i = 0; i <= classes.size(); ++i) {
-        const Metric share = shareOfDensity(report, i);
+        const Metric share = shareOfDensity(report, i, standard);
         if (share.grid.value_or(0) <= kMinShare && share.exact.value_or(0) <= kMinShare) continue;
-        const std::string from = i == 0 ? "fewer" : std::string(classes[i - 1].name);
-        const double pixels = classes[i == 0 ? 0 : i - 1].pixels_per_metre;
-        add(densityColor(i), from + (i == 0 ? " than " : ", ") + formatDouble(pixels), share);
+        // The number first: long names are cut.
+        const std::string pixels =
+            formatDouble(densityClasses()[classes[i == 0 ? 0 : i - 1]].pixels_per_metre);
+        add(densityColor(i, standard),
+            i == 0 ? "fewer than " + pixels
+                   : pixels + ' ' + std::string(className(classes[i - 1], standard)),
+            share);
     }
     return block;
 }
@@ -368,8 +374,8 @@ std::vector<LegendBlock> legendBlocks(const MapPicture& map) {
         blocks.push_back(comparisonBlock(report));
     else if (map.options.color == MapColor::Sensor)
         blocks.push_back(bySensorBlock(report, map.coverage.sets.size()));
-    else if (map.options.color == MapColor::Density)
-        blocks.push_back(densityBlock(report));
+    else if (map.options.color == MapColor::Density || map.options.color == MapColor::Levels)
+        blocks.push_back(densityBlock(report, standardOf(map.options.color)));
     else
         blocks.push_back(shadesBlock(report, map.options.redundancy_scale));
     blocks.push_back(sensorsBlock(map));

@@ -13,6 +13,7 @@
 #include "drawing/drawing.h"
 #include "drawing/plan/plan.h"
 #include "report/map/map.h"
+#include "scene/sensor/density_classes.h"
 
 namespace ispace {
 
@@ -73,11 +74,15 @@ Color stripeColor(const MapPicture& map, std::size_t set);
 /// If more sets than this share floor, stripes have no colours.
 constexpr std::size_t kMaxStriped = 6;
 
-/// Returns the colour of a class (MapColor::Density): class 0 has fewer pixels than the least of
-/// pixelDensities(), class i + 1 at least those of index i.
-Color densityColor(std::size_t density_class);
-/// Returns the share of the indoor region in this class and no better one.
-Metric shareOfDensity(const CoverageReport& report, std::size_t density_class);
+/// Returns the standard whose names a map shows (MapColor::Density or Levels).
+DensityStandard standardOf(MapColor color);
+/// Returns the colour of a class: class 0 has fewer pixels than the least of a standard, class
+/// i + 1 at least those of its index i.
+Color densityColor(std::size_t density_class,
+                   DensityStandard standard = DensityStandard::Classes2015);
+/// Returns the share of the indoor region in this class and no better one of the standard.
+Metric shareOfDensity(const CoverageReport& report, std::size_t density_class,
+                      DensityStandard standard = DensityStandard::Classes2015);
 
 /// Fills indoor floor with the colours of coverage, in metres. \pre a view is pushed
 void drawCoverage(Picture& picture, const MapPicture& map);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "drawing/plan/plan.h"
@@ -16,6 +17,9 @@ namespace {
 constexpr double kWidth = 900, kMaxHeight = 1000, kEm = 14, kMargin = 20, kScaleBar = 36;
 constexpr double kLegendWidth = 420, kLegendEm = 15;
 
+constexpr std::pair<MapColor, std::string_view> kDensityLayers[] = {
+    {MapColor::Density, "density 2015"}, {MapColor::Levels, "density 2025"}};
+
 void drawFloorLayers(Picture& picture, PlanDrawing& plan, const MapPicture& map) {
     const std::vector<Polygon> indoor = curvesOf(map.scene.environment.indoor());
     MapOptions options = map.options;
@@ -25,20 +29,25 @@ void drawFloorLayers(Picture& picture, PlanDrawing& plan, const MapPicture& map)
         drawCoverage(picture, shades);
     }
     if (map.coverage.report.densities.indoor.empty()) return;
-    options.color = MapColor::Density;
-    const MapPicture densities{map.scene, map.coverage, options, nullptr, map.em, map.view};
-    const PlanLayer layer(plan, "density", indoor);
-    picture.area(indoor, {palette::kFloor});
-    drawCoverage(picture, densities);
+    for (const auto& [color, name] : kDensityLayers) {
+        options.color = color;
+        const MapPicture densities{map.scene, map.coverage, options, nullptr, map.em, map.view};
+        const PlanLayer layer(plan, name, indoor);
+        picture.area(indoor, {palette::kFloor});
+        drawCoverage(picture, densities);
+    }
 }
 
 Picture drawLegendAlone(const MapPicture& map) {
     std::vector<LegendBlock> blocks = legendBlocks(map);
     if (!map.coverage.report.densities.indoor.empty()) {
         MapOptions options = map.options;
-        options.color = MapColor::Density;
-        const MapPicture densities{map.scene, map.coverage, options};
-        blocks.insert(blocks.begin() + 2, legendBlocks(densities)[1]);
+        std::ptrdiff_t at = 2;
+        for (const auto& [color, name] : kDensityLayers) {
+            options.color = color;
+            const MapPicture densities{map.scene, map.coverage, options};
+            blocks.insert(blocks.begin() + at++, legendBlocks(densities)[1]);
+        }
     }
     const LegendLayout layout = layOutLegend(std::move(blocks), 1, kLegendEm);
     Picture picture(kLegendWidth, std::ceil(layout.height + 2 * kLegendEm));

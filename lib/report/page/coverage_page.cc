@@ -15,6 +15,7 @@
 #include "report/map/screen_map.h"
 #include "report/page/installation.h"
 #include "report/run_report.h"
+#include "scene/sensor/density_classes.h"
 
 namespace ispace {
 
@@ -61,9 +62,10 @@ std::optional<double> seenTwice(const CoverageReport& report) {
 /// Returns the share of floor on which cameras identify people, as a clause; "" without cameras.
 std::string identifiedText(const CoverageReport& report) {
     for (std::size_t i = 0; i < report.densities.indoor.size(); ++i)
-        if (const PixelDensity& one = pixelDensities()[i]; one.name == "identify")
-            return "; cameras identify people (" + formatDouble(one.pixels_per_metre) +
-                   " pixels a metre) on " + shareText(report.densities.indoor[i]);
+        if (const DensityClass& one = densityClasses()[i]; one.name == "identify")
+            return "; cameras identify people (" + classNames(i) + ", from " +
+                   formatDouble(one.pixels_per_metre) + " pixels a metre up) on " +
+                   shareText(report.densities.indoor[i]);
     return "";
 }
 
@@ -108,7 +110,7 @@ PageSection summaryOf(const CoveragePageInput& input) {
 
 PageSection mapOf(const CoveragePageInput& input) {
     ScreenMap screen = drawScreenMap(input.scene, input.coverage);
-    MapIndex index{screen.view, {}, {"density", "views"}};
+    MapIndex index{screen.view, {}, {"density 2015", "density 2025", "views"}};
     for (const SensorView& view : input.coverage.sensors) {
         const Sensor& sensor = input.scene.sensors[view.index];
         const auto* const camera = sensor.tryAs<Camera>();
@@ -127,33 +129,50 @@ PageSection mapOf(const CoveragePageInput& input) {
     return section;
 }
 
-/// Returns the class of 2015, with the level of 2025 of the same density.
-std::string classText(const PixelDensity& one) {
-    std::string text(one.name);
-    for (const PixelDensity& level : pixelLevels())
-        if (level.pixels_per_metre == one.pixels_per_metre) text.append(" / ").append(level.name);
-    return text;
-}
+constexpr DensityStandard kStandards[] = {DensityStandard::Classes2015,
+                                          DensityStandard::Levels2025};
 
-/// Lists zones with the shares of their floor by densities of cameras.
+/// Lists zones with the share of their floor that sensors see.
 PageTable zonesOfReport(const CoverageReport& report) {
     PageTable table{"share of each zone's floor", "lr", {"zone", "area", "seen"}, {}};
-    const bool has_cameras = !report.densities.indoor.empty();
-    if (has_cameras)
-        for (const PixelDensity& one : pixelDensities()) table.heads.push_back(classText(one));
-    for (const ZoneMetrics& zone : report.zones) {
-        TextRow row = {zone.id, squareMetres(zone.area),
-                       zone.area > 0 ? shareText(zone.coverage) : "outside the room"};
-        for (const Metric& density : zone.densities) row.push_back(shareText(density));
+    for (const ZoneMetrics& zone : report.zones)
+        table.rows.push_back({zone.id, squareMetres(zone.area),
+                              zone.area > 0 ? shareText(zone.coverage) : "outside the room"});
+    return table;
+}
+
+/// Lists the whole floor and zones with the shares that cameras see, by the names of a standard.
+PageTable densitiesOfReport(const CoverageReport& report, DensityStandard standard) {
+    PageTable table{"share of the floor that cameras see with at least this many pixels a metre, " +
+                        std::string(nameOf(standard)) +
+                        "; each column includes the finer ones to its right, so that a row may "
+                        "sum to more than 100%",
+                    "lr",
+                    {"floor"},
+                    {}};
+    for (const std::size_t index : classesOf(standard))
+        table.heads.push_back(std::string(className(index, standard)) + ", " +
+                              formatDouble(densityClasses()[index].pixels_per_metre));
+    const auto add = [&](std::string name, const std::vector<Metric>& densities) {
+        TextRow row = {std::move(name)};
+        for (const std::size_t index : classesOf(standard))
+            row.push_back(shareText(densities[index]));
         table.rows.push_back(std::move(row));
-    }
+    };
+    add("indoor", report.densities.indoor);
+    for (const ZoneMetrics& zone : report.zones)
+        if (zone.area > 0) add("zone " + zone.id, zone.densities);
     return table;
 }
 
 void addRequirements(const CoveragePageInput& input, ReportPage& page) {
     const CoverageReport& report = input.coverage.report;
-    if (input.requirements.empty() && report.zones.empty()) return;
-    PageSection section{"requirements", "Requirements and zones", {}};
+    const bool has_cameras = !report.densities.indoor.empty();
+    if (input.requirements.empty() && report.zones.empty() && !has_cameras) return;
+    PageSection section{
+        "requirements",
+        input.requirements.empty() ? "Zones and densities" : "Requirements and zones",
+        {}};
     if (!input.requirements.empty()) {
         PageTable table{"each requirement with its measurement",
                         "lll",
@@ -166,6 +185,9 @@ void addRequirements(const CoveragePageInput& input, ReportPage& page) {
         section.blocks.push_back(std::move(table));
     }
     if (!report.zones.empty()) section.blocks.push_back(zonesOfReport(report));
+    if (has_cameras)
+        for (const DensityStandard standard : kStandards)
+            section.blocks.push_back(densitiesOfReport(report, standard));
     page.sections.push_back(std::move(section));
 }
 
