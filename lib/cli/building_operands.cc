@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -13,6 +15,7 @@
 #include "base/run_files.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
+#include "env/zone.h"
 #include "io/exporters.h"
 #include "io/glb/glb_read.h"
 #include "record/text.h"
@@ -234,6 +237,29 @@ std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
     input.environment_operand = std::move(found->environment);
     input.layout_operand = std::move(found->layout);
     return input;
+}
+
+void addZones(std::span<const std::string> zones, BuildingScene& building) {
+    const StoreyedDocument& document = building.document;
+    std::map<std::size_t, std::vector<std::string>> by_storey;
+    for (const std::string& text : zones) {
+        const std::size_t slash = text.find('/');
+        if (slash == std::string::npos)
+            throw UsageError("--zone: " + excerpt(text) + " names no storey, as in " +
+                             document.storeys.front().id + "/rect:0,0,1,1");
+        const Storey* const storey =
+            ofOption("--zone", [&] { return &document.storey(text.substr(0, slash)); });
+        by_storey[static_cast<std::size_t>(storey - document.storeys.data())].push_back(
+            text.substr(slash + 1));
+    }
+    for (const auto& [storey, texts] : by_storey) {
+        const Scene& scene = *building.scenes[storey];
+        std::vector<Record> records = scene.records;
+        for (Record& zone : zoneRecords(texts, scene.environment, sceneSchemas()))
+            records.push_back(std::move(zone));
+        building.scenes[storey] =
+            std::make_shared<const Scene>(makeScene(std::move(records), scene, building.devices));
+    }
 }
 
 }  // namespace ispace

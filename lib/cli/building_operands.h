@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,10 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
                                        const WatchOptions& watch,
                                        std::optional<std::uint64_t> max_work,
                                        std::vector<std::string>& warnings);
+
+/// Adds the zones of --zone to the scenes of their storeys, as records: `ground/rect:1,1,2,2`.
+/// \throws UsageError without a storey, for an unknown one, and as readZones()
+void addZones(std::span<const std::string> zones, BuildingScene& building);
 
 /// Reads ENV and LAYOUT if ENV is a building and no storey of it is chosen; std::nullopt for
 /// others, which readScene() reads. \throws as readScene() and readBuilding()

@@ -52,7 +52,6 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
     if (options.localise_to) option = "--localise";
     if (options.suggestions) option = "--suggest";
     if (!options.trace.empty()) option = "--trace";
-    if (!options.zones.empty()) option = "--zone";
     for (const Requirement& requirement : options.requirements)
         if (requirement.density) option = "--require of a density class";
     if (!option.empty())
@@ -180,6 +179,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     if (!read) return false;
     BuildingInput& input = *read;
     mustBeAboutBuildings(options, input.building.document);
+    addZones(options.zones, input.building);
     warn(options.common, "coverage", input.warnings);
     if (!options.report.empty()) mustBeWritable(options.report);
     for (std::size_t i = 0; i < input.building.scenes.size(); ++i)

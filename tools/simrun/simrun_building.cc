@@ -35,7 +35,6 @@ void mustBeAboutBuildings(const SimrunOptions& options, const BuildingInput& inp
             throw UsageError(option + " is about one room: choose a storey with --storey (" +
                              input.building.document.storeyList() + ')');
     };
-    refuse(!options.zones.empty(), "--zone");
     refuse(!options.report.empty(), "--report");
     refuse(options.suggestions.has_value(), "--suggest");
     refuse(!options.load_folder.empty(), "--load");
@@ -135,9 +134,10 @@ void forward(BuildingRun& run, SimTime from) {
 
 bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     const SimrunOptions& options = command.options();
-    const auto input = readInput(options, recordedBuilding(options.replay));
+    auto input = readInput(options, recordedBuilding(options.replay));
     if (!input) return false;
     mustBeAboutBuildings(options, *input);
+    addZones(options.zones, input->building);
     warnOfScenes(options, *input);
     BuildingRun run = runOf(options, input->building);
     forward(run, options.from);

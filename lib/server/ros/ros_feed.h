@@ -114,10 +114,10 @@ class RosFeed {
     [[nodiscard]] bool hasChanged();
     void number(Entries& entries, bool& is_changed);
     void place();
-    void drawMap(std::size_t room);
+    void drawMap(std::size_t index);
     void takeFrames();
     void takeFrame(SensorOfRoom which);
-    [[nodiscard]] RosMoment moment(std::size_t room);
+    [[nodiscard]] RosMoment moment(std::size_t index);
 
     ServerState* state_;
     RosScenery scenery_;
