@@ -270,7 +270,7 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
         throw UnmetError("stopped before all candidates were made: there is nothing to share");
     if (share.isOwn(Shared::Candidates)) return result;
     SearchResult found = find(model, result, progress);
-    if (share.own) return result;
+    if (share.own && !share.isOwn(Shared::Poses)) return result;
     std::vector<Choice>& chosen = found.best.chosen;
     takeEachOnce(chosen);
     if (found.best.value > 0 && options.objective.isCoverage()) {
@@ -290,6 +290,7 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     result.sensors = model.placementsOf(chosen);
     if (options.refine) refineIn(result, model, found.best.value, progress);
     if (options.over_poses) boundOfPoses(model, result, progress);
+    if (share.own) return {};
     measure(result, model);
     if (options.wants_curve) {
         result.curve = curveTo(found, model, progress);

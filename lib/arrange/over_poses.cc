@@ -14,7 +14,9 @@
 #include "arrange/opaque_floor.h"
 #include "arrange/poses/pose_search.h"
 #include "arrange/refine.h"
+#include "arrange/search/search_share.h"
 #include "base/number.h"
+#include "base/packed.h"
 #include "coverage/coverage.h"
 #include "geom/arrangement.h"
 #include "geom/predicates.h"
@@ -127,8 +129,8 @@ poses::Sector sectorOf(const Laser& laser, const Box2& box) {
 class LayoutTrials {
   public:
     LayoutTrials(MeasuredScene& model, const std::vector<Region>& floor,
-                 const Arrangement& arrangement, Progress& progress)
-        : model_(model), floor_(floor), progress_(progress) {
+                 const Arrangement& arrangement)
+        : model_(model), floor_(floor) {
         for (const Placement& placement : arrangement.sensors)
             sensors_.push_back(sensorOf(model.groups(), placement));
         const ExactGain gain(model.scene(), model.sight(), sensors_, model.options().weights,
@@ -137,12 +139,13 @@ class LayoutTrials {
         total_ = gain.total();
     }
 
-    /// Refines the layout of these centres. Returns the area that it sees.
-    double tryCenters(std::span<const poses::PoseBox> boxes) {
+    /// Refines the layout of these centres; one without area if a centre is off the floor.
+    [[nodiscard]] PosedLayout tryCenters(std::span<const poses::PoseBox> boxes,
+                                         Progress& progress) const {
         std::vector<Sensor> sensors = sensors_;
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             const Point2 at = boxes[i].at.center();
-            if (!isValid(at)) return 0;
+            if (!isValid(at)) return {};
             Pose3& pose = sensors[i].pose;
             pose.position.x = at.x;
             pose.position.y = at.y;
@@ -151,19 +154,29 @@ class LayoutTrials {
         RefineOptions options{.multiplicity = model_.options().redundancy};
         options.is_valid = [this](std::size_t, Point2 p) { return isValid(p); };
         const Refined refined = refine(model_.scene(), model_.sight(), sensors,
-                                       model_.options().weights, options, progress_);
-        if (refined.after > found_) {
-            found_ = refined.after;
-            for (std::size_t i = 0; i < sensors_.size(); ++i) sensors_[i].pose = refined.poses[i];
-            is_moved_ = true;
+                                       model_.options().weights, options, progress);
+        PosedLayout layout{refined.after};
+        for (const Pose3& pose : refined.poses)
+            layout.poses.push_back({pose.position.onFloor(), pose.heading});
+        return layout;
+    }
+    /// Validates a layout that another run left. \throws FormatError unless it sees its area
+    void mustSee(const PosedLayout& layout) const {
+        constexpr double kRounding = 1e-6;
+        std::vector<Sensor> sensors = sensors_;
+        for (std::size_t i = 0; i < layout.poses.size(); ++i) {
+            if (!isValid(layout.poses[i].position)) Unpacker::refuse();
+            sensors[i].pose.position.x = layout.poses[i].position.x;
+            sensors[i].pose.position.y = layout.poses[i].position.y;
+            sensors[i].pose.heading = layout.poses[i].heading;
         }
-        return refined.after;
+        const ExactGain gain(model_.scene(), model_.sight(), sensors, model_.options().weights,
+                             model_.options().redundancy);
+        if (std::abs(gain.value() - layout.area) > kRounding * total_) Unpacker::refuse();
     }
 
     [[nodiscard]] double found() const { return found_; }
     [[nodiscard]] double total() const { return total_; }
-    [[nodiscard]] bool isMoved() const { return is_moved_; }
-    [[nodiscard]] const std::vector<Sensor>& sensors() const { return sensors_; }
 
   private:
     [[nodiscard]] bool isValid(Point2 p) const {
@@ -173,10 +186,8 @@ class LayoutTrials {
 
     MeasuredScene& model_;
     const std::vector<Region>& floor_;
-    Progress& progress_;
     std::vector<Sensor> sensors_;
     double found_ = 0, total_ = 0;
-    bool is_moved_ = false;
 };
 
 }  // namespace
@@ -245,25 +256,35 @@ void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& prog
     const auto& laser = std::get<Laser>(model.groups().front().model);
     const poses::PoseFloor cells(floor, kCells, weightingOf(model.options().weights));
     const poses::Sector sector = sectorOf(laser, cells.box());
-    LayoutTrials trials(model, floor, arrangement, progress);
+    const LayoutTrials trials(model, floor, arrangement);
     PoseSearchOptions options{.sensors = model.groups().front().most,
                               .times = model.options().redundancy,
                               .found = trials.found(),
                               .max_bytes = model.options().max_bytes};
     options.gap = model.options().search.gap > 0 ? model.options().search.gap : kPosesGap;
+    const SearchShare& share = model.options().search.share;
+    options.share = {share.results, share.own, share.joined};
+    // A run that continues takes the same steps, so none is left half done.
+    SilentProgress whole;
+    Progress& step = share.results != nullptr ? static_cast<Progress&>(whole) : progress;
     options.improve = [&](std::span<const poses::PoseBox> boxes) {
-        return trials.tryCenters(boxes);
+        return trials.tryCenters(boxes, step);
     };
     PoseCertificate certificate;
     if (model.options().wants_certificate) options.certificate = &certificate;
     const PoseBound found = boundOverPoses(cells, sector, options, progress);
-    if (trials.isMoved())
-        for (std::size_t i = 0; i < arrangement.sensors.size(); ++i)
-            arrangement.sensors[i].pose = trials.sensors()[i].pose;
-    arrangement.refined_after = std::max(arrangement.refined_after, trials.found());
+    const PosedLayout& layout = found.found;
+    if (share.results != nullptr && !layout.poses.empty()) trials.mustSee(layout);
+    for (std::size_t i = 0; i < layout.poses.size(); ++i) {
+        Pose3& pose = arrangement.sensors[i].pose;
+        pose.position.x = layout.poses[i].position.x;
+        pose.position.y = layout.poses[i].position.y;
+        pose.heading = layout.poses[i].heading;
+    }
+    arrangement.refined_after = std::max(arrangement.refined_after, layout.area);
     const double bound = std::min(found.bound, trials.total());
     arrangement.poses_bound =
-        PosesBound{trials.found(), bound, trials.total(), found.boxes, found.tuples, nullptr};
+        PosesBound{layout.area, bound, trials.total(), found.boxes, found.tuples, nullptr};
     if (options.certificate != nullptr)
         arrangement.poses_bound->certificate =
             std::make_shared<const PoseCertificate>(std::move(certificate));

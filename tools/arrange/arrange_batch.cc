@@ -17,7 +17,17 @@ namespace {
 
 /// Returns the prefix of keys for the steps that shards share.
 std::string_view prefixOf(Shared what) {
-    return what == Shared::Candidates ? "views/" : what == Shared::Starts ? "start" : "proof/";
+    switch (what) {
+        case Shared::Candidates:
+            return "views/";
+        case Shared::Starts:
+            return "start";
+        case Shared::Poses:
+            return "poses/";
+        case Shared::Tree:
+            break;
+    }
+    return "proof/";
 }
 
 /// Returns the ways of people as text, "" without.

@@ -439,7 +439,7 @@ void ArrangeCommand::addShareOptions() {
     for (const Shared what : kShared) words.emplace_back(nameOf(what));
     line_.choice("--share", words_.share, words,
                  "work that shards divide: views of the candidates (default of greedy and with "
-                 "--target), random starts (of swap), or subtrees of the proof (of exact)",
+                 "--target), random starts (of swap), or subtrees of the proof (of exact; poses)",
                  Enters::Nothing);
     constexpr double kLongest = 86400;
     line_.duration("--checkpoint-interval", options_.checkpoint_interval, 0, kLongest,

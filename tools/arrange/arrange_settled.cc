@@ -102,10 +102,10 @@ void ArrangeCommand::settleProof() {
 }
 
 void ArrangeCommand::settleProofOfCoverage() {
-    constexpr const char* kOther[] = {
-        "--mount",      "--tilt",         "--clearance", "--keep-out", "--keep-in", "--connected",
-        "--budget",     "--judge",        "--reso",      "--shard",    "--resume",  "--curve",
-        "--export-mps", "--alternatives", "--robust",    "--crowd",    "--facing",  "--privacy"};
+    constexpr const char* kOther[] = {"--mount",   "--tilt",      "--clearance",  "--keep-out",
+                                      "--keep-in", "--connected", "--budget",     "--judge",
+                                      "--reso",    "--curve",     "--export-mps", "--alternatives",
+                                      "--robust",  "--crowd",     "--facing",     "--privacy"};
     for (const char* option : kOther)
         if (line_.given(option))
             throw UsageError(
@@ -287,9 +287,10 @@ void ArrangeCommand::settleBatch() {
     SearchShare& share = options_.how.search.share;
     share.own = options_.batch.shard;
     const Optimizer optimizer = how.search.optimizer;
-    share.what = how.target || optimizer == Optimizer::Greedy ? Shared::Candidates
-                 : optimizer == Optimizer::Swap               ? Shared::Starts
-                                                              : Shared::Tree;
+    share.what = how.over_poses                                 ? Shared::Poses
+                 : how.target || optimizer == Optimizer::Greedy ? Shared::Candidates
+                 : optimizer == Optimizer::Swap                 ? Shared::Starts
+                                                                : Shared::Tree;
     if (!words_.share.empty())
         share.what = *std::find_if(std::begin(kShared), std::end(kShared),
                                    [&](Shared what) { return nameOf(what) == words_.share; });
@@ -300,6 +301,10 @@ void ArrangeCommand::settleBatch() {
         return;
     }
     const std::string what(nameOf(share.what));
+    if (how.over_poses != (share.what == Shared::Poses))
+        throw UsageError(how.over_poses
+                             ? "--share " + what + ": shards of --proof poses share poses"
+                             : "--share poses is about --proof poses: give it, too");
     if (how.target && share.what != Shared::Candidates)
         throw UsageError("--share " + what +
                          ": with --target there are many searches; shards can share candidates");
@@ -313,14 +318,15 @@ void ArrangeCommand::settleBatch() {
             "--shard: --strategy random draws places about the best of those before, so its "
             "candidates cannot be shared; share the starts of --optimize swap, or run it with "
             "several --seed and keep the best");
-    if (share.what != Shared::Tree && options_.time_limit)
+    if (!isOfProof(share.what) && options_.time_limit)
         throw UsageError(
             "--time-limit would leave gaps in what shards share; only parts of a "
-            "proof (--optimize exact) are of use when cut short");
+            "proof (--optimize exact, --proof poses) are of use when cut short");
     for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
                                      {"--trace", &options_.trace_file},
                                      {"--report", &options_.report_file},
                                      {"--heat", &options_.heat_file},
+                                     {"--certificate", &options_.certificate_file},
                                      {"--export-mps", &options_.mps_file}})
         if (!file->empty())
             throw UsageError(std::string(name) + " needs all of the search: give it to --merge");

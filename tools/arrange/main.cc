@@ -28,7 +28,7 @@ using namespace ispace;
 /// Returns true if the rest of a run after a signal is useless, or is stored elsewhere.
 bool endsWithoutProduct(const ArrangeToolOptions& options) {
     return options.batch.resume ||
-           (options.batch.shard && options.how.search.share.what != Shared::Tree);
+           (options.batch.shard && !isOfProof(options.how.search.share.what));
 }
 
 void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& options,

@@ -96,8 +96,14 @@ void BoxPairs::search(std::size_t most, const std::function<bool()>& is_stopped)
     };
     std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, decltype(is_less)> queue(
         is_less);
-    pairs_.push_back({.boxes = {0, 0}, .most = 2 * boxes_[0].most});
-    queue.push(0);
+    if (pairs_.empty()) pairs_.push_back({.boxes = {0, 0}, .most = 2 * boxes_[0].most});
+    std::vector<BoxId> open;
+    for (std::uint32_t id = 0; id < pairs_.size(); ++id) {
+        if (pairs_[id].is_split) continue;
+        queue.push(id);
+        open.insert(open.end(), pairs_[id].boxes.begin(), pairs_[id].boxes.end());
+    }
+    boxes_.addMissingViews(std::move(open));
     while (!queue.empty() && pairs_.size() < most && !is_stopped()) {
         std::vector<std::uint32_t> batch;
         while (!queue.empty() && batch.size() < kBatch) {

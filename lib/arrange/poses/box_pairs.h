@@ -19,8 +19,12 @@ class BoxPairs {
     /// Stores the reference; search() divides these boxes.
     explicit BoxPairs(PoseBoxes& boxes) : boxes_(boxes) {}
 
-    /// Halves the pairs that may see most, until there are `most` or `is_stopped` says so.
+    /// Halves the pairs that may see most, until there are `most` or `is_stopped` says so;
+    /// continues a search that was stopped.
     void search(std::size_t most, const std::function<bool()>& is_stopped);
+    void pack(Packer& to) const;
+    /// Replaces the tree by a written one. \throws FormatError if it is no tree of these boxes
+    void unpack(Unpacker& from);
 
     /// Bounds the area that two poses see together, by the pairs; infinite without a search.
     [[nodiscard]] double mostOf(BoxId first, BoxId second) const;
@@ -39,6 +43,7 @@ class BoxPairs {
         std::uint32_t parent = 0, child = 0, children = 0;  // the first child, and their number
         bool is_split = false;
     };
+    [[nodiscard]] bool isHalf(const PairNode& parent, const PairNode& pair, std::size_t id) const;
     void split(const std::vector<std::uint32_t>& ids);
     void lower(std::uint32_t id);
     void write(std::uint32_t id, std::string& text) const;

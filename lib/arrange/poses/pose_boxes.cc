@@ -62,21 +62,17 @@ CellParts::CellParts(const std::vector<std::uint8_t>& all) {
 
 PoseBoxes::PoseBoxes(const PoseFloor& floor, const Sector& sector)
     : floor_(floor), sector_(sector) {
-    boxes_.push_back(nodeOf({floor.box(), 0, sector.isRound() ? 0 : 2 * std::numbers::pi}, 0));
-    boxes_.front().high = std::uint64_t{1} << 62U;
-    addViews(boxes_.front());
-}
-
-BoxNode PoseBoxes::nodeOf(const PoseBox& box, BoxId parent) const {
-    BoxNode node;
-    node.box = box;
-    node.parent = parent;
-    node.most = fatAreaOf(floor_, sector_, box);
-    return node;
+    BoxNode root;
+    root.box = {floor.box(), 0, sector.isRound() ? 0 : 2 * std::numbers::pi};
+    root.most = fatAreaOf(floor_, sector_, root.box);
+    root.high = std::uint64_t{1} << 62U;
+    addViews(root);
+    boxes_.push_back(std::move(root));
 }
 
 void PoseBoxes::addViews(BoxNode& node) const {
     node.has_views = true;
+    node.is_bare = false;
     if (node.isBlind()) return;
     const PoseBox& box = node.box;
     const FatView view = fatViewOf(floor_, sector_, box);
@@ -98,6 +94,12 @@ double PoseBoxes::turnOf(const PoseBox& box) const {
 }
 
 std::array<BoxNode, 2> PoseBoxes::halvesOf(BoxId id) const {
+    std::array<BoxNode, 2> halves = bareHalvesOf(id);
+    for (BoxNode& half : halves) half.most = fatAreaOf(floor_, sector_, half.box);
+    return halves;
+}
+
+std::array<BoxNode, 2> PoseBoxes::bareHalvesOf(BoxId id) const {
     const BoxNode& node = boxes_[id];
     PoseBox first = node.box, second = node.box;
     if (turnOf(node.box) > slackOf(node.box) / 2) {
@@ -108,7 +110,10 @@ std::array<BoxNode, 2> PoseBoxes::halvesOf(BoxId id) const {
     } else {
         first.at.high.y = second.at.low.y = node.box.at.center().y;
     }
-    std::array<BoxNode, 2> halves = {nodeOf(first, id), nodeOf(second, id)};
+    std::array<BoxNode, 2> halves;
+    halves[0].box = first;
+    halves[1].box = second;
+    for (BoxNode& half : halves) half.parent = id;
     const std::uint64_t middle = node.low + (node.high - node.low) / 2;
     halves[0].low = node.low;
     halves[0].high = halves[1].low = middle;
@@ -156,13 +161,15 @@ BoxId PoseBoxes::largestIn(BoxId id) const {
 void PoseBoxes::splitWithViews(const std::vector<BoxId>& ids) {
     constexpr int kCloser = 4;  // further halvings of the part with the largest single view
     split(ids);
-    std::vector<BoxId> halves;
+    std::vector<BoxId> halves, bare;
     for (const BoxId id : ids)
-        for (BoxId half = boxes_[id].child; half < boxes_[id].child + 2; ++half)
-            if (!boxes_[half].has_views) {
-                boxes_[half].has_views = true;
-                halves.push_back(half);
-            }
+        for (BoxId half = boxes_[id].child; half < boxes_[id].child + 2; ++half) {
+            if (boxes_[half].is_bare) bare.push_back(half);
+            if (boxes_[half].has_views) continue;
+            boxes_[half].has_views = true;
+            halves.push_back(half);
+        }
+    addMissingViews(std::move(bare));
     tbb::parallel_for(std::size_t{0}, halves.size(),
                       [&](std::size_t i) { addViews(boxes_[halves[i]]); });
     for (const BoxId half : halves) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arrange/poses/fat_view.h"
+#include "base/packed.h"
 
 namespace ispace::poses {
 
@@ -29,10 +30,10 @@ struct BoxNode {
     BoxId parent = 0, child = 0;      // the first child, then the second; 0: not split
     double most = 0;                  // bounds the area that any single pose of the box sees
     std::uint64_t low = 0, high = 0;  // half-open range of its poses in the order of the tree
-    bool has_views = false;
-    CellParts parts;   // of the fat view
-    CellParts core;    // that all poses of the box see
-    CellParts centre;  // of the view from the middle of the box
+    bool has_views = false, is_bare = false;  // bare: from a state, without the views
+    CellParts parts;                          // of the fat view
+    CellParts core;                           // that all poses of the box see
+    CellParts centre;                         // of the view from the middle of the box
 
     /// True if no pose of the box sees any floor.
     [[nodiscard]] bool isBlind() const { return most == 0; }
@@ -49,6 +50,13 @@ class PoseBoxes {
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
     /// Returns the tree as in a certificate.
     [[nodiscard]] std::string text() const;
+    /// Writes the tree and its bounds, without views.
+    void pack(Packer& to) const;
+    /// Replaces the tree by a written one. Views of its boxes are missing, but for those of halves
+    /// that splitWithViews() makes. \throws FormatError if it is no tree
+    void unpack(Unpacker& from);
+    /// Computes missing views.
+    void addMissingViews(std::vector<BoxId> ids);
 
     /// Halves those boxes that are whole, in parallel, and lowers the bounds of single views in
     /// them and the boxes around them.
@@ -79,7 +87,8 @@ class PoseBoxes {
     [[nodiscard]] double unionOf(std::span<const Known> known, std::span<const BoxId> others) const;
 
   private:
-    [[nodiscard]] BoxNode nodeOf(const PoseBox& box, BoxId parent) const;
+    /// Returns halves without bounds.
+    [[nodiscard]] std::array<BoxNode, 2> bareHalvesOf(BoxId id) const;
     [[nodiscard]] std::array<BoxNode, 2> halvesOf(BoxId id) const;
     void lowerMost(BoxId id);
     /// Returns the whole box in a box whose single views are bounded worst.

@@ -4,107 +4,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <queue>
-#include <string>
 #include <utility>
 
-#include "arrange/poses/box_pairs.h"
-#include "arrange/poses/multiple_bound.h"
-#include "arrange/poses/pose_boxes.h"
+#include "arrange/poses/pose_searcher.h"
+#include "arrange/poses/pose_share.h"
 #include "base/number.h"
 
-namespace ispace {
-
-namespace {
-
-using poses::BoxId;
-using poses::BoxPairs;
-using poses::fatViewOf;
-using poses::MultipleBound;
-using poses::PoseBox;
-using poses::PoseBoxes;
-using poses::PoseFloor;
-using poses::Sector;
-
-struct Tuple {
-    double bound = 0;
-    std::array<BoxId, kMostPosed> boxes{};
-    std::uint32_t node = 0;  // of the tree of tuples
-};
-/// A tuple of the tree that becomes a certificate.
-struct TupleNode {
-    std::array<std::uint32_t, 2> halves{};  // 0: left out
-    int which = -1;                         // the box that is halved; -1: none
-};
-struct IsWorse {
-    bool operator()(const Tuple& a, const Tuple& b) const {
-        return a.bound != b.bound ? a.bound < b.bound : a.boxes > b.boxes;
-    }
-};
-
-class PoseSearcher {
-  public:
-    PoseSearcher(const PoseFloor& floor, const Sector& sector, const PoseSearchOptions& options,
-                 Progress& progress)
-        : floor_(floor),
-          sector_(sector),
-          options_(options),
-          progress_(progress),
-          count_(static_cast<std::size_t>(options.sensors)),
-          found_(options.found),
-          boxes_(floor, sector),
-          pairs_(boxes_),
-          multiple_(floor, boxes_, count_, static_cast<std::size_t>(options.times)) {}
-
-    PoseBound run();
-
-  private:
-    void searchSingle();
-    void searchTuples();
-    [[nodiscard]] std::span<const BoxId> boxesOf(const Tuple& tuple) const {
-        return {tuple.boxes.data(), count_};
-    }
-    [[nodiscard]] double boundOf(const Tuple& tuple, double enough) const;
-    /// Bounds it for sensors that see the floor once.
-    [[nodiscard]] double unionBoundOf(const Tuple& tuple, double enough) const;
-    /// Tuples that replace one, and the best layout of centres of boxes among them.
-    struct Children {
-        std::vector<Tuple> tuples;
-        Tuple best;
-        double best_value = 0;
-    };
-    [[nodiscard]] Children childrenOf(const Tuple& tuple, std::size_t which) const;
-    [[nodiscard]] double cutoff() const { return found_ / (1 - options_.gap); }
-    void improve(const Tuple& tuple);
-    [[nodiscard]] bool isFull() const {
-        return boxes_.bytes() + pairs_.bytes() + queue_.size() * sizeof(Tuple) +
-                   tree_.size() * sizeof(TupleNode) >
-               options_.max_bytes;
-    }
-    void addToTree(const Tuple& parent, std::size_t which, std::vector<Tuple>& children);
-    void writeTuples(std::uint32_t id, std::string& text) const;
-
-    const PoseFloor& floor_;
-    const Sector& sector_;
-    const PoseSearchOptions& options_;
-    Progress& progress_;
-    std::size_t count_;
-    double found_;
-    PoseBoxes boxes_;
-    BoxPairs pairs_;
-    MultipleBound multiple_;  // for options.times > 1
-    std::size_t tuples_ = 0;
-    std::vector<TupleNode> tree_;  // with a certificate alone
-    std::priority_queue<Tuple, std::vector<Tuple>, IsWorse> queue_;
-    double tried_ = 0;   // best layout of centres of boxes, m2
-    double closed_ = 0;  // largest bound of a tuple that was not split further
-    bool is_complete_ = true;
-};
+namespace ispace::poses {
 
 double PoseSearcher::boundOf(const Tuple& tuple, double enough) const {
     return options_.times > 1 ? multiple_.of(boxesOf(tuple), enough) : unionBoundOf(tuple, enough);
@@ -184,7 +90,7 @@ PoseSearcher::Children PoseSearcher::childrenOf(const Tuple& tuple, std::size_t 
 }
 
 void PoseSearcher::searchSingle() {
-    constexpr std::size_t kMostBoxes = 20'000, kBatch = 64;
+    constexpr std::size_t kBatch = 64;
     constexpr double kClose = 0.002;
     const auto is_less = [this](BoxId a, BoxId b) {
         return boxes_[a].most != boxes_[b].most ? boxes_[a].most < boxes_[b].most : a > b;
@@ -192,7 +98,7 @@ void PoseSearcher::searchSingle() {
     std::priority_queue<BoxId, std::vector<BoxId>, decltype(is_less)> queue(is_less);
     queue.push(0);
     double seen = 0;  // by poses that were tried
-    while (!queue.empty() && boxes_.size() < kMostBoxes && !progress_.stopped()) {
+    while (!queue.empty() && boxes_.size() < options_.singles && !progress_.stopped()) {
         std::vector<BoxId> batch;
         while (!queue.empty() && batch.size() < kBatch) {
             const BoxId id = queue.top();
@@ -217,23 +123,30 @@ void PoseSearcher::improve(const Tuple& tuple) {
     if (!options_.improve) return;
     std::vector<PoseBox> boxes;
     for (std::size_t i = 0; i < count_; ++i) boxes.push_back(boxes_[tuple.boxes[i]].box);
-    found_ = std::max(found_, options_.improve(boxes));
+    PosedLayout better = options_.improve(boxes);
+    if (better.area > found_.area) found_ = std::move(better);
 }
 
 void PoseSearcher::searchTuples() {
     constexpr std::size_t kBatch = 256;
     constexpr double kBetter = 1e-3, kNear = 0.97;  // of centres, to be worth refining
-    Tuple root;
-    root.bound = boundOf(root, 0);
-    queue_.push(root);
-    tree_.emplace_back();
+    if (tree_.empty()) {
+        Tuple root;
+        root.bound = boundOf(root, 0);
+        queue_.push(root);
+        tree_.emplace_back();
+    }
     for (std::size_t round = 1; !queue_.empty() && queue_.top().bound > cutoff(); ++round) {
         if (progress_.stopped() || isFull()) {
             is_complete_ = false;
+            keep();
             return;
         }
+        deal();
+        if (options_.share.results != nullptr && options_.share.results->isDue()) keep();
+        if (queue_.empty() || queue_.top().bound <= cutoff()) break;
         if ((round & (round - 1)) == 0) {
-            progress_.note("best " + formatFixed(found_, 2) + " m2, at most " +
+            progress_.note("best " + formatFixed(found_.area, 2) + " m2, at most " +
                            formatFixed(std::max(closed_, queue_.top().bound), 2) + " m2");
         }
         std::vector<Tuple> batch;
@@ -265,7 +178,7 @@ void PoseSearcher::searchTuples() {
         for (std::size_t i = 0; i < made.size(); ++i) {
             Children& children = made[i];
             if (options_.certificate != nullptr) addToTree(batch[i], which[i], children.tuples);
-            if (children.best_value > std::max(tried_ * (1 + kBetter), found_ * kNear)) {
+            if (children.best_value > std::max(tried_ * (1 + kBetter), found_.area * kNear)) {
                 tried_ = children.best_value;
                 improve(children.best);
             }
@@ -301,15 +214,33 @@ void PoseSearcher::writeTuples(std::uint32_t id, std::string& text) const {
             text += '-';
 }
 
+void PoseSearcher::deal() {
+    constexpr std::size_t kPerShard = 8;
+    const std::optional<Shard>& own = options_.share.own;
+    if (is_dealt_ || !own || queue_.size() < kPerShard * static_cast<std::size_t>(own->count))
+        return;
+    queue_.keepOnly(*own);
+    is_dealt_ = true;
+}
+
 PoseBound PoseSearcher::run() {
     if (boxes_[0].isBlind()) return {};
-    searchSingle();
-    constexpr std::size_t kPairs = 400'000;
-    if (count_ > 2 && options_.times == 1)
-        pairs_.search(kPairs, [this] { return progress_.stopped() || isFull(); });
+    if (!recall()) searchSingle();
+    if (!is_paired_ && progress_.stopped()) is_kept_ = false;
+    if (count_ > 2 && options_.times == 1 && !is_paired_)
+        pairs_.search(options_.pairs, [this] {
+            if (progress_.stopped() || isFull()) return true;
+            if (options_.share.results != nullptr && options_.share.results->isDue()) keep();
+            return false;
+        });
+    if (!is_paired_ && progress_.stopped()) {
+        keep();
+        is_kept_ = false;  // the root is bounded by what there is
+    }
+    is_paired_ = true;
     searchTuples();
     const double open = queue_.empty() ? 0 : queue_.top().bound;
-    const double bound = std::max({closed_, open, found_});
+    const double bound = std::max({closed_, open, found_.area});
     if (PoseCertificate* certificate = options_.certificate; certificate != nullptr) {
         *certificate = {.bound = bound, .boxes = {}, .pairs = {}, .tuples = {}};
         certificate->boxes = boxes_.text();
@@ -319,11 +250,19 @@ PoseBound PoseSearcher::run() {
     return {bound, found_, boxes_.size(), tuples_, is_complete_};
 }
 
-}  // namespace
+}  // namespace ispace::poses
 
-PoseBound boundOverPoses(const PoseFloor& floor, const Sector& sector,
+namespace ispace {
+
+PoseBound boundOverPoses(const poses::PoseFloor& floor, const poses::Sector& sector,
                          const PoseSearchOptions& options, Progress& progress) {
-    return PoseSearcher(floor, sector, options, progress).run();
+    const PoseShare& share = options.share;
+    if (share.joined > 0)
+        return poses::joinedProof(share, poses::markOf(floor, sector, options), options.sensors,
+                                  options.found);
+    PoseBound proof = poses::PoseSearcher(floor, sector, options, progress).run();
+    if (share.own) poses::storeProof(share, poses::markOf(floor, sector, options), proof);
+    return proof;
 }
 
 }  // namespace ispace

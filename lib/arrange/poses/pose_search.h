@@ -5,14 +5,39 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "arrange/poses/certificate.h"
 #include "arrange/poses/fat_view.h"
 #include "base/error.h"
+#include "base/part_file.h"
+#include "base/shard.h"
+#include "geom/pose.h"
 
 namespace ispace {
+
+/// Poses of all sensors, and the area that they see, m2.
+struct PosedLayout {
+    double area = 0;
+    std::vector<Pose2> poses = {};  ///< empty: those that were known before the search
+};
+
+/// Divides the search among processes, and continues an earlier run.
+///
+/// The state holds boxes without views, which are computed anew for those of open tuples, pairs and
+/// tuples; it is stored when that is due and when the search is stopped.
+///
+/// All shards search the same tuples until there are enough, deal these out in turn by their
+/// bounds, and each continues with its share. A shard stores its best layout and a bound of its
+/// subtrees that holds even if it was cut short; the merge takes the best layout and the highest
+/// bound.
+struct PoseShare {
+    JobResults* results = nullptr;  ///< null: nothing is stored
+    std::optional<Shard> own = {};  ///< search its share alone
+    int joined = 0;                 ///< of a merge: the number of shards
+};
 
 struct PoseSearchOptions {
     int sensors = 1;
@@ -20,15 +45,17 @@ struct PoseSearchOptions {
     double found = 0;  ///< m2 that some layout sees: what no layout can exceed is not searched
     double gap = 0;    ///< ends once the bound exceeds the layout found by this share of the bound
     std::size_t max_bytes = std::size_t{8} << 30U;  ///< of boxes and tuples
-    /// Computes the area, m2, of a layout near these poses; null: layouts are not improved. Called
-    /// by one thread.
-    std::function<double(std::span<const poses::PoseBox>)> improve = {};
+    std::size_t singles = 20'000;  ///< boxes that bound single views before all else, at most
+    std::size_t pairs = 400'000;   ///< that bound two of three and more sensors, at most
+    /// Computes a layout near these poses; null: layouts are not improved. Called by one thread.
+    std::function<PosedLayout(std::span<const poses::PoseBox>)> improve = {};
     PoseCertificate* certificate = nullptr;  ///< receives the proof; null: it is not wanted
+    PoseShare share = {};
 };
 
 struct PoseBound {
     double bound = 0;                   ///< m2: no poses of the sensors see more
-    double found = 0;                   ///< m2, the best layout known
+    PosedLayout found;                  ///< the best layout known
     std::size_t boxes = 0, tuples = 0;  ///< computed
     bool is_complete = true;            ///< false: cut short by progress or memory
 };
@@ -48,7 +75,9 @@ constexpr int kMostPosed = 4;
 /// the sum of the parts, up to the floor in the cell. MultipleBound has the bound for several
 /// times.
 ///
-/// Deterministic for any number of threads, unless stopped. \pre 1 <= times <= sensors <=
+/// Deterministic for any number of threads, unless stopped. With a share a stopped search continues
+/// to the result of one that was not. \throws FormatError for a state or a part that is damaged
+/// \pre 1 <= times <= sensors <=
 /// kMostPosed
 PoseBound boundOverPoses(const poses::PoseFloor& floor, const poses::Sector& sector,
                          const PoseSearchOptions& options, Progress& progress);

@@ -158,9 +158,11 @@ TEST(PoseSearch, ABetterLayoutRaisesWhatIsFound) {
     options.improve = [&calls](std::span<const poses::PoseBox> boxes) {
         EXPECT_EQ(boxes.size(), 1U);
         ++calls;
-        return 5.0;
+        return PosedLayout{5.0, {Pose2{{1, 1}, {}}}};
     };
-    EXPECT_EQ(boundOf(letterL(), {2, 2, 0}, options, 40).found, 5);
+    const PosedLayout found = boundOf(letterL(), {2, 2, 0}, options, 40).found;
+    EXPECT_EQ(found.area, 5);
+    EXPECT_EQ(found.poses.size(), 1U);
     EXPECT_GT(calls, 0);
 }
 

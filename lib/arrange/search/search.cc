@@ -226,6 +226,8 @@ std::string_view nameOf(Shared shared) {
             return "candidates";
         case Shared::Starts:
             return "starts";
+        case Shared::Poses:
+            return "poses";
         case Shared::Tree:
             break;
     }

@@ -12,9 +12,14 @@ namespace ispace {
 enum class Shared {
     Candidates,  ///< views of the candidates, step by step in turn
     Starts,      ///< the starts of swap search, in blocks
-    Tree         ///< the subtrees of a proof
+    Tree,        ///< the subtrees of a proof
+    Poses        ///< those of a proof over all poses, see PoseShare
 };
-constexpr Shared kShared[] = {Shared::Candidates, Shared::Starts, Shared::Tree};
+constexpr Shared kShared[] = {Shared::Candidates, Shared::Starts, Shared::Tree, Shared::Poses};
+/// True if a part that was cut short is of use, since its bound holds.
+constexpr bool isOfProof(Shared shared) {
+    return shared == Shared::Tree || shared == Shared::Poses;
+}
 /// Returns the name on the command line.
 std::string_view nameOf(Shared shared);
 

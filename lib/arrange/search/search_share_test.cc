@@ -8,32 +8,10 @@
 #include "base/packed.h"
 #include "support/test_folder.h"
 #include "support/test_problems.h"
+#include "support/test_results.h"
 
 namespace ispace {
 namespace {
-
-/// Results in a temporary folder, kept or not.
-class TestResults {
-  public:
-    explicit TestResults(bool is_kept = false)
-        : results_(folder_ / "results", jobOfTest(), {}, is_kept) {}
-    [[nodiscard]] JobResults* get() { return &results_; }
-    /// The results that another process would find.
-    void takeFrom(const TestResults& other, const std::string& prefix = "") {
-        for (const std::string& key : other.results_.keys())
-            if (key.starts_with(prefix)) results_.store(key, other.results_.find(key).value());
-    }
-    [[nodiscard]] std::size_t size() const { return results_.keys().size(); }
-
-  private:
-    static JobId jobOfTest() {
-        JobId job;
-        job.tool = "arrange";
-        return job;
-    }
-    testing::TestFolder folder_;
-    JobResults results_;
-};
 
 /// Large enough for a tree of some hundred nodes.
 RandomProblem hardProblem(std::uint64_t seed) {

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/poses/pose_share.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "support/test_pose_floors.h"
+#include "support/test_problems.h"
+#include "support/test_results.h"
+
+namespace ispace::poses {
+namespace {
+
+constexpr std::size_t kCells = 800;
+const Sector kSector{3, 4, 0};
+
+/// A search, each time by a new process that finds the results of those before.
+struct Case {
+    int sensors = 2, times = 1;
+    double gap = 0.03;
+    FloorWeighting weights = {};
+    std::size_t max_bytes = std::size_t{8} << 30U;
+
+    [[nodiscard]] PoseBound run(PoseShare share, PoseCertificate* certificate,
+                                Progress& progress) const {
+        const Region region = roomsWithPillar();
+        const PoseFloor floor({&region, 1}, kCells, weights);
+        PoseSearchOptions options{.sensors = sensors,
+                                  .times = times,
+                                  .found = 1,
+                                  .gap = gap,
+                                  .max_bytes = max_bytes,
+                                  .singles = 800,
+                                  .pairs = 900,
+                                  .certificate = certificate};
+        options.share = share;
+        const SeenAreas areas(region, kSector);
+        options.improve = [&](std::span<const PoseBox> boxes) {
+            PosedLayout layout;
+            for (const PoseBox& box : boxes) {
+                if (region.locate(box.at.center()) != Side::Inside) return PosedLayout();
+                layout.poses.push_back({box.at.center(), Angle::radians(box.from + box.span / 2)});
+            }
+            layout.area = areas.of(layout.poses, times);
+            return layout;
+        };
+        return boundOverPoses(floor, kSector, options, progress);
+    }
+};
+
+void expectSame(const PoseBound& a, const PoseBound& b) {
+    EXPECT_EQ(a.bound, b.bound);
+    EXPECT_EQ(a.found.area, b.found.area);
+    EXPECT_EQ(a.found.poses, b.found.poses);
+    EXPECT_EQ(a.boxes, b.boxes);
+    EXPECT_EQ(a.tuples, b.tuples);
+    EXPECT_EQ(a.is_complete, b.is_complete);
+}
+
+TEST(PoseShare, AStoppedSearchContinuesToTheSameResult) {
+    const FloorWeighting zone{.elsewhere = 1, .pieces = {{{{1, 1}, {3, 1}, {3, 3}}, 2}}};
+    // All end by memory, so that they take the same steps.
+    constexpr std::size_t kBytes = 2'000'000;
+    for (const Case& own : {Case{1, 1, 0.0001, {}, kBytes}, Case{2, 1, 0.001, {}, kBytes},
+                            Case{3, 1, 0.001, {}, 2 * kBytes}, Case{3, 2, 0.001, {}, kBytes},
+                            Case{2, 1, 0.001, zone, kBytes}}) {
+        SilentProgress silent;
+        PoseCertificate whole;
+        const bool is_certified = own.times == 1 && own.weights.pieces.empty();
+        const PoseBound single = own.run({}, is_certified ? &whole : nullptr, silent);
+        TestResults kept;
+        PoseCertificate certificate;
+        PoseBound last;
+        int runs = 0;
+        for (int asking = 8;; asking += 2 + asking / 3) {
+            TestResults results(true);
+            results.takeFrom(kept);
+            results.get()->setInterval(runs++ % 2 == 0 ? 0 : 1e6);
+            StopWhen stop(afterAsking(asking));
+            last = own.run({.results = results.get()}, is_certified ? &certificate : nullptr, stop);
+            kept.takeFrom(results);
+            if (!stop.stopped()) break;
+            ASSERT_LT(runs, 60);
+        }
+        EXPECT_GT(runs, 2) << own.sensors << ' ' << own.times;
+        expectSame(last, single);
+        EXPECT_EQ(certificate.boxes, whole.boxes);
+        EXPECT_EQ(certificate.pairs, whole.pairs);
+        EXPECT_EQ(certificate.tuples, whole.tuples);
+    }
+}
+
+/// The state of a search that was stopped.
+void stopSoon(const Case& own, TestResults& results, int asking = 30) {
+    StopWhen stop(afterAsking(asking));
+    (void)own.run({.results = results.get()}, nullptr, stop);
+    ASSERT_TRUE(stop.stopped());
+    ASSERT_TRUE(results.get()->find("posestate1"));
+}
+
+TEST(PoseShare, StatesOfOtherSearchesAreNotTaken) {
+    const Case own{2, 1, 0.2, {}}, other{2, 1, 0.21, {}};
+    SilentProgress silent;
+    const PoseBound single = other.run({}, nullptr, silent);
+    TestResults kept, again;
+    stopSoon(own, kept);
+    again.takeFrom(kept);
+    expectSame(other.run({.results = again.get()}, nullptr, silent), single);
+}
+
+TEST(PoseShare, DamagedStatesAreRefused) {
+    SilentProgress silent;
+    for (const Case& own : {Case{2, 1, 0.001, {}}, Case{3, 1, 0.001, {}}}) {
+        TestResults kept;
+        stopSoon(own, kept, own.sensors == 2 ? 30 : 14);
+        const std::string bytes = kept.get()->find("posestate1").value();
+        const auto refused = [&](const std::string& damaged) {
+            TestResults again;
+            again.takeFrom(kept);
+            again.get()->store("posestate1", damaged);
+            try {
+                StopWhen soon(afterAsking(3));
+                (void)own.run({.results = again.get()}, nullptr, soon);
+            } catch (const FormatError&) {
+                return true;
+            }
+            return false;
+        };
+        EXPECT_FALSE(refused(bytes));
+        for (std::size_t size = 8; size < bytes.size(); size += 1 + bytes.size() / 40)
+            EXPECT_TRUE(refused(bytes.substr(0, size))) << size;
+        EXPECT_TRUE(refused(bytes + "12345678"));
+        // A parent of boxes, and a bound, that cannot be.
+        std::string other = bytes;
+        other.replace(24, 4, "\xff\xff\xff\x7f");
+        EXPECT_TRUE(refused(other));
+        other = bytes;
+        const std::size_t parents = static_cast<unsigned char>(bytes[16]) +
+                                    256U * static_cast<unsigned char>(bytes[17]) +
+                                    65536U * static_cast<unsigned char>(bytes[18]);
+        const std::size_t most = 24 + 4 * parents + 8;
+        other.replace(most, 8, 8, '\xff');  // not a number
+        EXPECT_TRUE(refused(other));
+    }
+}
+
+PoseBound inShards(const Case& own, int count, int asking = 1'000'000) {
+    TestResults all;
+    double most = 0;
+    for (int i = 1; i <= count; ++i) {
+        TestResults results;
+        StopWhen stop(afterAsking(asking));
+        const PoseBound part =
+            own.run({.results = results.get(), .own = Shard{i, count}}, nullptr, stop);
+        most = std::max(most, part.bound);
+        all.takeFrom(results, "poses/");
+    }
+    SilentProgress silent;
+    PoseBound merged = own.run({.results = all.get(), .joined = count}, nullptr, silent);
+    EXPECT_EQ(merged.bound, most);
+    return merged;
+}
+
+TEST(PoseShare, ShardsProveTheBoundOfTheWhole) {
+    for (const Case& own : {Case{2, 1, 0.2, {}}, Case{3, 2, 0.3, {}}}) {
+        SilentProgress silent;
+        const PoseBound single = own.run({}, nullptr, silent);
+        ASSERT_TRUE(single.is_complete);
+        for (const int count : {1, 3}) {
+            const PoseBound merged = inShards(own, count);
+            EXPECT_TRUE(merged.is_complete);
+            // Both are closed up to the gap: what either found, the other does not exclude.
+            EXPECT_GE(merged.bound, single.found.area);
+            EXPECT_GE(single.bound, merged.found.area);
+            EXPECT_LE(merged.bound, merged.found.area / (1 - own.gap) + 1e-9);
+            EXPECT_EQ(merged.found.poses.size(), single.found.poses.size());
+            if (count == 1) expectSame(merged, single);
+        }
+    }
+}
+
+TEST(PoseShare, ShardsThatWereCutShortHaveABound) {
+    const Case own{2, 1, 0.001, {}};
+    StopWhen long_enough(afterAsking(60));
+    const double close = own.run({}, nullptr, long_enough).found.area;
+    for (const int asking : {0, 3, 30}) {
+        const PoseBound merged = inShards(own, 2, asking);
+        EXPECT_FALSE(merged.is_complete);
+        EXPECT_GE(merged.bound, close);
+    }
+}
+
+TEST(PoseShare, MissingAndForeignPartsAreRefused) {
+    const Case own{2, 1, 0.05, {}}, other{2, 1, 0.06, {}};
+    SilentProgress silent;
+    TestResults results;
+    const auto searchShard = [&results](const Case& search, int index) {
+        StopWhen soon(afterAsking(16));
+        (void)search.run({.results = results.get(), .own = Shard{index, 2}}, nullptr, soon);
+    };
+    searchShard(own, 1);
+    EXPECT_THROW((void)own.run({.results = results.get(), .joined = 2}, nullptr, silent),
+                 FormatError);
+    searchShard(other, 2);
+    EXPECT_THROW((void)own.run({.results = results.get(), .joined = 2}, nullptr, silent),
+                 FormatError);
+    searchShard(own, 2);
+    EXPECT_NO_THROW((void)own.run({.results = results.get(), .joined = 2}, nullptr, silent));
+    const std::string bytes = results.get()->find("poses/2").value();
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+        results.get()->store("poses/2", bytes.substr(0, size));
+        EXPECT_THROW((void)own.run({.results = results.get(), .joined = 2}, nullptr, silent),
+                     FormatError);
+    }
+}
+
+}  // namespace
+}  // namespace ispace::poses

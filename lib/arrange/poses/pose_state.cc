@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The state of a search over poses, from which another run continues.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "arrange/poses/pose_searcher.h"
+#include "arrange/poses/pose_share.h"
+#include "base/random.h"
+
+namespace ispace::poses {
+
+void PoseSearcher::keep() {
+    if (!is_kept_) return;
+    JobResults& results = *options_.share.results;
+    if (is_paired_ && !are_pairs_kept_) {
+        Packer to;
+        to.add(mark_);
+        pairs_.pack(to);
+        results.store(pairs_name_, to.bytes());
+        are_pairs_kept_ = true;
+    }
+    Packer to;
+    to.add(mark_);
+    boxes_.pack(to);
+    to.add(is_paired_ ? 1 : 0);
+    if (!is_paired_) pairs_.pack(to);
+    pack(to, found_);
+    for (const double area : {tried_, closed_}) pack(to, area);
+    to.add(tuples_);
+    to.add(is_dealt_ ? 1 : 0);
+    std::vector<std::uint64_t> bounds;
+    std::vector<std::uint32_t> tuples, tree;
+    for (const Tuple& tuple : queue_.all()) {
+        bounds.push_back(std::bit_cast<std::uint64_t>(tuple.bound));
+        tuples.insert(tuples.end(), tuple.boxes.begin(), tuple.boxes.end());
+        tuples.push_back(tuple.node);
+    }
+    for (const TupleNode& node : tree_)
+        tree.insert(tree.end(),
+                    {node.halves[0], node.halves[1], static_cast<std::uint32_t>(node.which + 1)});
+    to.addAll(bounds);
+    to.addAll(tuples);
+    to.addAll(tree);
+    results.store(name_, to.bytes());
+}
+
+bool PoseSearcher::recall() {
+    JobResults* const results = options_.share.results;
+    // A run that is stopped already may have another layout to begin with.
+    if (results == nullptr || progress_.stopped()) return false;
+    name_ = results->keyFor("posestate");
+    pairs_name_ = results->keyFor("posepairs");
+    is_kept_ = true;
+    Packer marked;
+    marked.add(markOf(floor_, sector_, options_));
+    for (const double number : {options_.found, static_cast<double>(options_.max_bytes)})
+        pack(marked, number);
+    marked.add(options_.certificate != nullptr ? 1 : 0);
+    mark_ = hashOf(marked.bytes());
+    const auto bytes = results->find(name_);
+    if (!bytes) return false;
+    Unpacker from(*bytes);
+    if (from.number() != mark_) return false;
+    boxes_.unpack(from);
+    is_paired_ = from.number() != 0;
+    if (is_paired_) {
+        const auto pairs = results->find(pairs_name_);
+        if (!pairs) Unpacker::refuse();
+        Unpacker from_pairs(*pairs);
+        if (from_pairs.number() != mark_) Unpacker::refuse();
+        pairs_.unpack(from_pairs);
+        if (!from_pairs.atEnd()) Unpacker::refuse();
+        are_pairs_kept_ = true;
+    } else {
+        pairs_.unpack(from);
+    }
+    found_ = unpackLayout(from, options_.sensors);
+    if (found_.area < options_.found) Unpacker::refuse();
+    tried_ = unpackArea(from);
+    closed_ = unpackArea(from);
+    tuples_ = from.number();
+    is_dealt_ = from.number() != 0;
+    unpackTuples(from);
+    if (!from.atEnd()) Unpacker::refuse();
+    return true;
+}
+
+void PoseSearcher::unpackTuples(Unpacker& from) {
+    constexpr std::size_t kNumbers = kMostPosed + 1, kNode = 3;
+    const auto bounds = from.all<std::uint64_t>();
+    const auto tuples = from.all<std::uint32_t>(), tree = from.all<std::uint32_t>();
+    if (tuples.size() != kNumbers * bounds.size() || tree.size() % kNode != 0) Unpacker::refuse();
+    for (std::size_t i = 0; i < tree.size(); i += kNode) {
+        for (const std::uint32_t half : {tree[i], tree[i + 1]})
+            if (half >= tree.size() / kNode || (half != 0 && half <= i / kNode)) Unpacker::refuse();
+        if (tree[i + 2] > count_) Unpacker::refuse();
+        tree_.push_back({{tree[i], tree[i + 1]}, static_cast<int>(tree[i + 2]) - 1});
+    }
+    std::vector<BoxId> open;
+    for (std::size_t i = 0; i < bounds.size(); ++i) {
+        Tuple tuple{std::bit_cast<double>(bounds[i]), {}, tuples[kNumbers * i + kMostPosed]};
+        if (!std::isfinite(tuple.bound) || tuple.node >= tree_.size()) Unpacker::refuse();
+        for (std::size_t k = 0; k < kMostPosed; ++k) {
+            tuple.boxes[k] = tuples[kNumbers * i + k];
+            if (tuple.boxes[k] >= boxes_.size()) Unpacker::refuse();
+            if (k < count_) open.push_back(tuple.boxes[k]);
+        }
+        queue_.push(tuple);
+    }
+    boxes_.addMissingViews(std::move(open));
+}
+
+}  // namespace ispace::poses
