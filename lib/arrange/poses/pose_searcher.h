@@ -75,6 +75,7 @@ class PoseSearcher {
     void keep();
     bool recall();
     void unpackTuples(Unpacker& from);
+    void readTree(const std::vector<std::uint32_t>& numbers);
     [[nodiscard]] std::span<const BoxId> boxesOf(const Tuple& tuple) const {
         return {tuple.boxes.data(), count_};
     }

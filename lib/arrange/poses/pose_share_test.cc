@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -144,6 +145,34 @@ TEST(PoseShare, DamagedStatesAreRefused) {
         const std::size_t most = 24 + 4 * parents + 8;
         other.replace(most, 8, 8, '\xff');  // not a number
         EXPECT_TRUE(refused(other));
+    }
+}
+
+TEST(PoseShare, ChangedStatesEndInABoundOrARefusal) {
+    std::mt19937 random(4);
+    const Case own{3, 1, 0.001, {}};
+    for (const int asking : {14, 24}) {
+        TestResults kept;
+        StopWhen stop(afterAsking(asking));
+        PoseCertificate certificate;
+        (void)own.run({.results = kept.get()}, &certificate, stop);
+        const std::string bytes = kept.get()->find("posestate1").value();
+        int refused = 0;
+        for (int i = 0; i < 120; ++i) {
+            std::string changed = bytes;
+            for (int k = 0; k <= i % 3; ++k)
+                changed[8 + random() % (bytes.size() - 8)] = static_cast<char>(random());
+            TestResults again;
+            again.takeFrom(kept);
+            again.get()->store("posestate1", changed);
+            try {
+                StopWhen soon(afterAsking(3));
+                EXPECT_GE(own.run({.results = again.get()}, &certificate, soon).bound, 0);
+            } catch (const FormatError&) {
+                ++refused;
+            }
+        }
+        EXPECT_GT(refused, 10);
     }
 }
 

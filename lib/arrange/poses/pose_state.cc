@@ -87,17 +87,31 @@ bool PoseSearcher::recall() {
     return true;
 }
 
+/// Reads three numbers for each node: its halves, later nodes, and the box that is halved.
+void PoseSearcher::readTree(const std::vector<std::uint32_t>& numbers) {
+    constexpr std::size_t kNode = 3, kDeepest = kMostPosed * 64;
+    if (numbers.size() % kNode != 0) Unpacker::refuse();
+    const std::size_t nodes = numbers.size() / kNode;
+    std::vector<std::size_t> depths(nodes);
+    for (std::size_t i = 0; i < nodes; ++i) {
+        const std::uint32_t* own = &numbers[kNode * i];
+        if (own[2] > count_ || (i > 0 && depths[i] == 0)) Unpacker::refuse();
+        for (const std::uint32_t half : {own[0], own[1]}) {
+            if (half == 0) continue;
+            if (half >= nodes || half <= i || depths[half] != 0 || depths[i] == kDeepest)
+                Unpacker::refuse();
+            depths[half] = depths[i] + 1;
+        }
+        tree_.push_back({{own[0], own[1]}, static_cast<int>(own[2]) - 1});
+    }
+}
+
 void PoseSearcher::unpackTuples(Unpacker& from) {
-    constexpr std::size_t kNumbers = kMostPosed + 1, kNode = 3;
+    constexpr std::size_t kNumbers = kMostPosed + 1;
     const auto bounds = from.all<std::uint64_t>();
     const auto tuples = from.all<std::uint32_t>(), tree = from.all<std::uint32_t>();
-    if (tuples.size() != kNumbers * bounds.size() || tree.size() % kNode != 0) Unpacker::refuse();
-    for (std::size_t i = 0; i < tree.size(); i += kNode) {
-        for (const std::uint32_t half : {tree[i], tree[i + 1]})
-            if (half >= tree.size() / kNode || (half != 0 && half <= i / kNode)) Unpacker::refuse();
-        if (tree[i + 2] > count_) Unpacker::refuse();
-        tree_.push_back({{tree[i], tree[i + 1]}, static_cast<int>(tree[i + 2]) - 1});
-    }
+    if (tuples.size() != kNumbers * bounds.size()) Unpacker::refuse();
+    readTree(tree);
     std::vector<BoxId> open;
     for (std::size_t i = 0; i < bounds.size(); ++i) {
         Tuple tuple{std::bit_cast<double>(bounds[i]), {}, tuples[kNumbers * i + kMostPosed]};
