@@ -18,14 +18,6 @@ double shareOfText(std::string_view text) {
                      "` is no share: write 95% or 0.95, free:95%, zone:NAME=95%, identify:95%");
 }
 
-/// Formats a share in per cent, with all digits if two do not show that it is below the required
-/// one.
-std::string percent(double share, double required) {
-    const std::string text = formatFixed(100 * share, 2);
-    return text == formatFixed(100 * required, 2) ? formatPercent(roundSignificant(share))
-                                                  : text + "%";
-}
-
 RequiredFigure densityFigure(const Requirement& requirement, const CoverageReport& report) {
     const std::size_t index = *requirement.density;
     const auto of = [index](const std::vector<Metric>& metrics) {
@@ -74,6 +66,12 @@ std::optional<UncoveredSpot> largestWithout(const Requirement& requirement,
 std::string squareMetres(double area) { return formatFixed(area, area < 0.01 ? 6 : 2) + " m2"; }
 
 }  // namespace
+
+std::string percentBeside(double share, double required) {
+    const std::string text = formatFixed(100 * share, 2);
+    return text == formatFixed(100 * required, 2) ? formatPercent(roundSignificant(share))
+                                                  : text + "%";
+}
 
 Requirement parseRequirement(std::string_view text) {
     const auto colon = text.find(':');
@@ -161,7 +159,7 @@ Verdict checkRequirement(const Requirement& requirement, const Coverage& coverag
                            " is not known: no centre of a cell lies there, and exact figures are "
                            "missing; use smaller cells (--cell)"};
     const double share = metric.exact ? *metric.exact : *metric.grid;
-    std::string text = what + " is " + percent(share, requirement.share) +
+    std::string text = what + " is " + percentBeside(share, requirement.share) +
                        (metric.exact ? " (exact)" : " (by cells)");
     const std::string required = formatPercent(requirement.share);
     const double margin = share - requirement.share;

@@ -55,6 +55,10 @@ std::size_t zoneIndex(const Requirement& requirement, const CoverageReport& repo
 /// An exact metric may be lower than required by this much, for rounding.
 constexpr double kExactError = 1e-7;
 
+/// Formats a share in per cent, with all digits if two do not show that it is below the required
+/// one.
+std::string percentBeside(double share, double required);
+
 /// Result of a check, and a clause that names the metric: "coverage is 50.00% (exact), as required
 /// (40%)", or with the missing area: "coverage is 50.00% (by cells), below the required 95%: 7.20
 /// m2 are missing; the largest unseen spot has 4.10 m2 around (1.00, 2.00)".

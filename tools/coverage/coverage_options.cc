@@ -188,7 +188,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.texts("--require", "SHARE", words.requirements,
                "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
                "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class or level "
-               "identify:95%, discern:NAME=95%",
+               "identify:95%, discern:NAME=95%; of the ways of --presence presence:95%, "
+               "presence:PERSON=95%",
                Enters::History);
     line.texts("--facing", "ZONE,DEG[,HEADING][=SHARE]", words.facing,
                "report the share of a zone where cameras see faces: within this angle of the "
@@ -279,7 +280,13 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     if (words.fans == "beams") o.map.fans = FanStyle::Beams;
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)
-        o.requirements.push_back(parseRequirement(text));
+        if (auto presence = parsePresenceRequirement(text))
+            o.presence_requirements.push_back(*std::move(presence));
+        else
+            o.requirements.push_back(parseRequirement(text));
+    if (!o.presence_requirements.empty() && !o.presence)
+        throw UsageError("--require " + requirementText(o.presence_requirements.front()) +
+                         " judges ways of people: give them, too (--presence)");
     for (const std::string& text : words.facing) o.facing.push_back(parseFacing(text));
     for (const std::string& text : words.privacy) o.privacy.push_back(parsePrivacy(text));
     for (const std::string& text : words.paths)
@@ -288,7 +295,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         !o.facing.empty() || !o.privacy.empty() ||
         std::any_of(o.requirements.begin(), o.requirements.end(),
                     [](const Requirement& requirement) { return requirement.density; });
-    if (line.given("--junit") && o.requirements.empty() && o.privacy.empty())
+    if (line.given("--junit") && words.requirements.empty() && o.privacy.empty())
         throw UsageError("--junit writes what became of requirements: give --require");
     // The reports of a list may go to a file.
     if (isStdout(o.junit) && (o.batch.list.empty() || isStdout(o.common.output)))

@@ -9,6 +9,7 @@
 #include "cli/common_options.h"
 #include "cli/presence_ways.h"
 #include "coverage/camera_rules.h"
+#include "coverage/presence_requirement.h"
 #include "coverage/requirement.h"
 #include "coverage/robustness.h"
 #include "report/coverage_formats.h"
@@ -28,6 +29,7 @@ struct CoverageToolOptions {
     std::vector<std::string> operands;
     CoverageOptions measure;
     std::vector<Requirement> requirements;
+    std::vector<PresenceRequirement> presence_requirements;
     std::vector<std::string> zones;  ///< to report besides those of the room
     std::string junit;               ///< file for the verdicts on requirements; "": no file
     std::string command;             ///< its history line, without operands

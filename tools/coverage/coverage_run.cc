@@ -212,18 +212,33 @@ std::string largeCellsText(const CoverageOptions& options, const Grid& grid) {
            formatDouble(kRoomCell) + " m (--cell M makes them smaller)";
 }
 
-std::vector<JunitCase> judge(std::span<const Requirement> requirements, const Coverage& coverage,
-                             const std::string& name) {
+namespace {
+
+template <typename SomeRequirement, typename Measured>
+std::vector<JunitCase> verdictsOn(std::span<const SomeRequirement> requirements,
+                                  const Measured& measured, const std::string& name) {
     std::vector<JunitCase> verdicts;
     verdicts.reserve(requirements.size());
-    for (const Requirement& requirement : requirements) {
-        const Verdict verdict = checkRequirement(requirement, coverage);
+    for (const SomeRequirement& requirement : requirements) {
+        const Verdict verdict = checkRequirement(requirement, measured);
         verdicts.push_back(
             {.name = name + requirementText(requirement),
              .outcome = verdict.is_met ? JunitCase::Outcome::Met : JunitCase::Outcome::Unmet,
              .message = verdict.text});
     }
     return verdicts;
+}
+
+}  // namespace
+
+std::vector<JunitCase> judge(std::span<const Requirement> requirements, const Coverage& coverage,
+                             const std::string& name) {
+    return verdictsOn(requirements, coverage, name);
+}
+
+std::vector<JunitCase> judge(std::span<const PresenceRequirement> requirements,
+                             const Presence& presence) {
+    return verdictsOn(requirements, presence, "");
 }
 
 std::string unmetText(std::span<const JunitCase> verdicts) {

@@ -75,6 +75,10 @@ std::string largeCellsText(const CoverageOptions& options, const Grid& grid);
 std::vector<JunitCase> judge(std::span<const Requirement> requirements, const Coverage& coverage,
                              const std::string& name = "");
 
+/// Likewise for requirements of presence. \throws UsageError for an unknown person
+std::vector<JunitCase> judge(std::span<const PresenceRequirement> requirements,
+                             const Presence& presence);
+
 /// Joins unmet requirements into a message; "" if all are met.
 std::string unmetText(std::span<const JunitCase> verdicts);
 

@@ -46,10 +46,19 @@ SceneInput readInput(const CoverageToolOptions& options) {
     return input;
 }
 
+/// Returns a verdict for each --require.
+std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const Coverage& coverage,
+                                const Presence* presence) {
+    std::vector<JunitCase> verdicts = judge(options.requirements, coverage);
+    if (presence != nullptr)
+        for (JunitCase& verdict : judge(options.presence_requirements, *presence))
+            verdicts.push_back(std::move(verdict));
+    return verdicts;
+}
+
 /// Reports the requirements that are met, and writes the verdicts on request. \throws UnmetError
 void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
-                   const Coverage& coverage, const CameraRules* rules, JunitFile& junit) {
-    std::vector<JunitCase> verdicts = judge(options.requirements, coverage);
+                   std::vector<JunitCase> verdicts, const CameraRules* rules, JunitFile& junit) {
     if (rules != nullptr)
         for (JunitCase& verdict : judge(*rules)) verdicts.push_back(std::move(verdict));
     for (const JunitCase& verdict : verdicts)
@@ -77,7 +86,7 @@ std::string reportFile(const CoverageToolOptions& options, const SceneInput& inp
     if (suffix == "json") return coverageJson(coverage.report, parts);
     CoveragePageInput page{input.scene, coverage, "", options.history_line};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
-    for (const JunitCase& verdict : judge(options.requirements, coverage))
+    for (const JunitCase& verdict : judgeAll(options, coverage, parts.presence))
         page.requirements.push_back(
             {verdict.name, verdict.outcome == JunitCase::Outcome::Met, verdict.message});
     page.parts = parts;
@@ -134,7 +143,8 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     talk(options.common, "coverage",
          std::to_string(report.sensors.size()) + " sensors measured on " +
              std::to_string(measured.coverage.target.grid.size()) + " cells");
-    checkRequired(options, input, measured.coverage, parts.rules, junit);
+    checkRequired(options, input, judgeAll(options, measured.coverage, parts.presence), parts.rules,
+                  junit);
 }
 
 void coverage(const CoverageToolOptions& options) {

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "coverage/presence_requirement.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::string_view kPresence = "presence:";
+
+const PresenceFigures& figuresOf(const PresenceRequirement& requirement, const Presence& presence) {
+    if (requirement.person.empty()) return presence.all;
+    std::vector<std::string> known;
+    for (const PresenceFigures& person : presence.people) {
+        if (person.id == requirement.person) return person;
+        known.push_back(person.id);
+    }
+    throw UsageError("--presence has no person `" + printable(requirement.person) + '`' +
+                     didYouMean(requirement.person, known));
+}
+
+}  // namespace
+
+std::optional<PresenceRequirement> parsePresenceRequirement(std::string_view text) {
+    if (!text.starts_with(kPresence)) return std::nullopt;
+    const std::string_view rest = text.substr(kPresence.size());
+    // An id may contain an equals sign, a share does not.
+    const auto equals = rest.rfind('=');
+    const bool has_person = equals != std::string_view::npos;
+    const auto share = parseShare(has_person ? rest.substr(equals + 1) : rest);
+    if (!share || equals == 0)
+        throw UsageError('`' + std::string(text) +
+                         "` is no requirement: write presence:95% or presence:PERSON=95%");
+    return PresenceRequirement{has_person ? std::string(rest.substr(0, equals)) : "", *share};
+}
+
+std::string requirementText(const PresenceRequirement& requirement) {
+    std::string text(kPresence);
+    if (!requirement.person.empty()) text.append(requirement.person) += '=';
+    return text + formatPercent(requirement.share);
+}
+
+Verdict checkRequirement(const PresenceRequirement& requirement, const Presence& presence) {
+    const PresenceFigures& figures = figuresOf(requirement, presence);
+    const std::string name =
+        figures.id.empty() ? "presence" : "presence of " + printable(figures.id);
+    if (figures.length <= 0) return {false, name + " is not known: there is no way"};
+    const std::string text =
+        name + " is " + percentBeside(figures.share, requirement.share) + " of the ways, ";
+    const std::string required = formatPercent(requirement.share);
+    if (figures.share >= requirement.share - kExactError)
+        return {true, text + "as required (" + required + ")"};
+    const double missing = (requirement.share - figures.share) * figures.length;
+    return {false, text + "below the required " + required + ": " + formatFixed(missing, 2) +
+                       " m are missing; the longest undetected part has " +
+                       formatFixed(figures.longest_gap, 2) + " m"};
+}
+
+}  // namespace ispace
