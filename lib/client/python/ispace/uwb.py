@@ -29,7 +29,8 @@ class TagRanges(Reading):
         fields = self.fields
         texts = [fields.list(key) for key in ("tags", "x", "y", "z")]
         numbers = [fields.numbers(key) for key in ("ranges", "blocked")]
-        if any(len(column) != fields.integer("n") for column in [*texts, *numbers]):
+        sizes = {len(column) for column in texts} | {len(column) for column in numbers}
+        if sizes != {fields.integer("n")}:
             raise ProtocolError(f"a reading of {self.sensor} is incomplete")
         #: sorted
         self.tags: List[TagRange] = [
