@@ -269,15 +269,18 @@ void addInfra(std::vector<Schema>& out) {
                           countKey("cols", "bars across", 3, 1000)}));
 }
 
-KeySpec levelKey() {
-    return {.name = "level",
+KeySpec numberKey(std::string name, Unit unit, std::string help, double standard, double lower,
+                  double upper) {
+    return {.name = std::move(name),
             .type = KeyType::Number,
-            .unit = Unit::Share,
-            .help = "share of its full light",
-            .default_value = 1.0,
-            .lower = 0,
-            .upper = 1};
+            .unit = unit,
+            .help = std::move(help),
+            .default_value = standard,
+            .lower = lower,
+            .upper = upper};
 }
+
+KeySpec levelKey() { return numberKey("level", Unit::Share, "share of its full light", 1, 0, 1); }
 
 KeySpec lightColorKey(Tuple standard) {
     return {.name = "color",
@@ -291,15 +294,6 @@ KeySpec lightColorKey(Tuple standard) {
 }
 
 Schema projectorSchema() {
-    const auto turn = [](std::string name, std::string help, double limit) {
-        return KeySpec{.name = std::move(name),
-                       .type = KeyType::Number,
-                       .unit = Unit::Angle,
-                       .help = std::move(help),
-                       .default_value = 0.0,
-                       .lower = -limit,
-                       .upper = limit};
-    };
     constexpr double kWidest = 170;
     KeySpec heading = headingKey();
     heading.help = "direction that it faces at pan=0, from +x";
@@ -313,54 +307,32 @@ Schema projectorSchema() {
                 .lower = 0,
                 .upper = kWidest,
                 .lower_open = true};
-    return schema("projector", RecordType::Infra,
-                  "a projector that turns, whose picture or plain light pictures show on walls, "
-                  "floor and people; it has no body",
-                  {floorAtKey(),
-                   heightKey(2.2, "height of its lens above the floor"),
-                   std::move(heading),
-                   flagKey("on", "it shines"),
-                   levelKey(),
-                   lightColorKey({1, 1, 1}),
-                   turn("pan", "turn of its axis to the left of its heading", 180),
-                   turn("tilt", "turn of its axis upwards", 90),
-                   std::move(fov),
-                   {.name = "lumens",
-                    .type = KeyType::Number,
-                    .help = "its full light, lumens",
-                    .default_value = 1000.0,
-                    .lower = 0,
-                    .upper = 1e6},
-                   textureKey("that it throws, through which its light passes")});
+    return schema(
+        "projector", RecordType::Infra,
+        "a projector that turns, whose picture or plain light pictures show on walls, "
+        "floor and people; it has no body",
+        {floorAtKey(), heightKey(2.2, "height of its lens above the floor"), std::move(heading),
+         flagKey("on", "it shines"), levelKey(), lightColorKey({1, 1, 1}),
+         numberKey("pan", Unit::Angle, "turn of its axis to the left of its heading", 0, -180, 180),
+         numberKey("tilt", Unit::Angle, "turn of its axis upwards", 0, -90, 90), std::move(fov),
+         numberKey("lumens", Unit::None, "its full light, lumens", 1000, 0, 1e6),
+         textureKey("that it throws, through which its light passes")});
 }
 
 /// Actuators: their states are keys, see stateKeys().
 void addAppliances(std::vector<Schema>& out) {
-    out.push_back(schema("lamp", RecordType::Infra,
-                         "a panel of light in the ceiling, which pictures show: with lamps the "
-                         "room has no other light than these",
-                         {floorAtKey(),
-                          flagKey("on", "it shines"),
-                          levelKey(),
-                          lightColorKey({1, 1, 0.97}),
-                          {.name = "lumens",
-                           .type = KeyType::Number,
-                           .help = "its full light for light meters, lumens",
-                           .default_value = 3600.0,
-                           .lower = 0,
-                           .upper = 1e6}}));
+    out.push_back(
+        schema("lamp", RecordType::Infra,
+               "a panel of light in the ceiling, which pictures show: with lamps the "
+               "room has no other light than these",
+               {floorAtKey(), flagKey("on", "it shines"), levelKey(), lightColorKey({1, 1, 0.97}),
+                numberKey("lumens", Unit::None, "its full light for light meters, lumens", 3600, 0,
+                          1e6)}));
     out.push_back(projectorSchema());
-    out.push_back(schema("speaker", RecordType::Infra,
-                         "a speaker, which microphones hear; it has no body",
-                         {floorAtKey(),
-                          heightKey(1, "height above the floor"),
-                          flagKey("on", "it sounds"),
-                          {.name = "volume",
-                           .type = KeyType::Number,
-                           .help = "sound pressure level at a metre, dB",
-                           .default_value = 70.0,
-                           .lower = 0,
-                           .upper = 200}}));
+    out.push_back(schema(
+        "speaker", RecordType::Infra, "a speaker, which microphones hear; it has no body",
+        {floorAtKey(), heightKey(1, "height above the floor"), flagKey("on", "it sounds"),
+         numberKey("volume", Unit::None, "sound pressure level at a metre, dB", 70, 0, 200)}));
     out.push_back(
         schema("switch", RecordType::Infra,
                "a switch on a wall, which clients press and watch; it switches no lamp "

@@ -40,9 +40,9 @@ std::optional<ProjectorBeam> projectorBeam(const Record& record) {
     const Tuple& fov = record.tuple("fov");
     const auto half_tangent = [](double degrees) { return tan(Angle::degrees(degrees / 2)); };
     return ProjectorBeam{Frame3(Pose3{{at[0], at[1], record.number("height")},
-                                 record.angle("heading") + record.angle("pan"),
-                                 record.angle("tilt"),
-                                 {}}),
+                                      record.angle("heading") + record.angle("pan"),
+                                      record.angle("tilt"),
+                                      {}}),
                          half_tangent(fov[0]), half_tangent(fov[1]),
                          level * record.number("lumens")};
 }
