@@ -46,6 +46,11 @@ std::string requirementText(const PresenceRequirement& requirement) {
     return text + formatPercent(requirement.share);
 }
 
+std::string requirementPhrase(const PresenceRequirement& requirement) {
+    return formatPercent(requirement.share) + " of the ways of " +
+           (requirement.person.empty() ? "all people" : printable(requirement.person));
+}
+
 Verdict checkRequirement(const PresenceRequirement& requirement, const Presence& presence) {
     const PresenceFigures& figures = figuresOf(requirement, presence);
     const std::string name =
@@ -55,11 +60,14 @@ Verdict checkRequirement(const PresenceRequirement& requirement, const Presence&
         name + " is " + percentBeside(figures.share, requirement.share) + " of the ways, ";
     const std::string required = formatPercent(requirement.share);
     if (figures.share >= requirement.share - kExactError)
-        return {true, text + "as required (" + required + ")"};
+        return {true, text + "as required (" + required + ")", 0,
+                figures.share - requirement.share};
     const double missing = (requirement.share - figures.share) * figures.length;
-    return {false, text + "below the required " + required + ": " + formatFixed(missing, 2) +
-                       " m are missing; the longest undetected part has " +
-                       formatFixed(figures.longest_gap, 2) + " m"};
+    return {false,
+            text + "below the required " + required + ": " + formatFixed(missing, 2) +
+                " m are missing; the longest undetected part has " +
+                formatFixed(figures.longest_gap, 2) + " m",
+            0, figures.share - requirement.share};
 }
 
 }  // namespace ispace

@@ -25,6 +25,9 @@ std::optional<PresenceRequirement> parsePresenceRequirement(std::string_view tex
 /// Returns the text that parsePresenceRequirement() reads.
 std::string requirementText(const PresenceRequirement& requirement);
 
+/// Returns the requirement in words: "95% of the ways of h1".
+std::string requirementPhrase(const PresenceRequirement& requirement);
+
 /// Compares the share of the ways that is detected; ways without length meet no requirement.
 /// \throws UsageError for a person who is not among the people, with the nearest id
 Verdict checkRequirement(const PresenceRequirement& requirement, const Presence& presence);

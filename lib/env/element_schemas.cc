@@ -333,6 +333,11 @@ void addAppliances(std::vector<Schema>& out) {
         "speaker", RecordType::Infra, "a speaker, which microphones hear; it has no body",
         {floorAtKey(), heightKey(1, "height above the floor"), flagKey("on", "it sounds"),
          numberKey("volume", Unit::None, "sound pressure level at a metre, dB", 70, 0, 200)}));
+    out.push_back(schema(
+        "panel", RecordType::Infra,
+        "a panel at which the cables of sensors end, for the sheets of reports; it has no body",
+        {floorAtKey(), heightKey(1.5, "height above the floor"),
+         numberKey("cost", Unit::None, "of a metre of cable, in any currency", 0, 0, 1e6)}));
     out.push_back(
         schema("switch", RecordType::Infra,
                "a switch on a wall, which clients press and watch; it switches no lamp "

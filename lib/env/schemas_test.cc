@@ -24,7 +24,7 @@ TEST(EnvironmentSchemas, HasTheKeywordsOfTheHeader) {
                             "ispace",   "inside", "zone",      "door",   "window",  "infra",
                             "boxes",    "screen", "mesh",      "floor",  "wall",    "fence",
                             "pillar",   "table",  "desk",      "chair",  "barrier", "cube",
-                            "cylinder", "lamp",   "projector", "switch", "speaker"}));
+                            "cylinder", "lamp",   "projector", "switch", "speaker", "panel"}));
 }
 
 TEST(EnvironmentSchemas, KeysAreWhole) {

@@ -10,6 +10,7 @@ cat >room.env <<'EOF'
 ispace size=8,6,2.6
 zone id=desk at=2,1 size=2,2
 table id=t1 at=2,1 size=1 height=0.75
+panel id=p1 at=0,-3 cost=2
 EOF
 cat >layout.3dm <<'EOF'
 #3dm 1
@@ -80,7 +81,25 @@ for id, pose in places.items():
     assert all(abs(a - b) < 0.006 for a, b in zip(apart, told)), (id, apart, told)
 assert "desk" in rows["c1"][column["sees"]], rows["c1"]
 assert page.tables["material"][0][1:] == [["camera", "1", "200"], ["laser", "1", "-"], ["urg-04lx", "2", "2000"],
-                                          ["together", "4", "2200"]], page.tables["material"]
+                                          ["cable", "18.20 m", "36.4"], ["together", "4", "2236.4"]], page.tables["material"]
+# From the panel along the walls, 1.5 m above the floor.
+cables = {id: row[column["cable"]] for id, row in rows.items()}
+assert cables == {"c1": "10.50 to p1", "l1": "5.10 to p1", "l2": "2.60 to p1"}, cables
+# Both standards, and that classes include finer ones.
+classes = [table[0][1:] for table in page.tables["requirements"] if table[0][0] == "floor"]
+assert classes == [["monitor, 12.5", "detect, 25", "observe, 62.5", "recognise, 125", "identify, 250", "inspect, 1000"],
+                   ["overview, 20", "outline, 40", "discern, 80", "perceive, 125", "characterise, 250", "validate, 500",
+                    "scrutinise, 1500"]], classes
+text = open("page.html", encoding="utf-8").read()
+assert "includes the finer ones to its right, so that a row may sum to more than 100%" in text
+assert "c1: picture; people of 1.70 m: in desk, " in text
+assert "l1: its scan of 682 beams" in text
+# A sensor has one colour: in the index of the map, on the plan, and in its picture.
+colors = {"l1": "#d55e00", "l2": "#009e73", "c1": "#0072b2"}  # after the rider, by kind
+for id, color in colors.items():
+    assert f'&quot;id&quot;:&quot;{id}&quot;' in text, id
+    told = text.split(f'&quot;id&quot;:&quot;{id}&quot;')[1].split("}")[0]
+    assert f'&quot;color&quot;:&quot;{color}&quot;' in told, (id, told)
 assert [row[1] for row in page.tables["requirements"][0][1:]] == ["met", "not met"], page.tables["requirements"]
 EOF
 

@@ -159,7 +159,8 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
     page.more.push_back(resultOf(options, work, arrangement));
     if (work.how.target)
         page.requirements.push_back({formatPercent(*work.how.target), arrangement.is_reached,
-                                     "the sensors cover " + percentText(arrangement.coverage)});
+                                     "the sensors cover " + percentText(arrangement.coverage),
+                                     arrangement.coverage - *work.how.target});
     const ReportPage pages = coveragePage(page);
     return suffixOf(options.report_file) == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }

@@ -2,6 +2,7 @@
 #include "arrange/arrange_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -206,7 +207,8 @@ void warnOfHeights(const ArrangeToolOptions& options, const ArrangeWork& work) {
     for (const double height : work.how.mount.heights)
         if (height > top)
             warn(options.common, "arrange",
-                 "--z " + formatDouble(height) + ": the room is " + formatDouble(top) +
+                 "--z " + formatDouble(height) + ": the room is " +
+                     formatDouble(std::round(1000 * top) / 1000) +
                      " m high, and nothing is there to mount a sensor on");
 }
 

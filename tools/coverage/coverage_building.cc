@@ -161,9 +161,12 @@ std::string buildingReport(const CoverageToolOptions& options, const BuildingInp
     if (suffix == "json") return buildingCoverageJson(input.building, coverage, run);
     BuildingPageInput page{input.building, coverage, "", options.history_line, {}, run};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
-    for (const JunitCase& verdict : judgeBuilding(options, input.building, coverage))
+    for (const Requirement& requirement : options.requirements) {
+        const Verdict verdict =
+            checkRequirement(requirement, subjectOf(requirement, input.building, coverage));
         page.requirements.push_back(
-            {verdict.name, verdict.outcome == JunitCase::Outcome::Met, verdict.message});
+            {requirementPhrase(requirement), verdict.is_met, verdict.text, verdict.margin});
+    }
     const ReportPage pages = buildingPage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }

@@ -86,9 +86,14 @@ std::string reportFile(const CoverageToolOptions& options, const SceneInput& inp
     if (suffix == "json") return coverageJson(coverage.report, parts);
     CoveragePageInput page{input.scene, coverage, "", options.history_line};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
-    for (const JunitCase& verdict : judgeAll(options, coverage, parts.presence))
-        page.requirements.push_back(
-            {verdict.name, verdict.outcome == JunitCase::Outcome::Met, verdict.message});
+    const auto add = [&page](const std::string& phrase, const Verdict& verdict) {
+        page.requirements.push_back({phrase, verdict.is_met, verdict.text, verdict.margin});
+    };
+    for (const Requirement& requirement : options.requirements)
+        add(requirementPhrase(requirement), checkRequirement(requirement, coverage));
+    if (parts.presence != nullptr)
+        for (const PresenceRequirement& requirement : options.presence_requirements)
+            add(requirementPhrase(requirement), checkRequirement(requirement, *parts.presence));
     page.parts = parts;
     const ReportPage pages = coveragePage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);

@@ -292,10 +292,11 @@ Metric shareOfDensity(const CoverageReport& report, std::size_t density_class,
 }
 
 Color setColor(const MapPicture& map, std::size_t set) {
-    if (map.options.color != MapColor::Sensor) return seriesColor(set);
+    const std::size_t hue = set < map.hues.size() ? map.hues[set] : set;
+    if (map.options.color != MapColor::Sensor) return seriesColor(hue);
     // To many colour-blind people green and purple are greys: they come late, and apart.
     constexpr std::array<std::size_t, kSeriesColors> kOrder = {0, 3, 1, 4, 6, 2, 5};
-    return seriesColor(kOrder[set % kSeriesColors]);
+    return seriesColor(kOrder[hue % kSeriesColors]);
 }
 
 Color floorColor(const MapPicture& map, std::size_t set) {

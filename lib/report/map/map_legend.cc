@@ -306,7 +306,7 @@ LegendBlock planBlock(const MapContents& contents, double height) {
     add(contents.doors, Sign::Line, kDoor, {}, "door");
     add(contents.glass, Sign::Line, kGlass, {}, "window or glass");
     add(contents.solids, Sign::Patch, kSolid, kSolidEdge,
-        "object at " + formatDouble(height) + " m");
+        "object at " + formatDouble(std::round(1000 * height) / 1000) + " m");
     add(contents.objects, Sign::Patch, kObject, kObjectEdge, "object above or below");
     add(contents.outside, Sign::Hatched, kOutside, kOutsideHatch, "not indoor");
     add(contents.zones, Sign::Dashes, kZone, {}, "zone");

@@ -243,24 +243,25 @@ std::size_t markedSpots(const MapPicture& map) {
     return count;
 }
 
-void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame) {
+void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame,
+               const std::string& suffix) {
     LabelPlacer places(frame, map.em);
     if (map.coverage.sensors.size() <= kCrowd) addWallLines(map, places);
-    picture.pushLayer("sensors");
+    picture.pushLayer("sensors" + suffix);
     if (map.other != nullptr) {
         const MapPicture other{map.scene, *map.other, map.options, nullptr, map.em, map.view};
         drawSensors(picture, other, frame, true, places);
     }
     drawSensors(picture, map, frame, false, places);
     picture.pop();
-    picture.pushLayer("unseen spots");
+    picture.pushLayer("unseen spots" + suffix);
     for (std::size_t i = 0; i < markedSpots(map); ++i) {
         const Point2 page = map.view * map.coverage.report.unseen[i].place;
         drawSpotSign(picture, places.placeSign(page, kSpotRadius * map.em), std::to_string(i + 1),
                      map.em);
     }
     picture.pop();
-    picture.pushLayer("labels");
+    picture.pushLayer("labels" + suffix);
     drawIds(picture, map, frame, places);
     drawZoneNames(picture, map, places);
     picture.pop();

@@ -13,6 +13,7 @@
 #include "drawing/drawing.h"
 #include "drawing/plan/plan.h"
 #include "report/map/map.h"
+#include "report/map/sensor_colors.h"
 #include "scene/sensor/density_classes.h"
 
 namespace ispace {
@@ -26,6 +27,7 @@ struct MapPicture {
     double em = 10;                   ///< text size, page units
     PageView view = {};               ///< maps metres to the page
     bool terse = false;               ///< little room: only the main elements are shown
+    std::vector<std::size_t> hues = sensorHues(coverage);
 
     [[nodiscard]] const Box2& limits() const { return coverage.target.grid.limits; }
 };
@@ -112,8 +114,9 @@ void drawSpotSign(Picture& picture, Point2 page, const std::string& number, doub
 std::size_t markedSpots(const MapPicture& map);
 
 /// Draws the marks and ids of sensors and the signs of unseen spots on top of the plan, all within
-/// `frame` (page units).
-void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame);
+/// `frame` (page units). \param suffix of the names of their layers
+void drawMarks(Picture& picture, const MapPicture& map, const Box2& frame,
+               const std::string& suffix = "");
 
 // Poses that a search tried (map_marks.cc).
 

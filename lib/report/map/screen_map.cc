@@ -14,7 +14,8 @@ namespace ispace {
 namespace {
 
 // In pixels of a page that is as wide as a narrow column of text.
-constexpr double kWidth = 900, kMaxHeight = 1000, kEm = 14, kMargin = 20, kScaleBar = 36;
+constexpr double kWidth = 900, kMaxHeight = 1000, kEm = 14, kLargeEm = 27, kMargin = 20,
+                 kScaleBar = 40;
 constexpr double kLegendWidth = 420, kLegendEm = 15;
 
 constexpr std::pair<MapColor, std::string_view> kDensityLayers[] = {
@@ -83,9 +84,14 @@ ScreenMap drawScreenMap(const Scene& scene, const Coverage& coverage) {
     plan.drawZones();
     const Box2 frame{{2, 2}, {picture.width() - 2, corner.y + depth + kMargin - 2}};
     drawMarks(picture, map, frame);
-    picture.pushLayer("frame");
-    drawScaleBar(picture, {kMargin, picture.height() - kMargin}, 0.3 * width, scale, kEm);
-    picture.pop();
+    // Narrow screens show the picture at less than half its size.
+    const MapPicture large{scene, coverage, options, nullptr, kLargeEm, view};
+    drawMarks(picture, large, frame, " (large)");
+    for (const auto& [em, name] : {std::pair(kEm, "frame"), std::pair(kLargeEm, "frame (large)")}) {
+        picture.pushLayer(name);
+        drawScaleBar(picture, {kMargin, picture.height() - kMargin}, 0.3 * width, scale, em);
+        picture.pop();
+    }
     return {std::move(picture), drawLegendAlone(map), view};
 }
 

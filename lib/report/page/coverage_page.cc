@@ -13,6 +13,7 @@
 #include "record/text.h"
 #include "report/map/map.h"
 #include "report/map/screen_map.h"
+#include "report/map/sensor_colors.h"
 #include "report/page/installation.h"
 #include "report/run_report.h"
 #include "scene/sensor/density_classes.h"
@@ -101,8 +102,8 @@ PageSection summaryOf(const CoveragePageInput& input) {
         section.blocks.push_back(
             PageText{"No requirement was given; --require 90% checks one.", Tone::Small});
     for (const JudgedRequirement& one : input.requirements)
-        section.blocks.push_back(PageText{"Required " + one.requirement + ": " +
-                                              (one.is_met ? "met. " : "not met. ") + one.finding +
+        section.blocks.push_back(PageText{"Required are " + one.requirement + ": " +
+                                              (one.is_met ? "met; " : "not met; ") + one.finding +
                                               ".",
                                           one.is_met ? Tone::Good : Tone::Bad});
     return section;
@@ -111,13 +112,14 @@ PageSection summaryOf(const CoveragePageInput& input) {
 PageSection mapOf(const CoveragePageInput& input) {
     ScreenMap screen = drawScreenMap(input.scene, input.coverage);
     MapIndex index{screen.view, {}, {"density 2015", "density 2025", "views"}};
+    const std::vector<Color> colors = sensorColors(input.coverage);
     for (const SensorView& view : input.coverage.sensors) {
         const Sensor& sensor = input.scene.sensors[view.index];
         const auto* const camera = sensor.tryAs<Camera>();
         const bool is_level = sensor.is<Laser>() && sensor.pose.isLevel();
         index.sensors.push_back({view.id, std::string(view.kind->noun), view.pose,
                                  is_level ? view.pose.position.z : input.coverage.report.plane,
-                                 camera == nullptr ? 0 : camera->fx});
+                                 camera == nullptr ? 0 : camera->fx, colors[index.sensors.size()]});
     }
     PageSection section{"map", "Map", {}};
     section.blocks.push_back(
@@ -174,12 +176,15 @@ void addRequirements(const CoveragePageInput& input, ReportPage& page) {
         input.requirements.empty() ? "Zones and densities" : "Requirements and zones",
         {}};
     if (!input.requirements.empty()) {
-        PageTable table{"each requirement with its measurement",
-                        "lll",
-                        {"requirement", "result", "measured"},
-                        {}};
+        PageTable table{
+            "each requirement with its measurement, and the margin in points of a "
+            "per cent",
+            "llrl",
+            {"requirement", "result", "margin", "measured"},
+            {}};
         for (const JudgedRequirement& one : input.requirements) {
-            table.rows.push_back({one.requirement, one.is_met ? "met" : "not met", one.finding});
+            table.rows.push_back(
+                {one.requirement, one.is_met ? "met" : "not met", marginText(one), one.finding});
             table.tones.push_back(one.is_met ? Tone::Good : Tone::Bad);
         }
         section.blocks.push_back(std::move(table));
@@ -210,15 +215,17 @@ PageTable sensorsOfReport(const CoverageReport& report) {
 void addInstallation(const CoveragePageInput& input, ReportPage& page) {
     const std::vector<Installation> installations = installationsOf(input.scene);
     PageSection section{"installation", "Installation", {}};
-    section.blocks.push_back(installationTable(input.scene, input.coverage, installations));
-    section.blocks.push_back(installationPlan(input.scene, installations));
+    const std::vector<Cable> cables = cablesOf(input.scene);
+    section.blocks.push_back(installationTable(input.scene, input.coverage, installations, cables));
+    section.blocks.push_back(installationPlan(input.scene, input.coverage, installations));
+    section.blocks.push_back(wallFacesTable(installations));
     page.sections.push_back(std::move(section));
     PageSection pictures{"sensors", "Sensors", {}};
     pictures.blocks.push_back(sensorsOfReport(input.coverage.report));
     for (PageFigure& figure : sensorPictures(input.scene, input.coverage))
         pictures.blocks.push_back(std::move(figure));
     page.sections.push_back(std::move(pictures));
-    PageTable material = materialTable(input.scene);
+    PageTable material = materialTable(input.scene, cables);
     page.sections.push_back({"material", "Material", {std::move(material)}});
 }
 
@@ -353,6 +360,12 @@ PageSection recordsOf(const CoveragePageInput& input) {
 }
 
 }  // namespace
+
+std::string marginText(const JudgedRequirement& requirement) {
+    if (!requirement.margin) return "-";
+    const std::string text = formatFixed(100 * *requirement.margin, 2);
+    return (text.front() == '-' ? "" : "+") + text;
+}
 
 ReportPage coveragePage(const CoveragePageInput& input) {
     ReportPage page;

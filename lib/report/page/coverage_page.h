@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace ispace {
 struct JudgedRequirement {
     std::string requirement;  ///< as given, "free:95%"
     bool is_met = false;
-    std::string finding;  ///< the clause of Verdict::text
+    std::string finding;                ///< the clause of Verdict::text
+    std::optional<double> margin = {};  ///< measured less required share; empty if unknown
 };
 
 struct CoveragePageInput {
@@ -27,6 +29,9 @@ struct CoveragePageInput {
     ReportParts parts = {};
     std::vector<PageSection> more = {};  ///< of the tool that writes the page, after the map
 };
+
+/// Returns a margin in percentage points, "+1.20 points", or "-".
+std::string marginText(const JudgedRequirement& requirement);
 
 /// Builds the report of a layout: summary, map, requirements, zones, the sheet of its installer,
 /// pictures, material, suggestions, methods and records.

@@ -45,6 +45,7 @@ struct MapSensor {
     Pose3 pose;
     double plane = 0;  ///< height of the floor that it covers
     double focal = 0;  ///< of a camera, pixels; 0: no camera
+    Color color = palette::kSensor;
 };
 
 /// A map that the script of an HTML page makes interactive: layers to switch, zoom, and a readout

@@ -46,14 +46,19 @@ for (const figure of document.querySelectorAll('figure.map')) {
   const layers = make('fieldset', bar);
   layers.className = 'layers';
   make('legend', layers, 'layers');
-  for (const layer of svg.querySelectorAll('[data-layer]')) {
+  const allLayers = [...svg.querySelectorAll('[data-layer]')], large = ' (large)';
+  for (const layer of allLayers) {
     const name = layer.dataset.layer;
-    if (['frame', 'floor', 'walls'].includes(name) || !layer.childElementCount) continue;
+    if (['frame', 'floor', 'walls'].includes(name) || name.endsWith(large) || !layer.childElementCount) continue;
+    // The same layer in larger text, which the style shows on narrow screens.
+    const twin = allLayers.find((other) => other.dataset.layer === name + large);
     const label = make('label', layers), box = make('input', label);
     box.type = 'checkbox';
     box.checked = !index.hidden.includes(name);
     label.append(' ' + name);
-    const set = () => { layer.style.display = box.checked ? 'inline' : 'none'; };
+    const set = () => {
+      for (const one of [layer, twin]) if (one) one.classList.toggle('off', !box.checked);
+    };
     box.addEventListener('change', set);
     set();
   }
@@ -68,6 +73,12 @@ for (const figure of document.querySelectorAll('figure.map')) {
     one.type = 'button';
     one.setAttribute('aria-pressed', 'false');
     one.title = `show the floor that ${sensor.noun} ${sensor.id} sees`;
+    const swatch = document.createElement('span');
+    swatch.className = 'swatch';
+    swatch.style.background = sensor.color;
+    one.prepend(swatch);
+    const path = groups[i] && groups[i].querySelector('path');
+    if (path) path.style.fill = sensor.color;
     one.addEventListener('click', () => {
       const on = groups[i].classList.toggle('on');
       one.setAttribute('aria-pressed', on);

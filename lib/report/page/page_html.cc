@@ -69,6 +69,7 @@ std::string indexJson(const MapIndex& index) {
         json.key("noun").value(sensor.noun);
         json.key("at").value(std::vector<double>{micro(at.x), micro(at.y), micro(at.z)});
         json.key("plane").value(sensor.plane);
+        json.key("color").value(cssColor(sensor.color));
         if (sensor.focal > 0) {
             json.key("axis").value(
                 std::vector<double>{micro(axis.x), micro(axis.y), micro(axis.z)});
@@ -156,7 +157,14 @@ class HtmlWriter {
 
     void add(const PageFigure& figure) {
         out_ += "<figure";
-        if (figure.is_for_screen) out_ += " class=\"legend\"";
+        const bool is_photo = !figure.picture.list().images.empty();
+        const bool is_sheet = figure.picture.unit() == PageUnit::Millimetre;
+        if (is_photo || is_sheet || figure.is_for_screen)
+            out_.append(" class=\"")
+                .append(is_photo   ? "photo"
+                        : is_sheet ? "sheet"
+                                   : "legend")
+                .append("\"");
         if (figure.width < 1)
             out_.append(" style=\"width:").append(formatDouble(100 * figure.width)).append("%\"");
         out_.append(">\n").append(svgElement(figure.picture, nextPrefix()));

@@ -93,7 +93,7 @@ class Sheets {
     double y_ = 0;
 };
 
-/// Columns of a table in millimetres; one of them may be narrower than its text, which breaks.
+/// Columns of a table in millimetres; the widest may be narrower than their text, which breaks.
 struct Columns {
     double size = kSmall;  ///< of the text
     double gap = 3;
@@ -122,9 +122,13 @@ Columns columnsOf(const PageTable& table) {
     columns.size = std::max(kLeast, columns.size * kColumn / columns.total());
     columns.gap = 2;
     measure();
-    const double excess = columns.total() - kColumn;
-    double& widest = *std::max_element(columns.widths.begin(), columns.widths.end());
-    if (excess > 0) widest = std::max(8 * columns.size, widest - excess);
+    const double least = 8 * columns.size;
+    for (double excess = columns.total() - kColumn; excess > 0;
+         excess = columns.total() - kColumn) {
+        double& widest = *std::max_element(columns.widths.begin(), columns.widths.end());
+        if (widest <= least) break;
+        widest = std::max(least, widest - std::min(excess, columns.size));
+    }
     return columns;
 }
 

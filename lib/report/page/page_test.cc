@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "report/page/installation.h"
-#include "support/test_scenes.h"
-
 namespace ispace {
 namespace {
 
@@ -57,7 +54,8 @@ TEST(Page, MapTellsTheScriptItsSensors) {
     EXPECT_TRUE(holds(htmlOf(page),
                       "data-index=\"{&quot;view&quot;:[10,0,0,5,5],&quot;hidden&quot;:[],"
                       "&quot;sensors&quot;:[{&quot;id&quot;:&quot;c1&quot;,&quot;noun&quot;:"
-                      "&quot;camera&quot;,&quot;at&quot;:[1,2,2.5],&quot;plane&quot;:0,"
+                      "&quot;camera&quot;,&quot;at&quot;:[1,2,2.5],&quot;plane&quot;:0,&quot;color&"
+                      "quot;:&quot;#b3261e&quot;,"
                       "&quot;axis&quot;:[1,0,0],&quot;focal&quot;:500}]}\""));
 }
 
@@ -98,34 +96,6 @@ TEST(Page, PicturesInPicturesKeepTheirShapes) {
     const auto curve = list.curve(list.shapes[3].first);
     ASSERT_EQ(curve.size(), 3U);
     EXPECT_EQ(curve[2], (Point2{40, 30}));
-}
-
-TEST(Installation, MeasuresToTheWallsThatTheSensorFaces) {
-    // Walls 0.2 m thick; the inner one hides the right wall of the upper half.
-    const Scene scene = sceneOf(
-        "#env 1\n"
-        "wall id=south from=0,0 to=6,0 height=2.5 thickness=0.2\n"
-        "wall id=east from=6,0 to=6,4 height=2.5 thickness=0.2\n"
-        "wall id=north from=6,4 to=0,4 height=2.5 thickness=0.2\n"
-        "wall id=west from=0,4 to=0,0 height=2.5 thickness=0.2\n"
-        "wall id=inner from=3,2 to=3,4 height=2.5 thickness=0.2\n"
-        "laser id=l1 at=2,3,1\n"
-        "laser id=l2 at=5.9,1,2.6 heading=180\n"
-        "robot id=r at=1,1\nlaser id=rider on=r\n");
-    const std::vector<Installation> all = installationsOf(scene);
-    ASSERT_EQ(all.size(), 2U);
-    ASSERT_EQ(all[0].walls.size(), 2U);
-    EXPECT_NEAR(all[0].walls[0].distance, 0.9, 1e-12);
-    EXPECT_NEAR(all[0].walls[1].distance, 0.9, 1e-12);
-    EXPECT_NE(all[0].walls[0].wall, all[0].walls[1].wall);
-    for (const WallDistance& wall : all[0].walls)
-        EXPECT_TRUE(wall.wall == "north" || wall.wall == "inner") << wall.wall;
-    // Above the walls, and on one.
-    ASSERT_EQ(all[1].walls.size(), 2U);
-    EXPECT_EQ(all[1].walls[0].wall, "east");
-    EXPECT_NEAR(all[1].walls[0].distance, 0, 1e-12);
-    EXPECT_EQ(all[1].walls[1].wall, "south");
-    EXPECT_NEAR(all[1].walls[1].distance, 0.9, 1e-12);
 }
 
 }  // namespace

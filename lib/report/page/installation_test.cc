@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/page/installation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "report/map/sensor_colors.h"
+#include "support/test_scenes.h"
+
+namespace ispace {
+namespace {
+
+Coverage coverageFor(const Scene& scene) {
+    Worlds worlds(scene.environment);
+    return measureCoverage(scene, worlds, {});
+}
+
+TEST(Installation, MeasuresToTheWallsThatTheSensorFaces) {
+    // Walls 0.2 m thick; the inner one hides the right wall of the upper half.
+    const Scene scene = sceneOf(
+        "#env 1\n"
+        "wall id=south from=0,0 to=6,0 height=2.5 thickness=0.2\n"
+        "wall id=east from=6,0 to=6,4 height=2.5 thickness=0.2\n"
+        "wall id=north from=6,4 to=0,4 height=2.5 thickness=0.2\n"
+        "wall id=west from=0,4 to=0,0 height=2.5 thickness=0.2\n"
+        "wall id=inner from=3,2 to=3,4 height=2.5 thickness=0.2\n"
+        "laser id=l1 at=2,3,1\n"
+        "laser id=l2 at=5.9,1,2.6 heading=180\n"
+        "robot id=r at=1,1\nlaser id=rider on=r\n");
+    const std::vector<Installation> all = installationsOf(scene);
+    ASSERT_EQ(all.size(), 2U);
+    ASSERT_EQ(all[0].walls.size(), 2U);
+    EXPECT_NEAR(all[0].walls[0].distance, 0.9, 1e-12);
+    EXPECT_NEAR(all[0].walls[1].distance, 0.9, 1e-12);
+    EXPECT_NE(all[0].walls[0].wall, all[0].walls[1].wall);
+    for (const WallDistance& wall : all[0].walls)
+        EXPECT_TRUE(wall.wall == "north" || wall.wall == "inner") << wall.wall;
+    // Above the walls, and on one.
+    ASSERT_EQ(all[1].walls.size(), 2U);
+    EXPECT_EQ(all[1].walls[0].wall, "east");
+    EXPECT_NEAR(all[1].walls[0].distance, 0, 1e-12);
+    EXPECT_EQ(all[1].walls[1].wall, "south");
+    EXPECT_NEAR(all[1].walls[1].distance, 0.9, 1e-12);
+}
+
+/// A line on which the sensor lies: normal * p = offset.
+struct PlaceLine {
+    Vec2 normal;
+    double offset = 0;
+};
+
+double dotOf(Vec2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
+
+Vec2 directionIn(const std::string& text) {
+    const std::string word = text.substr(text.rfind(", ") + 2);
+    if (word == "+x") return {1, 0};
+    if (word == "-x") return {-1, 0};
+    if (word == "+y") return {0, 1};
+    if (word == "-y") return {0, -1};
+    const double angle = std::stod(word) * std::numbers::pi / 180;
+    return {std::cos(angle), std::sin(angle)};
+}
+
+/// Reads a measure of the sheet as a person does.
+PlaceLine lineIn(const std::string& cell, const std::map<std::string, Segment2>& faces) {
+    const auto face = [&](const std::string& name) {
+        EXPECT_TRUE(faces.contains(name)) << cell;
+        const Segment2& one = faces.at(name);
+        return std::pair(one, (1 / distance(one.a, one.b)) * (one.b - one.a));
+    };
+    if (cell.starts_with("on ")) {
+        const auto [line, along] = face(cell.substr(3));
+        const Vec2 normal = perpendicular(along);
+        return {normal, dotOf(normal, line.a)};
+    }
+    const double length = std::stod(cell);
+    const Vec2 to = directionIn(cell);
+    if (const auto at = cell.find(" along "); at != std::string::npos) {
+        const auto from = cell.find(" from (");
+        const auto [line, way] = face(cell.substr(at + 7, from - at - 7));
+        const Vec2 along = dot(way, to) > 0 ? way : -1 * way;
+        const auto comma = cell.find(", ", from);
+        const Point2 end{std::stod(cell.substr(from + 7)), std::stod(cell.substr(comma + 2))};
+        return {along, dotOf(along, end) + length};
+    }
+    const auto at = cell.find(" to ");
+    const auto [line, way] = face(cell.substr(at + 4, cell.rfind(", ") - at - 4));
+    const Vec2 across = perpendicular(way), normal = dot(across, to) > 0 ? across : -1 * across;
+    return {normal, dotOf(normal, line.a) - length};
+}
+
+/// Finds the sensors of a layout again from the texts of its sheet alone.
+void findAgain(const std::string& room, const std::string& layout, std::size_t count) {
+    const Scene scene = sceneOf(room + layout);
+    const std::vector<Installation> all = installationsOf(scene);
+    ASSERT_EQ(all.size(), count);
+    const PageTable sheet = installationTable(scene, coverageFor(scene), all, {});
+    std::map<std::string, Segment2> faces;
+    for (const TextRow& row : wallFacesTable(all).rows)
+        faces[row[0]] = {{std::stod(row[1]), std::stod(row[2])},
+                         {std::stod(row[3]), std::stod(row[4])}};
+    for (std::size_t i = 0; i < count; ++i) {
+        const TextRow& row = sheet.rows[i];
+        const PlaceLine a = lineIn(row[8], faces), b = lineIn(row[9], faces);
+        const double area = cross(a.normal, b.normal);
+        ASSERT_GT(std::abs(area), 0.4) << row[8] << "; " << row[9];
+        const Point2 found{(a.offset * b.normal.y - b.offset * a.normal.y) / area,
+                           (a.normal.x * b.offset - b.normal.x * a.offset) / area};
+        const Point2 planned = scene.sensors[i].pose.position.onFloor();
+        EXPECT_LT(distance(found, planned), 0.04) << row[0] << " at " << planned.x << ' '
+                                                  << planned.y << ": " << row[8] << "; " << row[9];
+    }
+}
+
+constexpr const char* kOctagon =
+    "#env 1\nfence id=f path=2,0;6,0;8,2;8,5;6,7;2,7;0,5;0,2 closed=yes height=3\n";
+
+TEST(Installation, TwoCamerasOfASheetAreFoundAgain) {
+    findAgain(
+        "#env 1\nispace id=hall size=8,6,2.5\nwall id=inner from=-4,1 to=-1,1 height=2.5 "
+        "thickness=0.2\n",
+        "camera id=door at=-3.9,-2.9,2.4 heading=40 tilt=-20\n"
+        "camera id=till at=1.37,2.9,2.4 heading=-90 tilt=-30\n",
+        2);
+}
+
+TEST(Installation, SensorsNearWallsAt45DegreesAreFoundAgain) {
+    // On a diagonal wall, off it, in corners that it makes, and in the middle.
+    findAgain(kOctagon,
+              "camera id=on at=6.9,1 heading=135\n"  // off by 0.07
+              "camera id=rounded at=7.3,1.3 heading=135\n"
+              "laser id=corner at=2.05,0.05,1\nlaser id=other at=7.95,4.98,1\n"
+              "laser id=near at=0.6,6,1\nlaser id=middle at=4,3.5,1\n",
+              6);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> along(0.01, 0.99);
+    std::string layout;
+    for (int i = 0; i < 40; ++i) {
+        // On the diagonal from (6, 0) to (8, 2), as doubles have it.
+        const double share = along(random);
+        layout += "laser at=" + std::to_string(6 + 2 * share) + ',' + std::to_string(2 * share) +
+                  ",1 heading=135\n";
+    }
+    findAgain(kOctagon, layout, 40);
+}
+
+TEST(Installation, MeasuresAlongAWallWithoutAnotherOne) {
+    // A triangle with sharp angles: most of its walls are nearly parallel.
+    const std::string sliver = "#env 1\nfence id=f path=0,0;20,0;20,1.5 closed=yes height=3\n";
+    findAgain(sliver, "laser id=l at=10,0.3,1\nlaser id=m at=19,0.7,1\n", 2);
+}
+
+TEST(Installation, TurnedRoomsAreFoundAgain) {
+    for (const int degrees : {7, 30, 45, 61}) {
+        const Angle turn = Angle::degrees(degrees);
+        const Vec2 u{cos(turn), sin(turn)}, v = perpendicular(u);
+        const auto text = [&](double x, double y) {
+            const Point2 p = Point2{} + x * u + y * v;
+            return std::to_string(p.x) + ',' + std::to_string(p.y);
+        };
+        const std::string room = "#env 1\nfence id=f path=" + text(0, 0) + ';' + text(7, 0) + ';' +
+                                 text(7, 4) + ';' + text(0, 4) + " closed=yes height=3\n";
+        findAgain(room,
+                  "laser id=a at=" + text(0.5, 1.2) + ",1\nlaser id=b at=" + text(7, 3) +
+                      ",1 heading=" + std::to_string(degrees + 180) + "\n",
+                  2);
+    }
+}
+
+TEST(SensorColors, NeighboursDifferBeyondSeven) {
+    std::string lines = "#env 1\nispace size=40,4,3\n";
+    for (int i = 0; i < 30; ++i)
+        lines += "laser at=" + std::to_string(-19 + 1.25 * (i * 7 % 30)) + ",0,1 range=2\n";
+    const Coverage coverage = coverageFor(sceneOf(lines));
+    const std::vector<std::size_t> hues = sensorHues(coverage);
+    ASSERT_EQ(hues.size(), 30U);
+    for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(hues[i], i);
+    for (std::size_t i = 0; i < 30; ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            if (distance(coverage.sensors[i].pose.position.onFloor(),
+                         coverage.sensors[k].pose.position.onFloor()) < 1.5) {
+                EXPECT_NE(hues[i], hues[k]) << i << ' ' << k;
+            }
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/page/wall_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "drawing/plan/plan.h"
+#include "env/level.h"
+#include "geom/predicates.h"
+
+namespace ispace {
+
+namespace {
+
+/// A sensor nearer to a face lies on it, whatever side rounding puts it on: the face hides nothing.
+constexpr double kOnFace = 1e-3;
+
+/// The faces of walls at a height, with the index of each one's element.
+struct WallFaces {
+    std::vector<Segment2> lines;
+    std::vector<std::size_t> owners;
+};
+
+WallFaces facesAt(const Environment& environment, double height) {
+    const std::shared_ptr<const Level> level = environment.level(height);
+    const Slice& slice = level->slice();
+    WallFaces faces;
+    const auto add = [&](const Segment2& line, std::size_t owner) {
+        if (!isWall(environment.elements()[owner]) || line.a == line.b) return;
+        faces.lines.push_back(line);
+        faces.owners.push_back(owner);
+    };
+    for (std::size_t i = 0; i < slice.sheets.size(); ++i)
+        add(slice.sheets[i], slice.sheet_owners[i]);
+    for (std::size_t i = 0; i < slice.solids.size(); ++i)
+        forEachEdge(slice.solids[i],
+                    [&](const Segment2& edge) { add(edge, slice.solid_owners[i]); });
+    return faces;
+}
+
+Vec2 directionAlong(const Segment2& face) {
+    return (1 / distance(face.a, face.b)) * (face.b - face.a);
+}
+
+/// Returns the foot of the perpendicular from p on the face or its extension.
+Point2 footOn(const Segment2& face, Point2 p) {
+    const Vec2 along = directionAlong(face);
+    return face.a + dot(p - face.a, along) * along;
+}
+
+/// Returns true if the foot lies on the face, not on its extension.
+bool isOnFace(const Segment2& face, Point2 foot) {
+    return dot(foot - face.a, face.b - face.a) >= 0 && dot(foot - face.b, face.a - face.b) >= 0;
+}
+
+bool isHidden(Point2 from, Point2 to, const std::vector<Segment2>& lines) {
+    const Segment2 way{from, from + 0.999 * (to - from)};
+    return std::any_of(lines.begin(), lines.end(), [&](const Segment2& line) {
+        return orientation(way.a, way.b, line.a) != orientation(way.a, way.b, line.b) &&
+               orientation(line.a, line.b, way.a) != orientation(line.a, line.b, way.b) &&
+               distance(from, line) > kOnFace;
+    });
+}
+
+/// A visible face that a distance can be measured to.
+struct NearFace {
+    std::size_t face;
+    double distance;
+    Point2 foot;
+};
+
+class NearWalls {
+  public:
+    /// \param forward the level part of the sensor's axis
+    NearWalls(const Environment& environment, const WallFaces& faces, Point2 at, Vec2 forward)
+        : environment_(environment), faces_(faces), at_(at) {
+        for (std::size_t i = 0; i < faces.lines.size(); ++i)
+            if (const Point2 foot = footOn(faces.lines[i], at); isOnFace(faces.lines[i], foot))
+                near_.push_back({i, distance(at, foot), foot});
+        dropBehind(forward);
+        std::stable_sort(near_.begin(), near_.end(), [](const NearFace& a, const NearFace& b) {
+            return a.distance < b.distance;
+        });
+    }
+
+    std::vector<WallDistance> measures() {
+        const NearFace* const first = nearestAcross({}, 2);
+        if (first == nullptr) return fromCorner();
+        const Vec2 along = directionAlong(faces_.lines[first->face]);
+        // Cosines of 45 degrees, with a margin for walls that were meant so, and of 25.
+        const NearFace* second = nearestAcross(along, 0.709);
+        if (second == nullptr) second = nearestAcross(along, 0.906);
+        if (second == nullptr) return {measureOf(*first), alongOf(*first)};
+        return {measureOf(*first), measureOf(*second)};
+    }
+
+  private:
+    /// Drops faces behind a face on which the sensor hangs, from which it looks away.
+    void dropBehind(Vec2 forward) {
+        constexpr double kLevel = 0.02;
+        std::vector<Vec2> normals;
+        for (const Segment2& line : faces_.lines) {
+            if (distance(at_, line) > kOnFace) continue;
+            const Vec2 normal = perpendicular(directionAlong(line));
+            const double side = dot(normal, forward);
+            if (std::abs(side) > kLevel) normals.push_back((side > 0 ? 1.0 : -1.0) * normal);
+        }
+        std::erase_if(near_, [&](const NearFace& one) {
+            return std::any_of(normals.begin(), normals.end(),
+                               [&](Vec2 normal) { return dot(one.foot - at_, normal) < -kOnFace; });
+        });
+    }
+    /// Returns the nearest visible face whose direction has at most this cosine with `along`; null
+    /// if there is none.
+    [[nodiscard]] const NearFace* nearestAcross(Vec2 along, double most) const {
+        for (const NearFace& one : near_)
+            if (std::abs(dot(directionAlong(faces_.lines[one.face]), along)) <= most &&
+                !isHidden(at_, one.foot, faces_.lines))
+                return &one;
+        return nullptr;
+    }
+    [[nodiscard]] WallDistance measureOf(const NearFace& one) const {
+        return {environment_.elements()[faces_.owners[one.face]].id, faces_.lines[one.face],
+                one.distance, one.foot};
+    }
+    /// Measures along the face, from the end that is nearer to the foot.
+    [[nodiscard]] WallDistance alongOf(const NearFace& one) const {
+        const Segment2& face = faces_.lines[one.face];
+        const bool is_first = distance(face.a, one.foot) <= distance(face.b, one.foot);
+        WallDistance measure = measureOf(one);
+        measure.end = is_first ? face.a : face.b;
+        measure.distance = distance(*measure.end, one.foot);
+        return measure;
+    }
+    /// Measures from the nearest visible end of a face, where no foot lies on one.
+    [[nodiscard]] std::vector<WallDistance> fromCorner() const {
+        std::optional<NearFace> best;
+        double least = 0;
+        for (std::size_t i = 0; i < faces_.lines.size(); ++i) {
+            const Segment2& face = faces_.lines[i];
+            const double way = std::min(distance(at_, face.a), distance(at_, face.b));
+            const Point2 end = distance(at_, face.a) <= distance(at_, face.b) ? face.a : face.b;
+            if ((best && way >= least) || isHidden(at_, end, faces_.lines)) continue;
+            const Point2 foot = footOn(face, at_);
+            best = NearFace{i, distance(at_, foot), foot};
+            least = way;
+        }
+        if (!best) return {};
+        return {measureOf(*best), alongOf(*best)};
+    }
+
+    const Environment& environment_;
+    const WallFaces& faces_;
+    Point2 at_;
+    std::vector<NearFace> near_;
+};
+
+/// Numbers the faces of a wall of which several are used.
+void nameFaces(std::vector<Installation>& installations) {
+    std::map<std::string, std::vector<Segment2>> faces;
+    const auto number = [&faces](const WallDistance& wall) {
+        std::vector<Segment2>& known = faces[wall.wall];
+        const auto same = std::find_if(known.begin(), known.end(), [&wall](const Segment2& one) {
+            return one.a == wall.face.a && one.b == wall.face.b;
+        });
+        const auto index = static_cast<std::size_t>(same - known.begin());
+        if (same == known.end()) known.push_back(wall.face);
+        return index + 1;
+    };
+    for (const Installation& one : installations)
+        for (const WallDistance& wall : one.walls) static_cast<void>(number(wall));
+    for (Installation& one : installations)
+        for (WallDistance& wall : one.walls)
+            if (faces[wall.wall].size() > 1) wall.wall += " face " + std::to_string(number(wall));
+}
+
+}  // namespace
+
+std::vector<Installation> installationsOf(const Scene& scene) {
+    const Environment& environment = scene.environment;
+    std::vector<Installation> installations;
+    std::map<double, WallFaces> faces;  // by height
+    for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+        const Sensor& sensor = scene.sensors[i];
+        if (sensor.mount || sensor.person) continue;
+        // Just below the tops of the highest walls if it hangs above them.
+        const double height =
+            std::clamp(sensor.pose.position.z, 0.0, std::max(0.0, environment.height() - 0.01));
+        auto known = faces.find(height);
+        if (known == faces.end()) known = faces.emplace(height, facesAt(environment, height)).first;
+        const Vec3 axis = Frame3(sensor.pose).forward;
+        NearWalls near(environment, known->second, sensor.pose.position.onFloor(),
+                       {axis.x, axis.y});
+        installations.push_back({i, near.measures()});
+    }
+    nameFaces(installations);
+    return installations;
+}
+
+}  // namespace ispace
