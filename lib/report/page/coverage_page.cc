@@ -14,6 +14,7 @@
 #include "report/map/map.h"
 #include "report/map/screen_map.h"
 #include "report/map/sensor_colors.h"
+#include "report/page/indoor_floor.h"
 #include "report/page/installation.h"
 #include "report/run_report.h"
 #include "scene/sensor/density_classes.h"
@@ -196,19 +197,21 @@ void addRequirements(const CoveragePageInput& input, ReportPage& page) {
     page.sections.push_back(std::move(section));
 }
 
-PageTable sensorsOfReport(const CoverageReport& report) {
-    PageTable table{"floor in square metres: seen, lost without the sensor, shared with others",
-                    "llr",
-                    {"sensor", "device", "sees", "alone", "shared"},
-                    {}};
-    const auto cell = [](const Metric& metric) {
-        const auto value = best(metric);
-        return value ? formatFixed(*value, 2) : "-";
-    };
-    for (const SensorMetrics& sensor : report.sensors)
-        table.rows.push_back(
-            {sensor.id, sensor.model.empty() ? std::string(sensor.kind->keyword) : sensor.model,
-             cell(sensor.area), cell(sensor.marginal), cell(sensor.overlap)});
+PageTable sensorsOfReport(const Scene& scene, const Coverage& coverage) {
+    PageTable table{
+        "indoor floor in square metres: seen, seen by no other sensor, shared with others",
+        "llr",
+        {"sensor", "device", "sees", "alone", "shared"},
+        {}};
+    const std::vector<IndoorFloor> floors = indoorFloors(scene, coverage);
+    for (std::size_t i = 0; i < floors.size(); ++i) {
+        const SensorView& view = coverage.sensors[i];
+        const IndoorFloor& floor = floors[i];
+        table.rows.push_back({view.id,
+                              view.model.empty() ? std::string(view.kind->keyword) : view.model,
+                              formatFixed(floor.seen, 2), formatFixed(floor.alone, 2),
+                              formatFixed(floor.seen - floor.alone, 2)});
+    }
     return table;
 }
 
@@ -221,7 +224,7 @@ void addInstallation(const CoveragePageInput& input, ReportPage& page) {
     section.blocks.push_back(wallFacesTable(installations));
     page.sections.push_back(std::move(section));
     PageSection pictures{"sensors", "Sensors", {}};
-    pictures.blocks.push_back(sensorsOfReport(input.coverage.report));
+    pictures.blocks.push_back(sensorsOfReport(input.scene, input.coverage));
     for (PageFigure& figure : sensorPictures(input.scene, input.coverage))
         pictures.blocks.push_back(std::move(figure));
     page.sections.push_back(std::move(pictures));

@@ -10,6 +10,7 @@
 
 #include "base/number.h"
 #include "raster/grid.h"
+#include "report/page/indoor_floor.h"
 
 namespace ispace {
 
@@ -69,17 +70,17 @@ std::vector<std::string> zonesSeen(const Scene& scene, const Coverage& coverage,
     return zones;
 }
 
-std::string taskOf(const Scene& scene, const Coverage& coverage, std::size_t sensor) {
+std::string taskOf(const Scene& scene, const Coverage& coverage,
+                   const std::vector<IndoorFloor>& floors, std::size_t sensor) {
     for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
         const SensorView& view = coverage.sensors[i];
         if (view.index != sensor) continue;
         std::string text;
         for (const std::string& zone : zonesSeen(scene, coverage, view))
             text.append(text.empty() ? "" : ", ").append(zone);
-        const SensorMetrics& metrics = coverage.report.sensors[i];
-        const auto area = metrics.area.exact ? metrics.area.exact : metrics.area.grid;
-        if (area) text.append(text.empty() ? "" : "; ").append(metresText(*area)).append(" m2");
-        return text;
+        return text.append(text.empty() ? "" : "; ")
+            .append(metresText(floors[i].seen))
+            .append(" m2");
     }
     return "-";
 }
@@ -103,6 +104,7 @@ PageTable installationTable(const Scene& scene, const Coverage& coverage,
         {"sensor", "device", "x", "y", "height", "heading", "tilt", "lens or view", "nearest wall",
          "next wall", "sees"},
         {}};
+    const std::vector<IndoorFloor> floors = indoorFloors(scene, coverage);
     if (!cables.empty()) {
         table.caption += "; cable: along the walls, and up or down to the panel";
         table.heads.insert(table.heads.end() - 1, "cable");
@@ -117,7 +119,7 @@ PageTable installationTable(const Scene& scene, const Coverage& coverage,
              degrees(sensor.pose.heading), tiltText(sensor.pose),
              kind.summary == nullptr ? "-" : kind.summary(sensor.model).field_of_view,
              wallText(one, 0, at.onFloor()), wallText(one, 1, at.onFloor()),
-             taskOf(scene, coverage, one.sensor)});
+             taskOf(scene, coverage, floors, one.sensor)});
         if (cables.empty()) continue;
         const auto cable = std::find_if(cables.begin(), cables.end(), [&one](const Cable& each) {
             return each.sensor == one.sensor;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "report/map/sensor_colors.h"
+#include "report/page/indoor_floor.h"
 #include "support/test_scenes.h"
 
 namespace ispace {
@@ -170,6 +171,27 @@ TEST(Installation, TurnedRoomsAreFoundAgain) {
                       ",1 heading=" + std::to_string(degrees + 180) + "\n",
                   2);
     }
+}
+
+TEST(IndoorFloor, EndsAtOpenDoors) {
+    // Half of the disc of `door` is outside, behind an open door.
+    const Scene scene = sceneOf(
+        "#env 1\nwall id=s from=0,0 to=8,0 height=3\nwall id=e from=8,0 to=8,6 height=3\n"
+        "wall id=n from=8,6 to=0,6 height=3\nwall id=w from=0,6 to=0,0 height=3\n"
+        "door id=d wall=s offset=4 size=7,2.5 open=yes\n"
+        "laser id=door at=4,0.000001,1 heading=90 fov=360 step=1 range=2\n"
+        "laser id=in at=4,3,1 fov=360 step=1 range=2\n");
+    const Coverage coverage = coverageFor(scene);
+    const std::vector<IndoorFloor> floors = indoorFloors(scene, coverage);
+    ASSERT_EQ(floors.size(), 2U);
+    const double pi = std::numbers::pi;
+    EXPECT_NEAR(*coverage.report.sensors[0].area.exact, 4 * pi, 0.05);
+    EXPECT_NEAR(floors[0].seen, 2 * pi, 0.01) << "half of it is indoors";
+    EXPECT_NEAR(floors[1].seen, 4 * pi, 0.01);
+    // Two discs of radius 2, 3 apart, share a lens.
+    const double lens = 2 * 4 * std::acos(0.75) - 1.5 * std::sqrt(16.0 - 9);
+    EXPECT_NEAR(floors[0].seen - floors[0].alone, lens, 0.01);
+    EXPECT_NEAR(floors[1].seen - floors[1].alone, lens, 0.01);
 }
 
 TEST(SensorColors, NeighboursDifferBeyondSeven) {
