@@ -336,7 +336,9 @@ PageSection methodsOf(const CoveragePageInput& input) {
         add("Some figures are counted on cells: " + printable(report.exact_missing) + ".");
     if (!report.densities.indoor.empty())
         add("Pixels a metre are the focal length in pixels over the depth along the axis, in the "
-            "plane; light, motion and focus are not part of them.");
+            "plane, without distortion; those beside people are of their faces, at 1.60 m, by the "
+            "lens "
+            "with its distortion. Light, motion and focus are not part of them.");
     add("A layout is as good as its plan: measure the room before mounting, and keep the distances "
         "to walls rather than the coordinates where the two differ.");
     return section;

@@ -173,6 +173,27 @@ TEST(Installation, TurnedRoomsAreFoundAgain) {
     }
 }
 
+TEST(LensDensity, IsThatOfTheLens) {
+    const auto density_of = [](const std::string& keys, Point3 place) {
+        const Scene scene = sceneOf("#env 1\nispace size=30,30,6\ncamera at=0,0,2 " + keys + '\n');
+        return lensDensity(scene.sensors[0], place);
+    };
+    // Of a pinhole the focal length over the depth, anywhere in the picture.
+    const std::string pinhole = "fx=800 pixels=1600,1200";
+    EXPECT_NEAR(density_of(pinhole, {4, 0, 2}), 200, 1e-6);
+    EXPECT_NEAR(density_of(pinhole, {4, 3, 1}), 200, 1e-6);
+    EXPECT_EQ(density_of(pinhole, {-4, 0, 2}), 0);
+    // With k1 < 0 lines towards the edge shrink by 1 + 3 k1 r^2, at r = 3/4.
+    const double k1 = -0.1, r = 0.75;
+    EXPECT_NEAR(density_of(pinhole + " coefficients=-0.1,0,0,0", {4, 3, 2}),
+                200 * (1 + 3 * k1 * r * r), 0.01);
+    // Of an equidistant fisheye pixels a radian over the distance, in the middle and at the edge.
+    const std::string fisheye = "projection=fisheye fov=180 pixels=1000,1000 tilt=-90";
+    const double radian = 500 / (std::numbers::pi / 2);
+    EXPECT_NEAR(density_of(fisheye, {0, 0, 0}), radian / 2, 0.01);
+    EXPECT_NEAR(density_of(fisheye, {8, 0, 0.5}), radian / std::hypot(8, 1.5), 0.01);
+}
+
 TEST(IndoorFloor, EndsAtOpenDoors) {
     // Half of the disc of `door` is outside, behind an open door.
     const Scene scene = sceneOf(

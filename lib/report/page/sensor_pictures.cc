@@ -3,6 +3,7 @@
 // it serves, of a laser its scan, of others the floor that they see.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "base/number.h"
@@ -115,14 +116,6 @@ Sensor reduced(const Sensor& sensor, double width) {
     return small;
 }
 
-/// Returns the pixels a metre of a camera at a point, in its own picture.
-double densityAt(const Sensor& sensor, Point3 place) {
-    const Camera& camera = sensor.as<Camera>();
-    const Vec3 way = Frame3(sensor.pose).toLocal(place);
-    const double far = camera.lens == Lens::Pinhole ? way.x : length(way);
-    return far > 0 ? rangeOf(camera, 1) / far : 0;
-}
-
 Image imageOf(const Photo& photo, const Camera& camera) {
     Image image{camera.columns, camera.rows, {}};
     image.pixels.reserve(camera.pixels());
@@ -141,10 +134,10 @@ void drawDensityOf(Picture& picture, const Sensor& sensor, const Sensor& small, 
     if (!head) return;
     const TextStyle style{em, true, Align::Left, palette::kInk, palette::kWhite.faded(0.9)};
     const std::string text =
-        formatFixed(densityAt(sensor, {place.x, place.y, kFaceHeight}), 0) + " px/m";
+        formatFixed(lensDensity(sensor, {place.x, place.y, kFaceHeight}), 0) + " px/m";
     const double wide = textWidth(text, style);
     // Beside the head, 0.25 m off, within the picture.
-    const double aside = 0.25 * densityAt(small, {place.x, place.y, kFaceHeight});
+    const double aside = 0.25 * lensDensity(small, {place.x, place.y, kFaceHeight});
     double x = head->column + aside;
     if (x + wide > picture.width() - 2) x = head->column - aside - wide;
     x = std::clamp(x, 2.0, std::max(2.0, picture.width() - wide - 2));
@@ -173,7 +166,7 @@ PageFigure photoOf(const Scene& scene, const Coverage& coverage, const SensorVie
         drawDensityOf(picture, sensor, small, spot.place, band, 0.042 * camera.columns);
         caption.append(separator).append(spot.name.empty() ? "" : "in " + spot.name + ", ");
         caption += formatFixed(distance(spot.place, sensor.pose.position.onFloor()), 1) + " m, " +
-                   formatFixed(densityAt(sensor, {spot.place.x, spot.place.y, kFaceHeight}), 0) +
+                   formatFixed(lensDensity(sensor, {spot.place.x, spot.place.y, kFaceHeight}), 0) +
                    " px/m";
         separator = "; ";
     }
@@ -279,6 +272,30 @@ PageFigure scanOf(const Scene& scene, const SensorView& view, Color color) {
 }
 
 }  // namespace
+
+double lensDensity(const Sensor& sensor, Point3 place) {
+    constexpr double kHalf = 0.005;  // of the line that is measured, metres
+    const Camera& camera = sensor.as<Camera>();
+    const Vec3 way = Frame3(sensor.pose).toLocal(place);
+    const double far = camera.lens == Lens::Pinhole ? way.x : length(way);
+    if (!(far > 0)) return 0;
+    // Parallel to the picture of a pinhole, else across the line of sight.
+    Vec3 across{0, 1, 0}, upright{0, 0, 1};
+    if (camera.lens != Lens::Pinhole) {
+        const double level = std::hypot(way.x, way.y);
+        if (level > 0) across = {-way.y / level, way.x / level, 0};
+        upright = (1 / far) * cross(way, across);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& direction : {across, upright}) {
+        const Vec3 half = kHalf * direction;
+        const auto a = camera.project({way.x - half.x, way.y - half.y, way.z - half.z});
+        const auto b = camera.project({way.x + half.x, way.y + half.y, way.z + half.z});
+        if (!a || !b) return rangeOf(camera, 1) / far;  // beside the picture
+        least = std::min(least, std::hypot(b->column - a->column, b->row - a->row) / (2 * kHalf));
+    }
+    return least;
+}
 
 std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& coverage) {
     const auto cameras = std::count_if(
