@@ -88,10 +88,10 @@ TEST(MoteReport, MeasuresLightAsAMeterDoes) {
     const std::string room =
         "lamp at=1,0 on=yes\nprojector at=-3,0 height=1 on=yes fov=60,40\ncube at=0.6,0.6 "
         "size=0.4\n";
-    for (const std::string place : {"at=0,0,0.5 tilt=90", "at=2,1,1 heading=180"}) {
-        const Scene scene = testing::scene("ispace size=40,12,2.5 ceiling=yes\n" + room,
-                                           "mote id=m max=1000 error=0.1 resolution=2 " + place +
-                                               "\nlux id=l max=1000 " + place + "\n");
+    for (const char* pose : {"at=0,0,0.5 tilt=90", "at=2,1,1 heading=180"}) {
+        std::string layout = "mote id=m max=1000 error=0.1 resolution=2 ";
+        layout.append(pose).append("\nlux id=l max=1000 ").append(pose).append("\n");
+        const Scene scene = testing::scene("ispace size=40,12,2.5 ceiling=yes\n" + room, layout);
         const auto readings = testing::readings(scene);
         const double lux = std::get<Illuminance>(readings[1]).lux;
         EXPECT_GT(lux, 5);
