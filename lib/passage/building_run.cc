@@ -117,7 +117,7 @@ void BuildingRun::Data::beginRecordedTrips() {
             trip.plan = std::move(parsed.plan);
             fault = begin(id, std::move(trip)).refusal;
         }
-        if (!fault.empty()) findings.add(own.finding("trip", id + ": " + fault));
+        if (!fault.empty()) findings.add(own.finding("trip", fault.insert(0, id + ": ")));
     }
     findings.throwIfAny();
 }

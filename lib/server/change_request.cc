@@ -117,8 +117,9 @@ std::string warningOf(const World& world, const std::vector<std::string>& movers
 /// A pending change request.
 class Changing {
   public:
-    Changing(ServerState& state, const std::string& line, const std::string& verb)
-        : state_(&state), line_(line), verb_(verb) {
+    Changing(ServerState& state, const std::string& line, const std::string& verb,
+             const std::string& prefix)
+        : state_(&state), line_(line), verb_(verb), prefix_(prefix) {
         for (const Piece& piece : wordsOf(line_)) words_.push_back(piece.text);
     }
     Changing(const Changing&) = delete;
@@ -136,7 +137,7 @@ class Changing {
     [[nodiscard]] std::string done() const;
 
     ServerState* state_;
-    std::string line_, verb_;
+    std::string line_, verb_, prefix_;
     std::vector<std::string_view> words_;  // of it
     std::shared_ptr<const ChangeNews> news_;
 };
@@ -166,7 +167,7 @@ std::string Changing::done() const {
     state_->simulation().tellChange(printable(line_), news_->scene_text);
     std::string out = "OK ";
     out += verb_.empty() ? words_[0] : verb_;
-    if (!added.empty()) out.append(" id=").append(added);
+    if (!added.empty()) out.append(" id=").append(prefix_).append(added);
     out.append(" t=").append(formatMilliseconds(world().time()));
     const std::vector<std::string> movers =
         added.empty() ? news_->movers : std::vector<std::string>{added};
@@ -201,8 +202,9 @@ std::string Changing::end(const std::exception_ptr& failure) {
 }  // namespace
 
 std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
-                                                      const std::string& verb) {
-    const auto changing = std::make_shared<Changing>(state, line, verb);
+                                                      const std::string& verb,
+                                                      const std::string& prefix) {
+    const auto changing = std::make_shared<Changing>(state, line, verb, prefix);
     const auto asked = std::make_shared<ServerState::Asked>();
     const auto end = [changing, asked](const std::exception_ptr& failure) {
         asked->bytes = std::make_shared<const std::string>(changing->end(failure));

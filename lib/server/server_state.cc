@@ -307,7 +307,15 @@ void ServerState::change(WorldChange change,
                     end = std::move(end)](const std::exception_ptr& failure) mutable {
         adopt(std::move(change), failure, began, end);
     };
-    build({std::move(prepare), std::move(adopted)});
+    if (rooms_ == nullptr) return build({std::move(prepare), std::move(adopted)});
+    // Among several worlds at once: movers that come and go change them between steps.
+    std::exception_ptr failure;
+    try {
+        prepare();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    adopted(failure);
 }
 
 void ServerState::adopt(WorldChange change, std::exception_ptr failure, WallTime began,

@@ -148,6 +148,7 @@ class Session {
     void hold(Words words, Condition until);
     void goOn();
     [[nodiscard]] bool mayChange() const;
+    void changeRoom(Words words);
     [[nodiscard]] bool maySeek() const { return state_->areAllAtRest(); }
     [[nodiscard]] bool hasCome() const { return !coming_; }
     [[nodiscard]] bool sendsPendingScan(Words words);

@@ -44,6 +44,7 @@ void Session::token(Words words) {
 
 /// Changes the world at once, or when other clients' changes leave time for it.
 void Session::change(Words words) {
+    if (rooms() != nullptr) return changeRoom(words);
     if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
     if (!mayChange()) return hold(words, &Session::mayChange);
     wanted_ = changeWorld(*state_, std::string(textOf(words)));
@@ -52,6 +53,7 @@ void Session::change(Words words) {
 
 /// Sets the state of an actuator: a change of its record.
 void Session::act(Words words) {
+    if (rooms() != nullptr) return changeRoom(words);
     if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
     if (!mayChange()) return hold(words, &Session::mayChange);
     const std::vector<std::string>& ids = world().scene().ids;

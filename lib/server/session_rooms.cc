@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Requests of runs with several worlds: trips, lifts, and the names of things across the worlds.
 #include <algorithm>
+#include <chrono>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "scene/room_state.h"
+#include "server/change_request.h"
 #include "server/session.h"
 #include "sim/joined_worlds.h"
 
@@ -82,6 +88,110 @@ void Session::posesOfAll() {
     const bool has_both = !robots.empty() && !people.empty();
     out_.append(" rooms=").append(rooms_of_robots).append(has_both ? "," : "");
     out_.append(rooms_of_people).append("\n");
+}
+
+namespace {
+
+/// A request about a thing of one room, with its plain id, or the reason why it is none.
+struct RoomRequest {
+    std::size_t room = 0;
+    std::string id, line;
+    int code = 0;  // 0: none
+    std::string fault = {};
+};
+
+/// Returns the position of a thing's id in a word of a request; npos for other words.
+std::size_t idIn(std::string_view verb, std::size_t index, std::string_view word) {
+    if (verb == "ADD") return word.starts_with("id=") ? 3 : std::string_view::npos;
+    const bool is_id = verb == "DELETE" ? index > 0 : index == 1;
+    return is_id ? 0 : std::string_view::npos;
+}
+
+/// Returns true for an order that a mover carries a sensor, whose trips would leave it behind.
+bool mountsOn(const World& world, std::string_view word) {
+    constexpr std::string_view kOn = "on=";
+    const std::size_t at = word.find(kOn);
+    if (at == std::string_view::npos || (at > 0 && word[at - 1] != '.')) return false;
+    std::string carrier(word.substr(at + kOn.size()));
+    std::erase(carrier, '"');
+    return world.moverNamed(carrier).has_value();
+}
+
+/// Finds the room of a request SET, ADD, DELETE or ACT.
+RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_view> words) {
+    RoomRequest out;
+    const auto fail = [&out](int code, std::string fault) {
+        out.code = code;
+        out.fault = std::move(fault);
+        return out;
+    };
+    const std::string_view verb = words[0];
+    if (verb != "SET" && verb != "ADD" && verb != "DELETE" && verb != "ACT")
+        return fail(403, "the rooms of a building are not replaced while they run");
+    if (verb == "ADD" && (words[1] == "robot" || words[1] == "human"))
+        return fail(403, "robots and people come to a building at its start");
+    const auto rooms = worlds.rooms();
+    std::optional<std::size_t> found;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        std::string word(words[i]);
+        for (const JoinedRoom& room : rooms)
+            if (mountsOn(room.simulation->world(), word))
+                return fail(403, "robots and people of a building keep their sensors");
+        if (const std::size_t at = idIn(verb, i, word); at != std::string::npos) {
+            const std::size_t slash = word.find('/', at);
+            std::size_t room = 0;
+            while (room < rooms.size() &&
+                   (slash == std::string::npos || word.substr(at, slash - at) != rooms[room].id ||
+                    !worlds.frameOf(room).is_storey))
+                ++room;
+            if (room == rooms.size())
+                return fail(404, excerpt(word.substr(at)) + " names no storey, as in " +
+                                     rooms.front().id + "/desk1");
+            if (found && *found != room) return fail(400, "a request is about one storey");
+            const std::string whole = word.substr(at, word.find('.', slash) - at);
+            if (whole.find_first_of("*?[") != std::string::npos)
+                return fail(400, "in a building ids are without globs");
+            if (rooms[room].simulation->world().moverNamed(whole))
+                return fail(403, whole + " is driven, not set: take the role ROBOT or PERSON");
+            found = room;
+            out.id = word.substr(slash + 1);
+            word.erase(at, slash + 1 - at);
+        }
+        out.line += (out.line.empty() ? "" : " ") + word;
+    }
+    if (!found)
+        return fail(
+            400, "the record has no id with its storey, as in id=" + rooms.front().id + "/desk1");
+    out.room = *found;
+    return out;
+}
+
+}  // namespace
+
+/// Changes a thing of a building that stands in a room, or its state.
+void Session::changeRoom(Words words) {
+    if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
+    if (!mayMove()) return;
+    const RoomRequest request = roomRequest(*rooms()->worlds, words);
+    if (request.code != 0) return error(request.code, {request.fault});
+    ServerState& state = *rooms()->states[request.room];
+    if (!state.mayChangeNow(std::chrono::steady_clock::now()))
+        return hold(words, &Session::mayChange);
+    if (words[0] != "ACT") {
+        wanted_ =
+            changeWorld(state, request.line, "", rooms()->worlds->rooms()[request.room].id + '/');
+        return receiveAsked();
+    }
+    const Scene& scene = state.simulation().world().scene();
+    if (std::find(scene.ids.begin(), scene.ids.end(), request.id) == scene.ids.end())
+        return error(404, {unknownThing("record", request.id, scene.ids)});
+    try {
+        const std::string edit = stateEdit(scene, request.id, words[2]);
+        wanted_ = changeWorld(state, "SET " + edit, "ACT");
+    } catch (const UsageError& bad) {
+        return error(400, {bad.what()});
+    }
+    receiveAsked();
 }
 
 /// True for a PATH with points of storeys.

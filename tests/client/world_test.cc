@@ -42,6 +42,34 @@ TEST(Building, LeadsRobotsByLifts) {
     EXPECT_THROW(robot.ride("l2", "ground"), Refused);
 }
 
+TEST(Building, ChangesThingsOfItsRooms) {
+    TestServer server{{data("tower.yaml"), data("tower.3dm"), "--clock", "step", "-q"}};
+    World world(server.address());
+    EXPECT_EQ(world.add("lamp id=upper/lamp1 at=8,4"), "upper/lamp1");
+    EXPECT_EQ(world.states("upper/lamp1")["upper/lamp1.on"], "0");
+    world.act("upper/lamp1", "on", "1");
+    EXPECT_EQ(world.states()["upper/lamp1.on"], "1");
+    EXPECT_EQ(world.add("desk id=ground/d1 at=9,2"), "ground/d1");
+    world.set("ground/d1", "at", "9,3");
+    world.remove("ground/d1");
+    EXPECT_THROW(world.remove("ground/d1"), Refused);
+    // Movers go on trips with all that they carry.
+    for (const char* record : {"robot id=ground/r9 at=1,1", "laser id=ground/l9 on=ground/r1",
+                               "laser id=ground/l9 on=\"ground/r1\"", "desk at=9,2", "desk id=d9"})
+        EXPECT_THROW(world.add(record), Refused) << record;
+    EXPECT_THROW(world.set("ground/r1", "at", "1,1"), Refused);
+    EXPECT_THROW(world.set("upper/fixed", "on", "ground/r1"), Refused);
+    EXPECT_THROW(world.remove("ground/r1"), Refused);
+    EXPECT_THROW(world.remove("ground/eye"), Refused);
+    EXPECT_THROW(world.reset(), Refused);
+    // A robot still goes to the changed storey.
+    Robot robot(server.address(), "ground/r1");
+    const Motion trip = robot.goTo("upper", {9, 6});
+    world.step(std::lround(70 / world.dt()));
+    EXPECT_TRUE(robot.wait(trip).done);
+    EXPECT_EQ(world.states("upper/lamp1")["upper/lamp1.on"], "1");
+}
+
 /// A client's order to a robot aboard a lift is refused; a robot whose client leaves it there goes
 /// on to the storey, and stands off the landing.
 TEST(Building, ARobotLeftAloneInALiftStopsBehindIt) {

@@ -15,6 +15,7 @@
 #include "base/run_files.h"
 #include "cli/building_operands.h"
 #include "cli/outputs.h"
+#include "cli/scene_folder.h"
 #include "passage/building_run.h"
 #include "passage/building_script.h"
 #include "record/text.h"
@@ -167,8 +168,10 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     judge.observe();
     simulation.onStep([&judge] { judge.observe(); });
     if (!options.expected.empty()) simulation.keepOrder();
-    // Without a source: clients do not change the rooms of a building.
-    Server server(simulation, options.listen, limitsOf(options), &run);
+    ServerLimits limits = limitsOf(options);
+    limits.source = std::make_shared<SceneFolder>(
+        std::filesystem::path(input->environment_operand).parent_path().string(), options.rules);
+    Server server(simulation, options.listen, limits, &run);
     const ServedAddresses addresses =
         servePorts(server, options, baseName(input->environment_operand));
     std::optional<TopicLog> log;

@@ -210,7 +210,8 @@ bool DeviceHost::isPaused() const {
 
 DeviceHost::Change DeviceHost::change(std::span<const std::string> assignments) {
     // Device protocols cannot carry a token.
-    if (!state_->mayChange() || !state_->limits().token.empty()) return Change::Refused;
+    if (!state_->mayChange() || state_->rooms() != nullptr || !state_->limits().token.empty())
+        return Change::Refused;
     const bool is_asked =
         changing_ && std::equal(assignments.begin(), assignments.end(),
                                 changing_->assignments.begin(), changing_->assignments.end());

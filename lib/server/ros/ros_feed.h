@@ -83,7 +83,7 @@ class RosFeed {
     /// Returns true if all clients together have as many subscriptions as they may.
     [[nodiscard]] bool isFull() const;
 
-    /// False for the run of a building, in which clients do not change the rooms.
+    /// False for the run of a building, in which clients do not place robots.
     [[nodiscard]] bool isOfOneRoom() const { return state_->rooms() == nullptr; }
     /// Returns the URIs of meshes of rooms.
     [[nodiscard]] std::vector<std::string> meshes() const;
