@@ -68,7 +68,13 @@ void Session::act(Words words) {
     receiveAsked();
 }
 
-bool Session::mayChange() const { return state_->mayChangeNow(std::chrono::steady_clock::now()); }
+bool Session::mayChange() const {
+    const WallTime now = std::chrono::steady_clock::now();
+    if (rooms() == nullptr) return state_->mayChangeNow(now);
+    // Changes of all rooms together leave the run half of the time.
+    return std::all_of(rooms()->states.begin(), rooms()->states.end(),
+                       [now](const ServerState* each) { return each->mayChangeNow(now); });
+}
 
 void Session::events(Words words) {
     EventKinds kinds;

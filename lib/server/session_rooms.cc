@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Requests of runs with several worlds: trips, lifts, and the names of things across the worlds.
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <span>
 #include <string>
@@ -175,8 +174,7 @@ void Session::changeRoom(Words words) {
     const RoomRequest request = roomRequest(*rooms()->worlds, words);
     if (request.code != 0) return error(request.code, {request.fault});
     ServerState& state = *rooms()->states[request.room];
-    if (!state.mayChangeNow(std::chrono::steady_clock::now()))
-        return hold(words, &Session::mayChange);
+    if (!mayChange()) return hold(words, &Session::mayChange);
     if (words[0] != "ACT") {
         wanted_ =
             changeWorld(state, request.line, "", rooms()->worlds->rooms()[request.room].id + '/');
