@@ -56,10 +56,12 @@ TEST(Densities, AreasOfClassesAreThoseOfShorterRanges) {
 TEST(Densities, NeedTheFloorNearCamerasOnly) {
     std::string lines = "ispace size=60,40,3\nzone id=z path=-20,-12;4,-12;4,-8;-20,-8\n";
     for (int i = 0; i < 60; ++i) {
-        const double x = 5 * (i % 10) - 24, y = 6 * (i / 10) - 16;
+        const int row = i / 10, column = i % 10;
+        const double x = 5.0 * column - 24, y = 6.0 * row - 16;
         const std::string at = std::to_string(x) + "," + std::to_string(y);
-        lines += "table at=" + at + " size=1,1\nwall from=" + at + " to=" + std::to_string(x + 2) +
-                 "," + std::to_string(y) + " height=1\n";
+        lines.append("table at=").append(at).append(" size=1,1\nwall from=").append(at);
+        lines.append(" to=").append(std::to_string(x + 2)).append(",");
+        lines.append(std::to_string(y)).append(" height=1\n");
     }
     for (const char* at : {"-20,-11", "2,3.5", "23,14.5"})
         lines += std::string("camera tilt=-40 fov=80 range=6 at=") + at + ",2.5\n";
