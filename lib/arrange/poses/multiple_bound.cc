@@ -123,7 +123,7 @@ double MultipleBound::boundFor(const Prices& prices, std::span<const BoxId> boxe
         lowerTo(views.least.data(), view, factors, cells);
     }
     // Cores are rounded down but for kNoShare of a cell.
-    area += 2 * kUnit * kMostBoxes * kNoShare * kParts * floor_.partArea() * floor_.mostWeight() *
+    area += 2.0 * kUnit * kMostBoxes * kNoShare * kParts * floor_.partArea() * floor_.mostWeight() *
             static_cast<double>(cells);
     return (area + floor_.weightOf([&views](std::size_t first, std::size_t count) {
                return sumOfLeast(&views.least[first], count);

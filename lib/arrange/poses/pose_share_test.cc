@@ -226,17 +226,17 @@ TEST(PoseShare, MissingAndForeignPartsAreRefused) {
     const Case own{2, 1, 0.05, {}}, other{2, 1, 0.06, {}};
     SilentProgress silent;
     TestResults results;
-    const auto searchShard = [&results](const Case& search, int index) {
+    const auto search_shard = [&results](const Case& search, int index) {
         StopWhen soon(afterAsking(16));
         (void)search.run({.results = results.get(), .own = Shard{index, 2}}, nullptr, soon);
     };
-    searchShard(own, 1);
+    search_shard(own, 1);
     EXPECT_THROW((void)own.run({.results = results.get(), .joined = 2}, nullptr, silent),
                  FormatError);
-    searchShard(other, 2);
+    search_shard(other, 2);
     EXPECT_THROW((void)own.run({.results = results.get(), .joined = 2}, nullptr, silent),
                  FormatError);
-    searchShard(own, 2);
+    search_shard(own, 2);
     EXPECT_NO_THROW((void)own.run({.results = results.get(), .joined = 2}, nullptr, silent));
     const std::string bytes = results.get()->find("poses/2").value();
     for (std::size_t size = 0; size < bytes.size(); ++size) {

@@ -89,7 +89,7 @@ bool PoseSearcher::recall() {
 
 /// Reads three numbers for each node: its halves, later nodes, and the box that is halved.
 void PoseSearcher::readTree(const std::vector<std::uint32_t>& numbers) {
-    constexpr std::size_t kNode = 3, kDeepest = kMostPosed * 64;
+    constexpr std::size_t kNode = 3, kDeepest = std::size_t{64} * kMostPosed;
     if (numbers.size() % kNode != 0) Unpacker::refuse();
     const std::size_t nodes = numbers.size() / kNode;
     std::vector<std::size_t> depths(nodes);
