@@ -22,6 +22,11 @@ ISPACE_SIMD_CLONES void addParts(std::uint8_t* sums, const std::uint8_t* parts,
     }
 }
 
+ISPACE_SIMD_CLONES void widen(std::int16_t* __restrict free, const std::uint8_t* most,
+                              std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) free[i] = most[i];
+}
+
 /// Takes cores off the floor that is free.
 ISPACE_SIMD_CLONES void takeCore(std::int16_t* __restrict free, const std::uint8_t* core,
                                  std::size_t count) {
@@ -205,7 +210,8 @@ double PoseBoxes::unionOf(std::span<const Known> known, std::span<const BoxId> o
     thread_local std::vector<std::uint8_t> own, fat;
     const std::vector<std::uint8_t>& most = floor_.parts();
     double area = 0;
-    free.assign(most.begin(), most.end());
+    free.resize(most.size());
+    widen(free.data(), most.data(), most.size());
     fat.assign(most.size(), 0);
     for (const Known& part : known) {
         area += part.most;
