@@ -41,7 +41,7 @@ ROUNDING = 0.005 + 1e-9
 
 def constraint(text):
     """The line n p = c on which a sensor lies that is so far from a side of a wall."""
-    distance, wall, side = re.fullmatch(r"([\d.]+) to (\w+), (.*)", text).groups()
+    distance, wall, side = re.fullmatch(r"([\d.]+) to (\w+)(?: face \d+)?, (.*)", text).groups()
     angle = math.radians(AXES[side] if side in AXES else float(side.removesuffix(" deg")))
     corners, best = WALLS[wall], None
     for (ax, ay), (bx, by) in zip(corners, corners[1:]):

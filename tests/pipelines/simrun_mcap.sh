@@ -49,7 +49,7 @@ simrun --replay run --clock fast --mcap replay.mcap >/dev/null
 cmp run.mcap replay.mcap || fail "a replay has other topics"
 
 # All rooms of a building.
-tower=$source_dir/tests/simrun/tower
+tower=$data/tower
 simrun $tower.yaml $tower.3dm --clock fast --until 2 --mcap tower.mcap >/dev/null
 node "$source_dir/tests/npm/read_topics.js" tower.mcap >read
 grep -q '^/ground/map nav_msgs/msg/OccupancyGrid 1$' read && grep -q '^/upper/map ' read || fail "maps: $(cat read)"
