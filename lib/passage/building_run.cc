@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "passage/building_run_data.h"
@@ -177,7 +178,11 @@ bool BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose2& pose
         added.push_back(record);
         requests.push_back("ADD " + formatRecord(record));
     }
-    change(room, std::move(added), std::move(requests));
+    try {
+        change(room, std::move(added), std::move(requests));
+    } catch (const FormatError&) {
+        return false;  // a record that a client added has an id of the traveller's
+    }
     entered.resume(entered.moverNamed(who.id).value(), *state);
     std::vector<Record> rest;
     std::string deleted = "DELETE";

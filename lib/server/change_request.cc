@@ -157,6 +157,7 @@ WorldChange Changing::change() const {
                 throw Refusal{400, "the name of a file holds no control characters"};
         return editor.load(std::string(words_[1]), words_.size() > 2 ? std::string(words_[2]) : "");
     }
+    if (words_.size() < 2) throw Refusal{400, "names no record"};
     const auto rest = static_cast<std::size_t>(words_[1].data() - line_.data());
     return editor.edit(editsOf(words_, std::string_view(line_).substr(rest)));
 }

@@ -117,6 +117,13 @@ bool mountsOn(const World& world, std::string_view word) {
 }
 
 /// Finds the room of a request SET, ADD, DELETE or ACT.
+/// True if a word of SET gives a thing an id of another room: "upper/f.id=ground/r1".
+bool namesOtherRoom(std::string_view word) {
+    constexpr std::string_view kNewId = ".id=";
+    const std::size_t at = word.find(kNewId);
+    return at != std::string_view::npos && word.find('/', at) != std::string_view::npos;
+}
+
 RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_view> words) {
     RoomRequest out;
     const auto fail = [&out](int code, std::string fault) {
@@ -150,8 +157,18 @@ RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_
             const std::string whole = word.substr(at, word.find('.', slash) - at);
             if (whole.find_first_of("*?[") != std::string::npos)
                 return fail(400, "in a building ids are without globs");
-            if (rooms[room].simulation->world().moverNamed(whole))
-                return fail(403, whole + " is driven, not set: take the role ROBOT or PERSON");
+            const std::string_view in_room = std::string_view(whole).substr(slash + 1 - at);
+            if (in_room.empty() || in_room.find('/') != std::string_view::npos ||
+                namesOtherRoom(word))
+                return fail(400, "an id is that of its storey and one in it, as in " +
+                                     rooms.front().id + "/desk1");
+            for (const JoinedRoom& other : rooms) {
+                const World& world = other.simulation->world();
+                if (world.moverNamed(whole))
+                    return fail(403, whole + " is driven, not set: take the role ROBOT or PERSON");
+                if (verb == "ADD" && world.sensorNamed(whole))
+                    return fail(400, "the id " + whole + " is taken");
+            }
             found = room;
             out.id = word.substr(slash + 1);
             word.erase(at, slash + 1 - at);

@@ -55,10 +55,14 @@ TEST(Building, ChangesThingsOfItsRooms) {
     EXPECT_THROW(world.remove("ground/d1"), Refused);
     // Movers go on trips with all that they carry.
     for (const char* record : {"robot id=ground/r9 at=1,1", "laser id=ground/l9 on=ground/r1",
-                               "laser id=ground/l9 on=\"ground/r1\"", "desk at=9,2", "desk id=d9"})
+                               "laser id=ground/l9 on=\"ground/r1\"", "desk at=9,2", "desk id=d9",
+                               "lamp id=ground/ at=1,1", "lamp id=upper/ground/r1 at=1,7",
+                               "laser id=ground/eye at=1,1", "lamp id=upper/upper/fixed at=1,1"})
         EXPECT_THROW(world.add(record), Refused) << record;
     EXPECT_THROW(world.set("ground/r1", "at", "1,1"), Refused);
     EXPECT_THROW(world.set("upper/fixed", "on", "ground/r1"), Refused);
+    EXPECT_THROW(world.set("upper/lamp1", "id", "ground/r1"), Refused);
+    EXPECT_THROW(world.remove("ground/"), Refused);
     EXPECT_THROW(world.remove("ground/r1"), Refused);
     EXPECT_THROW(world.remove("ground/eye"), Refused);
     EXPECT_THROW(world.reset(), Refused);
