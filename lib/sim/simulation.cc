@@ -172,6 +172,7 @@ std::shared_ptr<const void> Simulation::adoptPrepared(std::optional<SimTime> to)
     auto old = std::make_shared<std::vector<std::shared_ptr<const void>>>();
     for (auto work = std::function<void()>([] {}); work; work = preparation(to)) {
         work();
+        old->clear();  // thousands of changes of a moment would keep as many worlds
         old->push_back(replay_->adopt(*world_));
         for (Simulation* const other : followers_)
             old->push_back(other->replay_->adopt(*other->world_));
