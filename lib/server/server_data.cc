@@ -137,9 +137,10 @@ WallTime Server::Data::nextTurn() const {
         next = std::min(next, node->nextSend().value_or(next));
     }
     may_change = may_change || (mqtt && mqtt->waitsToChange());
-    if (const auto change = state.nextChange(); may_change && change)
-        next = std::min(next, *change);
-    return next;
+    if (!may_change) return next;
+    auto change = state.nextChange();
+    for (const ServerState& other : others) change = std::max(change, other.nextChange());
+    return change ? std::min(next, *change) : next;
 }
 
 /// Time slice of the world: a single step if it may have to wait for frames of that step.
@@ -258,7 +259,9 @@ void Server::Data::finishRecord() {
 void Server::Data::finishLog() {
     if (!log) return;
     log->stepped();
-    while (!state.areAllAtRest() && await()) log->stepped();
+    const auto is_making = [](const ServerState* each) { return each->isMaking(); };
+    const std::vector<ServerState*> all = states();
+    while (std::any_of(all.begin(), all.end(), is_making) && await()) log->stepped();
     log->finish();
 }
 

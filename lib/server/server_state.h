@@ -246,6 +246,8 @@ class ServerState {
     /// Waits for requested readings and completes the finished ones. \returns false, without
     /// completing any, once they are no longer awaited
     bool await();
+    /// True while pictures, maps and meshes are computed.
+    [[nodiscard]] bool isMaking() const { return workshop_ && workshop_->open() > 0; }
     /// True if a background thread has a job running or queued.
     [[nodiscard]] bool isBusy() const { return isMaking() || (builders_ && builders_->open() > 0); }
     /// Bytes of outdated scans that connections still have to send.
@@ -267,7 +269,6 @@ class ServerState {
         std::shared_ptr<SensorReading> reading;  // set once the first job of this sensor is done
         double pixels = 0;
     };
-    [[nodiscard]] bool isMaking() const { return workshop_ && workshop_->open() > 0; }
     [[nodiscard]] std::shared_ptr<const std::string> counted(std::string text) const;
     [[nodiscard]] Text& textOf(std::size_t sensor, const ReplyForm& form);
     void keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes);

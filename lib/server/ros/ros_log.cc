@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/ros/ros_log.h"
 
+#include <limits>
+#include <string>
 #include <utility>
 
 namespace ispace {
+
+namespace {
+constexpr std::uint64_t kEnd = std::numeric_limits<std::uint64_t>::max();
+}  // namespace
 
 RosLog::RosLog(RosFeed& feed, ByteSink write)
     : feed_(&feed),
@@ -20,6 +26,7 @@ RosLog::~RosLog() {
 void RosLog::sync() {
     feed_->sync();
     if (std::exchange(version_, feed_->version()) == feed_->version()) return;
+    writeBefore(kEnd);
     std::erase_if(lines_,
                   [this](const auto& one) { return !feed_->entries().contains(one.first); });
     for (const auto& [number, entry] : feed_->entries()) {
@@ -38,23 +45,30 @@ void RosLog::stepped() {
     writeNew();
 }
 
-/// Messages of one time are ordered by their topics, as background jobs end in any order.
+/// Messages of one time are ordered by their topics, as background jobs end in any order; of
+/// several of a topic, as a paused world has, the newest is written.
 void RosLog::writeNew() {
     for (auto& [number, line] : lines_) {
         const auto& newest = feed_->entries().at(number).newest;
         if (!newest || std::exchange(line.last, newest->number()) == newest->number()) continue;
-        appendMcapMessage(waiting_[{newest->time(), number}], line.channel, line.count++,
-                          newest->time(), *newest->cdr());
+        waiting_[{newest->time(), number}] = newest;
     }
-    while (!waiting_.empty() && waiting_.begin()->first.first < waiting_.rbegin()->first.first) {
-        file_.add(waiting_.begin()->second);
+    if (!waiting_.empty()) writeBefore(waiting_.rbegin()->first.first);
+}
+
+void RosLog::writeBefore(std::uint64_t time) {
+    std::string messages;
+    while (!waiting_.empty() && waiting_.begin()->first.first < time) {
+        const auto& [topic, message] = *waiting_.begin();
+        Line& line = lines_.at(topic.second);
+        appendMcapMessage(messages, line.channel, line.count++, message->time(), *message->cdr());
         waiting_.erase(waiting_.begin());
     }
+    file_.add(messages);
 }
 
 void RosLog::finish() {
-    for (const auto& [topic, messages] : waiting_) file_.add(messages);
-    waiting_.clear();
+    writeBefore(kEnd);
     file_.finish();
 }
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <string>
+#include <memory>
 #include <utility>
 
 #include "base/file.h"
@@ -40,11 +40,13 @@ class RosLog {
     };
     void sync();
     void writeNew();
+    void writeBefore(std::uint64_t time);
 
     RosFeed* feed_;
     McapWriter file_;
     std::map<std::uint32_t, Line> lines_;  // by number in the feed
-    std::map<std::pair<std::uint64_t, std::uint32_t>, std::string> waiting_;  // by time and topic
+    /// Of the present time, by time and topic.
+    std::map<std::pair<std::uint64_t, std::uint32_t>, std::shared_ptr<const RosMessage>> waiting_;
     std::size_t channels_ = 0;
     std::int64_t version_ = -1;  // of the feed's topics
 };

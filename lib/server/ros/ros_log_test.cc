@@ -116,6 +116,21 @@ TEST(RosLog, FollowsChangesOfTheWorld) {
     EXPECT_EQ(content.times.at("/tf_static").size(), 2U) << "one for each change";
 }
 
+TEST(RosLog, HoldsTheNewestMessageOfATopicWhileTimeStandsStill) {
+    Logged logged;
+    logged.step(1);
+    for (int i = 0; i < 5; ++i) {
+        logged.room.world.change(testing::scene("ispace size=8,6\n", "robot id=r1 at=0,0\n"));
+        logged.state.sync();
+        logged.log.stepped();
+    }
+    logged.step(1);
+    const LogContent content = logged.finish();
+    EXPECT_EQ(content.times.at("/r1/odom"),
+              (std::vector<std::uint64_t>{0, 100'000'000, 100'000'000, 200'000'000}))
+        << "before and after the changes, the first of which removes topics";
+}
+
 TEST(RosLog, LeavesTheFeedWithoutSubscriptions) {
     testing::TestWorld room({Clock::Kind::Step, 1}, {}, "", "");
     ServerState state(room.simulation);
