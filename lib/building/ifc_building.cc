@@ -27,6 +27,8 @@ constexpr double kStep = 0.6, kHandrail = 1.5;
 constexpr double kNarrowest = 0.5, kLowest = 1.0;
 /// Doors of a lift lie this far before its cabin, behind the wall of its shaft, or within it.
 constexpr double kBeforeCabin = 0.8, kIntoCabin = 0.3;
+/// Least cosine of the angle between a door and the front of its cabin.
+constexpr double kFacing = 0.7;
 constexpr std::size_t kSides = 4;  // of a cabin
 /// Cabins drawn on several storeys that are nearer to each other are one lift.
 constexpr double kSameShaft = 0.5;
@@ -127,7 +129,10 @@ LiftSide sideOf(const BuildingBox& cabin, const std::vector<StoreyDoor>& doors) 
             if (gap < -kIntoCabin || gap > kBeforeCabin ||
                 std::abs(cross(side.out, way)) > side.across / 2)
                 continue;
-            side.door = std::min(side.door, std::abs(cross(side.out, door.to - door.from)));
+            // Doors at right angles are those of the lobby.
+            const double width = std::abs(cross(side.out, door.to - door.from));
+            if (width < kFacing * length(door.to - door.from)) continue;
+            side.door = std::min(side.door, width);
             if (side.storeys.empty() || side.storeys.back() != door.storey)
                 side.storeys.push_back(door.storey);
         }

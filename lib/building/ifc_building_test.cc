@@ -114,6 +114,20 @@ TEST(IfcBuilding, LiftsStopWhereTheyHaveDoors) {
     }
 }
 
+TEST(IfcBuilding, DoorsOfTheLobbyAreNotThoseOfTheLift) {
+    IfcBoxes ifc;
+    for (int i = 0; i < 3; ++i) {
+        ifc.storey("level " + std::to_string(i), 3 * i);
+        addHall(ifc, i != 1);
+        ifc.box("IFCDOOR", 2.8, 5, 0.9, 0.1, 2, ",$,2.,0.9");  // at right angles
+        if (i == 0) ifc.box("IFCTRANSPORTELEMENT", 1.2, 4.8, 1.8, 1.6, 2.2);
+    }
+    const StoreyedDocument building = readIfcBuilding(ifc.text(), "tower.ifc", {});
+    ASSERT_EQ(building.passages.size(), 1U);
+    EXPECT_EQ(formatRecord(building.passages[0].record),
+              "lift id=lift storeys=level-0,level-2 at=1.2,4.8 size=1.6,1.8 door=0.9");
+}
+
 TEST(IfcBuilding, LiftsWithOneDoorAreLeftOut) {
     const StoreyedDocument building = readIfcBuilding(tower(false), "tower.ifc", {});
     EXPECT_TRUE(building.passages.empty());

@@ -2,6 +2,7 @@
 // The openings between storeys, and several storeys as one room.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -18,6 +19,13 @@
 namespace ispace {
 
 namespace {
+
+double shortestEdge(const Polygon& outline) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < outline.size(); ++i)
+        least = std::min(least, distance(outline[i], outline[(i + 1) % outline.size()]));
+    return least;
+}
 
 Polygon counterClockwise(Polygon outline) {
     if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
@@ -186,6 +194,7 @@ class Surroundings {
         }
         constexpr double kFlat = 1e-6;  // a rim that is hardly a body
         for (const Region& part : overlay.regions(is_open)) {
+            if (shortestEdge(part.outline) < 2 * kFlat) continue;  // nothing is seen through it
             TupleList path;
             for (const Point2 corner : part.outline) path.push_back({corner.x, corner.y});
             Record rim(*sceneSchemas().find("fence"));
