@@ -143,6 +143,10 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     BuildingRun run = runOf(options, input->building);
     forward(run, options.from);
     Simulation& simulation = run.simulation();
+    if (!options.record.empty())
+        for (const JoinedRoom& room : run.rooms())
+            for (const std::string& file : Recorder::filesIn(options.record + '/' + room.id))
+                claimOutput(file, "a file of --record");
     std::optional<BuildingScript> script;
     if (!options.script.empty()) {
         const bool is_stdin = options.script == "-";
