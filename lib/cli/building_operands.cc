@@ -72,7 +72,8 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
     BuildingRunCoverage run;
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         const std::string& id = building.document.storeys[i].id;
-        const std::string own = folder + '/' + id;
+        std::string own = folder;
+        own.append("/").append(id);
         RunCoverage& storey = run.storeys.emplace_back();
         if (RunReader(own).next()) {
             const auto scene = sceneWithWholeIds(building, i);
