@@ -141,7 +141,8 @@ void drawDensityOf(Picture& picture, const Sensor& sensor, const Sensor& small, 
     double x = head->column + aside;
     if (x + wide > picture.width() - 2) x = head->column - aside - wide;
     x = std::clamp(x, 2.0, std::max(2.0, picture.width() - wide - 2));
-    const double y = std::clamp(above + head->row + 0.36 * em, above + em, picture.height() - 3);
+    const double y = std::clamp(above + head->row + 0.36 * em, above + em,
+                                std::max(above + em, picture.height() - 3));
     picture.text({x, y}, text, style);
 }
 
