@@ -62,10 +62,13 @@ class WallNet {
         return lengths;
     }
 
-    /// Finds the nearest wall, if `lengths` are not null among those that they reach.
-    [[nodiscard]] std::optional<WallFoot> nearest(Point2 from,
-                                                  const std::vector<double>* lengths) const {
-        std::optional<WallFoot> best;
+    /// Finds the nearest wall, with all that are as near, if `lengths` are not null among those
+    /// that they reach.
+    [[nodiscard]] std::vector<WallFoot> nearest(Point2 from,
+                                                const std::vector<double>* lengths) const {
+        constexpr double kAsNear = 1e-9;  // metres
+        std::vector<WallFoot> feet;
+        double least = kUnreached;
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             const Piece& piece = pieces_[i];
             if (lengths != nullptr && (*lengths)[piece.a] == kUnreached) continue;
@@ -73,10 +76,13 @@ class WallNet {
             const double share =
                 std::clamp(dot(from - piece.line.a, along) / dot(along, along), 0.0, 1.0);
             const Point2 foot = piece.line.a + share * along;
-            if (const double away = distance(from, foot); !best || away < best->away)
-                best = WallFoot{i, foot, away};
+            const double away = distance(from, foot);
+            least = std::min(least, away);
+            if (away <= least + kAsNear) feet.push_back({i, foot, away});
         }
-        return best;
+        std::erase_if(feet,
+                      [least](const WallFoot& foot) { return foot.away > least + kAsNear; });
+        return feet;
     }
 
     /// Returns the length along walls between two feet. \param lengths from the first
@@ -109,17 +115,17 @@ class WallNet {
 void layTo(const Record& record, const std::string& id, const Scene& scene, const WallNet& net,
            std::vector<Cable>& cables) {
     const Point2 at{record.tuple("at")[0], record.tuple("at")[1]};
-    const auto foot = net.nearest(at, nullptr);
-    if (!foot) return;
-    const std::vector<double> lengths = net.lengthsFrom(*foot);
-    for (Cable& cable : cables) {
-        const Point3 place = scene.sensors[cable.sensor].pose.position;
-        const auto own = net.nearest(place.onFloor(), &lengths);
-        if (!own) continue;
-        const double length = foot->away + net.between(*foot, *own, lengths) + own->away +
-                              std::abs(place.z - record.number("height"));
-        if (!cable.panel.empty() && length >= cable.length) continue;
-        cable = {cable.sensor, id, length, length * record.number("cost")};
+    for (const WallFoot& foot : net.nearest(at, nullptr)) {
+        const std::vector<double> lengths = net.lengthsFrom(foot);
+        for (Cable& cable : cables) {
+            const Point3 place = scene.sensors[cable.sensor].pose.position;
+            for (const WallFoot& own : net.nearest(place.onFloor(), &lengths)) {
+                const double length = foot.away + net.between(foot, own, lengths) + own.away +
+                                      std::abs(place.z - record.number("height"));
+                if (!cable.panel.empty() && length >= cable.length) continue;
+                cable = {cable.sensor, id, length, length * record.number("cost")};
+            }
+        }
     }
 }
 

@@ -50,6 +50,19 @@ TEST(Cables, TakeInnerWallsAndTheNearestPanel) {
     EXPECT_NEAR(cables[1].length, 3, 1e-12);
 }
 
+TEST(Cables, TakeTheShorterWayFromACorner) {
+    // As far from the west wall as from the south wall, along which the panel is.
+    const std::vector<Cable> cables = cablesIn(
+        "panel id=p at=1,0.1 height=1.5\nlaser id=low at=0.2,0.2,2.3\nlaser id=right "
+        "at=5.8,0.2,1.5\n"
+        // This panel is in a corner, too.
+        "panel id=q at=0.3,3.7 height=1.5\nlaser id=high at=0.3,3,1.5\n");
+    ASSERT_EQ(cables.size(), 3U);
+    EXPECT_NEAR(cables[0].length, 0.1 + 0.8 + 0.2 + 0.8, 1e-9);
+    EXPECT_NEAR(cables[1].length, 0.1 + 4.8 + 0.2, 1e-9);
+    EXPECT_NEAR(cables[2].length, 0.3 + 0.7 + 0.3, 1e-9) << "along the panel's second wall";
+}
+
 TEST(Cables, AreNoneWithoutAPanel) { EXPECT_TRUE(cablesIn("laser at=1,1\n").empty()); }
 
 }  // namespace
