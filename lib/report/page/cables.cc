@@ -80,8 +80,7 @@ class WallNet {
             least = std::min(least, away);
             if (away <= least + kAsNear) feet.push_back({i, foot, away});
         }
-        std::erase_if(feet,
-                      [least](const WallFoot& foot) { return foot.away > least + kAsNear; });
+        std::erase_if(feet, [least](const WallFoot& foot) { return foot.away > least + kAsNear; });
         return feet;
     }
 

@@ -195,13 +195,13 @@ TEST(LensDensity, IsThatOfTheLens) {
 }
 
 TEST(SensorPictures, AreDrawnOfFlatAndTinyPictures) {
-    for (const char* keys : {"at=0.2,0.2,1.6 heading=45 pixels=640,28",
-                             "at=0.2,0.2,1.6 heading=45 pixels=32,4",
-                             "at=0.2,0.2,2.3 heading=45 tilt=-30 pixels=1,1"}) {
-        const Scene scene = sceneOf(
-            std::string("#env 1\nispace id=hall at=4,3 size=8,6,2.5\nzone id=z at=2,2 "
-                        "size=1,1\ncamera id=c ") +
-            keys + '\n');
+    for (const char* keys :
+         {"at=0.2,0.2,1.6 heading=45 pixels=640,28", "at=0.2,0.2,1.6 heading=45 pixels=32,4",
+          "at=0.2,0.2,2.3 heading=45 tilt=-30 pixels=1,1"}) {
+        const Scene scene =
+            sceneOf(std::string("#env 1\nispace id=hall at=4,3 size=8,6,2.5\nzone id=z at=2,2 "
+                                "size=1,1\ncamera id=c ") +
+                    keys + '\n');
         Worlds worlds(scene.environment);
         CoverageOptions options;
         options.plane = 1.6;
