@@ -294,7 +294,7 @@ KeySpec lightColorKey(Tuple standard) {
 }
 
 Schema projectorSchema() {
-    constexpr double kWidest = 170;
+    constexpr double kNarrowest = 0.1, kWidest = 170;
     KeySpec heading = headingKey();
     heading.help = "direction that it faces at pan=0, from +x";
     KeySpec fov{.name = "fov",
@@ -304,9 +304,8 @@ Schema projectorSchema() {
                 .default_value = Tuple{36, 21},
                 .min_count = 2,
                 .max_count = 2,
-                .lower = 0,
-                .upper = kWidest,
-                .lower_open = true};
+                .lower = kNarrowest,
+                .upper = kWidest};
     return schema(
         "projector", RecordType::Infra,
         "a projector that turns, whose picture or plain light pictures show on walls, "

@@ -16,12 +16,13 @@ std::optional<ProjectorBeam::Spot> ProjectorBeam::spotAt(Point3 place, Vec3 norm
     const Vec3 local = lens.toLocal(place);
     if (local.x < kNearest) return std::nullopt;
     const double y = local.y / (local.x * across), z = local.z / (local.x * upright);
-    if (std::fabs(y) > 1 || std::fabs(z) > 1) return std::nullopt;
+    if (!(std::fabs(y) <= 1 && std::fabs(z) <= 1)) return std::nullopt;
     const double facing = -dot(normal, place - lens.origin);
     if (facing <= 0) return std::nullopt;
     // At depth 1 the light is spread evenly over 4 * across * upright square metres. A surface gets
     // its share by the solid angle, facing / r^3, over that of the plane at depth 1, (x / r)^3.
     const double lux = lumens / (4 * across * upright) * facing / (local.x * local.x * local.x);
+    if (!std::isfinite(lux)) return std::nullopt;
     return Spot{(1 - y) / 2, (1 - z) / 2, lux};
 }
 

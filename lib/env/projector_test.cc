@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/error.h"
 #include "support/test_scene.h"
 
 namespace ispace {
@@ -50,6 +51,21 @@ TEST(ProjectorBeam, IsUprightOnTheWall) {
     ASSERT_TRUE(ahead);
     EXPECT_LT(ahead->v, 0.5);
     EXPECT_NEAR(ahead->u, 0.5, 1e-12);
+}
+
+TEST(ProjectorBeam, HasAnAngle) {
+    for (const char* fov : {"0,0", "1e-200,1e-200", "5e-324,20", "36,0.09", "170.1,21"})
+        EXPECT_THROW(static_cast<void>(beam(std::string("at=0,0 on=yes fov=") + fov)), FormatError)
+            << fov;
+    const auto narrow = beam("at=0,0 height=1 on=yes fov=0.1,0.1 lumens=1");
+    ASSERT_TRUE(narrow);
+    EXPECT_TRUE(std::isfinite(narrow->spotAt({2, 0, 1}, {-1, 0, 0})->lux));
+    // Of a beam without one no light is known.
+    for (const double lumens : {0.0, 1000.0})
+        for (const double half : {0.0, 1e-200}) {
+            const ProjectorBeam none{narrow->lens, half, half, lumens};
+            EXPECT_FALSE(none.spotAt({2, 0, 1}, {-1, 0, 0})) << lumens << ' ' << half;
+        }
 }
 
 TEST(ProjectorBeam, IsOffWithoutLight) {
