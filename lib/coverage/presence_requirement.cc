@@ -14,6 +14,18 @@ namespace {
 
 constexpr std::string_view kPresence = "presence:";
 
+/// Tells of people that are known: the one that is meant, or the first few.
+std::string knownPeople(const std::string& wanted, const std::vector<std::string>& known) {
+    constexpr std::size_t kFew = 12;
+    if (known.empty()) return ": there is none";
+    if (std::string hint = didYouMean(wanted, known); !hint.empty()) return hint;
+    std::string text = "; there is ";
+    for (std::size_t i = 0; i < std::min(known.size(), kFew); ++i)
+        text.append(i > 0 ? ", " : "").append(printable(known[i]));
+    if (known.size() > kFew) text += " and " + std::to_string(known.size() - kFew) + " more";
+    return text;
+}
+
 const PresenceFigures& figuresOf(const PresenceRequirement& requirement, const Presence& presence) {
     if (requirement.person.empty()) return presence.all;
     std::vector<std::string> known;
@@ -22,7 +34,7 @@ const PresenceFigures& figuresOf(const PresenceRequirement& requirement, const P
         known.push_back(person.id);
     }
     throw UsageError("--presence has no person `" + printable(requirement.person) + '`' +
-                     didYouMean(requirement.person, known));
+                     knownPeople(requirement.person, known));
 }
 
 }  // namespace

@@ -41,7 +41,26 @@ TEST(PresenceRequirement, IsOfAllOrOfAPerson) {
     EXPECT_EQ(check("presence:80%").text, "presence is 83.33% of the ways, as required (80%)");
     EXPECT_FALSE(check("presence:bo=0%").is_met);
     EXPECT_EQ(check("presence:bo=10%").text, "presence of bo is not known: there is no way");
-    EXPECT_THROW(check("presence:ana=10%"), UsageError);
+}
+
+TEST(PresenceRequirement, NamesPeopleInsteadOfAnUnknownOne) {
+    const auto message = [](std::string_view text, const Presence& presence) -> std::string {
+        try {
+            checkRequirement(parsePresenceRequirement(text).value(), presence);
+        } catch (const UsageError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(message("presence:ana=10%", someone()),
+              "--presence has no person `ana`, did you mean `anna`?");
+    EXPECT_EQ(message("presence:human=10%", someone()),
+              "--presence has no person `human`; there is anna, bo, a=b");
+    EXPECT_EQ(message("presence:human=10%", {}), "--presence has no person `human`: there is none");
+    Presence crowd;
+    for (int i = 1; i <= 20; ++i) crowd.people.push_back({"wanderer" + std::to_string(i), 1, 1, 0});
+    const std::string many = message("presence:h=10%", crowd);
+    EXPECT_TRUE(many.ends_with(", wanderer12 and 8 more")) << many;
 }
 
 }  // namespace
