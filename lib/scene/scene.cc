@@ -18,6 +18,7 @@
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "scene/robot.h"
+#include "scene/sensor/pose_on_carrier.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -61,9 +62,6 @@ bool isCarrier(const Record& record) {
     return record.keyword() == "robot" || record.keyword() == "human" || isObject(record);
 }
 
-/// Height of a sensor on a person without a written height: the eyes, as a share of the person.
-constexpr double kEyes = 0.94;
-
 Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids)
     : records_(records), ids_(ids) {
     std::size_t robots = 0, people = 0;
@@ -91,14 +89,12 @@ Carriers::Place Carriers::place(const Record& sensor) {
             sensor.finding("on", "`on`: `" + on + "` is a `" + record.keyword() +
                                      "`; only robots, people and objects carry sensors"));
     const Pose2 carrier = floorPoseOf(record);
+    if (record.keyword() == "human")
+        return {mountedPose(carrier, poseOnPerson(sensor, record)), std::nullopt,
+                movers_.at(*found)};
     Pose3 local = poseOf(sensor);
     if (record.keyword() == "robot")
         return {mountedPose(carrier, local), Mount{movers_.at(*found), local}};
-    if (record.keyword() == "human") {
-        const bool has_height = sensor.has("at") && sensor.tuple("at").size() > 2;
-        if (!has_height) local.position.z = kEyes * record.number("height");
-        return {mountedPose(carrier, local), std::nullopt, movers_.at(*found)};
-    }
     const auto [top, is_new] = tops_.try_emplace(*found, 0);
     if (is_new) top->second = topOf(bodyOf(record));
     local.position.z += top->second;

@@ -22,7 +22,7 @@ std::optional<Point3> senderOf(const MoteRadio& mote, const Moment& now) {
     for (const MovingBody& body : now.bodies.bodies()) {
         // The trunk is a person's only box.
         if (body.owner != owner || (mote.is_on_person && body.radius > 0)) continue;
-        const Point2 foot = body.pose.position;
+        const Point2 foot = body.pose * mote.at.onFloor();
         return Point3{foot.x, foot.y, mote.at.z};
     }
     return std::nullopt;

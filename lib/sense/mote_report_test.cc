@@ -84,6 +84,24 @@ TEST(MoteReport, MotesStandOnFurnitureAndMove) {
     EXPECT_NEAR(reports[0].neighbours[1].margin, 20 * std::log10(5 / 3.0), 1e-6);
 }
 
+TEST(MoteReport, CarriedMotesHearAsTheyAreHeard) {
+    for (const char* carried :
+         {"human id=c at=4,4 height=1.6\nmote id=b on=c\n",
+          "human id=c at=4,4 heading=30\nmote id=b on=c at=0,0\n",
+          "human id=c at=4,4 heading=30\nmote id=b on=c at=0,0,0.9\n",
+          "robot id=c model=pioneer-2dx at=4,4 heading=70\nmote id=b on=c at=0,0,0.3\n",
+          "robot id=c at=4,4 heading=70\nmote id=b on=c\n"}) {
+        const auto reports = reportsIn("", std::string("mote id=a at=1,1,1\n") + carried);
+        ASSERT_EQ(reports.size(), 2U) << carried;
+        for (const MoteReport& one : reports) ASSERT_EQ(one.neighbours.size(), 1U) << carried;
+        EXPECT_NEAR(reports[0].neighbours[0].margin, reports[1].neighbours[0].margin, 1e-9)
+            << carried;
+        EXPECT_NEAR(reports[0].neighbours[0].margin,
+                    20 * std::log10(30 / length(reports[1].pose.position - Point3{1, 1, 1})), 1e-9)
+            << carried;
+    }
+}
+
 TEST(MoteReport, MeasuresLightAsAMeterDoes) {
     const std::string room =
         "lamp at=1,0 on=yes\nprojector at=-3,0 height=1 on=yes fov=60,40\ncube at=0.6,0.6 "

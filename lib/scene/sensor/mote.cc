@@ -5,9 +5,11 @@
 #include <optional>
 #include <vector>
 
+#include "base/error.h"
 #include "base/number.h"
 #include "env/body.h"
 #include "scene/robot.h"
+#include "scene/sensor/pose_on_carrier.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -41,6 +43,15 @@ void addMoteKeys(std::vector<KeySpec>& keys) {
     keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
 }
 
+/// Returns how far the middle of a robot's body lies ahead of its axis.
+double bodyAheadOf(const Record& robot, const RoomRecords& room) {
+    try {
+        return robotOf(robot, room.devices).center;
+    } catch (const FormatError&) {
+        return 0;  // reported by the scene
+    }
+}
+
 /// Computes the position of a mote; empty if it has none yet.
 std::optional<MoteRadio> radioOf(const Record& mote, const std::string& id,
                                  const RoomRecords& room) {
@@ -57,7 +68,10 @@ std::optional<MoteRadio> radioOf(const Record& mote, const std::string& id,
         const auto number = std::count_if(before.begin(), before.end(), [&](const Record& record) {
             return record.keyword() == carrier.keyword();
         });
-        return MoteRadio{id, local.position, static_cast<std::size_t>(number), is_person};
+        // It sends from the carrier's axis.
+        const Point3 at = is_person ? Point3{0, 0, poseOnPerson(mote, carrier).position.z}
+                                    : Point3{-bodyAheadOf(carrier, room), 0, local.position.z};
+        return MoteRadio{id, at, static_cast<std::size_t>(number), is_person};
     }
     Pose3 pose = mountedPose(floorPoseOf(carrier), local);
     pose.position.z += topOf(bodyOf(carrier));

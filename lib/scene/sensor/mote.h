@@ -19,7 +19,7 @@ struct MoteRadio {
     static constexpr std::size_t kStands = std::numeric_limits<std::size_t>::max();
 
     std::string id;
-    Point3 at;                      ///< if it is carried, z alone counts
+    Point3 at;                      ///< if it is carried, from its carrier's body
     std::size_t carrier = kStands;  ///< index among the scene's robots or people
     bool is_on_person = false;
     friend bool operator==(const MoteRadio&, const MoteRadio&) = default;

@@ -52,6 +52,14 @@ Pose3 poseOf(const Record& record) {
             record.angle("roll")};
 }
 
+Pose3 poseOnPerson(const Record& sensor, const Record& person) {
+    constexpr double kEyes = 0.94;  // as a share of the person
+    Pose3 pose = poseOf(sensor);
+    const bool has_height = sensor.has("at") && sensor.tuple("at").size() > 2;
+    if (!has_height) pose.position.z = kEyes * person.number("height");
+    return pose;
+}
+
 Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor) {
     const Point2 place = world_from_robot * robot_from_sensor.position.onFloor();
     // Adding 0 makes -0 plain 0.

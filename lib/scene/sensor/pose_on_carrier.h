@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "geom/pose.h"
+#include "record/record.h"
+
+namespace ispace {
+
+/// Reads the pose of a sensor in the frame of the person who carries it: without a written height
+/// it is at the eyes.
+Pose3 poseOnPerson(const Record& sensor, const Record& person);
+
+}  // namespace ispace
