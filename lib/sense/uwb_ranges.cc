@@ -100,13 +100,36 @@ std::optional<Ranging> rangingOf(const UwbRadio& radio, const std::string& ancho
 /// Estimates the standard deviation of a range in line of sight.
 double errorOf(const UwbRadio& radio) { return std::hypot(radio.noise.sigma[0], radio.noise.bias); }
 
-/// Locates a tag by the anchors that have it in line of sight.
-std::optional<PositionFix> fixOf(const Uwb& uwb, const std::string& tag, Point3 place,
-                                 const Moment& now) {
-    std::vector<Hearing> heard;
+/// An anchor near enough to a tag.
+struct NearAnchor {
+    double distance = 0;
+    const UwbAnchor* anchor = nullptr;
+    Pose3 pose;
+};
+
+/// Returns the anchors whose range contains a tag, the nearest first.
+std::vector<NearAnchor> anchorsAbout(Point3 place, const Uwb& uwb, const Moment& now) {
+    std::vector<NearAnchor> near;
     for (const UwbAnchor& anchor : uwb.anchors) {
         const bool is_own = anchor.id == now.sensor.id;
         const Pose3& pose = is_own ? now.pose : anchor.pose;
+        const double distance = length(place - pose.position);
+        if (withinRange(distance, anchor.radio.max_range))
+            near.push_back({distance, &anchor, pose});
+    }
+    std::stable_sort(near.begin(), near.end(), [](const NearAnchor& a, const NearAnchor& b) {
+        return a.distance < b.distance;
+    });
+    return near;
+}
+
+/// Locates a tag by the nearest anchors that have it in line of sight.
+std::optional<PositionFix> fixOf(const Uwb& uwb, const std::string& tag, Point3 place,
+                                 const Moment& now) {
+    std::vector<Hearing> heard;
+    for (const auto& [distance, near, pose] : anchorsAbout(place, uwb, now)) {
+        if (heard.size() == kMaxAnchors) break;
+        const UwbAnchor& anchor = *near;
         const auto ranging = rangingOf(anchor.radio, anchor.id, pose.position,
                                        MovingBodies::kNoOwner, tag, place, now);
         if (!ranging || ranging->blocks > 0) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 namespace ispace {
 
 struct ReadingKind;
+
+/// Anchors that locate a tag at most: the nearest in line of sight.
+constexpr std::size_t kMaxAnchors = 16;
 
 /// The range of one tag, and the position of the tag by all anchors of the room.
 struct UwbRange {
@@ -36,8 +40,8 @@ struct UwbRanges {
 /// the greatest range by 10^(loss/20), and with noise adds to the error; all movers count once.
 ///
 /// The position comes from the anchors that stand in the room and have the tag in line of sight, at
-/// least kMinAnchors, by locate() within the height of the room. Of two candidates in it, the one
-/// below or in front of the anchors is taken.
+/// least kMinAnchors and of more than kMaxAnchors the nearest, by locate() within the height of the
+/// room. Of two candidates in it, the one below or in front of the anchors is taken.
 ///
 /// Noise depends on seed, anchor, tag and frame alone: anchors of one rate compute one position.
 UwbRanges readingOf(const Uwb& uwb, const Moment& now);

@@ -113,6 +113,28 @@ TEST(UwbRanges, ThreeAnchorsInSightLocateATag) {
     EXPECT_TRUE(tagsIn(thing, three + third + "uwb at=5,5,2 range=1\n")[0].fix);
 }
 
+TEST(UwbRanges, TheSixteenNearestAnchorsInSightLocateATag) {
+    // Sixteen without errors on a circle, and farther ones that err by half a metre.
+    const std::string thing = "cube at=0,0 size=0.2,0.2,0.99 tag=t\n";
+    std::string exact, biased;
+    for (int i = 0; i < 16; ++i) {
+        const double angle = i * 0.39;
+        const auto anchor = [&](double radius, double height, const std::string& keys) {
+            return "uwb at=" + std::to_string(radius * std::cos(angle)) + ',' +
+                   std::to_string(radius * std::sin(angle)) + ',' + std::to_string(height) + keys +
+                   '\n';
+        };
+        exact += anchor(3, 1.5 + 0.05 * i, "");
+        if (i < 5) biased += anchor(5, 2.2, " bias=0.5");
+    }
+    const auto error = [&](const std::string& room) {
+        const auto tags = tagsIn(room + thing, biased + exact, {.noise_seed = 1});
+        return length(tags.at(0).fix.value().position - Point3{0, 0, 1});
+    };
+    EXPECT_LT(error(""), 1e-5);
+    EXPECT_GT(error("wall from=1,-3 to=1,-1\n"), 1e-3) << "farther ones instead of those behind it";
+}
+
 TEST(UwbRanges, HaveErrorsInSightAndLargerOnesThroughWalls) {
     const std::string keys = "uwb at=0,0,1 bias=0.1 sigma=0.05 blocked=0.4,0.2\n";
     constexpr int kFrames = 600;
