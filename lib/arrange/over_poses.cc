@@ -125,16 +125,38 @@ poses::Sector sectorOf(const Laser& laser, const Box2& box) {
             laser.first.radians(), laser.min_range};
 }
 
+/// Returns placements of all sensors: those placed, and the others at the pose of the last of them,
+/// or at a point of the floor. \pre the floor is not empty
+std::vector<Placement> placementsOfAll(const MeasuredScene& model, const std::vector<Region>& floor,
+                                       const std::vector<Placement>& placed) {
+    Pose3 spare;
+    if (placed.empty()) {
+        const Triangulation mesh = triangulate(floor.front());
+        spare.position.z = heightOf(model.options());
+        for (const auto corner : mesh.triangles.front()) {
+            spare.position.x += mesh.vertices[corner].x / 3;
+            spare.position.y += mesh.vertices[corner].y / 3;
+        }
+    } else {
+        spare = placed.back().pose;
+    }
+    std::vector<Pose3> poses;
+    for (const Placement& placement : placed) poses.push_back(placement.pose);
+    poses.resize(static_cast<std::size_t>(model.groups().front().most), spare);
+    return placementsOf(model.scene(), model.groups(), kindsOf(model.groups()), {std::move(poses)});
+}
+
 /// Layouts near poses of boxes, by refinement.
 class LayoutTrials {
   public:
+    /// \param all placements of all sensors: a layout may have more than were placed
     LayoutTrials(MeasuredScene& model, const std::vector<Region>& floor,
-                 const Arrangement& arrangement)
+                 const std::vector<Placement>& placed, const std::vector<Placement>& all)
         : model_(model), floor_(floor) {
-        for (const Placement& placement : arrangement.sensors)
+        for (const Placement& placement : all)
             sensors_.push_back(sensorOf(model.groups(), placement));
-        const ExactGain gain(model.scene(), model.sight(), sensors_, model.options().weights,
-                             model.options().redundancy);
+        const ExactGain gain(model.scene(), model.sight(), std::span(sensors_).first(placed.size()),
+                             model.options().weights, model.options().redundancy);
         found_ = gain.value();
         total_ = gain.total();
     }
@@ -251,12 +273,13 @@ void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
 }
 
 void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& progress) {
-    if (arrangement.sensors.empty()) return;
     const std::vector<Region> floor = floorAt(model.scene(), heightOf(model.options()));
+    if (floor.empty()) return;
     const auto& laser = std::get<Laser>(model.groups().front().model);
     const poses::PoseFloor cells(floor, kCells, weightingOf(model.options().weights));
     const poses::Sector sector = sectorOf(laser, cells.box());
-    const LayoutTrials trials(model, floor, arrangement);
+    std::vector<Placement> all = placementsOfAll(model, floor, arrangement.sensors);
+    const LayoutTrials trials(model, floor, arrangement.sensors, all);
     PoseSearchOptions options{.sensors = model.groups().front().most,
                               .times = model.options().redundancy,
                               .found = trials.found(),
@@ -276,10 +299,14 @@ void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& prog
     const PosedLayout& layout = found.found;
     if (share.results != nullptr && !layout.poses.empty()) trials.mustSee(layout);
     for (std::size_t i = 0; i < layout.poses.size(); ++i) {
-        Pose3& pose = arrangement.sensors[i].pose;
+        Pose3& pose = all[i].pose;
         pose.position.x = layout.poses[i].position.x;
         pose.position.y = layout.poses[i].position.y;
         pose.heading = layout.poses[i].heading;
+    }
+    if (!layout.poses.empty()) {
+        arrangement.sensors = std::move(all);
+        arrangement.unplaced = 0;
     }
     arrangement.refined_after = std::max(arrangement.refined_after, layout.area);
     const double bound = std::min(found.bound, trials.total());

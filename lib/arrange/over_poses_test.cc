@@ -8,6 +8,8 @@
 
 #include "scene/placement_schemas.h"
 #include "support/test_arrange.h"
+#include "support/test_problems.h"
+#include "support/test_results.h"
 
 namespace ispace {
 namespace {
@@ -128,6 +130,63 @@ TEST(OverPoses, BoundsTheCoverageOfAnyPoses) {
     EXPECT_EQ(result.text("proof"), "poses");
     EXPECT_NEAR(result.number("value"), found.poses_bound->found / 96, 1e-9);
     EXPECT_GE(result.number("bound"), result.number("value"));
+}
+
+TEST(OverPoses, SearchesAllSensorsIfFewerWerePlaced) {
+    const Scene scene = roomScene("#env 1\nfence path=0,0;6,0;6,5;0,5 closed=yes\ninside at=3,2\n");
+    ArrangeOptions options = coarse();
+    options.refine = options.over_poses = true;
+    options.strategy = Strategy::List;
+    options.list = {{{0.5, 0.5}, {Angle()}}};
+    options.search.gap = 0.45;
+    const auto groups = groupsOf(scene, {"laser,range=2,fov=360:2"});
+    const double disc = 4 * std::numbers::pi;
+    for (const int redundancy : {1, 2}) {
+        options.redundancy = redundancy;
+        const Arrangement found = arranged(scene, groups, options);
+        ASSERT_TRUE(found.poses_bound) << redundancy;
+        EXPECT_EQ(found.sensors.size(), 2U);
+        EXPECT_EQ(found.unplaced, 0U);
+        EXPECT_NE(found.sensors.front().sensor, found.sensors.back().sensor);
+        EXPECT_TRUE(found.is_complete);
+        EXPECT_GE(found.poses_bound->found, 0.55 * found.poses_bound->bound - 1e-9);
+        EXPECT_LE(found.poses_bound->found, disc * (redundancy == 1 ? 2 : 1) + 1e-9);
+        EXPECT_LE(found.poses_bound->bound, 30 + 1e-9);
+    }
+}
+
+TEST(OverPoses, KeepsTheStateOfAllSensorsIfFewerWerePlaced) {
+    const Scene scene = roomScene("#env 1\nfence path=0,0;6,0;6,5;0,5 closed=yes\ninside at=3,2\n");
+    ArrangeOptions options = coarse();
+    options.refine = options.over_poses = true;
+    options.strategy = Strategy::List;
+    options.list = {{{0.5, 0.5}, {Angle()}}};
+    options.search.gap = 0.45;
+    const auto groups = groupsOf(scene, {"laser,range=2,fov=360:2"});
+    const Arrangement single = arranged(scene, groups, options);
+    TestResults kept;
+    Arrangement last;
+    int runs = 0;
+    for (int asking = 40;; asking *= 2) {
+        TestResults results(true);
+        results.takeFrom(kept);
+        results.get()->setInterval(0);
+        options.search.share.results = results.get();
+        StopWhen stop(afterAsking(asking));
+        last = arrange(scene, groups, options, stop);
+        kept.takeFrom(results);
+        ++runs;
+        if (!stop.stopped()) break;
+    }
+    EXPECT_GT(runs, 1);
+    ASSERT_TRUE(last.poses_bound);
+    EXPECT_EQ(last.poses_bound->found, single.poses_bound->found);
+    EXPECT_EQ(last.sensors.size(), 2U);
+    // Another run takes the state of the whole search.
+    TestResults again(true);
+    again.takeFrom(kept);
+    options.search.share.results = again.get();
+    EXPECT_EQ(arranged(scene, groups, options).poses_bound->bound, last.poses_bound->bound);
 }
 
 TEST(OverPoses, TheLastZoneOfAPointDecidesItsWeight) {
