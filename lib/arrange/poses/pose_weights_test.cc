@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "arrange/poses/multiple_bound.h"
 #include "arrange/poses/pose_search.h"
 #include "geom/overlay/overlay.h"
 #include "support/test_pose_floors.h"
@@ -162,6 +163,63 @@ TEST(PoseWeights, NeverBelowRandomLayouts) {
                 EXPECT_LE(found.bound, (rounds == 40 ? 3 : 20) * best);
             }
         }
+}
+
+/// Divides boxes at random; returns those with views.
+std::vector<BoxId> weighedBoxes(PoseBoxes& boxes, std::mt19937& random, int halvings) {
+    std::vector<BoxId> whole = {0};
+    for (int i = 0; i < halvings; ++i) {
+        const std::size_t which = random() % whole.size();
+        const BoxId id = whole[which];
+        boxes.splitWithViews({id});
+        whole.erase(whole.begin() + static_cast<std::ptrdiff_t>(which));
+        for (BoxId half = boxes[id].child; half < boxes[id].child + 2; ++half)
+            if (!boxes[half].isBlind()) whole.push_back(half);
+    }
+    return whole;
+}
+
+TEST(PoseWeights, PosesInTheBoxesSeeNoMore) {
+    const Region region = roomsWithPillar();
+    const WeightedAreas areas(region, weighting());
+    const PoseFloor floor({&region, 1}, kCells, weighting());
+    std::mt19937 random(8);
+    const auto draw = [&random](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    for (const Sector& sector : {Sector{3, 2, -1}, Sector{20, 2 * kPi, 0}}) {
+        const SeenAreas seen(region, sector);
+        PoseBoxes boxes(floor, sector);
+        const std::vector<BoxId> whole = weighedBoxes(boxes, random, 300);
+        int compared = 0;
+        for (int i = 0; i < 150; ++i) {
+            const auto sensors = static_cast<std::size_t>(1 + i % 3);
+            std::vector<BoxId> ids;
+            std::vector<Polygon> views;
+            for (int tries = 0; ids.size() < sensors && tries < 500; ++tries) {
+                const BoxId id =
+                    !ids.empty() && random() % 2 == 0 ? ids.back() : whole[random() % whole.size()];
+                const PoseBox& box = boxes[id].box;
+                const Point2 p{draw(box.at.low.x, box.at.high.x),
+                               draw(box.at.low.y, box.at.high.y)};
+                if (region.locate(p) != Side::Inside) continue;
+                ids.push_back(id);
+                views.push_back(
+                    seen.viewFrom({p, Angle::radians(draw(box.from, box.from + box.span))}));
+            }
+            if (ids.size() < sensors) continue;
+            ++compared;
+            EXPECT_GE(boxes.unionOf({}, ids) + 1e-9, areas.of(views, 1)) << sensors;
+            for (std::size_t times = 1; times <= sensors; ++times)
+                EXPECT_GE(MultipleBound(floor, boxes, sensors, times).of(ids, 0) + 1e-9,
+                          areas.of(views, static_cast<int>(times)))
+                    << sensors << ' ' << times;
+            const PoseBoxes::Known first{{ids[0]}, 1, boxes[ids[0]].most};
+            EXPECT_GE(boxes.unionOf({&first, 1}, {ids.begin() + 1, ids.end()}) + 1e-9,
+                      areas.of(views, 1));
+        }
+        EXPECT_GT(compared, 100);
+    }
 }
 
 }  // namespace
