@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <random>
 #include <string>
 #include <vector>
@@ -148,6 +151,35 @@ TEST(PoseShare, DamagedStatesAreRefused) {
     }
 }
 
+TEST(PoseShare, NegativeBoundsOfTuplesAreRefused) {
+    const Case own{2, 1, 0.001, {}};
+    TestResults kept;
+    stopSoon(own, kept);
+    std::string bytes = kept.get()->find("posestate1").value();
+    const auto number_at = [&bytes](std::size_t at) {
+        std::uint64_t number = 0;
+        std::memcpy(&number, &bytes.at(at), sizeof number);
+        return number;
+    };
+    // At the end: the bounds, the boxes and nodes, and a tree of one node, each after its count.
+    constexpr std::size_t kTree = 8 + 3 * 4, kBound = 8, kTuple = (kMostPosed + 1) * 4;
+    std::size_t count = 1, end = 0;
+    for (;; ++count) {
+        ASSERT_LT(kTree + 16 + count * (kBound + kTuple), bytes.size());
+        end = bytes.size() - kTree - 8 - count * kTuple;
+        if (number_at(end) == count * (kMostPosed + 1) &&
+            number_at(end - count * kBound - 8) == count)
+            break;
+    }
+    for (const double bound : {-1.0, -1e-300, std::nan("")}) {
+        std::memcpy(&bytes.at(end - kBound), &bound, sizeof bound);
+        TestResults again;
+        again.get()->store("posestate1", bytes);
+        StopWhen soon(afterAsking(3));
+        EXPECT_THROW((void)own.run({.results = again.get()}, nullptr, soon), FormatError) << bound;
+    }
+}
+
 TEST(PoseShare, ChangedStatesEndInABoundOrARefusal) {
     std::mt19937 random(4);
     const Case own{3, 1, 0.001, {}};
@@ -167,7 +199,9 @@ TEST(PoseShare, ChangedStatesEndInABoundOrARefusal) {
             again.get()->store("posestate1", changed);
             try {
                 StopWhen soon(afterAsking(3));
-                EXPECT_GE(own.run({.results = again.get()}, &certificate, soon).bound, 0);
+                const PoseBound ended = own.run({.results = again.get()}, &certificate, soon);
+                EXPECT_GE(ended.bound, std::max(1.0, ended.found.area));
+                EXPECT_TRUE(std::isfinite(ended.bound));
             } catch (const FormatError&) {
                 ++refused;
             }

@@ -115,7 +115,8 @@ void PoseSearcher::unpackTuples(Unpacker& from) {
     std::vector<BoxId> open;
     for (std::size_t i = 0; i < bounds.size(); ++i) {
         Tuple tuple{std::bit_cast<double>(bounds[i]), {}, tuples[kNumbers * i + kMostPosed]};
-        if (!std::isfinite(tuple.bound) || tuple.node >= tree_.size()) Unpacker::refuse();
+        if (!std::isfinite(tuple.bound) || tuple.bound < 0 || tuple.node >= tree_.size())
+            Unpacker::refuse();
         for (std::size_t k = 0; k < kMostPosed; ++k) {
             tuple.boxes[k] = tuples[kNumbers * i + k];
             if (tuple.boxes[k] >= boxes_.size()) Unpacker::refuse();
