@@ -16,6 +16,7 @@
 #include "arrange/search/problem.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "base/packed.h"
 #include "coverage/coverage.h"
 #include "scene/placement_schemas.h"
 
@@ -306,6 +307,24 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
 
 namespace {
 
+/// Arranges as arrangeLimited(). \throws FormatError with the file of results that are not whole
+Arrangement arrangeFromResults(const Scene& scene, const std::vector<SensorGroup>& groups,
+                               const ArrangeOptions& options, Progress& progress,
+                               std::ostream* mps) {
+    try {
+        return arrangeLimited(scene, groups, options, progress, mps);
+    } catch (const PackedError&) {
+        const SearchShare& share = options.search.share;
+        if (share.results == nullptr) throw;
+        if (share.joined > 0)
+            throw FormatError({share.results->file(), 0, 0,
+                               "this part, or another one of the merge, is not whole: delete it "
+                               "and run its shard again"});
+        throw FormatError({share.results->file(), 0, 0,
+                           "it holds the state of an earlier run, which is not whole: delete it"});
+    }
+}
+
 /// Measures the privacy of a layout, and forbids the poses of placed cameras that see zones.
 std::vector<PrivacyResult> forbidWhatSees(const Scene& scene,
                                           const std::vector<SensorGroup>& groups,
@@ -336,12 +355,12 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
         return arrangeOverPoses(limited, limited_groups, options, progress);
     if (options.over_poses) mustBeBoundable(limited, limited_groups, options);
     if (options.privacy.empty())
-        return arrangeLimited(limited, limited_groups, options, progress, mps);
+        return arrangeFromResults(limited, limited_groups, options, progress, mps);
     // Cells may miss what the exact regions see.
     constexpr std::size_t kMostRounds = 100;
     ArrangeOptions stricter = options;
     for (std::size_t round = 1;; ++round) {
-        Arrangement found = arrangeLimited(limited, limited_groups, stricter, progress, mps);
+        Arrangement found = arrangeFromResults(limited, limited_groups, stricter, progress, mps);
         const std::size_t before = stricter.mount.forbidden.size();
         found.privacy = forbidWhatSees(scene, groups, found, stricter);
         for (Arrangement& other : found.alternatives)

@@ -187,6 +187,18 @@ TEST(OverPoses, KeepsTheStateOfAllSensorsIfFewerWerePlaced) {
     again.takeFrom(kept);
     options.search.share.results = again.get();
     EXPECT_EQ(arranged(scene, groups, options).poses_bound->bound, last.poses_bound->bound);
+    // A damaged one is refused by the name of its file.
+    TestResults damaged(true);
+    damaged.takeFrom(kept);
+    damaged.get()->store("posestate1", kept.get()->find("posestate1").value().substr(0, 30));
+    options.search.share.results = damaged.get();
+    try {
+        (void)arranged(scene, groups, options);
+        ADD_FAILURE() << "a damaged state is taken";
+    } catch (const FormatError& error) {
+        EXPECT_EQ(error.diagnostics().front().file, damaged.get()->file());
+        EXPECT_NE(std::string(error.what()).find("delete it"), std::string::npos);
+    }
 }
 
 TEST(OverPoses, TheLastZoneOfAPointDecidesItsWeight) {

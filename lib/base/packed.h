@@ -44,7 +44,14 @@ class Packer {
     std::string bytes_;
 };
 
-/// Reads the bytes of a Packer. \throws FormatError if there are too few bytes
+/// Packed bytes are not those of their writer; the reader knows no file.
+class PackedError : public FormatError {
+  public:
+    PackedError()
+        : FormatError({"", 0, 0, "what an earlier run or another shard left is not whole"}) {}
+};
+
+/// Reads the bytes of a Packer. \throws PackedError if there are too few bytes
 class Unpacker {
   public:
     /// \pre `bytes` outlive the reader
@@ -69,9 +76,7 @@ class Unpacker {
         return {all_of_it.begin(), all_of_it.end()};
     }
     [[nodiscard]] bool atEnd() const { return rest_.empty(); }
-    [[noreturn]] static void refuse() {
-        throw FormatError({"", 0, 0, "what an earlier run or another shard left is not whole"});
-    }
+    [[noreturn]] static void refuse() { throw PackedError(); }
 
   private:
     void take(void* to, std::size_t count, std::size_t size) {
