@@ -141,6 +141,7 @@ std::vector<Placement> placementsOfAll(const MeasuredScene& model, const std::ve
         spare = placed.back().pose;
     }
     std::vector<Pose3> poses;
+    poses.reserve(placed.size());
     for (const Placement& placement : placed) poses.push_back(placement.pose);
     poses.resize(static_cast<std::size_t>(model.groups().front().most), spare);
     return placementsOf(model.scene(), model.groups(), kindsOf(model.groups()), {std::move(poses)});
