@@ -194,7 +194,7 @@ class Surroundings {
         }
         constexpr double kFlat = 1e-6;  // a rim that is hardly a body
         for (const Region& part : overlay.regions(is_open)) {
-            if (shortestEdge(part.outline) < 2 * kFlat) continue;  // nothing is seen through it
+            if (shortestEdge(part.outline) < 2 * kFlat) continue;  // no ray passes it
             TupleList path;
             for (const Point2 corner : part.outline) path.push_back({corner.x, corner.y});
             Record rim(*sceneSchemas().find("fence"));

@@ -34,7 +34,7 @@ struct PosedLayout {
 /// subtrees that holds even if it was cut short; the merge takes the best layout and the highest
 /// bound.
 struct PoseShare {
-    JobResults* results = nullptr;  ///< null: nothing is stored
+    JobResults* results = nullptr;  ///< null: do not store steps
     std::optional<Shard> own = {};  ///< search its share alone
     int joined = 0;                 ///< of a merge: the number of shards
 };
