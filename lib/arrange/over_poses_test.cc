@@ -132,13 +132,21 @@ TEST(OverPoses, BoundsTheCoverageOfAnyPoses) {
     EXPECT_GE(result.number("bound"), result.number("value"));
 }
 
-TEST(OverPoses, SearchesAllSensorsIfFewerWerePlaced) {
-    const Scene scene = roomScene("#env 1\nfence path=0,0;6,0;6,5;0,5 closed=yes\ninside at=3,2\n");
+constexpr const char* kPlainRoom = "#env 1\nfence path=0,0;6,0;6,5;0,5 closed=yes\ninside at=3,2\n";
+
+/// Options whose candidates are one pose, so that a search over candidates places one sensor.
+ArrangeOptions fromOnePlace() {
     ArrangeOptions options = coarse();
     options.refine = options.over_poses = true;
     options.strategy = Strategy::List;
     options.list = {{{0.5, 0.5}, {Angle()}}};
     options.search.gap = 0.45;
+    return options;
+}
+
+TEST(OverPoses, SearchesAllSensorsIfFewerWerePlaced) {
+    const Scene scene = roomScene(kPlainRoom);
+    ArrangeOptions options = fromOnePlace();
     const auto groups = groupsOf(scene, {"laser,range=2,fov=360:2"});
     const double disc = 4 * std::numbers::pi;
     for (const int redundancy : {1, 2}) {
@@ -156,12 +164,8 @@ TEST(OverPoses, SearchesAllSensorsIfFewerWerePlaced) {
 }
 
 TEST(OverPoses, KeepsTheStateOfAllSensorsIfFewerWerePlaced) {
-    const Scene scene = roomScene("#env 1\nfence path=0,0;6,0;6,5;0,5 closed=yes\ninside at=3,2\n");
-    ArrangeOptions options = coarse();
-    options.refine = options.over_poses = true;
-    options.strategy = Strategy::List;
-    options.list = {{{0.5, 0.5}, {Angle()}}};
-    options.search.gap = 0.45;
+    const Scene scene = roomScene(kPlainRoom);
+    ArrangeOptions options = fromOnePlace();
     const auto groups = groupsOf(scene, {"laser,range=2,fov=360:2"});
     const Arrangement single = arranged(scene, groups, options);
     TestResults kept;
