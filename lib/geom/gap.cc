@@ -149,9 +149,10 @@ class GapFinder {
             if (width > kOnLine && width <= widest && isNearestOfItsNeighbours(end, to, width))
                 ways.push_back({width, to, lines_.source[i]});
         };
-        // Crowded lines lie much closer than evenly spread ones.
-        constexpr double kCrowded = 1.0 / 4096;
-        for (double reach = kCrowded * std::min(first_reach_, widest);; reach *= 4) {
+        // Crowded lines lie much closer than evenly spread ones: three steps lead to those.
+        constexpr double kStep = 16, kCrowded = 1 / (kStep * kStep * kStep);
+        const double even = std::min(first_reach_, widest);
+        for (double reach = kCrowded * even;; reach *= reach < even ? kStep : 4) {
             ways.clear();
             tree_.search({end, end}, reach, collect);
             std::sort(ways.begin(), ways.end());

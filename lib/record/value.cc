@@ -283,7 +283,7 @@ void refuseNonFinite(const KeySpec& key, std::string_view text) {
     if (bare.starts_with('+') || bare.starts_with('-')) bare.remove_prefix(1);
     if (bare.starts_with('.')) bare.remove_prefix(1);
     constexpr std::size_t kLongest = 8;
-    if (bare.size() > kLongest) return;
+    if (bare.size() > kLongest || (!bare.empty() && isDigit(bare.front()))) return;
     std::string lower(bare);
     for (char& c : lower)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');

@@ -19,6 +19,9 @@ bool isTypeCharacter(char c) {
     return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
+/// Returns true if a string or comment may begin with this character.
+bool mayQuote(char c) { return c == '\'' || c == '/'; }
+
 /// Returns the index behind the string or comment that begins at `at`, or `at` if neither does.
 std::size_t skipQuoted(std::string_view text, std::size_t at) {
     if (text[at] == '\'') {
@@ -55,11 +58,12 @@ std::vector<StepValue> valuesIn(std::string_view text) {
         begin = end + 1;
     };
     for (std::size_t at = 0; at < text.size();) {
-        if (const std::size_t next = skipQuoted(text, at); next != at) {
+        const char c = text[at];
+        const std::size_t next = mayQuote(c) ? skipQuoted(text, at) : at;
+        if (next != at) {
             at = next;
             continue;
         }
-        const char c = text[at];
         if (c == ';') break;  // cut off
         if (c == '(') ++depth;
         if (c == ',' && depth == 1) add(at);
@@ -84,7 +88,7 @@ StepFile::StepFile(std::string_view bytes) : bytes_(bytes) {
         begin = skipBlanks(bytes, begin);
         std::size_t end = begin;
         while (end < bytes.size() && bytes[end] != ';') {
-            const std::size_t next = skipQuoted(bytes, end);
+            const std::size_t next = mayQuote(bytes[end]) ? skipQuoted(bytes, end) : end;
             end = std::max(next, end + 1);
         }
         addStatement(bytes.substr(begin, end - begin), begin);

@@ -248,15 +248,16 @@ class SlitFilling {
             at.y + 1 >= room_.floor.height() || room_.floor.contains(at.x, at.y) ||
             room_.occupied.contains(at.x, at.y))
             return false;
-        std::array<bool, 8> is_floor{};
-        for (std::size_t i = 0; i < 8; ++i)
-            is_floor[i] = room_.floor.contains(at.x + kAround[i].x, at.y + kAround[i].y);
+        const auto is_floor = [&](std::size_t i) {
+            const CellIndex step = kAround[i % kAround.size()];
+            return room_.floor.contains(at.x + step.x, at.y + step.y);
+        };
         int sides = 0, groups = 0;
-        for (std::size_t i = 0; i < 8; ++i) {
-            if (i % 2 == 0 && is_floor[i]) ++sides;
-            if (!is_floor[i] && is_floor[(i + 7) % 8]) ++groups;
-        }
-        return sides >= 3 && groups == 1;
+        for (std::size_t i = 0; i < kAround.size(); i += 2) sides += is_floor(i) ? 1 : 0;
+        if (sides < 3) return false;  // most cells
+        for (std::size_t i = 0; i < kAround.size(); ++i)
+            groups += is_floor(i) && !is_floor(i + 1) ? 1 : 0;
+        return groups == 1;
     }
 
     MapRoom& room_;
