@@ -53,6 +53,10 @@ TEST(SimAriaFunctors, StoredAndGivenParameters) {
     ArGlobalRetFunctor2<int, int, int> global(&product, 6, 7);
     EXPECT_EQ(global.invokeR(), 42);
     EXPECT_EQ(global.invokeR(2), 14);
+    ArFunctorC<Callee> empty;
+    ArFunctor1C<Callee, int> empty1;
+    empty.invoke();
+    empty1.invoke(5);
     none.setName("%s %d", "task", 1);
     EXPECT_STREQ(none.getName(), "task 1");
 }
@@ -219,6 +223,22 @@ TEST(SimAriaArguments, ValuesDefaultsAndTheRest) {
     EXPECT_STREQ(parser.getArg(0), "rest");
     EXPECT_FALSE(parser.checkHelpAndWarnUnparsed());
     EXPECT_TRUE(parser.checkHelpAndWarnUnparsed(1));
+}
+
+TEST(SimAriaArguments, WordsAsNumbers) {
+    ArArgumentBuilder builder;
+    builder.addPlain("42 -3.5 true 4x \"\" 0");
+    bool ok = false;
+    EXPECT_EQ(builder.getArgInt(0, &ok), 42);
+    EXPECT_TRUE(ok && builder.isArgInt(5));
+    EXPECT_EQ(builder.getArgInt(1), 0);
+    EXPECT_EQ(builder.getArgDouble(1, &ok), -3.5);
+    EXPECT_TRUE(ok);
+    for (const std::size_t i : {1U, 2U, 3U, 4U, 6U}) EXPECT_FALSE(builder.isArgInt(i)) << i;
+    for (const std::size_t i : {2U, 3U, 4U, 6U}) EXPECT_FALSE(builder.isArgDouble(i)) << i;
+    EXPECT_TRUE(builder.getArgBool(2, &ok) && ok);
+    EXPECT_FALSE(builder.getArgBool(5, &ok));
+    EXPECT_TRUE(ok && builder.isArgBool(2) && !builder.isArgBool(0) && !builder.isArgBool(6));
 }
 
 TEST(SimAriaSockets, ALineEachWay) {

@@ -53,6 +53,37 @@ class ArArgumentBuilder {
     const char* getArg(std::size_t i) const {
         return i < myWords.size() ? myWords[i].c_str() : nullptr;
     }
+    /// The word as a number, 0 if it is none; `ok` tells which.
+    int getArgInt(std::size_t i, bool* ok = nullptr) const {
+        return static_cast<int>(parsed(i, ok, [](const char* text, char** end) {
+            return static_cast<double>(std::strtol(text, end, 10));
+        }));
+    }
+    double getArgDouble(std::size_t i, bool* ok = nullptr) const {
+        return parsed(i, ok, [](const char* text, char** end) { return std::strtod(text, end); });
+    }
+    /// true or 1, false or 0
+    bool getArgBool(std::size_t i, bool* ok = nullptr) const {
+        const char* const text = i < myWords.size() ? getArg(i) : "";
+        const bool on = ArUtil::strcasequal(text, "true") || std::strcmp(text, "1") == 0;
+        if (ok) *ok = on || ArUtil::strcasequal(text, "false") || std::strcmp(text, "0") == 0;
+        return on;
+    }
+    bool isArgInt(std::size_t i) const {
+        bool ok = false;
+        getArgInt(i, &ok);
+        return ok;
+    }
+    bool isArgDouble(std::size_t i) const {
+        bool ok = false;
+        getArgDouble(i, &ok);
+        return ok;
+    }
+    bool isArgBool(std::size_t i) const {
+        bool ok = false;
+        getArgBool(i, &ok);
+        return ok;
+    }
     void removeArg(std::size_t i) {
         if (i >= myWords.size()) return;
         myWords.erase(myWords.begin() + static_cast<std::ptrdiff_t>(i));
@@ -65,6 +96,15 @@ class ArArgumentBuilder {
     }
 
   private:
+    template <class Parse>
+    double parsed(std::size_t i, bool* ok, const Parse& parse) const {
+        const char* const text = i < myWords.size() ? getArg(i) : "";
+        char* end = nullptr;
+        const double value = parse(text, &end);
+        const bool good = end != text && *end == 0;
+        if (ok) *ok = good;
+        return good ? value : 0;
+    }
     void refer() {
         myPointers.clear();
         for (std::string& word : myWords) myPointers.push_back(&word[0]);

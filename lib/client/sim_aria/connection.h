@@ -121,6 +121,7 @@ class ArSerialConnection : public ArDeviceConnection {
     }
     void setPort(const char* port = nullptr) { myPort = port ? port : "/dev/ttyS0"; }
     const char* getPort() const { return myPort.c_str(); }
+    const char* getPortName() const { return myPort.c_str(); }
     bool setBaud(int baud) {
         myBaud = baud;
         return true;

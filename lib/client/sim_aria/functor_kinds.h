@@ -12,6 +12,8 @@
 template <class T>
 class ArFunctorC : public sim_aria::Call0 {
   public:
+    /// Does nothing.
+    ArFunctorC() : sim_aria::Call0([] {}) {}
     ArFunctorC(T* object, void (T::*function)())
         : sim_aria::Call0([=]() { (object->*function)(); }) {}
     ArFunctorC(T& object, void (T::*function)()) : ArFunctorC(&object, function) {}
@@ -20,6 +22,7 @@ class ArFunctorC : public sim_aria::Call0 {
 template <class T, class P1>
 class ArFunctor1C : public sim_aria::Call1<P1> {
   public:
+    ArFunctor1C() : sim_aria::Call1<P1>([](P1) {}, sim_aria::Stored<P1>()) {}
     ArFunctor1C(T* object, void (T::*function)(P1),
                 sim_aria::Stored<P1> p1 = sim_aria::Stored<P1>())
         : sim_aria::Call1<P1>([=](P1 a1) { (object->*function)(std::forward<P1>(a1)); }, p1) {}

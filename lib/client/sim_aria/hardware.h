@@ -54,6 +54,7 @@ class ArAnalogGyro {
     bool isActive() const { return false; }
     bool haveGottenData() const { return false; }
     bool hasNoInternalData() const { return true; }
+    bool hasGyroOnlyMode() const { return false; }
     bool isGyroOnlyActive() const { return false; }
     void activate() {}
     void activateGyroOnly() {}
@@ -118,6 +119,31 @@ class ArMTXIO {
         return false;
     }
     ArMutex myMutex;
+};
+
+/// The battery of a Pioneer LX: none is connected, commands return false.
+class ArBatteryMTX {
+  public:
+    explicit ArBatteryMTX(int batteryBoardNum = 0, const char* name = "MTXBattery",
+                          ArDeviceConnection* /*connection*/ = nullptr,
+                          ArRobot* /*robot*/ = nullptr)
+        : myName(std::string(name) + std::to_string(batteryBoardNum)) {}
+    virtual ~ArBatteryMTX() {}
+    const char* getName() const { return myName.c_str(); }
+    bool blockingConnect() { return false; }
+    bool asyncConnect() { return false; }
+    bool disconnect() { return false; }
+    bool isConnected() const { return false; }
+    bool isTryingToConnect() const { return false; }
+    int getChargeState() const { return -1; }
+    bool sendStartCharge() { return false; }
+    bool sendStopCharge() { return false; }
+    bool sendPowerOff() { return false; }
+    bool sendPowerOffCancel() { return false; }
+    bool sendEmergencyPowerOff() { return false; }
+
+  private:
+    std::string myName;
 };
 
 /// A pan-tilt unit or camera: there is none. Stores the last command, as ARIA does for units that

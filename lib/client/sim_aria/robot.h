@@ -19,7 +19,9 @@
 #include <sim_aria/motion.h>
 #include <sim_aria/robot_state.h>
 
+class ArBatteryMTX;
 class ArLaser;
+class ArPTZ;
 
 /// A robot of simrun as ARIA's: mm, degrees, mm/s, degrees/s. Takes the first free robot, of those
 /// in the variable ISPACE_ROBOT ("r1,r2") if set. Its pose is its odometry since the connection.
@@ -157,6 +159,12 @@ class ArRobot : public sim_aria::RobotState {
     void clearDirectMotion() {
         myMotion.clear();
         myDirect = false;
+        myReflects = true;
+    }
+    /// Sends no motion in the cycles until the next motion or clearDirectMotion().
+    void stopStateReflection() {
+        takeOver();
+        myReflects = false;
     }
     bool isDirectMotion() const { return myDirect; }
     /// Lets actions continue this long after the last direct motion; 0: never.
@@ -244,6 +252,11 @@ class ArRobot : public sim_aria::RobotState {
     int getNumLasers() const { return static_cast<int>(myLasers.size()); }
     bool hasLaser(int number) const { return findLaser(number) != nullptr; }
 
+    /// Devices that a program adds; a robot of simrun has none.
+    void setPTZ(ArPTZ* camera) { myCamera = camera; }
+    ArPTZ* getPTZ() const { return myCamera; }
+    std::map<int, ArBatteryMTX*>* getBatteryMap() { return &myBatteries; }
+
     const char* getName() const { return myName.c_str(); }
     void setName(const char* name) { myName = name; }
 
@@ -285,6 +298,7 @@ class ArRobot : public sim_aria::RobotState {
     /// Direct motion begins.
     void takeOver() {
         myDirect = true;
+        myReflects = true;
         myDirectSince.setToNow();
         myMotion.unlimited();
     }
@@ -304,7 +318,7 @@ class ArRobot : public sim_aria::RobotState {
     ArPose myMoved, myMovedFrom;  // a packet's pose at myMovedFrom is reported as myMoved
     double mySentVel = 0, mySentRotVel = 0;
     ArTime mySent, myDirectSince;
-    bool myDirect = false;
+    bool myDirect = false, myReflects = true;
     int myPrecedence = 0;
 
     Tasks mySensorTasks, myUserTasks;
@@ -316,6 +330,8 @@ class ArRobot : public sim_aria::RobotState {
     ArResolver::ActionMap myActions;
     std::list<ArRangeDevice*> myDevices;
     std::map<int, ArLaser*> myLasers;
+    ArPTZ* myCamera = nullptr;
+    std::map<int, ArBatteryMTX*> myBatteries;
 };
 
 #include <sim_aria/robot_cycle.h>

@@ -41,12 +41,13 @@ inline bool ArRobot::connect() {
 }
 
 inline void ArRobot::adoptFigures() {
-    myConfig.myName = myLink->id();
-    myConfig.mySubType = myParams.mySubClass = subTypeOf(myLink->model());
-    myConfig.myVel = myLink->maxVel();
-    myConfig.myRotVel = myLink->maxRotVel();
-    myConfig.myAccel = myLink->accel();
-    myConfig.myRotAccel = myLink->rotAccel();
+    sim_aria::FirmwareFigures& figures = myConfig.myFigures;
+    figures.name = myLink->id();
+    figures.sub_type = myParams.mySubClass = subTypeOf(myLink->model());
+    figures.vel = myLink->maxVel();
+    figures.rot_vel = myLink->maxRotVel();
+    figures.accel = myLink->accel();
+    figures.rot_accel = myLink->rotAccel();
     myParams.myRadius = myLink->radius();
     myParams.myFrontBumpers = myLink->frontBumpers();
     myParams.myRearBumpers = myLink->rearBumpers();
@@ -54,6 +55,9 @@ inline void ArRobot::adoptFigures() {
     for (const ArPose& at : myLink->sonars())
         mySonars.push_back(ArSensorReading(at.getX(), at.getY(), at.getTh()));
     myParams.myNumSonar = getNumSonar();
+    figures.front_bumpers = myLink->frontBumpers();
+    figures.rear_bumpers = myLink->rearBumpers();
+    figures.sonars = getNumSonar();
     myParams.myLasers.clear();
     for (const std::string& id : myLink->lasers()) myParams.myLasers.push_back(myLink->mount(id));
     myMotion = sim_aria::Motion();
@@ -110,6 +114,7 @@ inline void ArRobot::read() {
 /// Sends changed speeds; the server keeps them. Repeats both twice a second to a stalled robot,
 /// since a Pioneer keeps pushing.
 inline void ArRobot::send() {
+    if (!myReflects) return;
     const double vel = myMotorsEnabled ? myMotion.vel(myPose) : 0;
     const double rot_vel = myMotorsEnabled ? myMotion.rotVel(myPose) : 0;
     const bool changed = vel != mySentVel || rot_vel != mySentRotVel;

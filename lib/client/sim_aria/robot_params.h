@@ -2,7 +2,6 @@
 #ifndef SIM_ARIA_ROBOT_PARAMS_H
 #define SIM_ARIA_ROBOT_PARAMS_H
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,8 @@ class ArRobotParams {
     double getRobotWidth() const { return 2 * myRadius; }
     double getRobotLength() const { return 2 * myRadius; }
     bool getHaveRotVel() const { return true; }
+    /// The firmware drives distances by itself.
+    bool hasMoveCommand() const { return true; }
     bool hasTableSensingIR() const { return false; }
     bool haveFrontBumpers() const { return myFrontBumpers > 0; }
     bool haveRearBumpers() const { return myRearBumpers > 0; }
@@ -47,41 +48,6 @@ class ArRobotParams {
     double myRadius = 250;
     int myFrontBumpers = 0, myRearBumpers = 0, myNumSonar = 0;
     std::vector<ArPose> myLasers;
-};
-
-/// Figures of a robot that its firmware reports.
-class ArRobotConfigPacketReader {
-  public:
-    bool hasPacketArrived() const { return true; }
-    bool requestPacket() const { return true; }
-    const char* getType() const { return "Pioneer"; }
-    const char* getSubType() const { return mySubType.c_str(); }
-    const char* getName() const { return myName.c_str(); }
-    const char* getSerialNumber() const { return "simrun"; }
-    /// 0: no gyroscope
-    int getGyroType() const { return 0; }
-    bool getHasGyro() const { return false; }
-    bool getHasCharger() const { return false; }
-    int getTransVelTop() const { return static_cast<int>(myVel + kNear); }
-    int getRotVelTop() const { return static_cast<int>(myRotVel + kNear); }
-    int getTransAccelTop() const { return ArMath::roundInt(myAccel); }
-    int getRotAccelTop() const { return ArMath::roundInt(myRotAccel); }
-    /// Limits until a program sets others, as a Pioneer's firmware has them.
-    int getTransVelMax() const { return std::min(750, getTransVelTop()); }
-    int getRotVelMax() const { return std::min(100, getRotVelTop()); }
-    int getTransAccel() const { return getTransAccelTop(); }
-    int getRotAccel() const { return getRotAccelTop(); }
-    int getSipCycleTime() const { return 100; }
-    int getSonarCycle() const { return 100; }
-    void log() const;
-    void logMovement() const { log(); }
-
-  private:
-    friend class ArRobot;
-
-    static constexpr double kNear = 1e-6;  // of metres in mm
-    std::string myName, mySubType;
-    double myVel = 0, myRotVel = 0, myAccel = 0, myRotAccel = 0;
 };
 
 #endif  // SIM_ARIA_ROBOT_PARAMS_H

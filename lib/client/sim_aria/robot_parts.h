@@ -320,4 +320,30 @@ inline const ArLaser* ArRobot::findLaser(int number) const {
     return found == myLasers.end() ? nullptr : found->second;
 }
 
+inline bool ArRobotConfigPacketReader::requestPacket() {
+    if (!myRobot) return true;
+    if (!myRobot->isConnected() || (myOnlyOnce && myRequested)) return false;
+    if (!myHandler) myHandler.reset(new Handler(this, &ArRobotConfigPacketReader::arrive));
+    myRobot->remPacketHandler(myHandler.get());
+    myRobot->addPacketHandler(myHandler.get(), ArListPos::FIRST);
+    myRequested = true;
+    myHasArrived = false;
+    return myRobot->comInt(ArCommands::CONFIG, 1);
+}
+
+inline bool ArRobotConfigPacketReader::arrive(ArRobotPacket* /*packet*/) {
+    myRobot->remPacketHandler(myHandler.get());
+    myFigures = myRobot->getOrigRobotConfig()->myFigures;
+    myHasArrived = true;
+    if (myArrivedCB) myArrivedCB->invoke();
+    return false;
+}
+
+/// The robot may have been destroyed before.
+inline ArRobotConfigPacketReader::~ArRobotConfigPacketReader() {
+    if (!myHandler) return;
+    for (ArRobot* robot : *Aria::getRobotList())
+        if (robot == myRobot) robot->remPacketHandler(myHandler.get());
+}
+
 #endif  // SIM_ARIA_ROBOT_PARTS_H

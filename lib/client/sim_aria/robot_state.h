@@ -12,6 +12,7 @@
 #include <sim_aria/link.h>
 #include <sim_aria/packet.h>
 #include <sim_aria/range_device.h>
+#include <sim_aria/robot_config.h>
 #include <sim_aria/robot_params.h>
 
 namespace sim_aria {
@@ -35,6 +36,12 @@ class RobotState {
     bool hasLatVel() const { return false; }
     double getLatVel() const { return 0; }
     ArPose getPose() const { return myPose; }
+    /// Distance (mm), direction and turn (degrees) from the robot to a point.
+    double findDistanceTo(ArPose to) const { return myPose.findDistanceTo(to); }
+    double findAngleTo(ArPose to) const { return myPose.findAngleTo(to); }
+    double findDeltaHeadingTo(ArPose to) const {
+        return ArMath::subAngle(findAngleTo(to), getTh());
+    }
     double getX() const { return myPose.getX(); }
     double getY() const { return myPose.getY(); }
     double getTh() const { return myPose.getTh(); }
@@ -93,6 +100,13 @@ class RobotState {
     bool isEStopPressed() const { return false; }
     bool getEstop() const { return false; }
     int getFlags() const { return myMotorsEnabled ? ArUtil::BIT0 : 0; }
+    /// Flags of later robots, which a Pioneer's packets do not have.
+    bool hasFaultFlags() const { return false; }
+    int getFaultFlags() const { return 0; }
+    bool hasFlags3() const { return false; }
+    int getFlags3() const { return 0; }
+    bool hasSettableVelMaxes() const { return true; }
+    bool hasSettableAccsDecs() const { return true; }
     bool areMotorsEnabled() const { return myMotorsEnabled; }
     bool areSonarsEnabled() const { return mySonarEnabled; }
     /// Voltage of a full battery; its charge is not simulated.
@@ -104,7 +118,9 @@ class RobotState {
     bool haveStateOfCharge() const { return false; }
     double getStateOfCharge() const { return 100; }
     double getStateOfChargeLow() const { return 0; }
+    double getStateOfChargeShutdown() const { return 0; }
     ChargeState getChargeState() const { return CHARGING_NOT; }
+    const char* getChargeStateName() const { return "not"; }
     bool isChargerPowerGood() const { return false; }
     bool hasTemperature() const { return false; }
     int getTemperature() const { return -128; }
@@ -122,7 +138,9 @@ class RobotState {
     int getIOAnalogSize() const { return 0; }
     int getIODigInSize() const { return 0; }
     int getIODigOutSize() const { return 0; }
-    int getCompass() const { return 0; }
+    /// No such packet comes: the time of the robot's construction.
+    ArTime getIOPacketTime() const { return myIOPacketTime; }
+    double getCompass() const { return 0; }
     /// Packets in the last second.
     int getMotorPacCount() const { return packets(); }
     int getSonarPacCount() const { return mySonars.empty() || !mySonarEnabled ? 0 : packets(); }
@@ -249,6 +267,7 @@ class RobotState {
     ArRobotConfigPacketReader myConfig;
 
   private:
+    ArTime myIOPacketTime;
     ArInterpolation myPoses, myEncoderPoses;
     static constexpr double kTicks = 128;
     struct Past {
@@ -268,11 +287,5 @@ class RobotState {
 };
 
 }  // namespace sim_aria
-
-inline void ArRobotConfigPacketReader::log() const {
-    ArLog::log(ArLog::Terse, "%s %s: at most %d mm/s, %d deg/s, accelerations %d mm/s2, %d deg/s2",
-               getName(), getSubType(), getTransVelTop(), getRotVelTop(), getTransAccelTop(),
-               getRotAccelTop());
-}
 
 #endif  // SIM_ARIA_ROBOT_STATE_H

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// ARIA's classes over a running simrun: figures of the firmware, flags and devices of later robots,
+// commands past the cycle.
+#include <Sim_Aria.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "support/test_paths.h"
+#include "test_server.h"
+
+namespace {
+
+class SimAriaFirmware : public ::testing::Test {
+  protected:
+    /// r1 stands at (-1, 0) and faces the wall at x = 2.
+    void SetUp() override {
+        const std::string data = ispace::testing::sourcePath("tests/data/");
+        server.reset(
+            new TestServer({data + "square.env", data + "session.3dm", "--clock", "step", "-q"}));
+        setenv("ISPACE_SIMRUN", server->address().c_str(), 1);
+        unsetenv("ISPACE_ROBOT");
+        Aria::init(Aria::SIGHANDLE_NONE);
+        ASSERT_EQ(connection.open(), 0);
+        robot.setDeviceConnection(&connection);
+    }
+    void connect() {
+        ASSERT_TRUE(robot.blockingConnect());
+        robot.enableMotors();
+        robot.runAsync(true);
+    }
+    void TearDown() override {
+        robot.stopRunning();
+        Aria::shutdown();
+    }
+    std::unique_ptr<TestServer> server;
+    ArSerialConnection connection;
+    ArRobot robot;
+};
+
+struct Arrivals {
+    int count = 0;
+    void add() { ++count; }
+};
+
+TEST_F(SimAriaFirmware, ConfigurationArrivesInTheNextCycle) {
+    Arrivals arrivals;
+    ArFunctorC<Arrivals> arrived(&arrivals, &Arrivals::add);
+    ArRobotConfigPacketReader reader(&robot, true, &arrived);
+    EXPECT_FALSE(reader.requestPacket());  // not connected
+    connect();
+    EXPECT_FALSE(reader.hasPacketBeenRequested());
+    EXPECT_TRUE(reader.requestPacket());
+    EXPECT_TRUE(reader.hasPacketBeenRequested());
+    EXPECT_FALSE(reader.hasPacketArrived());
+    EXPECT_FALSE(reader.requestPacket());  // once only
+    ArUtil::sleep(500);
+    EXPECT_TRUE(reader.hasPacketArrived());
+    EXPECT_EQ(arrivals.count, 1);
+    const ArRobotConfigPacketReader& own = *robot.getOrigRobotConfig();
+    EXPECT_STREQ(reader.getName(), "r1");
+    EXPECT_STREQ(reader.getSubType(), own.getSubType());
+    EXPECT_EQ(reader.getTransVelTop(), own.getTransVelTop());
+    EXPECT_GT(reader.getTransVelTop(), 0);
+    EXPECT_EQ(reader.getRotAccel(), own.getRotAccel());
+    EXPECT_EQ(reader.getFrontSonar(), robot.getNumSonar() > 0);
+    EXPECT_EQ(reader.getNumFrontBumpers(), static_cast<int>(robot.getNumFrontBumpers()));
+    EXPECT_FALSE(own.getHasGripper());
+    EXPECT_EQ(own.getConfigFlags(), 0);
+
+    ArRobotConfigPacketReader again(&robot, false, &arrived);
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_TRUE(again.requestPacket());
+        ArUtil::sleep(300);
+    }
+    EXPECT_EQ(arrivals.count, 3);
+    {
+        ArRobotConfigPacketReader gone(&robot, false, &arrived);
+        EXPECT_TRUE(gone.requestPacket());
+    }
+    ArUtil::sleep(300);
+    EXPECT_EQ(arrivals.count, 3);
+}
+
+TEST_F(SimAriaFirmware, AStoppedStateReflectionSendsNoMotion) {
+    connect();
+    ArActionConstantVelocity drive("drive", 200);
+    robot.addAction(&drive, 50);
+    ArUtil::sleep(2000);
+    EXPECT_EQ(robot.getVel(), 200);
+    robot.stop();
+    robot.stopStateReflection();
+    ArUtil::sleep(2000);
+    EXPECT_EQ(robot.getVel(), 0);
+    const double x = robot.getX();
+    ArUtil::sleep(1000);
+    EXPECT_EQ(robot.getX(), x);
+    robot.setVel(100);
+    ArUtil::sleep(2000);
+    EXPECT_EQ(robot.getVel(), 100);
+    robot.stop();
+    robot.stopStateReflection();
+    ArUtil::sleep(1000);
+    robot.clearDirectMotion();
+    ArUtil::sleep(1500);
+    EXPECT_EQ(robot.getVel(), 200);
+}
+
+TEST_F(SimAriaFirmware, PointsFromTheRobot) {
+    connect();
+    robot.moveTo(ArPose(1000, 2000, 170));
+    const ArPose point(1000, 1000);
+    EXPECT_NEAR(robot.findDistanceTo(point), 1000, 1e-9);
+    EXPECT_NEAR(robot.findAngleTo(point), -90, 1e-9);
+    EXPECT_NEAR(robot.findDeltaHeadingTo(point), 100, 1e-9);
+    EXPECT_NEAR(robot.findDeltaHeadingTo(ArPose(-1000, 2000)), 10, 1e-9);
+}
+
+TEST_F(SimAriaFirmware, DevicesThatAPioneerLacks) {
+    connect();
+    EXPECT_TRUE(robot.getBatteryMap()->empty());
+    ArBatteryMTX battery(1);
+    EXPECT_STREQ(battery.getName(), "MTXBattery1");
+    EXPECT_FALSE(battery.isConnected());
+    EXPECT_FALSE(battery.sendEmergencyPowerOff());
+    EXPECT_EQ(robot.getPTZ(), nullptr);
+    ArVCC4 camera(&robot);
+    robot.setPTZ(&camera);
+    EXPECT_EQ(robot.getPTZ(), &camera);
+    EXPECT_FALSE(ArAnalogGyro(&robot).hasGyroOnlyMode());
+    EXPECT_FALSE(robot.hasFaultFlags() || robot.hasFlags3());
+    EXPECT_EQ(robot.getFaultFlags() | robot.getFlags3(), 0);
+    EXPECT_TRUE(robot.hasSettableVelMaxes() && robot.hasSettableAccsDecs());
+    EXPECT_TRUE(robot.getRobotParams()->hasMoveCommand());
+    EXPECT_STREQ(robot.getChargeStateName(), "not");
+    EXPECT_EQ(robot.getStateOfChargeShutdown(), 0);
+    const ArTime last = robot.getIOPacketTime();
+    ArUtil::sleep(500);
+    EXPECT_EQ(last.mSecSince(robot.getIOPacketTime()), 0);
+}
+
+}  // namespace
