@@ -117,6 +117,32 @@ TEST_F(SimAriaFirmware, PointsFromTheRobot) {
     EXPECT_NEAR(robot.findAngleTo(point), -90, 1e-9);
     EXPECT_NEAR(robot.findDeltaHeadingTo(point), 100, 1e-9);
     EXPECT_NEAR(robot.findDeltaHeadingTo(ArPose(-1000, 2000)), 10, 1e-9);
+    const ArPose local = robot.getToLocalTransform().doTransform(point);
+    EXPECT_NEAR(local.getX(), 1000 * ArMath::cos(100), 1e-6);
+    EXPECT_NEAR(local.getY(), 1000 * ArMath::sin(100), 1e-6);
+    const ArPose back = robot.getToGlobalTransform().doTransform(local);
+    EXPECT_NEAR(back.findDistanceTo(point), 0, 1e-6);
+}
+
+TEST_F(SimAriaFirmware, AClosedConnectionEndsInTheNextCycle) {
+    Arrivals connected, normal, lost;
+    ArFunctorC<Arrivals> on_connect(&connected, &Arrivals::add), on_end(&normal, &Arrivals::add),
+        on_loss(&lost, &Arrivals::add);
+    robot.addConnectCB(&on_connect);
+    robot.addDisconnectNormallyCB(&on_end);
+    robot.addDisconnectOnErrorCB(&on_loss);
+    ASSERT_TRUE(robot.blockingConnect());
+    robot.loopOnce();
+    connection.close();
+    robot.loopOnce();
+    EXPECT_FALSE(robot.isConnected());
+    EXPECT_EQ(lost.count, 1);
+    ASSERT_EQ(connection.open(), 0);
+    ASSERT_TRUE(robot.blockingConnect());
+    robot.disconnect();
+    EXPECT_EQ(connected.count, 2);
+    EXPECT_EQ(normal.count, 1);
+    EXPECT_EQ(lost.count, 1);
 }
 
 TEST_F(SimAriaFirmware, DevicesThatAPioneerLacks) {

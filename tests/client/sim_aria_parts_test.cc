@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <thread>
 
@@ -111,6 +112,22 @@ TEST(SimAriaResolver, SharesStrengthByPriority) {
     // A heading becomes a change of heading.
     low.desired.setHeading(170);
     EXPECT_NEAR(resolve()->getDeltaHeading(), 170, 1e-9);
+}
+
+/// Once removed, an action may outlive its robot.
+TEST(SimAriaActions, RemovedOnesForgetTheRobot) {
+    Wish twice, by_name;
+    std::unique_ptr<ArRobot> robot(new ArRobot);
+    robot->addAction(&twice, 50);
+    robot->addAction(&twice, 40);
+    robot->addAction(&by_name, 30);
+    EXPECT_TRUE(robot->remAction(&twice));
+    EXPECT_EQ(twice.getRobot(), robot.get());
+    EXPECT_TRUE(robot->remAction(&twice));
+    EXPECT_EQ(twice.getRobot(), nullptr);
+    EXPECT_TRUE(robot->remAction("wish"));
+    EXPECT_EQ(by_name.getRobot(), nullptr);
+    EXPECT_FALSE(robot->remAction("wish"));
 }
 
 TEST(SimAriaPackets, ReadWhatWasWritten) {

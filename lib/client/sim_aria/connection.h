@@ -2,7 +2,9 @@
 #ifndef SIM_ARIA_CONNECTION_H
 #define SIM_ARIA_CONNECTION_H
 
+#include <atomic>
 #include <cstdlib>
+#include <memory>
 #include <string>
 
 #include <sim_aria/clock.h>
@@ -37,13 +39,13 @@ class ArDeviceConnection {
 
     virtual bool openSimple() = 0;
     virtual bool close() {
-        myStatus = STATUS_CLOSED_NORMALLY;
+        *myStatus = STATUS_CLOSED_NORMALLY;
         return true;
     }
     /// Raw bytes are not supported: ArRobot sends requests.
     virtual int read(const char*, unsigned int, unsigned int = 0) { return -1; }
     virtual int write(const char*, unsigned int) { return -1; }
-    virtual int getStatus() { return myStatus; }
+    virtual int getStatus() { return *myStatus; }
     virtual const char* getOpenMessage(int code) = 0;
     const char* getStatusMessage(int status) const {
         switch (status) {
@@ -63,22 +65,24 @@ class ArDeviceConnection {
     }
     /// Address of simrun, once open.
     const std::string& simulator() const { return myServer; }
-    void setStatus(int status) { myStatus = status; }
+    /// The status for a robot that may outlive the connection.
+    std::shared_ptr<std::atomic<int>> sharedStatus() const { return myStatus; }
 
   protected:
     /// Checks that simrun answers there, and adopts its time.
     /// \throws ispace::client::Error
     void reach(const std::string& server) {
-        myStatus = STATUS_OPEN_FAILED;
+        *myStatus = STATUS_OPEN_FAILED;
         ispace::client::Options options;
         options.timeout = 6;
         sim_aria::Clock::get().follow(ispace::client::Address(server), options);
         myServer = server;
-        myStatus = STATUS_OPEN;
+        *myStatus = STATUS_OPEN;
     }
 
   private:
-    int myStatus = STATUS_NEVER_OPENED;
+    std::shared_ptr<std::atomic<int>> myStatus =
+        std::make_shared<std::atomic<int>>(static_cast<int>(STATUS_NEVER_OPENED));
     std::string myServer;
 };
 

@@ -307,6 +307,7 @@ class ArRobot : public sim_aria::RobotState {
 
     std::string myName;
     ArDeviceConnection* myConnection = nullptr;
+    std::shared_ptr<std::atomic<int>> myStatus;  // of the connection
     std::unique_ptr<sim_aria::Link> myLink;
     std::recursive_mutex myMutex;
     std::thread myThread;

@@ -36,6 +36,7 @@ inline bool ArRobot::connect() {
         myLink.reset();
         return false;
     }
+    myStatus = myConnection->sharedStatus();
     myConnected = true;
     return true;
 }
@@ -142,13 +143,15 @@ inline bool ArRobot::cycle() {
         if (!myLink) return myConnected;
         try {
             ++myCounter;
+            if (myStatus && *myStatus != ArDeviceConnection::STATUS_OPEN)
+                throw ispace::client::Error("the program has closed the connection");
             read();
             think();
             return true;
         } catch (const ispace::client::Error& error) {
             ArLog::log(ArLog::Terse, "Lost the robot: %s", error.what());
             lose();
-            if (myConnection) myConnection->setStatus(ArDeviceConnection::STATUS_CLOSED_ERROR);
+            if (myStatus) *myStatus = ArDeviceConnection::STATUS_CLOSED_ERROR;
         }
     }
     call(Loss);

@@ -108,6 +108,11 @@ inline bool ArRobot::remAction(ArAction* action) {
     for (auto at = myActions.begin(); at != myActions.end(); ++at) {
         if (at->second != action) continue;
         myActions.erase(at);
+        const auto again = [action](const ArResolver::ActionMap::value_type& one) {
+            return one.second == action;
+        };
+        if (action->myRobot == this && std::none_of(myActions.begin(), myActions.end(), again))
+            action->myRobot = nullptr;
         return true;
     }
     return false;

@@ -67,6 +67,7 @@ class RobotState {
     }
     /// From the frame of the robot to that of its pose.
     ArTransform getToGlobalTransform() const { return ArTransform(myPose); }
+    ArTransform getToLocalTransform() const { return ArTransform(myPose, ArPose()); }
     ArTransform getEncoderTransform() const { return ArTransform(myPacket.pose, myPose); }
     /// mm and degrees driven since the connection or the last reset.
     double getOdometerDistance() const { return myDistance; }
