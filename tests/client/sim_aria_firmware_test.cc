@@ -145,6 +145,36 @@ TEST_F(SimAriaFirmware, AClosedConnectionEndsInTheNextCycle) {
     EXPECT_EQ(lost.count, 1);
 }
 
+TEST_F(SimAriaFirmware, PointsMoveWithTheRobot) {
+    ArSonarDevice sonar;
+    robot.addRangeDevice(&sonar);
+    setenv("ISPACE_ROBOT", "r2", 1);  // which has sonars
+    connect();
+    unsetenv("ISPACE_ROBOT");
+    ArUtil::sleep(1000);
+    const auto nearest = [&] { return sonar.currentReadingPolar(-180, 180); };
+    const auto old = [&] { return sonar.cumulativeReadingPolar(-180, 180); };
+    const double distance = nearest(), remembered = old();
+    ASSERT_LT(distance, 4000);
+    const ArPose echo = robot.getSonarReading(3)->getPose();
+    const double from_robot = robot.findDistanceTo(echo), turn = robot.findDeltaHeadingTo(echo);
+    robot.lock();
+    robot.moveTo(ArPose(8000, -2000, 120));
+    EXPECT_NEAR(nearest(), distance, 1e-6);
+    EXPECT_NEAR(old(), remembered, 1e-6);
+    const ArPose moved = robot.getSonarReading(3)->getPose();
+    EXPECT_GT(moved.findDistanceTo(echo), 1000);
+    EXPECT_NEAR(robot.findDistanceTo(moved), from_robot, 1e-6);
+    EXPECT_NEAR(robot.findDeltaHeadingTo(moved), turn, 1e-6);
+    robot.unlock();
+    // Points of earlier cycles lie where new ones come.
+    ArUtil::sleep(200);
+    EXPECT_NEAR(nearest(), distance, 20);
+    robot.moveTo(ArPose(0, 0, 0), false);
+    EXPECT_NEAR(nearest(), distance, 20);
+    EXPECT_GT(old(), 3000);
+}
+
 TEST_F(SimAriaFirmware, DevicesThatAPioneerLacks) {
     connect();
     EXPECT_TRUE(robot.getBatteryMap()->empty());

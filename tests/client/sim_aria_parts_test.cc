@@ -114,6 +114,17 @@ TEST(SimAriaResolver, SharesStrengthByPriority) {
     EXPECT_NEAR(resolve()->getDeltaHeading(), 170, 1e-9);
 }
 
+TEST(SimAriaMath, AWholeTurnHasAllAngles) {
+    for (const double angle : {-180.0, -90.0, 0.0, 33.0, 180.0}) {
+        EXPECT_TRUE(ArMath::angleBetween(angle, -180, 180)) << angle;
+        EXPECT_TRUE(ArMath::angleBetween(angle, 0, 360)) << angle;
+        EXPECT_TRUE(ArMath::angleBetween(angle, 1, 0) || angle == 0.5) << angle;
+    }
+    EXPECT_FALSE(ArMath::angleBetween(0.5, 1, 0));
+    EXPECT_TRUE(ArMath::angleBetween(20, 20, 20));
+    EXPECT_FALSE(ArMath::angleBetween(21, 20, 20));
+}
+
 /// Once removed, an action may outlive its robot.
 TEST(SimAriaActions, RemovedOnesForgetTheRobot) {
     Wish twice, by_name;

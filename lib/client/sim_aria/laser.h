@@ -54,6 +54,11 @@ class ArLaser : public ArRangeDevice {
     const std::list<ArSensorReading*>* getAdjustedRawReadings() const { return &myPointers; }
     std::vector<ArSensorReading> getRawReadingsAsVector() const { return myReadings; }
 
+    void applyTransform(ArTransform change, bool doCumulative = true) override {
+        ArRangeDevice::applyTransform(change, doCumulative);
+        for (ArSensorReading& reading : myReadings) reading.applyTransform(change);
+    }
+
     /// Functions to call after each new scan, in the robot's cycle.
     void addReadingCB(ArFunctor* functor, ArListPos::Pos position = ArListPos::LAST) {
         myCallbacks.insert(position == ArListPos::FIRST ? myCallbacks.begin() : myCallbacks.end(),

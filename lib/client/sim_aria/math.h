@@ -25,9 +25,10 @@ class ArMath {
     }
     static double addAngle(double a, double b) { return fixAngle(a + b); }
     static double subAngle(double a, double b) { return fixAngle(a - b); }
-    /// True if `angle` lies between `start` and, counter-clockwise, `end`.
+    /// True if `angle` lies between `start` and, counter-clockwise, `end`; -180 to 180 is a whole
+    /// turn.
     static bool angleBetween(double angle, double start, double end) {
-        return positive(angle - start) <= positive(end - start);
+        return end - start >= 360 || positive(angle - start) <= positive(end - start);
     }
     static double distanceBetween(double x1, double y1, double x2, double y2) {
         return std::sqrt(squaredDistanceBetween(x1, y1, x2, y2));

@@ -6,6 +6,7 @@
 #include <list>
 #include <vector>
 
+#include <sim_aria/geometry.h>
 #include <sim_aria/util.h>
 
 /// The last points that a range device measured, the newest first.
@@ -45,6 +46,10 @@ class ArRangeBuffer {
     /// Removes points farther than this from a position, mm.
     void clearFartherThan(double distance, ArPose from) {
         removeIf([&](const ArPose& point) { return from.findDistanceTo(point) > distance; });
+    }
+
+    void applyTransform(ArTransform change) {
+        for (ArPoseWithTime* point : myPoints) point->setPose(change.doTransform(*point));
     }
 
     /// Distance from a pose to the nearest point between these directions of it, counter-clockwise;

@@ -63,6 +63,11 @@ class ArSensorReading {
                         mySensor.getY() + range * ArMath::sin(th));
         myHit = toGlobal.doTransform(myLocal);
     }
+    /// Moves the echo and the poses at that time.
+    void applyTransform(ArTransform change) {
+        myHit = change.doTransform(myHit);
+        myTaken = change.doTransform(myTaken);
+    }
     void newData(int range, ArPose robot, unsigned int counter) {
         newData(range, robot, robot, ArTransform(robot), counter, ArTime());
     }
@@ -186,6 +191,12 @@ class ArRangeDevice {
     virtual void addReading(double x, double y) {
         myCurrentBuffer.addReading(x, y);
         myCumulativeBuffer.addReading(x, y);
+    }
+    /// Moves all points with the robot, see ArRobot::moveTo().
+    virtual void applyTransform(ArTransform change, bool doCumulative = true) {
+        myCurrentBuffer.applyTransform(change);
+        if (doCumulative) myCumulativeBuffer.applyTransform(change);
+        myPose = change.doTransform(myPose);
     }
     /// Readings of all beams in the last sweep; null for a device without.
     virtual const std::list<ArSensorReading*>* getRawReadings() const { return nullptr; }

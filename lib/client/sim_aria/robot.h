@@ -208,8 +208,9 @@ class ArRobot : public sim_aria::RobotState {
     double getTransDecel() const { return myMotion.decel; }
     double getRotAccel() const { return myMotion.rot_accel; }
     double getRotDecel() const { return myMotion.rot_decel; }
-    /// Sets the pose that the program sees.
-    void moveTo(ArPose pose);
+    /// Sets the pose that the program sees; points of range devices move along.
+    /// \param doCumulative whether those of the cumulative buffers do
+    void moveTo(ArPose pose, bool doCumulative = true);
     void setDeadReconPose(ArPose pose) { moveTo(pose); }
 
     // Actions: move the robot while it has no direct motion.

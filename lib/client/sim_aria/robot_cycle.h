@@ -359,8 +359,16 @@ inline void ArRobot::stop() {
     }
 }
 
-inline void ArRobot::moveTo(ArPose pose) {
+inline void ArRobot::moveTo(ArPose pose, bool doCumulative) {
     const std::lock_guard<std::recursive_mutex> hold(myMutex);
+    const ArTransform change(myPose, pose);
+    for (ArRangeDevice* device : myDevices) {
+        device->lockDevice();
+        device->applyTransform(change, doCumulative);
+        device->unlockDevice();
+    }
+    for (ArSensorReading& sonar : mySonars) sonar.applyTransform(change);
+    movePast(change);
     myMoved = pose;
     myMovedFrom = myPacket.pose;
     myPose = pose;

@@ -250,6 +250,10 @@ class RobotState {
         myHistory.push_back(Past{packet.time, pose});
         while (myHistory.front().time < packet.time - 2) myHistory.pop_front();
     }
+    /// Moves the poses of the last seconds.
+    void movePast(const ArTransform& change) {
+        for (Past& past : myHistory) past.pose = change.doTransform(past.pose);
+    }
     void resetState() {
         myPacket = Packet();
         myPose = ArPose();
