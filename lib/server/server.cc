@@ -57,6 +57,8 @@ void Server::logTopics(ByteSink write, RosScenery scenery) {
     data_->log.emplace(data_->feedOf(std::move(scenery)), std::move(write));
 }
 
+std::size_t Server::topicsLeftOut() const { return data_->log ? data_->log->leftOut() : 0; }
+
 std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,
                                 const Endpoint& endpoint) {
     Data& data = *data_;

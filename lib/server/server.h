@@ -106,6 +106,8 @@ class Server {
     /// Writes the topics of the running world to an MCAP file, complete when run() returns. Call at
     /// most once, before run(). \param scenery as for serveRos()
     void logTopics(ByteSink write, RosScenery scenery = {});
+    /// Returns the number of topics that the MCAP file has no channel for.
+    [[nodiscard]] std::size_t topicsLeftOut() const;
     /// Serves a robot or sensor through the protocol of a real device at a separate endpoint. Call
     /// before run(). \returns "127.0.0.1:10940"
     /// \throws UsageError if the world has no such device, std::system_error naming the endpoint

@@ -9,6 +9,7 @@
 #include "base/json_writer.h"
 #include "io/exporters.h"
 #include "io/glb/glb_write.h"
+#include "sense/formats/mcap_writer.h"
 #include "simrun/simrun_run.h"
 
 namespace ispace {
@@ -78,7 +79,7 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
 }
 
 TopicLog::TopicLog(Server& server, Simulation& simulation, const SimrunOptions& options)
-    : options_(&options), file_(options.mcap) {
+    : server_(&server), options_(&options), file_(options.mcap) {
     server.logTopics(
         [this](std::string_view bytes) {
             file_.write(bytes);
@@ -94,6 +95,11 @@ TopicLog::TopicLog(Server& server, Simulation& simulation, const SimrunOptions& 
 
 void TopicLog::commit() {
     file_.commit();
+    if (const std::size_t left_out = server_->topicsLeftOut(); left_out > 0)
+        warn(options_->common, "simrun",
+             options_->mcap + ": " + std::to_string(left_out) +
+                 " topics are left out, as an MCAP file has at most " +
+                 std::to_string(McapWriter::kMaxChannels) + " channels");
     if (end_ == kMaxTime) return;
     throw FormatError({options_->mcap, 0, 0,
                        "ended at t=" + formatSimTime(end_) + ", as it has " +

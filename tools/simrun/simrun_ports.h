@@ -30,10 +30,12 @@ class TopicLog {
     TopicLog(const TopicLog&) = delete;
     TopicLog& operator=(const TopicLog&) = delete;
     ~TopicLog() = default;
-    /// Completes the file after the run. \throws FormatError if the limit ended the run
+    /// Completes the file after the run; warns of topics left out. \throws FormatError if the limit
+    /// ended the run
     void commit();
 
   private:
+    const Server* server_;
     const SimrunOptions* options_;
     OutputFile file_;
     std::uint64_t bytes_ = 0;

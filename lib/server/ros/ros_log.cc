@@ -11,9 +11,10 @@ namespace {
 constexpr std::uint64_t kEnd = std::numeric_limits<std::uint64_t>::max();
 }  // namespace
 
-RosLog::RosLog(RosFeed& feed, ByteSink write)
+RosLog::RosLog(RosFeed& feed, ByteSink write, std::size_t max_channels)
     : feed_(&feed),
-      file_(std::move(write), "ros2", "cdr", rosSchemas(), {}, McapCompression::Zstd) {
+      file_(std::move(write), "ros2", "cdr", rosSchemas(), {}, McapCompression::Zstd),
+      max_channels_(max_channels) {
     sync();
     writeNew();
 }
@@ -31,7 +32,10 @@ void RosLog::sync() {
                   [this](const auto& one) { return !feed_->entries().contains(one.first); });
     for (const auto& [number, entry] : feed_->entries()) {
         if (entry.channel.isInput() || lines_.contains(number)) continue;
-        if (channels_ == McapWriter::kMaxChannels) return;
+        if (channels_ == max_channels_) {
+            left_out_.insert(number);
+            continue;
+        }
         lines_[number].channel =
             file_.addChannel({static_cast<std::uint16_t>(entry.channel.type), entry.channel.topic});
         ++channels_;

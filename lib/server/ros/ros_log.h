@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "base/file.h"
@@ -15,12 +16,12 @@
 namespace ispace {
 
 /// Writes all topics of a running world to an MCAP file, as `ros2 bag record` of the same world
-/// would. Topics that a change of the world adds get channels of their own; those beyond
-/// McapWriter::kMaxChannels are left out.
+/// would. Topics that a change of the world adds get channels of their own; those beyond the
+/// channels of a file are left out and counted.
 class RosLog {
   public:
     /// Subscribes to all topics of the feed, which outlives the log. \param write receives the file
-    RosLog(RosFeed& feed, ByteSink write);
+    RosLog(RosFeed& feed, ByteSink write, std::size_t max_channels = McapWriter::kMaxChannels);
     RosLog(const RosLog&) = delete;
     RosLog& operator=(const RosLog&) = delete;
     ~RosLog();
@@ -30,6 +31,8 @@ class RosLog {
     void stepped();
     /// Writes the end of the file.
     void finish();
+    /// Returns the number of topics without a channel in the file.
+    [[nodiscard]] std::size_t leftOut() const { return left_out_.size(); }
 
   private:
     /// A topic of the feed in the file.
@@ -47,8 +50,9 @@ class RosLog {
     std::map<std::uint32_t, Line> lines_;  // by number in the feed
     /// Of the present time, by time and topic.
     std::map<std::pair<std::uint64_t, std::uint32_t>, std::shared_ptr<const RosMessage>> waiting_;
-    std::size_t channels_ = 0;
-    std::int64_t version_ = -1;  // of the feed's topics
+    std::size_t max_channels_, channels_ = 0;
+    std::set<std::uint32_t> left_out_;  // by number in the feed
+    std::int64_t version_ = -1;         // of the feed's topics
 };
 
 }  // namespace ispace

@@ -131,6 +131,26 @@ TEST(RosLog, HoldsTheNewestMessageOfATopicWhileTimeStandsStill) {
         << "before and after the changes, the first of which removes topics";
 }
 
+TEST(RosLog, CountsTopicsBeyondTheChannels) {
+    testing::TestWorld room({Clock::Kind::Step, 1}, {}, "", "");
+    ServerState state(room.simulation);
+    RosFeed feed(state, {});
+    std::string file;
+    RosLog log(
+        feed, [&](std::string_view bytes) { file += bytes; }, 3);
+    std::size_t topics = 0;
+    for (const auto& [number, entry] : feed.entries()) topics += entry.channel.isInput() ? 0 : 1;
+    ASSERT_GT(topics, 3U);
+    EXPECT_EQ(log.leftOut(), topics - 3);
+    room.simulation.allow(1);
+    room.simulation.run({}, std::chrono::nanoseconds(0));
+    state.collect();
+    log.stepped();
+    log.finish();
+    EXPECT_LE(LogContent(file).times.size(), 3U);
+    EXPECT_EQ(log.leftOut(), topics - 3) << "counted once";
+}
+
 TEST(RosLog, LeavesTheFeedWithoutSubscriptions) {
     testing::TestWorld room({Clock::Kind::Step, 1}, {}, "", "");
     ServerState state(room.simulation);
