@@ -21,7 +21,7 @@ struct Callee {
     bool three(const std::string& text, int n, int m) {
         return static_cast<int>(text.size()) == n + m;
     }
-    int constant() const { return 23; }
+    [[nodiscard]] int constant() const { return 23; }
 };
 int product(int a, int b) { return a * b; }
 
