@@ -266,10 +266,6 @@ void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
     if (group.most < options.redundancy)
         refusePoses("floor that " + std::to_string(options.redundancy) +
                     " sensors see takes as many, found " + std::to_string(group.most));
-    if (options.redundancy > 1 && options.wants_certificate)
-        refusePoses("a certificate is about floor that one sensor sees: leave out --certificate");
-    if (!options.weights.isUniform() && options.wants_certificate)
-        refusePoses("a certificate is about all of the floor: leave out --certificate");
     (void)floorAt(scene, heightOf(options));
 }
 
@@ -334,8 +330,8 @@ bool isOn(const std::vector<Region>& floor, Point2 p) {
 
 }  // namespace
 
-CheckedPoses checkPoses(const Scene& scene, const PoseCertificate& certificate,
-                        const std::string& name) {
+CheckedPoses checkPoses(const Scene& scene, const FloorWeights& weights, int times,
+                        const PoseCertificate& certificate, const std::string& name) {
     const Laser* first = nullptr;
     double height = 0;
     CheckedPoses checked;
@@ -358,6 +354,9 @@ CheckedPoses checkPoses(const Scene& scene, const PoseCertificate& certificate,
     if (checked.sensors == 0 || checked.sensors > kMostPosed)
         refusePoses("wanted 1 to " + std::to_string(kMostPosed) + " lasers with a pose, found " +
                     std::to_string(checked.sensors));
+    if (checked.sensors < static_cast<std::size_t>(times))
+        refusePoses("floor that " + std::to_string(times) + " sensors see takes as many, found " +
+                    std::to_string(checked.sensors));
     const std::vector<Region> floor = floorAt(scene, height);
     for (const Sensor& sensor : scene.sensors)
         if (kindOf(sensor.model).perceives && !isOn(floor, sensor.pose.position.onFloor()))
@@ -365,12 +364,20 @@ CheckedPoses checkPoses(const Scene& scene, const PoseCertificate& certificate,
     Box2 box;
     for (const Region& region : floor)
         for (const Point2 p : region.outline) box.add(p);
-    checked.check = checkCertificate(floor, kCells, sectorOf(*first, box),
-                                     static_cast<int>(checked.sensors), certificate, name);
-    checked.floor = totalArea(floor);
+    checked.check =
+        checkCertificate(floor, kCells, sectorOf(*first, box), static_cast<int>(checked.sensors),
+                         {times, weightingOf(weights)}, certificate, name);
     Worlds worlds(scene.environment);
-    checked.found =
-        measureCoverage(scene, worlds, {}).report.total_effective_area.exact.value_or(0);
+    if (times == 1 && weights.isUniform()) {
+        checked.floor = totalArea(floor);
+        checked.found =
+            measureCoverage(scene, worlds, {}).report.total_effective_area.exact.value_or(0);
+        return checked;
+    }
+    const VisibleArea sight(scene.environment, 0, &worlds);
+    const ExactGain gain(scene, sight, {}, weights, times);
+    checked.floor = weights.isUniform() ? totalArea(floor) : gain.total();
+    checked.found = gain.value();
     return checked;
 }
 

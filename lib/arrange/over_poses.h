@@ -41,16 +41,18 @@ void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& prog
 /// A bound of coverage over all poses that was checked, m2.
 struct CheckedPoses {
     std::size_t sensors = 0;
-    double found = 0;  ///< seen by the sensors of the scene, by exact area
-    double floor = 0;
+    double found = 0;  ///< seen by the sensors of the scene, by exact area and weight
+    double floor = 0;  ///< all that counts
     CertificateCheck check;
 };
 
 /// Checks a certificate for the sensors of a scene: computes all areas anew, by other code than
-/// that of the search.
+/// that of the search, but the area of the layout by weight, or that several sensors see, as
+/// refinement does.
+/// \param weights, times the goal of its search
 /// \throws UsageError unless these are level lasers of one kind, as for mustBeBoundable()
 /// \throws FormatError as checkCertificate()
-CheckedPoses checkPoses(const Scene& scene, const PoseCertificate& certificate,
-                        const std::string& name);
+CheckedPoses checkPoses(const Scene& scene, const FloorWeights& weights, int times,
+                        const PoseCertificate& certificate, const std::string& name);
 
 }  // namespace ispace

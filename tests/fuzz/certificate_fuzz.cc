@@ -18,8 +18,8 @@ constexpr std::size_t kCells = 150;
 const poses::Sector kSector{2.5, 2, 0};
 const Region kRoom{{{0, 0}, {6, 0}, {6, 2}, {2, 2}, {2, 6}, {0, 6}}, {}};
 
-/// Area that two lasers in the arms of the room see; chords lie within the views.
-double areaOfLayout() {
+/// Area that two lasers in the arms of the room see, or one of them; chords lie within the views.
+double areaOfLayout(bool is_one = false) {
     std::vector<Segment2> walls;
     kRoom.forEachEdge([&](const Segment2& edge) { walls.push_back(edge); });
     const VisibilityMap map(walls);
@@ -35,6 +35,7 @@ double areaOfLayout() {
             view.push_back(edge.to);
         }
         views.push_back(std::move(view));
+        if (is_one) break;
     }
     return totalArea(unite(views));
 }
@@ -48,7 +49,15 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     const std::string text = certificateText(read, {"arrange"});
     const PoseCertificate again = readBack([&] { return readCertificate(text, "c"); });
     require(certificateText(again, {"arrange"}) == text, "another certificate after writing it");
-    const CertificateCheck check = checkCertificate({&kRoom, 1}, kCells, kSector, 2, read, "c");
+    const auto checked = [&read](const PoseGoal& goal) {
+        return checkCertificate({&kRoom, 1}, kCells, kSector, 2, goal, read, "c");
+    };
+    const CertificateCheck check = checked({});
     require(check.bound >= known - kRounding, "a bound below a layout");
     require(check.boxes == read.boxes.size(), "boxes were not read");
+    // One pose twice, and the same by weight.
+    static const double twice = areaOfLayout(true);
+    require(checked({.times = 2}).bound >= twice - kRounding, "a bound below a layout, twice");
+    const PoseGoal doubled{2, {.elsewhere = 0, .pieces = {{{{0, 0}, {6, 0}, {6, 6}, {0, 6}}, 2}}}};
+    require(checked(doubled).bound >= 2 * (twice - kRounding), "a bound below a layout by weight");
 }

@@ -36,6 +36,8 @@ std::vector<NamedZone> zonesOf(const ArrangeToolOptions& options, const std::str
     return zones;
 }
 
+}  // namespace
+
 void takeZones(const ArrangeToolOptions& options, const Environment& environment,
                ArrangeOptions& how) {
     const ZoneWords& words = options.zones;
@@ -53,6 +55,8 @@ void takeZones(const ArrangeToolOptions& options, const Environment& environment
             how.weights.weights.emplace_back(std::move(zone), weight);
     }
 }
+
+namespace {
 
 /// Reads the rooms of --robust, each with the layout.
 void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {

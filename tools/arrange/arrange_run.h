@@ -24,6 +24,10 @@ struct ArrangeWork {
 /// as the readers
 ArrangeWork readWork(const ArrangeToolOptions& options);
 
+/// Reads the zones of --zone, --weight, --keep-out and --keep-in.
+void takeZones(const ArrangeToolOptions& options, const Environment& environment,
+               ArrangeOptions& how);
+
 /// Warns, before the search, of heights and strategies that cannot do well.
 void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work);
 

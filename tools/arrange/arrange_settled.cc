@@ -127,9 +127,14 @@ void ArrangeCommand::settleCertificate() {
     for (const char* option : kFiles)
         if (line_.given(option))
             throw UsageError("--verify writes nothing: leave out " + std::string(option));
-    if (line_.historyLine({}) != "arrange")
-        throw UsageError(
-            "--verify checks a proof for the sensors of a layout: give FILE, ENV and LAYOUT alone");
+    const std::vector<std::string> words = line_.resultWords();
+    for (std::size_t i = 1; i < words.size() && words[i] != "--"; ++i) {
+        const std::string name = words[i].substr(0, words[i].find('='));
+        if (name != "--redundancy" && name != "--zone" && name != "--weight")
+            throw UsageError(
+                "--verify checks a proof for the sensors of a layout: give FILE, ENV and LAYOUT, "
+                "and --redundancy, --zone and --weight as for the proof");
+    }
 }
 
 void ArrangeCommand::settleRobust() {

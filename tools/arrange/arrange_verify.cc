@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "arrange/arrange_run.h"
 #include "arrange/over_poses.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -27,19 +28,26 @@ void verifyCertificate(const ArrangeToolOptions& options) {
         readCertificate(isStream(file) ? readStdin() : readAll(file), file);
     const SceneInput input = readScene({options.operands, options.rules, false});
     warnOfImport(options.common, "arrange", input);
-    const CheckedPoses checked = checkPoses(input.scene, certificate, file);
-    const auto text = [](double area) { return formatFixed(area, kDecimals) + " m2"; };
+    ArrangeOptions how = options.how;
+    takeZones(options, input.scene.environment, how);
+    const CheckedPoses checked =
+        checkPoses(input.scene, how.weights, how.redundancy, certificate, file);
+    const std::string unit = how.weights.isUniform() ? " m2" : " m2 by weight";
+    const auto text = [&unit](double area) { return formatFixed(area, kDecimals) + unit; };
     if (checked.check.bound > certificate.bound * (1 + kRounding))
-        throw UnmetError(printable(file) + ": the trees prove at most " +
-                         text(checked.check.bound) + ", not the " + text(certificate.bound) +
-                         " that it states");
+        throw UnmetError(
+            printable(file) + ": the trees prove at most " + text(checked.check.bound) +
+            ", not the " + text(certificate.bound) +
+            " that it states; give --redundancy, --zone and --weight as for its proof");
     const double bound = std::min(checked.check.bound, checked.floor);
     if (checked.found > bound * (1 + kRounding))
         throw UnmetError(printable(file) + ": the layout sees " + text(checked.found) +
                          ", more than the " + text(bound) + " that the certificate allows");
     const double gap = bound > 0 ? std::max(0.0, (bound - checked.found) / bound) : 0;
+    const std::string times =
+        how.redundancy > 1 ? ", each by " + std::to_string(how.redundancy) + " lasers" : "";
     tell(options.common, "arrange",
-         "the layout sees " + text(checked.found) + "; in any poses " +
+         "the layout sees " + text(checked.found) + times + "; in any poses " +
              std::to_string(checked.sensors) +
              (checked.sensors == 1 ? " laser sees" : " lasers see") + " at most " + text(bound) +
              " of " + text(checked.floor) + " (gap " + percentText(gap) +

@@ -4,7 +4,6 @@
 #include <numbers>
 #include <utility>
 
-#include "arrange/poses/box_sides.h"
 #include "arrange/poses/box_views.h"
 
 namespace ispace::poses {

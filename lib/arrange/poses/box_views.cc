@@ -8,15 +8,13 @@
 #include <numeric>
 #include <utility>
 
-#include "arrange/poses/box_sides.h"
-
 namespace ispace::poses {
 
 /// The view of one box.
 class BoxSight {
   public:
     BoxSight(const BoxViews& floor, const PoseBox& box)
-        : floor_(floor), sector_(floor.sector_), areas_(floor.columns_ * floor.rows_) {
+        : floor_(floor), sector_(floor.sector_), areas_(floor.most_.size()) {
         const Vec2 margin{kWiden, kWiden};
         source_ = cornersOf({box.at.low - margin, box.at.high + margin});
         addDisc();
@@ -51,7 +49,6 @@ class BoxSight {
     bool is_cut_out_ = false;        // they hold all others instead
     std::vector<char> is_start_;
     std::vector<double> areas_;
-    double area_ = 0;
     int steps_ = 0;
 };
 
@@ -91,7 +88,7 @@ bool BoxSight::add(Convex polygon) {
     if (!is_cut_out_)
         for (const Side2& side : directions_) keepInside(polygon, side);
     if (polygon.empty()) return false;
-    double area = areaOf(polygon);
+    const double area = is_cut_out_ ? areaOf(polygon) : 0;
     floor_.addArea(polygon, 1, areas_);
     if (is_cut_out_) {
         for (const Side2& side : directions_) keepInside(polygon, side);
@@ -99,10 +96,8 @@ bool BoxSight::add(Convex polygon) {
             const double unseen = areaOf(polygon);
             floor_.addArea(polygon, -1, areas_);
             if (unseen >= area) return false;
-            area -= unseen;
         }
     }
-    area_ += area;
     return true;
 }
 
@@ -174,7 +169,6 @@ BoxView BoxSight::view() {
         for (std::size_t edge = 0; edge < 3 && is_start_[i] != 0; ++edge) follow(i, edge, way);
     if (steps_ > kMostSteps) {
         std::fill(areas_.begin(), areas_.end(), 0.0);
-        area_ = 0;
         for (const BoxViews::Face& face : floor_.faces_) add({face.at.begin(), face.at.end()});
     }
     BoxView view;
@@ -186,11 +180,17 @@ BoxView BoxSight::view() {
     view.first = static_cast<std::size_t>(begin - parts.begin());
     view.parts.assign(begin, end);
     const BoxView* const self = &view;
-    view.area = std::min({area_, floor_.unionOf({}, {&self, 1}), sector_.area()});
+    const double area = floor_.weigh([this](std::size_t first, std::size_t count) {
+        const auto begin_of = areas_.begin() + static_cast<std::ptrdiff_t>(first);
+        return std::accumulate(begin_of, begin_of + static_cast<std::ptrdiff_t>(count), 0.0);
+    });
+    view.area =
+        std::min({area, floor_.unionOf({}, {&self, 1}), floor_.most_weight_ * sector_.area()});
     return view;
 }
 
-BoxViews::BoxViews(std::span<const Region> regions, std::size_t most, const Sector& sector)
+BoxViews::BoxViews(std::span<const Region> regions, std::size_t most, const Sector& sector,
+                   const FloorWeighting& weighting)
     : sector_(sector) {
     std::map<std::pair<std::uint64_t, std::uint64_t>, std::pair<std::size_t, std::size_t>> edges;
     std::uint64_t first = 0;  // vertex of the region
@@ -220,28 +220,95 @@ BoxViews::BoxViews(std::span<const Region> regions, std::size_t most, const Sect
     side_ = std::max(std::sqrt(width * depth / count), std::max(width, depth) / count);
     columns_ = static_cast<std::size_t>(width / side_) + 1;
     rows_ = static_cast<std::size_t>(depth / side_) + 1;
-    std::vector<double> areas(rows_ * columns_);
+    addZones(weighting);
+    std::vector<double> areas(most_.size());
     for (const Face& face : faces_) addArea(face.at, 1, areas);
-    most_.assign(areas.size(), kParts);
     most_ = partsOf(areas);
+}
+
+std::size_t BoxViews::addLayer(double weight, std::size_t first_row, std::size_t rows) {
+    most_weight_ = std::max(most_weight_, weight);
+    layers_.push_back({weight, first_row, rows, most_.size()});
+    most_.resize(most_.size() + rows * columns_, kParts);
+    return layers_.size() - 1;
+}
+
+void BoxViews::addZones(const FloorWeighting& weighting) {
+    most_weight_ = 0;
+    if (weighting.elsewhere > 0) rest_ = addLayer(weighting.elsewhere, 0, rows_);
+    const auto row_of = [this](double y) {
+        return static_cast<std::size_t>(
+            std::clamp(std::floor((y - box_.low.y) / side_), 0.0, static_cast<double>(rows_ - 1)));
+    };
+    std::map<double, std::pair<Box2, std::vector<std::size_t>>> same;  // zones by weight
+    for (const auto& [outline, weight] : weighting.pieces) {
+        Zone zone{{}, {}, weight, kNone};
+        for (std::size_t i = 0; i < outline.size(); ++i) {
+            zone.box.add(outline[i]);
+            const Vec2 edge = outline[(i + 1) % outline.size()] - outline[i];
+            zone.sides.push_back({outline[i], -perpendicular(edge)});
+        }
+        if (weight == weighting.elsewhere || zone.box.empty() || !zone.box.meets(box_)) continue;
+        auto& [box, zones] = same[weight];
+        box.add(zone.box.low);
+        box.add(zone.box.high);
+        zones.push_back(zones_.size());
+        zones_.push_back(std::move(zone));
+    }
+    for (const auto& [weight, of] : same) {
+        if (!(weight > 0)) continue;
+        const std::size_t first = row_of(of.first.low.y), last = row_of(of.first.high.y);
+        const std::size_t layer = addLayer(weight, first, last - first + 1);
+        for (const std::size_t zone : of.second) zones_[zone].layer = layer;
+    }
+}
+
+double BoxViews::floorArea() const {
+    return weigh([this](std::size_t first, std::size_t count) {
+               const auto begin = most_.begin() + static_cast<std::ptrdiff_t>(first);
+               return std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(count),
+                                      std::uint64_t{0});
+           }) /
+           kParts;
 }
 
 void BoxViews::addArea(std::span<const Point2> polygon, double sign,
                        std::vector<double>& areas) const {
+    if (rest_ != kNone) addTo(layers_[rest_], polygon, sign, areas);
+    if (zones_.empty()) return;
+    const Convex whole(polygon.begin(), polygon.end());
+    const Box2 around = bounds(whole);
+    for (const Zone& zone : zones_) {
+        if (!zone.box.meets(around)) continue;
+        Convex part = whole;
+        for (const Side2& side : zone.sides) {
+            keepInside(part, side);
+            if (part.empty()) break;
+        }
+        if (part.empty()) continue;
+        if (rest_ != kNone) addTo(layers_[rest_], part, -sign, areas);
+        if (zone.layer != kNone) addTo(layers_[zone.layer], part, sign, areas);
+    }
+}
+
+void BoxViews::addTo(const Layer& layer, std::span<const Point2> polygon, double sign,
+                     std::vector<double>& areas) const {
     thread_local Convex rest, strip, cell, above;  // memory is reused
     rest.clear();
     for (const Point2 p : polygon)
         rest.push_back({(p.x - box_.low.x) / side_, (p.y - box_.low.y) / side_});
     // Cuts along y first, then along x.
-    const auto range = [](const Convex& points, double Point2::*axis, std::size_t count) {
+    const auto range = [](const Convex& points, double Point2::*axis, std::size_t first,
+                          std::size_t count) {
         const auto less = [axis](Point2 a, Point2 b) { return a.*axis < b.*axis; };
         const auto [low, high] = std::minmax_element(points.begin(), points.end(), less);
-        const auto last = static_cast<double>(count - 1);
+        const auto least = static_cast<double>(first),
+                   last = static_cast<double>(first + count - 1);
         return std::pair(
-            static_cast<std::size_t>(std::clamp(std::floor((*low).*axis), 0.0, last)),
-            static_cast<std::size_t>(std::clamp(std::floor((*high).*axis), 0.0, last)));
+            static_cast<std::size_t>(std::clamp(std::floor((*low).*axis), least, last)),
+            static_cast<std::size_t>(std::clamp(std::floor((*high).*axis), least, last)));
     };
-    const auto [bottom, top] = range(rest, &Point2::y, rows_);
+    const auto [bottom, top] = range(rest, &Point2::y, layer.first_row, layer.rows);
     for (std::size_t row = bottom; row <= top && !rest.empty(); ++row) {
         if (row < top) {
             divide(rest, {{0, static_cast<double>(row + 1)}, {0, 1}}, strip, &above);
@@ -250,9 +317,9 @@ void BoxViews::addArea(std::span<const Point2> polygon, double sign,
             strip = rest;
         }
         if (strip.empty()) continue;
-        const auto [left, right] = range(strip, &Point2::x, columns_);
+        const auto [left, right] = range(strip, &Point2::x, 0, columns_);
         for (std::size_t column = left; column <= right && !strip.empty(); ++column) {
-            double& area = areas[row * columns_ + column];
+            double& area = areas[layer.begin + (row - layer.first_row) * columns_ + column];
             if (column == right) {
                 area += sign * areaOf(strip);
                 break;
@@ -306,10 +373,14 @@ double BoxViews::unionOf(std::span<const Known> known,
             seen[cell] =
                 static_cast<std::uint16_t>(std::min<int>(seen[cell] + view->parts[i], most_[cell]));
         }
-    std::int64_t parts = 0;
-    for (std::size_t i = 0; i < cells; ++i) parts += std::min<std::int32_t>(seen[i], left[i]);
-    if (!known.empty()) area += 8 * kNoShare * static_cast<double>(cells) * side_ * side_;
-    return area + static_cast<double>(parts) * side_ * side_ / kParts;
+    if (!known.empty())
+        area += 8 * kNoShare * static_cast<double>(cells) * side_ * side_ * most_weight_;
+    return area + weigh([](std::size_t first, std::size_t count) {
+                      std::int64_t parts = 0;
+                      for (std::size_t i = first; i < first + count; ++i)
+                          parts += std::min<std::int32_t>(seen[i], left[i]);
+                      return parts;
+                  }) / kParts;
 }
 
 }  // namespace ispace::poses

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/arrange/poses: the proof of a bound over all poses as a file, and its check. The check uses
-// geom and base, and of the search only Sector and PoseBox.
+// geom and base, and of the search only Sector, PoseBox and FloorWeighting.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,17 @@
 
 namespace ispace {
 
+/// The area that a proof bounds.
+struct PoseGoal {
+    int times = 1;  ///< floor counts if this many sensors see it
+    poses::FloorWeighting weights = {};
+};
+
 /// The proof of boundOverPoses() that equal sensors see at most `bound`. Each tree is a character
-/// for each node, in pre-order: a node that is split, its first half, its second half.
+/// for each node, in pre-order: a node that is split, its first half, its second half. It does not
+/// hold the room, the sensors and the goal: a check that is given others proves another bound.
 struct PoseCertificate {
-    double bound = 0;  ///< m2
+    double bound = 0;  ///< m2, by weight
     /// All poses: a box is halved along `x`, along `y` or in its headings (`h`), or whole (`.`).
     std::string boxes;
     /// Pairs of boxes, which bound two sensors; empty: none. Box `0` or `1` of the pair is halved;
@@ -38,15 +45,16 @@ PoseCertificate readCertificate(std::string_view text, const std::string& name);
 struct CertificateCheck {
     double bound = 0;  ///< m2: no poses of the sensors see more; valid whatever the trees are
     std::size_t boxes = 0, pairs = 0, tuples = 0;
+    double floor = 0;  ///< m2, by weight, rounded up
 };
 
 /// Computes the bound that the trees of a certificate prove, all views anew by BoxViews: in cells
 /// of the size of the search, but finer parts, so that it does not exceed that of the search but by
 /// rounding.
 /// \param most number of cells, as for PoseFloor \param name of the certificate, for errors
-/// \throws FormatError for trees that leave out poses
+/// \throws FormatError for trees that leave out poses \pre 1 <= goal.times <= sensors
 CertificateCheck checkCertificate(std::span<const Region> floor, std::size_t most,
-                                  const poses::Sector& sector, int sensors,
+                                  const poses::Sector& sector, int sensors, const PoseGoal& goal,
                                   const PoseCertificate& certificate, const std::string& name);
 
 }  // namespace ispace

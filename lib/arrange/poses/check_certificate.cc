@@ -28,11 +28,12 @@ using Boxes = std::array<std::uint32_t, kMostPosed>;
 
 class CertificateChecker {
   public:
-    CertificateChecker(const BoxViews& views, const Sector& sector, int sensors,
+    CertificateChecker(const BoxViews& views, const Sector& sector, int sensors, int times,
                        const PoseCertificate& certificate, const std::string& name)
         : views_(views),
           sector_(sector),
           count_(static_cast<std::size_t>(sensors)),
+          times_(static_cast<std::size_t>(times)),
           certificate_(certificate),
           name_(name) {}
 
@@ -69,6 +70,7 @@ class CertificateChecker {
     void boundPairs();
     [[nodiscard]] double mostOf(std::uint32_t first, std::uint32_t second) const;
     [[nodiscard]] double boundOf(const Boxes& boxes) const;
+    [[nodiscard]] double sharedBy(const Boxes& boxes) const;
     /// Bounds the area that poses of boxes see together: those of `known` by their areas, `pair` by
     /// its own (0: none), and the others by their views.
     [[nodiscard]] double unionOf(const Boxes& boxes, std::size_t size, unsigned known,
@@ -77,7 +79,7 @@ class CertificateChecker {
 
     const BoxViews& views_;
     const Sector& sector_;
-    std::size_t count_;
+    std::size_t count_, times_;
     const PoseCertificate& certificate_;
     const std::string& name_;
     std::size_t at_ = 0;  // in the tree of boxes
@@ -242,6 +244,7 @@ double CertificateChecker::mostOf(std::uint32_t first, std::uint32_t second) con
 /// A sensor adds no more than the largest single view in its box, less its overlap with others, and
 /// floor that one of n sensors sees is in n - 1 of the pairs of them.
 double CertificateChecker::boundOf(const Boxes& boxes) const {
+    if (times_ > 1) return sharedBy(boxes);
     const unsigned everyone = (1U << count_) - 1;
     double all = 0;
     for (std::size_t i = 0; i < count_; ++i) all += boxes_[boxes[i]].most;
@@ -264,6 +267,16 @@ double CertificateChecker::boundOf(const Boxes& boxes) const {
     return bound;
 }
 
+/// Bounds the area that several of the sensors see.
+double CertificateChecker::sharedBy(const Boxes& boxes) const {
+    std::array<BoxViews::Placed, kMostPosed> placed{};
+    for (std::size_t i = 0; i < count_; ++i) {
+        const Box& box = boxes_[boxes[i]];
+        placed[i] = {box.most, &box.view, &box.core};
+    }
+    return views_.sharedBy({placed.data(), count_}, times_, certificate_.bound);
+}
+
 CertificateCheck CertificateChecker::check() {
     readBox({views_.box(), 0, sector_.isRound() ? 0 : 2 * std::numbers::pi}, 0);
     if (at_ != certificate_.boxes.size()) refuse("more than one tree of boxes");
@@ -280,16 +293,16 @@ CertificateCheck CertificateChecker::check() {
         if (tuples_[i].is_whole) bounds[i] = boundOf(tuples_[i].boxes);
     });
     return {*std::max_element(bounds.begin(), bounds.end()), boxes_.size(), pairs_.size(),
-            tuples_.size()};
+            tuples_.size(), views_.floorArea()};
 }
 
 }  // namespace
 
 CertificateCheck checkCertificate(std::span<const Region> floor, std::size_t most,
-                                  const Sector& sector, int sensors,
+                                  const Sector& sector, int sensors, const PoseGoal& goal,
                                   const PoseCertificate& certificate, const std::string& name) {
-    const BoxViews views(floor, most, sector);
-    return CertificateChecker(views, sector, sensors, certificate, name).check();
+    const BoxViews views(floor, most, sector, goal.weights);
+    return CertificateChecker(views, sector, sensors, goal.times, certificate, name).check();
 }
 
 }  // namespace ispace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -39,19 +40,22 @@ Region comb() {
     return {outline, {}};
 }
 
-PoseCertificate certificateOf(const Region& region, const Sector& sector, int sensors, int rounds) {
+PoseCertificate certificateOf(const Region& region, const Sector& sector, int sensors, int rounds,
+                              const PoseGoal& goal = {}) {
     PoseCertificate certificate;
-    const PoseFloor floor({&region, 1}, kCells);
+    const PoseFloor floor({&region, 1}, kCells, goal.weights);
     StopWhen progress(afterAsking(rounds));
     const PoseBound bound = boundOverPoses(
-        floor, sector, {.sensors = sensors, .gap = 0.001, .certificate = &certificate}, progress);
+        floor, sector,
+        {.sensors = sensors, .times = goal.times, .gap = 0.001, .certificate = &certificate},
+        progress);
     EXPECT_EQ(bound.bound, certificate.bound);
     return certificate;
 }
 
 CertificateCheck checked(const Region& region, const Sector& sector, int sensors,
-                         const PoseCertificate& certificate) {
-    return checkCertificate({&region, 1}, kCells, sector, sensors, certificate, "c");
+                         const PoseCertificate& certificate, const PoseGoal& goal = {}) {
+    return checkCertificate({&region, 1}, kCells, sector, sensors, goal, certificate, "c");
 }
 
 std::string refusalOf(const PoseCertificate& certificate) {
@@ -74,6 +78,82 @@ TEST(CheckCertificate, ConfirmsSearches) {
                         << sector.field << ' ' << sensors << ' ' << rounds;
                     EXPECT_GT(check.bound, 0);
                 }
+}
+
+poses::FloorWeighting zones() {
+    return {.elsewhere = 0.5,
+            .pieces = {{{{1, 1}, {4.3, 1}, {4.3, 3.7}, {1, 3.7}}, 3},
+                       {{{6.05, 0}, {10, 0.3}, {8.5, 4}}, 0},
+                       {{{4.5, 1}, {5.1, 1}, {5.1, 2}, {4.5, 2}}, 2}}};
+}
+
+TEST(CheckCertificate, ConfirmsSearchesOfWeightsAndSeveralTimes) {
+    const Region region = roomsWithPillar();
+    for (const Sector& sector : {Sector{3, 2, -1}, Sector{30, 2 * kPi, 0}})
+        for (const PoseGoal& goal : {PoseGoal{1, zones()}, PoseGoal{2, {}}, PoseGoal{2, zones()}})
+            for (const int sensors : {2, 3})
+                for (const int rounds : {0, 20}) {
+                    const PoseCertificate made =
+                        certificateOf(region, sector, sensors, rounds, goal);
+                    const CertificateCheck check = checked(region, sector, sensors, made, goal);
+                    EXPECT_LE(check.bound, made.bound * (1 + 1e-9))
+                        << sector.field << ' ' << sensors << ' ' << goal.times << ' ' << rounds;
+                    EXPECT_GT(check.bound, 0);
+                    // For one sensor it proves no less than for several.
+                    if (goal.times > 1 && goal.weights.pieces.empty()) {
+                        EXPECT_GE(checked(region, sector, sensors, made).bound, check.bound - 1e-6);
+                    }
+                }
+}
+
+TEST(CheckCertificate, BoundsWhatSeveralSensorsSee) {
+    const Region region = roomsWithPillar();
+    const Sector sector{3, 4, 0};
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> x(0, 11), y(0, 5), turn(0, 2 * kPi);
+    const SeenAreas areas(region, sector);
+    for (const int times : {2, 3}) {
+        const double bound = checked(region, sector, 3,
+                                     certificateOf(region, sector, 3, 60, {times, {}}), {times, {}})
+                                 .bound;
+        for (int i = 0; i < 100; ++i) {
+            std::vector<Pose2> poses;
+            while (poses.size() < 3) {
+                const Point2 at{x(random), y(random)};
+                if (region.locate(at) == Side::Inside)
+                    poses.push_back({at, Angle::radians(turn(random))});
+            }
+            EXPECT_LE(areas.of(poses, times), bound);
+        }
+    }
+}
+
+/// The weight of each zone's floor in a box's view, against one view cut by the zones.
+TEST(BoxViews, WeighFloorByZones) {
+    const Region region = roomsWithPillar();
+    const PoseFloor searched({&region, 1}, kCells, zones());
+    const double weight = searched.weightOf([&searched](std::size_t first, std::size_t count) {
+        const auto begin = searched.parts().begin() + static_cast<std::ptrdiff_t>(first);
+        return std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(count), 0U);
+    });
+    // 3.3 x 2.7 m of weight 3, 0.6 x 1 m of 2, none in the triangle beside the pillar.
+    const BoxViews views({&region, 1}, kCells, {3, 4, 0}, zones());
+    EXPECT_LE(views.floorArea(), weight + 1e-9);
+    EXPECT_NEAR(BoxViews({&region, 1}, kCells, {3, 4, 0}).floorArea(), region.area(), 0.01);
+    const double zoned = 0.5 * region.area() + 2.5 * 3.3 * 2.7 + 1.5 * 0.6;
+    EXPECT_LT(views.floorArea(), zoned);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> x(0, 11), y(0, 5), turn(0, 2 * kPi), size(0, 2);
+    for (int i = 0; i < 60; ++i) {
+        const Point2 low{x(random), y(random)};
+        const PoseBox box{
+            {low, {low.x + size(random), low.y + size(random)}}, turn(random), size(random)};
+        const Sector sector{1 + 2 * size(random), i % 3 == 0 ? 2 * kPi : 0.5 + turn(random) / 2, 0};
+        const double own = BoxViews({&region, 1}, kCells, sector, zones()).viewOf(box).area;
+        EXPECT_LE(own, fatViewOf(searched, sector, box).area * (1 + 1e-9) + 1e-9) << i;
+        const double one = BoxViews({&region, 1}, kCells, sector).viewOf(box).area;
+        EXPECT_LE(own, 3 * one + 1e-9);
+    }
 }
 
 TEST(CheckCertificate, TextSurvivesWritingAndReading) {
