@@ -27,6 +27,7 @@
 
 namespace ispace {
 
+struct GuardCertificate;
 struct PoseCertificate;
 
 /// How candidate sites are proposed; each strategy is a row in arrange/strategy.cc.
@@ -120,7 +121,7 @@ struct ArrangeOptions {
     std::optional<double> target;  ///< share to reach at minimum cost
     /// Prove over all poses: the number of sensors with a target, else their coverage.
     bool over_poses = false;
-    bool wants_certificate = false;  ///< of that bound of coverage, see PosesBound
+    bool wants_certificate = false;  ///< of that proof, see PosesProof and PosesBound
     std::optional<double> budget;
     bool wants_curve = false, wants_trace = false, wants_gains = false;
     int alternatives = 0;  ///< number of further layouts, see Arrangement::alternatives
@@ -161,6 +162,7 @@ struct PosesProof {
     double missed = 0;      ///< m2, by an exact union
     double floor = 0;       ///< m2
     std::vector<Point2> witnesses;
+    std::shared_ptr<const GuardCertificate> certificate;  ///< if one was wanted
 
     [[nodiscard]] bool isProven() const { return cover > 0 && cover == bound; }
 };

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "arrange/gallery/gallery.h"
+#include "arrange/gallery/guard_certificate.h"
 #include "arrange/measured_scene.h"
 #include "arrange/opaque_floor.h"
 #include "arrange/poses/pose_search.h"
@@ -111,7 +112,10 @@ Arrangement arrangeOverPoses(const Scene& scene, const std::vector<SensorGroup>&
     result.least = static_cast<double>(cover.bound);
     const double area = totalArea(floor);
     result.over_poses =
-        PosesProof{cover.guards.size(), cover.bound, cover.missed, area, cover.witnesses};
+        PosesProof{cover.guards.size(), cover.bound, cover.missed, area, cover.witnesses, nullptr};
+    if (options.wants_certificate)
+        result.over_poses->certificate =
+            std::make_shared<const GuardCertificate>(certifyGuards(cover));
     measurePlaced(scene, groups, options, result);
     result.candidate_value =
         result.is_reached && area > 0 ? 1 - cover.missed / area : result.coverage;
@@ -329,6 +333,27 @@ bool isOn(const std::vector<Region>& floor, Point2 p) {
 }
 
 }  // namespace
+
+GuardCheck checkGuarded(const Scene& scene, const GuardCertificate& certificate,
+                        const std::string& name) {
+    std::vector<Point2> guards;
+    std::vector<Region> floor;
+    double height = 0;
+    for (const Sensor& sensor : scene.sensors) {
+        if (!kindOf(sensor.model).perceives) continue;
+        const auto* laser = std::get_if<Laser>(&sensor.model);
+        const Pose3& pose = sensor.pose;
+        if (laser == nullptr || !laser->seesAround() || pose.tilt.radians() != 0 ||
+            pose.roll.radians() != 0)
+            refusePoses("wanted level lasers that see all around, as laser,range=1000,fov=360");
+        if (guards.empty()) height = pose.position.z;
+        if (pose.position.z != height) refusePoses("wanted lasers at one height");
+        floor = floorFor(scene, *laser, height);
+        guards.push_back(pose.position.onFloor());
+    }
+    if (guards.empty()) refusePoses("wanted lasers with a pose");
+    return checkGuards(floor, guards, certificate, name);
+}
 
 CheckedPoses checkPoses(const Scene& scene, const FloorWeights& weights, int times,
                         const PoseCertificate& certificate, const std::string& name) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "arrange/arrange.h"
+#include "arrange/check_guards.h"
 #include "arrange/poses/certificate.h"
 #include "arrange/poses/fat_view.h"
 #include "arrange/sensor_group.h"
@@ -19,6 +20,11 @@ namespace ispace {
 ///         with a range beyond the room; straight walls; all of the floor as target
 Arrangement arrangeOverPoses(const Scene& scene, const std::vector<SensorGroup>& groups,
                              const ArrangeOptions& options, Progress& progress);
+
+/// Checks by other code that the lasers of a scene see its floor, and that fewer do not.
+/// \throws UsageError as arrangeOverPoses() \throws FormatError as checkGuards()
+GuardCheck checkGuarded(const Scene& scene, const GuardCertificate& certificate,
+                        const std::string& name);
 
 class MeasuredScene;
 

@@ -425,7 +425,7 @@ void ArrangeCommand::addFileOptions() {
                "write the model for solvers of mixed-integer programs (glpsol, cbc)",
                Enters::Nothing);
     line_.file("--certificate", "FILE", options_.certificate_file,
-               "write the proof of --proof poses without --target, for --verify", Enters::Nothing);
+               "write the proof of --proof poses, for --verify", Enters::Nothing);
     line_.file("--verify", "FILE", options_.verify_file,
                "check this certificate for the sensors of LAYOUT by other code than that of the "
                "search; arrange nothing, and exit with 3 if it does not prove its bound",

@@ -117,9 +117,8 @@ void ArrangeCommand::settleProofOfCoverage() {
 void ArrangeCommand::settleCertificate() {
     ArrangeOptions& how = options_.how;
     how.wants_certificate = !options_.certificate_file.empty();
-    if (how.wants_certificate && (words_.proof != "poses" || how.target))
-        throw UsageError(
-            "--certificate is about --proof poses without --target, whose result holds witnesses");
+    if (how.wants_certificate && words_.proof != "poses")
+        throw UsageError("--certificate is about --proof poses: give it, too");
     if (options_.verify_file.empty()) return;
     constexpr const char* kFiles[] = {"--output", "--certificate",  "--batch", "--merge",
                                       "--resume", "--alternatives", "--curve", "--trace",

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "arrange/arrange_run.h"
+#include "arrange/gallery/gallery.h"
+#include "arrange/gallery/guard_certificate.h"
 #include "arrange/over_poses.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -16,6 +18,41 @@
 
 namespace ispace {
 
+namespace {
+
+/// Checks a proof of the fewest lasers.
+void verifyGuards(const ArrangeToolOptions& options, const Scene& scene, const std::string& text) {
+    constexpr int kDigits = 3;
+    const std::string& file = options.verify_file;
+    if (!options.zones.targets.empty() || !options.zones.weights.empty() ||
+        options.how.redundancy > 1)
+        throw UsageError(
+            "--verify: all of the floor counts, once, in a proof of the fewest: leave out "
+            "--redundancy, --zone and --weight");
+    const GuardCertificate certificate = readGuardCertificate(text, file);
+    const GuardCheck check = checkGuarded(scene, certificate, file);
+    if (check.bound < certificate.bound)
+        throw UnmetError(printable(file) + ": its weights prove that " +
+                         std::to_string(check.bound) + " lasers are needed, not the " +
+                         std::to_string(certificate.bound) + " that it states");
+    const auto lasers =
+        std::count_if(scene.sensors.begin(), scene.sensors.end(),
+                      [](const Sensor& sensor) { return kindOf(sensor.model).perceives; });
+    const std::string missed = formatDouble(roundSignificant(check.missed, kDigits)) + " m2";
+    if (check.missed > kMissedShare * check.area)
+        throw UnmetError(printable(file) + ": the layout leaves " + missed + " of " +
+                         formatFixed(check.area, 2) + " m2 unseen");
+    tell(options.common, "arrange",
+         "the layout sees the floor of " + formatFixed(check.area, 2) + " m2 but for " + missed +
+             " by " + std::to_string(lasers) + (lasers == 1 ? " laser" : " lasers") +
+             "; at least " + std::to_string(check.bound) + " are needed in any poses: verified " +
+             "(witnesses: " + std::to_string(certificate.witnesses.size()) + ", trees: " +
+             std::to_string(check.trees) + ", leaves: " + std::to_string(check.leaves) +
+             ", parts of the floor: " + std::to_string(check.cells) + ")");
+}
+
+}  // namespace
+
 void verifyCertificate(const ArrangeToolOptions& options) {
     constexpr int kDecimals = 3;
     constexpr double kRounding = 1e-9;
@@ -24,10 +61,11 @@ void verifyCertificate(const ArrangeToolOptions& options) {
     streams.push_back(file);
     mustReadStdinOnce(streams);
     limitThreads(options.common.threads);
-    const PoseCertificate certificate =
-        readCertificate(isStream(file) ? readStdin() : readAll(file), file);
+    const std::string written = isStream(file) ? readStdin() : readAll(file);
     const SceneInput input = readScene({options.operands, options.rules, false});
     warnOfImport(options.common, "arrange", input);
+    if (isOfGuards(written)) return verifyGuards(options, input.scene, written);
+    const PoseCertificate certificate = readCertificate(written, file);
     ArrangeOptions how = options.how;
     takeZones(options, input.scene.environment, how);
     const CheckedPoses checked =

@@ -8,6 +8,7 @@
 #include "arrange/arrange_report.h"
 #include "arrange/arrange_run.h"
 #include "arrange/arrange_verify.h"
+#include "arrange/gallery/guard_certificate.h"
 #include "arrange/poses/certificate.h"
 #include "base/error.h"
 #include "base/file.h"
@@ -50,9 +51,12 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
         writeAll(options.report_file,
                  reportFile(options, work, arrangement, layout, command.historyLine(input.named)));
     if (!options.heat_file.empty()) writeHeat(options, work, arrangement);
-    if (const std::string& file = options.certificate_file; !file.empty())
+    if (const std::string& file = options.certificate_file; !file.empty()) {
         if (const auto& bound = arrangement.poses_bound; bound && bound->certificate)
             writeAll(file, certificateText(*bound->certificate, parts.history));
+        if (const auto& proof = arrangement.over_poses; proof && proof->certificate)
+            writeAll(file, certificateText(*proof->certificate, parts.history));
+    }
     if (const std::string& file = options.curve_file; !file.empty())
         writeAll(file, curveFile(arrangement.curve, outputFormat({}, file, curveFormats())));
     for (std::size_t i = 0; i < arrangement.alternatives.size(); ++i)

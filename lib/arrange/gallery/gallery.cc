@@ -115,6 +115,7 @@ void GallerySolver::raiseBound() {
         if (cover_.bound == 0 && !witnesses_.empty()) {
             cover_.bound = 1;
             cover_.witnesses = {unscaled(witnesses_.front().view.viewpoint())};
+            cover_.sets = {{0}};
         }
         return;
     }
@@ -130,6 +131,7 @@ void GallerySolver::raiseBound() {
         cover_.witnesses.clear();
         for (const Witness& witness : witnesses_)
             cover_.witnesses.push_back(unscaled(witness.view.viewpoint()));
+        cover_.sets = problem.columns;
     }
     ++cover_.rounds;
     std::vector<gallery::WindowVertex> candidates;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,9 +26,11 @@ struct GalleryCover {
     /// No set of fewer points sees all of the witnesses, and so none sees the whole floor.
     std::size_t bound = 0;
     std::vector<Point2> witnesses;  ///< that prove the bound
-    std::size_t candidates = 0;     ///< points tried as guards
-    int rounds = 0;                 ///< of lower bounds
-    bool is_complete = true;        ///< false: stopped with guards.size() > bound
+    /// A point sees no more than one of these sets of witnesses, ascending.
+    std::vector<std::vector<std::uint32_t>> sets;
+    std::size_t candidates = 0;  ///< points tried as guards
+    int rounds = 0;              ///< of lower bounds
+    bool is_complete = true;     ///< false: stopped with guards.size() > bound
 
     [[nodiscard]] bool isProven() const { return !guards.empty() && guards.size() == bound; }
 };
