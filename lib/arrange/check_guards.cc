@@ -69,7 +69,7 @@ class GuardChecker {
     [[noreturn]] void refuse(const std::string& message) const {
         throw FormatError({name_, 0, 0, message});
     }
-    Sights sightsFrom(std::span<const Point2> points, bool must_be_on) const;
+    [[nodiscard]] Sights sightsFrom(std::span<const Point2> points, bool must_be_on) const;
     void follow(const Cone& first, std::size_t triangle, std::size_t edge,
                 const std::vector<char>& is_start, Sights& sights) const;
     /// Bounds the error of the distance of a point from a line of a cone.
@@ -239,12 +239,11 @@ std::int64_t GuardChecker::weightOf(const Leaf& leaf, const Part& part) const {
 
 bool GuardChecker::isClear(const Cone& cone, const Convex& outline) const {
     if (cone.is_whole) return false;
-    for (const auto& [side, end] :
-         {std::pair(cone.rightSide(), cone.right), std::pair(cone.leftSide(), cone.left)})
-        if (std::all_of(outline.begin(), outline.end(),
-                        [&](Point2 p) { return side.beyond(p) > blurAt(cone, end, p); }))
-            return true;
-    return false;
+    const auto is_beyond = [&](const Side2& side, Point2 end) {
+        return std::all_of(outline.begin(), outline.end(),
+                           [&](Point2 p) { return side.beyond(p) > blurAt(cone, end, p); });
+    };
+    return is_beyond(cone.rightSide(), cone.right) || is_beyond(cone.leftSide(), cone.left);
 }
 
 bool GuardChecker::cut(const Part& part, Part& inside, Part& outside, const Leaf& leaf) const {

@@ -204,6 +204,7 @@ std::vector<std::vector<GuardRows>> groupsOf(const std::vector<GuardRows>& sets,
     std::map<std::uint32_t, std::vector<GuardRows>> groups;
     for (const GuardRows& set : sets) groups[root_of(set.front())].push_back(set);
     std::vector<std::vector<GuardRows>> all;
+    all.reserve(groups.size());
     for (auto& [first, group] : groups) all.push_back(std::move(group));
     return all;
 }
