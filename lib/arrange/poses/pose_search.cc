@@ -9,6 +9,7 @@
 #include "arrange/poses/pose_searcher.h"
 #include "arrange/poses/pose_share.h"
 #include "base/number.h"
+#include "base/random.h"
 
 namespace ispace::poses {
 
@@ -217,10 +218,21 @@ void PoseSearcher::writeTuples(std::uint32_t id, std::string& text) const {
 void PoseSearcher::deal() {
     constexpr std::size_t kPerShard = 8;
     const std::optional<Shard>& own = options_.share.own;
-    if (is_dealt_ || !own || queue_.size() < kPerShard * static_cast<std::size_t>(own->count))
+    if (dealt_ != 0 || !own || queue_.size() < kPerShard * static_cast<std::size_t>(own->count))
         return;
+    queue_.sortByBound();
+    Packer tuples;
+    for (const Tuple& tuple : queue_.all()) {
+        pack(tuples, tuple.bound);
+        for (const BoxId id : boxesOf(tuple)) {
+            const PoseBox& box = boxes_[id].box;
+            for (const double number :
+                 {box.at.low.x, box.at.low.y, box.at.high.x, box.at.high.y, box.from, box.span})
+                pack(tuples, number);
+        }
+    }
+    dealt_ = std::max<std::uint64_t>(hashOf(tuples.bytes()), 1);
     queue_.keepOnly(*own);
-    is_dealt_ = true;
 }
 
 PoseBound PoseSearcher::run() {
@@ -260,8 +272,10 @@ PoseBound boundOverPoses(const poses::PoseFloor& floor, const poses::Sector& sec
     if (share.joined > 0)
         return poses::joinedProof(share, poses::markOf(floor, sector, options), options.sensors,
                                   options.found);
-    PoseBound proof = poses::PoseSearcher(floor, sector, options, progress).run();
-    if (share.own) poses::storeProof(share, poses::markOf(floor, sector, options), proof);
+    poses::PoseSearcher search(floor, sector, options, progress);
+    PoseBound proof = search.run();
+    if (share.own)
+        poses::storeProof(share, poses::markOf(floor, sector, options), search.dealt(), proof);
     return proof;
 }
 

@@ -37,10 +37,12 @@ struct IsWorse {
 class OpenTuples : public std::priority_queue<Tuple, std::vector<Tuple>, IsWorse> {
   public:
     [[nodiscard]] const std::vector<Tuple>& all() const { return c; }
-    /// Deals tuples out in turn, the best first, and keeps those of one shard.
-    void keepOnly(const Shard& shard) {
+    void sortByBound() {
         std::sort(c.begin(), c.end(),
                   [](const Tuple& a, const Tuple& b) { return IsWorse()(b, a); });
+    }
+    /// Deals sorted tuples out in turn, the best first, and keeps those of one shard.
+    void keepOnly(const Shard& shard) {
         std::size_t kept = 0;
         const auto first = static_cast<std::size_t>(shard.index - 1);
         for (std::size_t i = first; i < c.size(); i += static_cast<std::size_t>(shard.count))
@@ -65,6 +67,7 @@ class PoseSearcher {
           multiple_(floor, boxes_, count_, static_cast<std::size_t>(options.times)) {}
 
     PoseBound run();
+    [[nodiscard]] std::uint64_t dealt() const { return dealt_; }
 
   private:
     void searchSingle();
@@ -117,8 +120,9 @@ class PoseSearcher {
     // Of the state. Pairs are stored by themselves once all are there.
     std::string name_, pairs_name_;
     std::uint64_t mark_ = 0;
-    bool is_paired_ = false, are_pairs_kept_ = false, is_dealt_ = false;
-    bool is_kept_ = false;  // false also once it is cut short in the middle of a step
+    bool is_paired_ = false, are_pairs_kept_ = false;
+    std::uint64_t dealt_ = 0;  // fingerprint of the tuples that were dealt out; 0: none yet
+    bool is_kept_ = false;     // false also once it is cut short in the middle of a step
 };
 
 }  // namespace ispace::poses

@@ -53,7 +53,7 @@ PosedLayout unpackLayout(Unpacker& from, int sensors) {
 
 std::uint64_t markOf(const PoseFloor& floor, const Sector& sector,
                      const PoseSearchOptions& options) {
-    constexpr std::uint64_t kForm = 1;  // version of the bytes
+    constexpr std::uint64_t kForm = 2;  // version of the bytes
     Packer to;
     to.add(kForm);
     for (std::size_t i = 0; i < floor.triangles().size(); ++i)
@@ -71,9 +71,11 @@ std::uint64_t markOf(const PoseFloor& floor, const Sector& sector,
     return hashOf(to.bytes());
 }
 
-void storeProof(const PoseShare& share, std::uint64_t mark, const PoseBound& proof) {
+void storeProof(const PoseShare& share, std::uint64_t mark, std::uint64_t dealt,
+                const PoseBound& proof) {
     Packer to;
     to.add(mark);
+    to.add(dealt);
     pack(to, proof.bound);
     pack(to, proof.found);
     for (const std::uint64_t number :
@@ -84,11 +86,19 @@ void storeProof(const PoseShare& share, std::uint64_t mark, const PoseBound& pro
 
 PoseBound joinedProof(const PoseShare& share, std::uint64_t mark, int sensors, double found) {
     PoseBound all{.bound = found, .found = {found}};
+    std::uint64_t all_dealt = 0;
     for (int i = 1; i <= share.joined; ++i) {
         const auto bytes = share.results->find(proofName(i));
         if (!bytes) Unpacker::refuse();
         Unpacker from(*bytes);
         if (from.number() != mark) Unpacker::refuse();
+        // A shard that was done, or cut short, before it dealt bounds all tuples.
+        const std::uint64_t dealt = from.number();
+        if (dealt != 0 && all_dealt != 0 && dealt != all_dealt)
+            throw FormatError({share.results->file(), 0, 0,
+                               "shard " + std::to_string(i) +
+                                   " searched a share of other tuples than those before it"});
+        if (dealt != 0) all_dealt = dealt;
         const double bound = unpackArea(from);
         PosedLayout layout = unpackLayout(from, sensors);
         if (layout.area > bound) Unpacker::refuse();

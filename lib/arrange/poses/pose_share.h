@@ -21,10 +21,12 @@ double unpackArea(Unpacker& from);
 PosedLayout unpackLayout(Unpacker& from, int sensors);
 
 /// Stores the proof of a shard.
-void storeProof(const PoseShare& share, std::uint64_t mark, const PoseBound& proof);
+/// \param dealt fingerprint of the tuples that shards dealt out; 0: it searched all of them
+void storeProof(const PoseShare& share, std::uint64_t mark, std::uint64_t dealt,
+                const PoseBound& proof);
 /// Merges the proofs of all shards: the best layout, also than the area `found` that was known
-/// before, and the highest bound. \throws FormatError if one is missing, damaged or of another
-/// search
+/// before, and the highest bound. \throws FormatError if one is missing, damaged, of another search
+/// or a share of other tuples
 PoseBound joinedProof(const PoseShare& share, std::uint64_t mark, int sensors, double found);
 
 }  // namespace ispace::poses

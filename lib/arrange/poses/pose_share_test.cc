@@ -256,6 +256,35 @@ TEST(PoseShare, ShardsThatWereCutShortHaveABound) {
     }
 }
 
+TEST(PoseShare, SharesOfOtherTuplesAreRefused) {
+    const Case own{2, 1, 0.02, {}};
+    TestResults all;
+    for (int i = 1; i <= 2; ++i) {
+        TestResults results;
+        StopWhen stop(afterAsking(40));
+        (void)own.run({.results = results.get(), .own = Shard{i, 2}}, nullptr, stop);
+        all.takeFrom(results, "poses/");
+    }
+    const auto merge = [&] {
+        SilentProgress silent;
+        (void)own.run({.results = all.get(), .joined = 2}, nullptr, silent);
+    };
+    EXPECT_NO_THROW(merge());
+    const std::string bytes = all.get()->find("poses/2").value();
+    std::uint64_t dealt = 0;
+    std::memcpy(&dealt, &bytes.at(8), sizeof dealt);
+    ASSERT_NE(dealt, 0U);
+    const auto change = [&](std::uint64_t other) {
+        std::string changed = bytes;
+        std::memcpy(&changed.at(8), &other, sizeof other);
+        all.get()->store("poses/2", changed);
+    };
+    change(0);  // it searched all tuples
+    EXPECT_NO_THROW(merge());
+    change(dealt + 1);
+    EXPECT_THROW(merge(), FormatError);
+}
+
 TEST(PoseShare, MissingAndForeignPartsAreRefused) {
     const Case own{2, 1, 0.05, {}}, other{2, 1, 0.06, {}};
     SilentProgress silent;

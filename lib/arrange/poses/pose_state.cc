@@ -29,7 +29,7 @@ void PoseSearcher::keep() {
     pack(to, found_);
     for (const double area : {tried_, closed_}) pack(to, area);
     to.add(tuples_);
-    to.add(is_dealt_ ? 1 : 0);
+    to.add(dealt_);
     std::vector<std::uint64_t> bounds;
     std::vector<std::uint32_t> tuples, tree;
     for (const Tuple& tuple : queue_.all()) {
@@ -81,7 +81,7 @@ bool PoseSearcher::recall() {
     tried_ = unpackArea(from);
     closed_ = unpackArea(from);
     tuples_ = from.number();
-    is_dealt_ = from.number() != 0;
+    dealt_ = from.number();
     unpackTuples(from);
     if (!from.atEnd()) Unpacker::refuse();
     return true;
