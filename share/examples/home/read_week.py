@@ -5,8 +5,8 @@
     simrun flat.env flat.3dm --script week.txt --clock fast --dt 1 --until 168h --record week
     read_week.py week
 
-The recogniser guesses an activity from the motion sensor that was on last when it began. It learns on the first half of
-the time.
+The recogniser guesses an activity from its hour and the motion sensor with the most detections. It learns on the first
+half of the time.
 """
 import csv
 import sys
@@ -30,12 +30,13 @@ seen, half = [], labels[-1][0] / 2
 for begin, end, _, activity in labels:
     during = Counter(sensor for t, sensor in motions if begin <= t <= end + 5)
     if during:
-        seen.append((begin, during.most_common(1)[0][0], activity))
+        sign = during.most_common(1)[0][0], begin // 3600 % 24
+        seen.append((begin, sign, activity))
 known = defaultdict(Counter)
-for begin, sensor, activity in seen:
+for begin, sign, activity in seen:
     if begin <= half:
-        known[sensor][activity] += 1
-judged = [known[sensor].most_common(1)[0][0] == activity for begin, sensor, activity in seen
-          if begin > half and known[sensor]]
+        known[sign][activity] += 1
+judged = [known[sign].most_common(1)[0][0] == activity for begin, sign, activity in seen
+          if begin > half and known[sign]]
 print(f"{len(motions)} detections, {len(labels)} labels; {100 * sum(judged) / len(judged):.0f} % of "
       f"{len(judged)} actions recognised")
