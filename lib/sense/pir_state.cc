@@ -56,7 +56,14 @@ PirState castPir(const RayWorld& mesh, const MovingBodies& bodies,
     return state;
 }
 
-void holdOutput(const PirState& before, PirState& now) {
+PirState readingOf(const Pir& /*pir*/, const Moment& now) {
+    PirState state = castPir(now.mesh(), now.bodies, now.options.velocities, now.sensor, now.pose,
+                             now.frame, now.options.noise_seed);
+    state.time = now.time;
+    return state;
+}
+
+void follow(const PirState& before, PirState& now) {
     const double rest = before.held - (now.time - before.time);
     if (now.motion || now.time < before.time || rest <= 0) return;
     now.motion = true;

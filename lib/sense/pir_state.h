@@ -4,10 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "scene/sensor/sensor.h"
-#include "sense/selection.h"
-#include "trace/moving_bodies.h"
-#include "trace/ray_world.h"
+#include "sense/moment.h"
 
 namespace ispace {
 
@@ -34,7 +31,9 @@ PirState castPir(const RayWorld& mesh, const MovingBodies& bodies,
                  const MoverVelocities& velocities, const Sensor& sensor, const Pose3& pose,
                  int frame, std::optional<std::uint64_t> noise_seed);
 
+PirState readingOf(const Pir& pir, const Moment& now);
+
 /// Keeps the output on for the rest of the hold time of an earlier reading.
-void holdOutput(const PirState& before, PirState& now);
+void follow(const PirState& before, PirState& now);
 
 }  // namespace ispace

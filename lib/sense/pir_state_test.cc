@@ -119,7 +119,7 @@ TEST(PirState, HoldsItsOutput) {
     const PirState on{.time = 1, .pose = {}, .motion = true, .held = 0.5};
     const auto after = [&](double time) {
         PirState now{.time = time, .pose = {}};
-        holdOutput(on, now);
+        follow(on, now);
         return now;
     };
     EXPECT_TRUE(after(1.4).motion);
@@ -127,7 +127,7 @@ TEST(PirState, HoldsItsOutput) {
     EXPECT_FALSE(after(1.5).motion) << "the end is off";
     EXPECT_FALSE(after(0.5).motion) << "of an earlier run";
     PirState again{.time = 1.2, .pose = {}, .motion = true, .held = 0.5};
-    holdOutput(on, again);
+    follow(on, again);
     EXPECT_EQ(again.held, 0.5) << "a detection starts the time anew";
 }
 

@@ -119,4 +119,11 @@ RadarFrame castRadar(const RayWorld& mesh, const MovingBodies& bodies,
     return out;
 }
 
+RadarFrame readingOf(const Radar& /*radar*/, const Moment& now) {
+    RadarFrame seen = castRadar(now.mesh(), now.bodies, now.options.velocities, now.sensor,
+                                now.pose, now.frame, now.options.noise_seed);
+    seen.time = now.time;
+    return seen;
+}
+
 }  // namespace ispace

@@ -5,10 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene/sensor/sensor.h"
-#include "sense/selection.h"
-#include "trace/moving_bodies.h"
-#include "trace/ray_world.h"
+#include "sense/moment.h"
 
 namespace ispace {
 
@@ -43,5 +40,7 @@ struct RadarFrame {
 RadarFrame castRadar(const RayWorld& mesh, const MovingBodies& bodies,
                      const MoverVelocities& velocities, const Sensor& sensor, const Pose3& pose,
                      int frame, std::optional<std::uint64_t> noise_seed);
+
+RadarFrame readingOf(const Radar& radar, const Moment& now);
 
 }  // namespace ispace

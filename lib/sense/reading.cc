@@ -52,25 +52,9 @@ Burst readingOf(const Tag& /*tag*/, const Moment& now) {
                      {now.options.celsius, now.options.noise_seed});
 }
 
-RadarFrame readingOf(const Radar& /*radar*/, const Moment& now) {
-    RadarFrame seen = castRadar(now.mesh(), now.bodies, now.options.velocities, now.sensor,
-                                now.pose, now.frame, now.options.noise_seed);
-    seen.time = now.time;
-    return seen;
-}
-
-PirState readingOf(const Pir& /*pir*/, const Moment& now) {
-    PirState state = castPir(now.mesh(), now.bodies, now.options.velocities, now.sensor, now.pose,
-                             now.frame, now.options.noise_seed);
-    state.time = now.time;
-    return state;
-}
-
 ContactState readingOf(const Contact& contact, const Moment& now) {
     return {now.time, now.frame, now.pose, contact.is_open};
 }
-
-void follow(const PirState& before, PirState& now) { holdOutput(before, now); }
 
 }  // namespace
 
