@@ -39,7 +39,7 @@ std::uint64_t upwards(double share) {
 }
 
 double traceOf(const SpotInformation& spot) {
-    return spot.seen.trace() + atKnownHeight(spot.heard).trace();
+    return spot.seen.trace() + spot.ranged.trace() + atKnownHeight(spot.heard).trace();
 }
 
 /// Bounds the worth of information with this trace.

@@ -11,7 +11,10 @@
 namespace ispace {
 
 void SpotInformation::add(const Sensor& sensor, const SpaceInformation& information) {
-    if (kindOf(sensor.model).together == 1) {
+    if (sensor.is<Uwb>()) {
+        ranged += atKnownHeight(information);
+        ++anchors;
+    } else if (kindOf(sensor.model).together == 1) {
         seen += atKnownHeight(information);
     } else {
         heard += information;
@@ -21,6 +24,7 @@ void SpotInformation::add(const Sensor& sensor, const SpaceInformation& informat
 
 double SpotInformation::error() const {
     FloorInformation all = seen;
+    if (anchors >= kMinAnchors) all += ranged;
     if (receivers >= kMinReceivers) all += atAnyHeight(heard);
     return all.error();
 }

@@ -16,11 +16,14 @@ struct SpotInformation {
     FloorInformation seen;   ///< of sensors that know the height of the plane
     SpaceInformation heard;  ///< of receivers of a tag at any height
     std::size_t receivers = 0;
+    FloorInformation ranged;  ///< of UWB anchors
+    std::size_t anchors = 0;
 
     /// Adds a sensor that sees the spot. \param information informationOf() of it and the spot
     void add(const Sensor& sensor, const SpaceInformation& information);
     /// Returns the root mean square error of the position, metres; +infinity if it is not
-    /// determined. Receivers count from kMinReceivers on.
+    /// determined. Receivers count from kMinReceivers on, anchors from kMinAnchors on, as in
+    /// readings.
     [[nodiscard]] double error() const;
 };
 
