@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <tuple>
+#include <vector>
 
 #include "sense/noise.h"
 #include "sense/walls_between.h"
@@ -103,23 +105,27 @@ double errorOf(const UwbRadio& radio) { return std::hypot(radio.noise.sigma[0], 
 /// An anchor near enough to a tag.
 struct NearAnchor {
     double distance = 0;
-    const UwbAnchor* anchor = nullptr;
-    Pose3 pose;
+    std::size_t anchor = 0;  ///< index in Uwb::anchors
 };
 
-/// Returns the anchors whose range contains a tag, the nearest first.
+bool isFarther(const NearAnchor& a, const NearAnchor& b) {
+    return std::tie(a.distance, a.anchor) > std::tie(b.distance, b.anchor);
+}
+
+const Pose3& anchorPose(const UwbAnchor& anchor, const Moment& now) {
+    return anchor.id == now.sensor.id ? now.pose : anchor.pose;
+}
+
+/// Returns the anchors whose range contains a tag, as a heap with the nearest on top.
 std::vector<NearAnchor> anchorsAbout(Point3 place, const Uwb& uwb, const Moment& now) {
     std::vector<NearAnchor> near;
+    std::size_t index = 0;
     for (const UwbAnchor& anchor : uwb.anchors) {
-        const bool is_own = anchor.id == now.sensor.id;
-        const Pose3& pose = is_own ? now.pose : anchor.pose;
-        const double distance = length(place - pose.position);
-        if (withinRange(distance, anchor.radio.max_range))
-            near.push_back({distance, &anchor, pose});
+        const double distance = length(place - anchorPose(anchor, now).position);
+        if (withinRange(distance, anchor.radio.max_range)) near.push_back({distance, index});
+        ++index;
     }
-    std::stable_sort(near.begin(), near.end(), [](const NearAnchor& a, const NearAnchor& b) {
-        return a.distance < b.distance;
-    });
+    std::make_heap(near.begin(), near.end(), isFarther);
     return near;
 }
 
@@ -127,9 +133,12 @@ std::vector<NearAnchor> anchorsAbout(Point3 place, const Uwb& uwb, const Moment&
 std::optional<PositionFix> fixOf(const Uwb& uwb, const std::string& tag, Point3 place,
                                  const Moment& now) {
     std::vector<Hearing> heard;
-    for (const auto& [distance, near, pose] : anchorsAbout(place, uwb, now)) {
-        if (heard.size() == kMaxAnchors) break;
-        const UwbAnchor& anchor = *near;
+    std::vector<NearAnchor> near = anchorsAbout(place, uwb, now);
+    while (!near.empty() && heard.size() < kMaxAnchors) {
+        std::pop_heap(near.begin(), near.end(), isFarther);
+        const UwbAnchor& anchor = uwb.anchors.begin()[near.back().anchor];
+        near.pop_back();
+        const Pose3& pose = anchorPose(anchor, now);
         const auto ranging = rangingOf(anchor.radio, anchor.id, pose.position,
                                        MovingBodies::kNoOwner, tag, place, now);
         if (!ranging || ranging->blocks > 0) continue;
