@@ -27,6 +27,7 @@
 #include <ispace_client/robot.h>
 #include <ispace_client/sensor.h>
 #include <ispace_client/smart_room.h>
+#include <ispace_client/thermometer.h>
 #include <ispace_client/uwb.h>
 #include <ispace_client/world.h>
 

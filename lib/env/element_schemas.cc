@@ -146,6 +146,35 @@ Schema schema(std::string keyword, RecordType type, std::string help, std::vecto
     return {std::move(keyword), type, std::move(help), std::move(keys)};
 }
 
+KeySpec numberKey(std::string name, Unit unit, std::string help, double standard, double lower,
+                  double upper) {
+    return {.name = std::move(name),
+            .type = KeyType::Number,
+            .unit = unit,
+            .help = std::move(help),
+            .default_value = standard,
+            .lower = lower,
+            .upper = upper};
+}
+
+KeySpec positiveNumber(KeySpec key) {
+    key.lower_open = true;
+    return key;
+}
+
+/// Returns the keys of a zone's heat, for thermometers.
+std::vector<KeySpec> heatKeys() {
+    return {numberKey("celsius", Unit::None, "its temperature at the start, degrees Celsius", 20,
+                      -100, 100),
+            positiveNumber(numberKey("storage", Unit::None,
+                                     "heat that its air and walls store, kJ/K for a square metre",
+                                     165, 0, 1e4)),
+            positiveNumber(numberKey(
+                "loss", Unit::None,
+                "heat that it loses to the outside, W/K for a square metre, all windows shut", 1.5,
+                0, 1e4))};
+}
+
 void addSpaces(std::vector<Schema>& out) {
     out.push_back(schema(
         "ispace", RecordType::Space, "a room: floor and four walls",
@@ -156,12 +185,20 @@ void addSpaces(std::vector<Schema>& out) {
     out.push_back(schema("inside", RecordType::Space,
                          "a point known to be inside the room; several make several rooms",
                          {std::move(inside_at)}));
-    out.push_back(schema("zone", RecordType::Space,
+    Schema zone = schema("zone", RecordType::Space,
                          "a part of the floor, called by its id: a polygon or a rectangle",
                          {pathKey("corners of the polygon, three or more"), floorAtKey(),
                           headingKey(), sizeKey("length,width of the rectangle", 2, 2),
                           textKey("number", "number of the room, as on its door"),
-                          textKey("name", "name of the room")}));
+                          textKey("name", "name of the room")});
+    for (KeySpec& key : heatKeys()) zone.keys.push_back(std::move(key));
+    out.push_back(std::move(zone));
+    out.push_back(
+        schema("weather", RecordType::Space,
+               "the weather outside, for thermometers: a schedule may change it",
+               {numberKey("celsius", Unit::None, "of the air, degrees Celsius", 10, -100, 100),
+                numberKey("sun", Unit::None, "that falls on each window, W for a square metre", 0,
+                          0, 1500)}));
 }
 
 void addFloors(std::vector<Schema>& out) {
@@ -269,17 +306,6 @@ void addInfra(std::vector<Schema>& out) {
                           countKey("cols", "bars across", 3, 1000)}));
 }
 
-KeySpec numberKey(std::string name, Unit unit, std::string help, double standard, double lower,
-                  double upper) {
-    return {.name = std::move(name),
-            .type = KeyType::Number,
-            .unit = unit,
-            .help = std::move(help),
-            .default_value = standard,
-            .lower = lower,
-            .upper = upper};
-}
-
 KeySpec levelKey() { return numberKey("level", Unit::Share, "share of its full light", 1, 0, 1); }
 
 KeySpec lightColorKey(Tuple standard) {
@@ -328,6 +354,12 @@ void addAppliances(std::vector<Schema>& out) {
                 numberKey("lumens", Unit::None, "its full light for light meters, lumens", 3600, 0,
                           1e6)}));
     out.push_back(projectorSchema());
+    KeySpec power = levelKey();
+    power.help = "share of its full power";
+    out.push_back(schema("heater", RecordType::Infra,
+                         "a heater, which warms the zones of thermometers; it has no body",
+                         {floorAtKey(), flagKey("on", "it heats"), std::move(power),
+                          numberKey("watts", Unit::None, "its full power, W", 1000, 0, 1e6)}));
     out.push_back(schema(
         "speaker", RecordType::Infra, "a speaker, which microphones hear; it has no body",
         {floorAtKey(), heightKey(1, "height above the floor"), flagKey("on", "it sounds"),

@@ -20,11 +20,12 @@ TEST(EnvironmentSchemas, HasTheKeywordsOfTheHeader) {
         EXPECT_TRUE(schema.isEnvironment());
         EXPECT_FALSE(schema.help.empty());
     }
-    EXPECT_EQ(keywords, (std::set<std::string>{
-                            "ispace",   "inside", "zone",      "door",   "window",  "infra",
-                            "boxes",    "screen", "mesh",      "floor",  "wall",    "fence",
-                            "pillar",   "table",  "desk",      "chair",  "barrier", "cube",
-                            "cylinder", "lamp",   "projector", "switch", "speaker", "panel"}));
+    EXPECT_EQ(keywords,
+              (std::set<std::string>{
+                  "ispace", "inside",  "zone",    "door",   "window",   "infra",  "boxes",
+                  "screen", "mesh",    "floor",   "wall",   "fence",    "pillar", "table",
+                  "desk",   "chair",   "barrier", "cube",   "cylinder", "lamp",   "projector",
+                  "switch", "speaker", "panel",   "heater", "weather"}));
 }
 
 TEST(EnvironmentSchemas, KeysAreWhole) {

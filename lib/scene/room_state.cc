@@ -12,10 +12,11 @@ namespace ispace {
 namespace {
 
 constexpr StateKey kStateKeys[] = {
-    {"door", "open"},       {"window", "open"},   {"window", "blind"},   {"lamp", "on"},
-    {"lamp", "level"},      {"lamp", "color"},    {"projector", "on"},   {"projector", "level"},
-    {"projector", "color"}, {"projector", "pan"}, {"projector", "tilt"}, {"switch", "on"},
-    {"speaker", "on"},      {"speaker", "volume"}};
+    {"door", "open"},       {"window", "open"},    {"window", "blind"},   {"lamp", "on"},
+    {"lamp", "level"},      {"lamp", "color"},     {"projector", "on"},   {"projector", "level"},
+    {"projector", "color"}, {"projector", "pan"},  {"projector", "tilt"}, {"switch", "on"},
+    {"speaker", "on"},      {"speaker", "volume"}, {"heater", "on"},      {"heater", "level"},
+    {"weather", "celsius"}, {"weather", "sun"}};
 
 std::string valueText(const Record& record, std::string_view key) {
     const KeySpec& spec = *record.schema().find(key);

@@ -22,6 +22,7 @@
 #include "sense/scan.h"
 #include "sense/selection.h"
 #include "sense/sound_level.h"
+#include "sense/temperature.h"
 #include "sense/trajectory.h"
 #include "sense/ultrasound.h"
 #include "sense/uwb_ranges.h"
@@ -70,12 +71,12 @@ struct ContactState {
 /// SensorModel.
 using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState,
                                   ContactState, RfidTags, UwbRanges, SoundLevel, Illuminance,
-                                  Inertia, MoteReport, MatState, GateState>;
+                                  Inertia, MoteReport, Temperature, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
 using Reading =
     std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState, ContactState,
-                 RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia, MoteReport>;
+                 RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia, MoteReport, Temperature>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

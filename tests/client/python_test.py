@@ -256,6 +256,17 @@ class Sensors(unittest.TestCase):
                 self.assertEqual(list(report.neighbours), ["n2"])
                 self.assertAlmostEqual(report.neighbours["n2"], 20 * math.log10(2), delta=0.06)
 
+    def test_thermometer(self):
+        with self.run_.world() as world:
+            world.add("zone id=z8 at=0,0 size=4,4 celsius=18")
+            world.add("thermometer id=t8 at=0,0,1.5")
+            world.add("heater id=h8 at=1,1 on=yes watts=24000")
+            world.advance(600)
+            with ispace.Thermometer(self.run_.address, "t8") as thermometer:
+                steady, constant = 10 + 24000 / 24, 165e3 / 1.5
+                celsius = steady + (18 - steady) * math.exp(-600 / constant)
+                self.assertAlmostEqual(thermometer.scan().celsius, celsius, delta=0.15)
+
     def test_uwb(self):
         with self.run_.world() as world:
             world.add("cube id=k2 at=1.2,1.2 size=0.1,0.1,0.09 tag=key")

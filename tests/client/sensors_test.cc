@@ -146,6 +146,13 @@ TEST_F(Sensors, AMoteReportsLightAndNeighbours) {
     EXPECT_NEAR(report.margins.at(0), 20 * std::log10(2.0), 0.06);
 }
 
+TEST_F(Sensors, AThermometerReportsItsZone) {
+    world.add("zone id=z8 at=0,0 size=4,4 celsius=21.5");
+    world.add("thermometer id=t8 at=0,0,1.5");
+    simulate(1);
+    EXPECT_EQ(Thermometer(server.address(), "t8").scan().celsius, 21.5);
+}
+
 TEST_F(Sensors, AnchorsMeasureRangesAndLocate) {
     world.add("cube id=k1 at=1.2,1.2 size=0.1,0.1,0.09 tag=key");
     for (const char* anchor : {"a0 at=1.9,1.9,1.8", "a1 at=-1.9,1.9,1.9", "a2 at=-1.9,-1.9,2"})

@@ -16,6 +16,7 @@
 #include "scene/sensor/radar.h"
 #include "scene/sensor/ranger.h"
 #include "scene/sensor/rfid.h"
+#include "scene/sensor/thermometer.h"
 #include "scene/sensor/ultrasound.h"
 #include "scene/sensor/uwb.h"
 
@@ -25,6 +26,6 @@ namespace ispace {
 /// in this order. Only this header, the sources of the kinds and the computation of readings
 /// distinguish kinds.
 using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Pir, Contact, Rfid,
-                                 Uwb, Microphone, Lux, Imu, Mote, Mat, Gate>;
+                                 Uwb, Microphone, Lux, Imu, Mote, Thermometer, Mat, Gate>;
 
 }  // namespace ispace

@@ -59,6 +59,7 @@ from .smart_room import (
     SoundLevel,
     TagList,
 )
+from .thermometer import Temperature, Thermometer
 from .uwb import TagRange, TagRanges, Uwb
 from .world import Event, Lift, World
 
@@ -125,6 +126,8 @@ __all__ = [
     "TagList",
     "TagRange",
     "TagRanges",
+    "Temperature",
+    "Thermometer",
     "Timeout",
     "ToolError",
     "Ultrasound",
