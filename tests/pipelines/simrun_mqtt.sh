@@ -58,11 +58,14 @@ fence id=inner path=3,0;3,4 height=2.5
 door id=d1 wall=inner offset=2
 lamp id=l1 at=1.5,2
 switch id=b1 at=0.1,1
+projector id=p1 at=1.5,3 height=2.2
+zone id=west at=1.5,2 size=3,4
 END_OF_ROOM
 cat >flat.3dm <<'END_OF_LAYOUT'
 #3dm 1
 pir id=s1 at=0.1,0.1,2 heading=45 tilt=-30 hold=0.5
 contact id=k1 at=3,2,2 door=d1
+thermometer id=t1 at=1.5,2,1.5
 human id=h1 at=1,3
 END_OF_LAYOUT
 
@@ -74,7 +77,7 @@ listen
 simrun flat.env flat.3dm -q --mqtt "127.0.0.1:$port" --record run --dt 0.02 >begin.json 2>err &
 server=$!
 jobs_left+=("$server")
-for state in 'l1/on OFF' 'l1/level 100' 'b1/on OFF' 'd1/open OFF' 's1/motion OFF' 'k1/open OFF' 'status online'; do
+for state in 'l1/on OFF' 'l1/level 100' 'b1/on OFF' 'd1/open OFF' 's1/motion OFF' 'k1/open OFF' 't1/celsius 20' 'p1/pan 0' 'status online'; do
     eventually "no state $state" heard "ispace/$state"
 done
 for component in light/ispace_l1 switch/ispace_b1 cover/ispace_d1 binary_sensor/ispace_s1 binary_sensor/ispace_k1; do
@@ -86,7 +89,9 @@ things = {thing["name"]: thing for thing in map(json.loads, sys.stdin)}
 assert things["s1"]["device_class"] == "motion" and things["s1"]["state_topic"] == "ispace/s1/motion"
 assert things["l1"]["brightness_command_topic"] == "ispace/l1/level/set" and things["l1"]["brightness_scale"] == 100
 assert all(thing["availability_topic"] == "ispace/status" for thing in things.values())
-assert "command_topic" not in things["k1"]' || fail "discovery"
+assert "command_topic" not in things["k1"]
+assert things["t1"]["device_class"] == "temperature" and things["t1"]["unit_of_measurement"] == "°C"
+assert things["p1 pan"]["command_topic"] == "ispace/p1/pan/set" and things["p1 pan"]["max"] == 180' || fail "discovery"
 
 # Commands, in order; a door moves the room.
 tell ispace/l1/on/set ON
@@ -95,6 +100,8 @@ eventually "no lamp" is_last l1/level 40
 is_last l1/on ON || fail "the lamp is $(last l1/on)"
 tell ispace/d1/open/set ON
 eventually "no door" is_last k1/open ON
+tell ispace/p1/pan/set 45
+eventually "the projector does not turn" is_last p1/pan 45
 tell ispace/l1/level/set bright
 eventually "no refusal" grep -q '^ispace/error ERR 400' heard
 tell ispace/s1/motion/set ON    # sensors take no commands

@@ -13,21 +13,29 @@ namespace ispace {
 
 namespace {
 
+std::string topicOf(const std::string& prefix, std::string_view id, std::string_view key) {
+    return prefix + '/' + topicId(id) + '/' + std::string(key);
+}
+
 /// Returns the things that have states, of all rooms.
-std::vector<MqttThing> thingsOf(const ServerState& state) {
-    std::unordered_map<std::string, std::string> keywords;
+std::vector<MqttThing> thingsOf(const ServerState& state, const std::string& prefix) {
+    std::unordered_map<std::string, const Record*> records;
     for (const auto& [room, world] : state.worlds()) {
         const Scene& scene = world->scene();
         for (std::size_t i = 0; i < scene.records.size(); ++i)
-            keywords.emplace(nameAcross(room, scene.ids[i]), scene.records[i].keyword());
+            records.emplace(nameAcross(room, scene.ids[i]), &scene.records[i]);
     }
     std::vector<MqttThing> things;
+    const Record* record = nullptr;
     for (const RoomState& one : state.statesOfAll()) {
         if (things.empty() || things.back().id != one.id) {
-            const auto keyword = keywords.find(one.id);
-            things.push_back({one.id, keyword == keywords.end() ? "" : keyword->second, {}});
+            const auto found = records.find(one.id);
+            record = found == records.end() ? nullptr : found->second;
+            things.push_back({one.id, record == nullptr ? "" : record->keyword(), {}});
         }
-        things.back().keys.push_back(one.key);
+        const bool is_actuator = record != nullptr && isActuator(record->keyword());
+        things.back().keys.push_back({one.key, topicOf(prefix, one.id, one.key),
+                                      is_actuator ? record->schema().find(one.key) : nullptr});
     }
     return things;
 }
@@ -50,28 +58,27 @@ MqttBridge::MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, s
 }
 
 std::string MqttBridge::topicOf(std::string_view id, std::string_view key) const {
-    return prefix_ + '/' + topicId(id) + '/' + std::string(key);
+    return ispace::topicOf(prefix_, id, key);
 }
 
 /// Describes new things, or all of them after a connection, and removes those that are gone.
 void MqttBridge::introduce(bool all) {
     changes_ = changesOfAll();
-    const std::vector<MqttThing> things = thingsOf(*state_);
+    const std::vector<MqttThing> things = thingsOf(*state_, prefix_);
     Topics topics;
     std::set<std::string> descriptions;
     std::vector<MqttMessage> news;
     for (const MqttThing& thing : things) {
-        std::vector<std::string> names;
-        bool is_new = all;
-        for (const std::string& key : thing.keys) {
-            names.push_back(topicOf(thing.id, key));
-            topics.emplace(names.back(), Topic{thing.id, key, isActuator(thing.keyword)});
-            is_new = is_new || !topics_.contains(names.back());
+        bool has_news = all;
+        for (const MqttKey& key : thing.keys) {
+            topics.emplace(key.topic, Topic{thing.id, key.name, isActuator(thing.keyword)});
+            has_news = has_news || !topics_.contains(key.topic);
         }
-        MqttMessage description = discoveryOf(thing, prefix_, names);
-        is_new = is_new || !descriptions_.contains(description.topic);
-        descriptions.insert(description.topic);
-        if (is_new) news.push_back(std::move(description));
+        for (MqttMessage& description : discoveryOf(thing, prefix_)) {
+            const bool is_new = has_news || !descriptions_.contains(description.topic);
+            descriptions.insert(description.topic);
+            if (is_new) news.push_back(std::move(description));
+        }
     }
     // An empty retained message removes the one that the broker has.
     const auto remove = [this](const std::string& topic) { client_->publish({topic, "", true}); };
@@ -89,7 +96,10 @@ void MqttBridge::publishAll() {
 }
 
 void MqttBridge::publish(const RoomState& state) {
-    client_->publish({topicOf(state.id, state.key), payloadOf(state.key, state.value), true});
+    const std::string topic = topicOf(state.id, state.key);
+    const auto found = topics_.find(topic);
+    const bool is_actuator = found != topics_.end() && found->second.is_actuator;
+    client_->publish({topic, payloadOf(state.key, state.value, is_actuator), true});
 }
 
 void MqttBridge::serve() {

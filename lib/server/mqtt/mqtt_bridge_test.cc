@@ -33,8 +33,11 @@ TEST(MqttTopics, PayloadsConvertBothWays) {
                  {"level", "0.4", "40"},
                  {"level", "1", "100"},
                  {"color", "1,0.2,0", "255,51,0"},
+                 {"pan", "0", "0"},
+                 {"volume", "1", "1"},
                  {"tags", "a,b", "a,b"}};
-    for (const auto& [key, value, payload] : cases) EXPECT_EQ(payloadOf(key, value), payload);
+    for (const auto& [key, value, payload] : cases) EXPECT_EQ(payloadOf(key, value, true), payload);
+    EXPECT_EQ(payloadOf("level", "61.5", false), "61.5") << "of a microphone";
     EXPECT_EQ(valueOfPayload("on", "ON"), "on");
     EXPECT_EQ(valueOfPayload("level", "40"), "40%");
     EXPECT_EQ(valueOfPayload("color", "255,51,0"), "1,0.2,0");
@@ -42,11 +45,47 @@ TEST(MqttTopics, PayloadsConvertBothWays) {
 }
 
 TEST(MqttTopics, DiscoveryKeepsToTheLettersOfTopics) {
+    const KeySpec flag{.name = "on", .type = KeyType::Flag, .help = ""};
     const MqttMessage lamp =
-        discoveryOf({"hall/l 1", "lamp", {"on"}}, "ispace", {"ispace/hall/l 1/on"});
+        discoveryOf({"hall/l 1", "lamp", {{"on", "ispace/hall/l 1/on", &flag}}}, "ispace").front();
     EXPECT_EQ(lamp.topic, "homeassistant/light/ispace_hall__2fl__201/config");
     EXPECT_TRUE(lamp.retain);
     EXPECT_NE(lamp.payload.find("\"command_topic\":\"ispace/hall/l 1/on/set\""), std::string::npos);
+}
+
+TEST(MqttTopics, DiscoveryDescribesEachKey) {
+    const KeySpec flag{.name = "on", .type = KeyType::Flag, .help = ""};
+    const KeySpec share{.name = "level", .unit = Unit::Share, .help = "", .lower = 0, .upper = 1};
+    const KeySpec pan{.name = "pan", .unit = Unit::Angle, .help = "", .lower = -180, .upper = 180};
+    const auto projector =
+        discoveryOf({"p1",
+                     "projector",
+                     {{"on", "t/on", &flag}, {"level", "t/level", &share}, {"pan", "t/pan", &pan}}},
+                    "home");
+    ASSERT_EQ(projector.size(), 2U);
+    EXPECT_EQ(projector[0].topic, "homeassistant/light/home_p1/config");
+    EXPECT_NE(projector[0].payload.find("\"brightness_command_topic\":\"t/level/set\""),
+              std::string::npos);
+    EXPECT_EQ(projector[1].topic, "homeassistant/number/home_p1___pan/config");
+    EXPECT_NE(projector[1].payload.find("\"command_topic\":\"t/pan/set\",\"min\":-180,\"max\":180"),
+              std::string::npos);
+    const auto heater =
+        discoveryOf({"h", "heater", {{"on", "t/on", &flag}, {"level", "t/level", &share}}}, "home");
+    EXPECT_EQ(heater.at(0).topic, "homeassistant/switch/home_h/config");
+    EXPECT_NE(heater.at(1).payload.find("\"max\":100"), std::string::npos);
+    const auto window = discoveryOf(
+        {"w", "window", {{"open", "t/open", &flag}, {"blind", "t/blind", &flag}}}, "home");
+    EXPECT_EQ(window.at(1).topic, "homeassistant/switch/home_w___blind/config");
+    const auto weather = discoveryOf({"w", "weather", {{"sun", "t/sun", &pan}}}, "home");
+    ASSERT_EQ(weather.size(), 1U);
+    EXPECT_EQ(weather[0].topic, "homeassistant/number/home_w___sun/config");
+    // Sensors take no commands.
+    const auto mote = discoveryOf({"m", "mote", {{"lux", "t/lux"}, {"neighbours", "t/n"}}}, "home");
+    ASSERT_EQ(mote.size(), 2U);
+    EXPECT_EQ(mote[1].topic, "homeassistant/sensor/home_m___neighbours/config");
+    EXPECT_EQ(mote[1].payload.find("command_topic"), std::string::npos);
+    const auto warm = discoveryOf({"t", "thermometer", {{"celsius", "t/celsius"}}}, "home");
+    EXPECT_NE(warm.at(0).payload.find("\"unit_of_measurement\":\"°C\""), std::string::npos);
 }
 
 TEST(MqttTopics, DistinctIdsStayDistinct) {
@@ -57,7 +96,7 @@ TEST(MqttTopics, DistinctIdsStayDistinct) {
                                        "a.b", "a/b", "a__2eb", "a_",   "a___2eb", "a_.b"};
     for (const std::string& id : ids) {
         topics.insert(topicId(id));
-        descriptions.insert(discoveryOf({id, "lamp", {"on"}}, "ispace", {"t"}).topic);
+        descriptions.insert(discoveryOf({id, "lamp", {{"on", "t"}}}, "ispace").front().topic);
     }
     EXPECT_EQ(topics.size(), ids.size());
     EXPECT_EQ(descriptions.size(), ids.size());

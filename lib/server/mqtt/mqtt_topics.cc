@@ -16,6 +16,10 @@ constexpr double kPerCent = 100, kFullColor = 255;
 
 bool isShare(std::string_view key) { return key == "level"; }
 bool isColor(std::string_view key) { return key == "color"; }
+/// Returns true for states that are on or off: any other 0 or 1 is a number.
+bool isFlag(std::string_view key) {
+    return key == "on" || key == "open" || key == "blind" || key == "motion";
+}
 
 /// Multiplies each number of a list; "" if one is none.
 std::string scaled(std::string_view list, double factor, bool is_whole) {
@@ -32,18 +36,23 @@ std::string scaled(std::string_view list, double factor, bool is_whole) {
     }
 }
 
-/// A component of Home Assistant for the records of a keyword.
+/// A component of Home Assistant for the records of a keyword, whose entity holds the first key.
 struct Component {
-    std::string_view keyword, component, device_class;
+    std::string_view keyword, component, device_class, unit;
 };
-constexpr Component kComponents[] = {{"lamp", "light", ""},
-                                     {"projector", "light", ""},
-                                     {"switch", "switch", ""},
-                                     {"speaker", "switch", ""},
-                                     {"door", "cover", "door"},
-                                     {"window", "cover", "window"},
-                                     {"pir", "binary_sensor", "motion"},
-                                     {"contact", "binary_sensor", "door"}};
+constexpr Component kComponents[] = {{"lamp", "light", "", ""},
+                                     {"projector", "light", "", ""},
+                                     {"switch", "switch", "", ""},
+                                     {"speaker", "switch", "", ""},
+                                     {"heater", "switch", "", ""},
+                                     {"door", "cover", "door", ""},
+                                     {"window", "cover", "window", ""},
+                                     {"pir", "binary_sensor", "motion", ""},
+                                     {"contact", "binary_sensor", "door", ""},
+                                     {"lux", "sensor", "illuminance", "lx"},
+                                     {"mote", "sensor", "illuminance", "lx"},
+                                     {"microphone", "sensor", "sound_pressure", "dB"},
+                                     {"thermometer", "sensor", "temperature", "°C"}};
 
 bool isPlain(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
@@ -75,13 +84,13 @@ std::string topicId(std::string_view id) {
     return escapedId(id, [](char c) { return c != '+' && c != '#'; });
 }
 
-std::string payloadOf(std::string_view key, std::string_view value) {
+std::string payloadOf(std::string_view key, std::string_view value, bool is_actuator) {
     std::string scaled_value;
-    if (isShare(key)) scaled_value = scaled(value, kPerCent, false);
-    if (isColor(key)) scaled_value = scaled(value, kFullColor, true);
+    if (is_actuator && isShare(key)) scaled_value = scaled(value, kPerCent, false);
+    if (is_actuator && isColor(key)) scaled_value = scaled(value, kFullColor, true);
     if (!scaled_value.empty()) return scaled_value;
-    if (value == "1") return "ON";
-    if (value == "0") return "OFF";
+    if (isFlag(key) && value == "1") return "ON";
+    if (isFlag(key) && value == "0") return "OFF";
     return std::string(value);
 }
 
@@ -94,44 +103,94 @@ std::string valueOfPayload(std::string_view key, std::string_view payload) {
     return value;
 }
 
-MqttMessage discoveryOf(const MqttThing& thing, const std::string& prefix,
-                        const std::vector<std::string>& topics) {
+namespace {
+
+/// Begins the description of an entity, with its states and commands.
+class Entity {
+  public:
+    Entity(const std::string& name, const std::string& unique_id) : id_(unique_id) {
+        json_.beginObject().key("name").value(name).key("unique_id").value(unique_id);
+    }
+    JsonWriter& json() { return json_; }
+    void addTopics(std::string_view name, const MqttKey& key) {
+        json_.key(std::string(name) + "state_topic").value(key.topic);
+        if (key.spec != nullptr)
+            json_.key(std::string(name) + "command_topic").value(key.topic + "/set");
+    }
+    MqttMessage message(std::string_view component, const std::string& prefix) {
+        json_.key("availability_topic").value(statusTopic(prefix));
+        json_.key("device").beginObject().key("identifiers").beginArray().value(prefix).endArray();
+        json_.key("name").value(prefix).key("manufacturer").value("ispace").endObject();
+        json_.endObject();
+        return {.topic = "homeassistant/" + std::string(component) + '/' + id_ + "/config",
+                .payload = json_.take(),
+                .retain = true};
+    }
+
+  private:
+    std::string id_;
+    JsonWriter json_;
+};
+
+/// Describes a key that the entity of its thing does not hold.
+MqttMessage describeKey(Entity entity, const MqttKey& key, const std::string& prefix) {
+    entity.addTopics("", key);
+    if (key.spec == nullptr) return entity.message("sensor", prefix);
+    if (key.spec->type == KeyType::Flag) return entity.message("switch", prefix);
+    if (key.spec->type != KeyType::Number) return entity.message("text", prefix);
+    const bool is_share = isShare(key.name);
+    const double scale = is_share ? kPerCent : 1;
+    entity.json().key("min").value(scale * key.spec->lower);
+    entity.json().key("max").value(scale * key.spec->upper);
+    constexpr double kStep = 0.1;
+    entity.json().key("step").value(kStep);
+    if (is_share) entity.json().key("unit_of_measurement").value("%");
+    if (key.spec->unit == Unit::Angle) entity.json().key("unit_of_measurement").value("°");
+    return entity.message("number", prefix);
+}
+
+}  // namespace
+
+std::vector<MqttMessage> discoveryOf(const MqttThing& thing, const std::string& prefix) {
     const auto* const found =
         std::find_if(std::begin(kComponents), std::end(kComponents),
                      [&](const Component& one) { return one.keyword == thing.keyword; });
-    const Component component =
-        found == std::end(kComponents) ? Component{thing.keyword, "sensor", ""} : *found;
     const bool is_commanded = isActuator(thing.keyword);
     const std::string plain = prefix + '_' + escapedId(thing.id, isPlain);
-    JsonWriter json;
-    json.beginObject().key("name").value(thing.id).key("unique_id").value(plain);
-    if (!component.device_class.empty()) json.key("device_class").value(component.device_class);
-    const auto add = [&](std::string_view name, const std::string& topic) {
-        json.key(std::string(name) + "state_topic").value(topic);
-        if (is_commanded) json.key(std::string(name) + "command_topic").value(topic + "/set");
-    };
-    bool has_main = false;  // of further keys Home Assistant knows the shares and colours alone
-    for (std::size_t i = 0; i < thing.keys.size(); ++i)
-        if (isShare(thing.keys[i]))
-            add("brightness_", topics[i]);
-        else if (isColor(thing.keys[i]))
-            add("rgb_", topics[i]);
-        else if (!std::exchange(has_main, true))
-            add("", topics[i]);
-    if (std::any_of(thing.keys.begin(), thing.keys.end(), isShare))
-        json.key("brightness_scale").value(static_cast<std::int64_t>(kPerCent));
-    if (component.component == "cover") {
-        json.key("payload_open").value("ON").key("payload_close").value("OFF");
-        json.key("state_open").value("ON").key("state_closed").value("OFF");
-        json.key("payload_stop").null();
+    std::vector<MqttMessage> messages;
+    std::size_t held = 0;  // keys that the entity of the thing holds, the first ones
+    if (found != std::end(kComponents) || !is_commanded) {
+        const Component component =
+            found == std::end(kComponents) ? Component{thing.keyword, "sensor", "", ""} : *found;
+        Entity entity(thing.id, plain);
+        if (!component.device_class.empty())
+            entity.json().key("device_class").value(component.device_class);
+        if (!component.unit.empty()) entity.json().key("unit_of_measurement").value(component.unit);
+        entity.addTopics("", thing.keys[held++]);
+        for (; component.component == "light" && held < thing.keys.size(); ++held) {
+            const MqttKey& key = thing.keys[held];
+            if (isShare(key.name)) {
+                entity.addTopics("brightness_", key);
+                entity.json().key("brightness_scale").value(static_cast<std::int64_t>(kPerCent));
+            } else if (isColor(key.name)) {
+                entity.addTopics("rgb_", key);
+            } else {
+                break;
+            }
+        }
+        if (component.component == "cover") {
+            entity.json().key("payload_open").value("ON").key("payload_close").value("OFF");
+            entity.json().key("state_open").value("ON").key("state_closed").value("OFF");
+            entity.json().key("payload_stop").null();
+        }
+        messages.push_back(entity.message(component.component, prefix));
     }
-    json.key("availability_topic").value(statusTopic(prefix));
-    json.key("device").beginObject().key("identifiers").beginArray().value(prefix).endArray();
-    json.key("name").value(prefix).key("manufacturer").value("ispace").endObject();
-    json.endObject();
-    return {.topic = "homeassistant/" + std::string(component.component) + '/' + plain + "/config",
-            .payload = json.take(),
-            .retain = true};
+    // No escaped id has three underscores.
+    for (; held < thing.keys.size(); ++held)
+        messages.push_back(describeKey(
+            Entity(thing.id + ' ' + thing.keys[held].name, plain + "___" + thing.keys[held].name),
+            thing.keys[held], prefix));
+    return messages;
 }
 
 }  // namespace ispace

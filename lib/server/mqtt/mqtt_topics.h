@@ -17,20 +17,26 @@ namespace ispace {
 /// underscores and two hexadecimal digits. Distinct ids stay distinct.
 std::string topicId(std::string_view id);
 
-/// Converts a state to its payload: ON or OFF, per cent, R,G,B to 255, or the value itself.
-std::string payloadOf(std::string_view key, std::string_view value);
+/// Converts a state to its payload: ON or OFF, of an actuator per cent or R,G,B to 255, or the
+/// value itself.
+std::string payloadOf(std::string_view key, std::string_view value, bool is_actuator);
 /// Converts a payload to a value of the record language, which may be invalid.
 std::string valueOfPayload(std::string_view key, std::string_view payload);
+
+/// A key of a thing's state.
+struct MqttKey {
+    std::string name, topic;
+    const KeySpec* spec = nullptr;  ///< of an actuator's record; null: a sensor reports it
+};
 
 /// A sensor or actuator with all keys of its state.
 struct MqttThing {
     std::string id, keyword;
-    std::vector<std::string> keys;
+    std::vector<MqttKey> keys;
 };
 
-/// Returns the message of Home Assistant's discovery for a thing, retained.
-/// \param topic_of returns the topic of a key's state
-MqttMessage discoveryOf(const MqttThing& thing, const std::string& prefix,
-                        const std::vector<std::string>& topics);
+/// Returns the messages of Home Assistant's discovery for a thing, retained: an entity of its
+/// keyword, and one for each key that this entity does not hold, such as the `pan` of a projector.
+std::vector<MqttMessage> discoveryOf(const MqttThing& thing, const std::string& prefix);
 
 }  // namespace ispace
