@@ -20,6 +20,7 @@ const kTexts = {
 export function eventText(line) {
   const [, kind] = /^EVENT (\w+)/.exec(line) ?? [];
   if (!kTexts[kind]) return {};
-  const keys = {...keysOf(line), text: line.split(' text=')[1], what: line.split(' what=')[1]};
+  const keys = keysOf(line);
+  for (const rest of ['text', 'what']) if (rest in keys) keys[rest] = line.split(` ${rest}=`)[1];  // of the line
   return {text: `${Number(keys.t).toFixed(1)} s  ${kTexts[kind](keys)}`, bad: kind === 'collision'};
 }

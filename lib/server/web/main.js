@@ -308,6 +308,7 @@ function key(name, down, repeated = false) {
 
 window.addEventListener('keydown', event => {
   if (!plan || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.target.matches?.('#state-list input')) return;  // typed there
   const onButton = event.target.closest?.('button, input');
   if (onButton && event.key === ' ') return;  // presses that
   if (onButton === part('seek') && event.key in arrows) return;  // moves that

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The states of the room: what sensors and actuators report, with a button for each that is on or off.
+// The states of the room: a button for each that is on or off, a field for each other one of an actuator.
 import {Link, complaint, keysOf} from './link.js';
 
 /** The states of the answer to STATE, as [id, key, value]; in a building those of the room that is shown. */
@@ -17,12 +17,14 @@ function changeOf(line) {
   return [[id, ...Object.entries(state)[0]]];
 }
 
+const SWITCHES = new Set(['on', 'open', 'blind', 'motion']);
+
 export class States {
   constructor(part, tell) {
     this.section = part('states');
     this.list = part('state-list');
     this.tell = tell;
-    this.buttons = new Map();  // by id.key
+    this.shown = new Map();  // by id.key: shows a value
     this.sensors = new Set();
   }
 
@@ -31,9 +33,15 @@ export class States {
     this.link = link;
     const answer = await link.ask('STATE');
     if (!answer.startsWith('OK')) return;
-    this.list.replaceChildren();
-    this.buttons.clear();
-    this.take(statesOf(answer));
+    const states = statesOf(answer);
+    // Those of a changed room are mostly the same: a field keeps its text.
+    const names = states.map(([id, key]) => `${id}.${key} ${this.sensors.has(id)}`).join();
+    if (names !== this.names) {
+      this.list.replaceChildren();
+      this.shown.clear();
+      this.names = names;
+    }
+    this.take(states);
   }
 
   /** Sensors report, and nobody presses them. */
@@ -45,31 +53,52 @@ export class States {
   line(line) { if (line.startsWith('EVENT state ')) this.take(changeOf(line)); }
 
   take(states) {
-    for (const [id, key, value] of states) {
-      const button = this.buttons.get(`${id}.${key}`) ?? this.add(id, key);
-      const is_switch = value === '0' || value === '1';
-      button.lastChild.textContent = is_switch ? '' : value;
-      button.disabled = this.sensors.has(id) || !is_switch;
-      button.setAttribute('aria-pressed', value === '1');
-    }
-    this.section.hidden = this.buttons.size === 0;
+    for (const [id, key, value] of states) (this.shown.get(`${id}.${key}`) ?? this.add(id, key))(value);
+    this.section.hidden = this.shown.size === 0;
   }
 
   add(id, key) {
-    const item = document.createElement('li'), button = document.createElement('button');
-    const value = document.createElement('span');
-    value.className = 'model';
-    button.append(`${id} ${key} `, value);
-    button.onclick = () => this.press(id, key, button.getAttribute('aria-pressed') !== 'true');
-    this.buttons.set(`${id}.${key}`, button);
-    item.append(button);
+    const item = document.createElement('li'), is_fixed = this.sensors.has(id);
+    const show = SWITCHES.has(key) || is_fixed ? this.addButton(item, id, key) : this.addField(item, id, key);
+    this.shown.set(`${id}.${key}`, show);
     this.list.append(item);
-    return button;
+    return show;
   }
 
-  async press(id, key, on) {
-    const answer = await this.link.ask(`ACT ${id} ${key}=${on ? 1 : 0}`);
-    if (!answer.startsWith('OK')) return this.tell(complaint(answer), true);
-    this.take([[id, key, on ? '1' : '0']]);
+  addButton(item, id, key) {
+    const button = document.createElement('button'), text = document.createElement('span');
+    text.className = 'model';
+    button.append(`${id} ${key} `, text);
+    button.disabled = this.sensors.has(id);
+    button.onclick = () => this.set(id, key, button.getAttribute('aria-pressed') === 'true' ? '0' : '1');
+    item.append(button);
+    return value => {
+      text.textContent = SWITCHES.has(key) ? '' : value;
+      button.setAttribute('aria-pressed', SWITCHES.has(key) && value === '1');
+    };
+  }
+
+  addField(item, id, key) {
+    const label = document.createElement('label'), field = document.createElement('input');
+    let known = '';
+    field.onclick = () => field.select();
+    field.onchange = async () => {
+      field.blur();  // so that it shows the value as the world has it
+      if (!await this.set(id, key, field.value.trim())) field.value = known;
+    };
+    label.append(`${id} ${key} `, field);
+    item.append(label);
+    return value => {
+      known = value;
+      if (document.activeElement !== field) field.value = value;
+    };
+  }
+
+  /** Returns whether the world took it. */
+  async set(id, key, value) {
+    const answer = await this.link.ask(`ACT ${id} ${key}=${value}`);
+    if (!answer.startsWith('OK')) this.tell(complaint(answer), true);
+    else if (SWITCHES.has(key)) this.take([[id, key, value]]);
+    return answer.startsWith('OK');
   }
 }
