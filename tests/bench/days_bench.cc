@@ -19,6 +19,7 @@
 #include "bench_scenes.h"
 #include "bench_table.h"
 #include "sim/world_editor.h"
+#include "support/test_paths.h"
 #include "support/test_source.h"
 #include "tool_run.h"
 
@@ -231,6 +232,28 @@ Day editLoop() {
     return {"200 edits among 1 840 rooms", "in 30 rooms", 80, edits(46, 40), edits(6, 5), {}};
 }
 
+/// A week of four people in a flat of twenty sensors, with a record of every reading, beside ten
+/// seconds.
+Day weekAtHome(const std::string& folder) {
+    constexpr double kSeconds = 10;
+    constexpr std::ptrdiff_t kLabels = 100;
+    const std::string home = testing::sourcePath("share/examples/home/");
+    const std::string record = folder + "/week";
+    const auto verify = [record] {
+        const std::string labels = readAll(record + "/activities.csv");
+        mustBe(std::count(labels.begin(), labels.end(), '\n') > kLabels,
+               "the record lacks activities");
+    };
+    return {"a week of 4 people, 20 sensors",
+            "10 seconds",
+            1,
+            command({"simrun", home + "flat.env", home + "flat.3dm", "-q", "-j", "1", "--script",
+                     home + "week.txt", "--clock", "fast", "--dt", "1", "--until", "168h",
+                     "--record", record}),
+            [] { return kSeconds; },
+            verify};
+}
+
 std::vector<Day> allDays(const std::string& folder) {
     return {
         camerasInBuilding(folder),
@@ -241,6 +264,7 @@ std::vector<Day> allDays(const std::string& folder) {
         recordedRun(folder, 1, 3600, 1.5),
         recordedRun(folder, 100, 60, 1.5),
         recordedRun(folder, 1000, 10, 1.5),
+        weekAtHome(folder),
     };
 }
 
