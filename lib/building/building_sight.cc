@@ -23,7 +23,7 @@ namespace {
 constexpr double kEqualWithin = 1e-9;
 
 /// Numbers that are equal for storeys in equal surroundings.
-using Surroundings = std::vector<std::int64_t>;
+using SurroundingsKey = std::vector<std::int64_t>;
 
 std::int64_t rounded(double value) { return std::llround(value / kEqualWithin); }
 
@@ -149,7 +149,7 @@ class StoreyViews {
     /// Returns a number that is the same for storeys with equal rooms, distances and openings.
     std::size_t kindOfSurroundings(std::span<const std::size_t> storeys) {
         const Storey& base = building_.document.storeys[storeys.front()];
-        Surroundings numbers;
+        SurroundingsKey numbers;
         const auto add_point = [&](Point2 p) {
             const Point2 local = inStorey(base, p);
             numbers.push_back(rounded(local.x));
@@ -255,7 +255,7 @@ class StoreyViews {
     std::vector<Box2> boxes_;                                   // of the openings in each floor
     std::map<const Scene*, std::vector<std::size_t>> sensors_;  // that see outside
     std::map<const Scene*, std::size_t> rooms_;                 // numbers of rooms
-    std::map<Surroundings, std::size_t> kinds_;
+    std::map<SurroundingsKey, std::size_t> kinds_;
     std::map<std::tuple<std::size_t, std::ptrdiff_t, std::ptrdiff_t, std::size_t>, std::size_t>
         known_;  // jobs
     std::vector<Job> jobs_;

@@ -12,6 +12,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
+#include "building/building_edit.h"
 #include "building/building_imports.h"
 #include "building/building_scene.h"
 #include "cli/common_options.h"
@@ -32,7 +33,6 @@ constexpr std::string_view kFormats[] = {"glb", "env", "yaml", "svg", "png", "pd
 /// \throws UsageError for an option that is about one room
 void mustBeAboutBuildings(const EnvcOptions& options, const StoreyedDocument& building) {
     std::string option;
-    if (!options.edits.empty()) option = optionOf(options.edits.front().kind);
     if (options.slice) option = "--slice";
     if (!options.zones.empty()) option = "--zone";
     if (!options.report.empty()) option = "--report";
@@ -59,6 +59,22 @@ void addLayout(const Document& layout, StoreyedDocument& building) {
         storey.room = std::make_shared<const Document>(std::move(room));
     }
     building.history.insert(building.history.end(), layout.history.begin(), layout.history.end());
+}
+
+/// Applies the edits of the command. \param operand of the building, to whose folder names of files
+/// are relative
+void applyEdits(const EnvcOptions& options, const std::string& operand, const ImportOptions& import,
+                StoreyedDocument& building) {
+    std::vector<std::shared_ptr<const Document>> before;
+    for (const Storey& storey : building.storeys) before.push_back(storey.room);
+    editBuilding(building, options.edits);
+    if (!import.load_files) return;
+    for (Storey& storey : building.storeys) {
+        if (std::find(before.begin(), before.end(), storey.room) != before.end()) continue;
+        auto room = std::make_shared<Document>(*storey.room);
+        loadFiles(*room, operand, import);
+        storey.room = std::move(room);
+    }
 }
 
 /// Makes names of files in the rooms relative to the folder of the output. Storeys keep sharing
@@ -165,6 +181,7 @@ std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
         addLayout(layout, building);
         building.sources.push_back(input.name);
     }
+    applyEdits(options, found->name, import, building);
     building.sources.insert(building.sources.begin(), found->name);
     building.history.push_back(options.history_line);
     if (options.format != nullptr) rebaseRooms(options, found->name, building);

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Edits of a whole building.
+#pragma once
+
+#include <span>
+
+#include "building/storeys.h"
+#include "record/edit.h"
+
+namespace ispace {
+
+/// Applies edits to the records of the rooms, which have their ids across the building
+/// ("ground/d1"), and to the passages. Added records are of rooms, and their ids begin with the
+/// storey. Records keep automatic ids where the edits do not shift them. Rooms without a change
+/// stay shared; a room that storeys share is changed for the storeys of the edited ids alone.
+/// \throws FormatError as edited(), for added records without a storey, and as makeBuilding()
+void editBuilding(StoreyedDocument& building, std::span<const Edit> edits);
+
+}  // namespace ispace
