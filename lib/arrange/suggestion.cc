@@ -3,37 +3,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "arrange/adviser.h"
 #include "arrange/arrange.h"
 #include "arrange/placement_rules.h"
 #include "arrange/refine.h"
 #include "base/number.h"
 #include "coverage/visible_area.h"
-#include "env/element_schemas.h"
 #include "env/level.h"
 #include "record/text.h"
-#include "scene/findings/findings.h"
 #include "scene/placement_schemas.h"
-#include "trace/ray_world.h"
 
 namespace ispace {
 
 namespace {
 
 constexpr std::size_t kMaxTypes = 3;    ///< of sensors to add
-constexpr std::size_t kMaxPieces = 6;   ///< of furniture that are measured
 constexpr std::size_t kMaxChanges = 8;  ///< of Together
 constexpr double kWorthwhile = 1e-3;    ///< share of the indoor floor
-constexpr double kNegligible = 0.01;    ///< share of the indoor floor that may be lost
 constexpr double kNearWall = 0.1;       ///< of a sensor on a wall, metres
-constexpr double kShifts[] = {0.1, 0.25, 0.5, 1}, kPieceShifts[] = {0.5, 1, 2};
+constexpr double kShifts[] = {0.1, 0.25, 0.5, 1};
 constexpr int kDirections = 8;
 constexpr int kTurnStep = 15;  ///< degrees; then single degrees about the best
 
-/// Returns the displacements of these lengths, in steps of 45 degrees.
+}  // namespace
+
 std::vector<Vec2> displacements(std::span<const double> lengths) {
     std::vector<Vec2> all;
     for (const double distance : lengths)
@@ -49,85 +45,6 @@ Edit moveOf(const std::string& id, Vec2 by) {
     return parseEdit(Edit::Kind::Move, id + ':' + formatDouble(by.x) + ',' + formatDouble(by.y));
 }
 
-/// A scene with its coverage.
-struct MeasuredState {
-    Scene scene;
-    Coverage coverage;
-};
-
-double coveredShare(const Coverage& coverage) {
-    const Metric& metric = coverage.report.coverage;
-    return metric.exact.value_or(metric.grid.value_or(0));
-}
-
-class Adviser {
-  public:
-    Adviser(const SuggestOptions& options, const DeviceCatalogue& devices, Progress& progress)
-        : options_(options), devices_(devices), progress_(progress) {}
-
-    [[nodiscard]] bool isStopped() const { return progress_.stopped(); }
-
-    /// Returns the additions, turns and shifts with the largest gain of each kind, as they apply to
-    /// this state.
-    std::vector<Suggestion> moves(const MeasuredState& now) {
-        std::vector<Suggestion> found = turnAndShift(now);
-        for (Suggestion& suggestion : additions(now)) found.push_back(std::move(suggestion));
-        return found;
-    }
-
-    std::optional<Suggestion> furniture(const MeasuredState& now);
-    std::optional<Suggestion> replacement(const MeasuredState& now);
-    std::optional<Suggestion> removal(const MeasuredState& now);
-    std::optional<Suggestion> together(const MeasuredState& now, std::vector<Suggestion> first);
-
-    /// Returns the floor that the requirements still miss, m2.
-    [[nodiscard]] double missing(const Coverage& coverage) const {
-        double sum = 0;
-        for (const Requirement& requirement : options_.requirements)
-            sum += checkRequirement(requirement, coverage).missing;
-        return sum;
-    }
-
-  private:
-    /// Applies the edits and measures the scene.
-    [[nodiscard]] MeasuredState after(const Scene& scene, std::span<const Edit> edits) const {
-        Scene changed = makeScene(edited(scene.records, edits, sceneSchemas()), scene, devices_);
-        Worlds worlds(changed.environment);
-        Coverage coverage = measureCoverage(changed, worlds, options_.measure);
-        return {std::move(changed), std::move(coverage)};
-    }
-    /// Completes a suggestion by measuring it.
-    Suggestion measured(const MeasuredState& now, Suggestion::Kind kind, std::string text,
-                        std::vector<Edit> edits) {
-        const MeasuredState then = after(now.scene, edits);
-        const double share = coveredShare(then.coverage);
-        // Furniture changes no indoor area.
-        const double gained =
-            (share - coveredShare(now.coverage)) * now.coverage.report.indoor_area;
-        rank_ = missing(now.coverage) - missing(then.coverage);
-        progress_.advance(1);
-        return {kind, std::move(text), std::move(edits), gained, share};
-    }
-    /// Keeps the better of two suggestions, by requirements, then by floor.
-    void offer(std::optional<Suggestion>& best, double& best_rank, Suggestion suggestion) {
-        if (best && std::pair(best_rank, best->gained) >= std::pair(rank_, suggestion.gained))
-            return;
-        best_rank = rank_;
-        best = std::move(suggestion);
-    }
-
-    std::vector<Suggestion> turnAndShift(const MeasuredState& now);
-    std::vector<Suggestion> additions(const MeasuredState& now);
-    [[nodiscard]] FloorWeights weightsFor(const MeasuredState& now) const;
-    [[nodiscard]] ArrangeOptions optionsFor(const MeasuredState& now, const Sensor& like) const;
-
-    const SuggestOptions& options_;
-    const DeviceCatalogue& devices_;
-    Progress& progress_;
-    double rank_ = 0;  ///< of the suggestion measured last: required floor that it adds
-};
-
-/// Returns the sensors whose pose a person can change: not those of robots and people.
 std::vector<Sensor> standingSensors(const Scene& scene) {
     std::vector<Sensor> sensors;
     for (const Sensor& sensor : scene.sensors)
@@ -147,6 +64,8 @@ FloorWeights Adviser::weightsFor(const MeasuredState& now) const {
     return weights;
 }
 
+namespace {
+
 /// A pose to try, as an edit.
 struct Trial {
     std::size_t sensor;
@@ -161,6 +80,8 @@ Pose3 poseAfter(Pose3 pose, const Trial& trial) {
     pose.heading = wrapped(pose.heading + Angle::degrees(trial.turn));
     return pose;
 }
+
+}  // namespace
 
 std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     const std::vector<Sensor> sensors = standingSensors(now.scene);
@@ -225,7 +146,8 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
 }
 
 /// Returns the options of a search for one more sensor like this one, with its height and support.
-ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Sensor& like) const {
+ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Scene& home,
+                                   const Sensor& like) const {
     ArrangeOptions options;
     options.search.optimizer = Optimizer::Greedy;
     options.weights = weightsFor(now);
@@ -236,7 +158,7 @@ ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Sensor& like)
     SiteRules rules;
     rules.height = z;
     rules.wall_within = kNearWall;
-    const SiteValidity on_wall(now.scene.environment, rules);
+    const SiteValidity on_wall(home.environment, rules);
     options.mount.on =
         on_wall.isValid(like.pose.position.onFloor()) ? MountOn::Wall : MountOn::Floor;
     options.mount.heights = {z};
@@ -247,20 +169,27 @@ std::vector<Suggestion> Adviser::additions(const MeasuredState& now) {
     std::vector<SensorModel> types;
     std::optional<Suggestion> best;
     double best_rank = 0;
-    for (const Sensor& sensor : standingSensors(now.scene)) {
+    std::vector<std::pair<const Scene*, Sensor>> examples;
+    for (const Sensor& sensor : standingSensors(now.scene))
+        examples.emplace_back(&now.scene, sensor);
+    for (const Scene* const other : options_.others)
+        for (const Sensor& sensor : standingSensors(*other)) examples.emplace_back(other, sensor);
+    for (const auto& [home, sensor] : examples) {
         if (types.size() == kMaxTypes || isStopped()) break;
         if (isPartial(sensor.model) ||
             std::find(types.begin(), types.end(), sensor.model) != types.end())
             continue;
         types.push_back(sensor.model);
-        const auto at = std::find(now.scene.ids.begin(), now.scene.ids.end(), sensor.id);
-        if (at == now.scene.ids.end()) continue;
-        Record record = now.scene.records[static_cast<std::size_t>(at - now.scene.ids.begin())];
+        const auto at = std::find(home->ids.begin(), home->ids.end(), sensor.id);
+        if (at == home->ids.end()) continue;
+        Record record = home->records[static_cast<std::size_t>(at - home->ids.begin())];
+        const bool is_carried = record.schema().find("on") != nullptr && record.has("on");
+        if (is_carried && home != &now.scene) continue;  // its carrier is elsewhere
         for (const char* key : {"id", "at", "heading"})
             if (record.has(key)) record.erase(key);
         const std::vector<SensorGroup> groups = {{record, sensor.model, "", false, 1}};
         SilentProgress silent;
-        const ArrangeOptions options = optionsFor(now, sensor);
+        const ArrangeOptions options = optionsFor(now, *home, sensor);
         Arrangement found;
         try {
             found = arrange(now.scene, groups, options, silent);
@@ -281,107 +210,6 @@ std::vector<Suggestion> Adviser::additions(const MeasuredState& now) {
     }
     if (!best) return {};
     return {std::move(*best)};
-}
-
-/// Bounds the floor that a round piece can hide from a sensor: the sector behind it.
-double hiddenArea(const Sensor& sensor, Point2 middle, double radius) {
-    const double range = std::min(maxRange(sensor.model), 100.0);
-    const double distance = length(middle - sensor.pose.position.onFloor());
-    if (distance >= range) return 0;
-    const double half = distance > radius ? std::asin(radius / distance) : std::numbers::pi;
-    return half * (range * range - distance * distance);
-}
-
-std::optional<Suggestion> Adviser::furniture(const MeasuredState& now) {
-    struct Piece {
-        std::string id;
-        double hidden;
-    };
-    std::vector<Piece> pieces;
-    for (const Element& element : now.scene.environment.elements()) {
-        const std::string& keyword = element.record.keyword();
-        if (!standsByItself(element.record) || keyword == "pillar" || keyword == "floor") continue;
-        const PlacementFrame frame = standingOf(element.record);
-        const double radius = std::hypot(frame.length, frame.width) / 2;
-        double hidden = 0;
-        for (const Sensor& sensor : standingSensors(now.scene))
-            hidden += hiddenArea(sensor, frame.world_from_body.position, radius);
-        if (hidden > 0) pieces.push_back({element.id, hidden});
-    }
-    std::stable_sort(pieces.begin(), pieces.end(),
-                     [](const Piece& a, const Piece& b) { return a.hidden > b.hidden; });
-    if (pieces.size() > kMaxPieces) pieces.resize(kMaxPieces);
-    const FindingFilter filter{.checks = {"objects", "outside", "buried", "collisions"}};
-    const std::size_t accepted = checkScene(now.scene, filter).size();
-    std::optional<Suggestion> best;
-    double best_rank = 0;
-    for (const Piece& piece : pieces)
-        for (const Vec2 by : displacements(kPieceShifts)) {
-            if (isStopped()) return best;
-            std::vector<Edit> edits = {moveOf(piece.id, by)};
-            Scene moved =
-                makeScene(edited(now.scene.records, edits, sceneSchemas()), now.scene, devices_);
-            if (checkScene(moved, filter).size() > accepted) continue;
-            offer(best, best_rank,
-                  measured(now, Suggestion::Kind::Furniture,
-                           "move " + piece.id + " by (" + formatFixed(by.x, 2) + ", " +
-                               formatFixed(by.y, 2) + ") m",
-                           std::move(edits)));
-        }
-    return best;
-}
-
-std::optional<Suggestion> Adviser::replacement(const MeasuredState& now) {
-    struct Device {
-        std::string keyword, model;
-        double cost;
-    };
-    std::vector<Device> known;
-    for (const Record& record : now.scene.records)
-        if (sensorKind(record.keyword()) != nullptr && record.has("model") && record.has("cost"))
-            known.push_back({record.keyword(), record.text("model"), record.number("cost")});
-    std::optional<Suggestion> best;
-    for (std::size_t i = 0; i < now.scene.records.size(); ++i) {
-        const Record& record = now.scene.records[i];
-        if (sensorKind(record.keyword()) == nullptr || !record.has("model")) continue;
-        std::optional<Device> cheapest;
-        for (const Device& device : known)
-            if (device.keyword == record.keyword() && device.cost < record.number("cost") &&
-                (!cheapest || device.cost < cheapest->cost))
-                cheapest = device;
-        if (!cheapest || isStopped()) continue;
-        const std::string& id = now.scene.ids[i];
-        Suggestion suggestion =
-            measured(now, Suggestion::Kind::Replace, "replace " + id + " by a " + cheapest->model,
-                     {parseEdit(Edit::Kind::Set, id + ".model=" + cheapest->model),
-                      parseEdit(Edit::Kind::Set, id + ".cost=" + formatDouble(cheapest->cost))});
-        suggestion.saved = record.number("cost") - cheapest->cost;
-        const bool is_cheap =
-            -suggestion.gained <= kNegligible * now.coverage.report.indoor_area && rank_ >= 0;
-        if (is_cheap && (!best || suggestion.saved > best->saved)) best = std::move(suggestion);
-    }
-    return best;
-}
-
-std::optional<Suggestion> Adviser::removal(const MeasuredState& now) {
-    const SensorMetrics* least = nullptr;
-    const auto marginal_of = [](const SensorMetrics& sensor) {
-        return sensor.marginal.exact.value_or(sensor.marginal.grid.value_or(0));
-    };
-    for (const Sensor& sensor : standingSensors(now.scene))
-        for (const SensorMetrics& metrics : now.coverage.report.sensors)
-            if (metrics.id == sensor.id && (!least || marginal_of(metrics) < marginal_of(*least)))
-                least = &metrics;
-    if (least == nullptr || now.coverage.report.sensors.size() < 2 ||
-        marginal_of(*least) > kNegligible * now.coverage.report.indoor_area)
-        return std::nullopt;
-    const auto at = std::find(now.scene.ids.begin(), now.scene.ids.end(), least->id);
-    Suggestion suggestion = measured(now, Suggestion::Kind::Remove, "remove " + least->id,
-                                     {parseEdit(Edit::Kind::Delete, least->id)});
-    const Record& record = now.scene.records[static_cast<std::size_t>(at - now.scene.ids.begin())];
-    if (record.has("cost")) suggestion.saved = record.number("cost");
-    if (rank_ < 0) return std::nullopt;
-    return suggestion;
 }
 
 std::optional<Suggestion> Adviser::together(const MeasuredState& now,
@@ -413,8 +241,6 @@ std::optional<Suggestion> Adviser::together(const MeasuredState& now,
     }
     return std::nullopt;
 }
-
-}  // namespace
 
 std::string_view nameOf(Suggestion::Kind kind) {
     constexpr std::string_view kNames[] = {"add",     "turn",   "shift",   "furniture",

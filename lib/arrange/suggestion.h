@@ -44,6 +44,8 @@ struct SuggestOptions {
     /// Requirements to meet: additions, turns and shifts are ranked by the floor that these still
     /// miss, and Together meets all. Empty: by covered floor.
     std::vector<Requirement> requirements = {};
+    /// Scenes whose sensors may be added, too, after those of the scene: other storeys.
+    std::vector<const Scene*> others = {};
 };
 
 /// Finds changes of a measured scene that would help, at most one of each kind, the one with the

@@ -135,7 +135,7 @@ BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOp
 }
 
 std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage,
-                                 const BuildingRunCoverage* run) {
+                                 const BuildingRunCoverage* run, const Advice* advice) {
     JsonWriter json;
     beginReport(json, "ispace-building-coverage/1", "coverage");
     json.key("digest").value(building.document.digest()).key("storeys").beginArray();
@@ -157,6 +157,7 @@ std::string buildingCoverageJson(const BuildingScene& building, const BuildingCo
     for (const double share : coverage.redundancy) json.value(roundSignificant(share));
     json.endArray();
     if (run != nullptr) writeRun(json, run->sum);
+    if (advice != nullptr) writeSuggestions(json, *advice);
     json.endObject();
     return text + json.take() + '\n';
 }

@@ -10,6 +10,7 @@
 #include "building/building_scene.h"
 #include "coverage/coverage.h"
 #include "report/coverage_report.h"
+#include "report/suggestion_report.h"
 
 namespace ispace {
 
@@ -34,9 +35,10 @@ std::vector<TextRow> storeyRows(const BuildingScene& building, const BuildingCov
 std::uint32_t redundancyScale(const BuildingCoverage& coverage);
 
 /// Writes one JSON object and a newline, schema ispace-building-coverage/1. \param run null:
-/// without
+/// without \param advice null: without
 std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage,
-                                 const BuildingRunCoverage* run = nullptr);
+                                 const BuildingRunCoverage* run = nullptr,
+                                 const Advice* advice = nullptr);
 /// Writes the report of each storey, then a table of all. \param run null: without
 std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage,
                                  const BuildingRunCoverage* run = nullptr);

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "building/building_scene.h"
 #include "building/building_schemas.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -59,6 +58,15 @@ void leaveOutIds(std::vector<Record>& records, const Storey& storey,
 }
 
 }  // namespace
+
+std::shared_ptr<const Scene> sceneOfBuilding(const BuildingScene& building, std::size_t storey) {
+    const Scene& scene = *building.scenes[storey];
+    std::vector<Record> records;
+    for (std::size_t i = 0; i < scene.records.size(); ++i)
+        records.push_back(
+            inBuilding(building.document.storeys[storey], scene.records[i], scene.ids[i]));
+    return std::make_shared<const Scene>(makeScene(std::move(records), scene, building.devices));
+}
 
 void editBuilding(StoreyedDocument& building, std::span<const Edit> edits) {
     if (edits.empty()) return;

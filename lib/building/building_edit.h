@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Edits of a whole building.
+// Edits of a whole building, by ids across it.
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <span>
 
+#include "building/building_scene.h"
 #include "building/storeys.h"
 #include "record/edit.h"
 
@@ -15,5 +18,8 @@ namespace ispace {
 /// stay shared; a room that storeys share is changed for the storeys of the edited ids alone.
 /// \throws FormatError as edited(), for added records without a storey, and as makeBuilding()
 void editBuilding(StoreyedDocument& building, std::span<const Edit> edits);
+
+/// Returns the scene of a storey with the ids of all its records across the building.
+std::shared_ptr<const Scene> sceneOfBuilding(const BuildingScene& building, std::size_t storey);
 
 }  // namespace ispace

@@ -96,6 +96,7 @@ ReportPage buildingPage(const BuildingPageInput& input) {
     page.sections.push_back(storeysSection(input));
     for (std::size_t i = 0; i < input.coverage.storeys.size(); ++i)
         page.sections.push_back(storeySection(input, i));
+    if (input.advice != nullptr) page.sections.push_back(adviceSection(*input.advice));
     PageSection records{"records", "Records", {}};
     records.blocks.push_back(
         PageText{"Digest of the building: " + input.building.document.digest(), Tone::Small});

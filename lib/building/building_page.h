@@ -17,6 +17,7 @@ struct BuildingPageInput {
     std::string command;  ///< as in histories
     std::vector<JudgedRequirement> requirements = {};
     const BuildingRunCoverage* run = nullptr;  ///< null: without
+    const Advice* advice = nullptr;            ///< null: without
 };
 
 /// Builds the report of a building: summary, requirements, figures by storey and in sum, then map

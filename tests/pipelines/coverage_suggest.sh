@@ -77,6 +77,22 @@ expect_status 0 coverage changed.env --require 60%
 cp -r "$scenes/house" house
 suggestions_of house/house.env "$data/house.3dm" --storey ground --suggest 3 >told
 [ "$(applied <told)" -ge 1 ] || fail "no suggestion for a storey"
+# A building: gains are of all its floor, also where a camera sees another storey; a storey without
+# sensors gets one like those of the others.
+for scene in "house/house.env $data/house.3dm" "$data/atrium.yaml"; do
+    # shellcheck disable=SC2086
+    suggestions_of $scene --suggest 7 >told
+    count=$(applied <told)
+    [ "$count" -ge 5 ] || fail "only $count suggestions for the building $scene"
+done
+grep -v ' id=upper/' "$data/house.3dm" >below.3dm
+suggestions_of house/house.env below.3dm --suggest 1 >told
+grep -q "^add.*laser id=upper/laser1 " told || fail "no sensor for the empty storey: $(cat told)"
+[ "$(applied <told)" -eq 1 ] || fail "the sensor of the empty storey is not as told"
+# Storeys of one room: the change is of one of them.
+printf -- "- storey: {id: a, records: &r {ispace: {size: 8 x 6}, laser: {at: [3, 2], range: 3}}}\n- storey: {id: b, z: 3, records: *r}\n" >twins.yaml
+suggestions_of twins.yaml --suggest 7 >told
+[ "$(applied <told)" -ge 3 ] || fail "no three suggestions for storeys of one room: $(cat told)"
 cp barriers.env ./-barriers.env
 coverage ./-barriers.env barriers.3dm --suggest 1 >told
 has ' \./-barriers\.env ' <told || fail "a name becomes an option"

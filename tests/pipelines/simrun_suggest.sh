@@ -24,6 +24,37 @@ END
     rm changed.env
 done < <(grep '^  ' out)
 
+# A building: changes of any storey, for the run over all of them; and its report.
+printf -- "- storey: {id: a, records: &r {ispace: {size: [10, 6, 2.5]}, wall: {id: w, from: [1, -3], to: [1, 1]}}}
+- storey: {id: b, z: 3, records: *r}
+- lift: {id: l, storeys: 'a,b', at: [-4, 0], size: [1.2, 1.2], door: 0.9}\n" >house.yaml
+cat >house.3dm <<'END'
+#3dm 1
+laser id=a/l1 at=-4.5,1 heading=150 fov=120 range=6
+laser id=b/l1 at=4.5,-2 heading=0 fov=120 range=6
+human id=a/h at=-4,2 path=-4,2;4,2;4,-2 speed=1
+human id=b/h at=-4,2 path=-4,2;0,2;0,-2 speed=1
+END
+expect_status 0 simrun house.yaml house.3dm --listen 127.0.0.1:0 --clock fast --until 12 --record whole --suggest \
+    --report whole.json --expect 'a/h within 2 of a/4,-2'
+cp out told
+[ "$(grep -c '^    envc house.yaml house.3dm --' told)" -ge 2 ] || fail "no two suggestions: $(cat told)"
+coverage -q house.yaml house.3dm --run whole --json | cmp - whole.json || fail "the report is not that of coverage --run"
+while IFS= read -r told && IFS= read -r command; do
+    (eval "$command -q") || fail "no such change: $command"
+    coverage -q changed.env --run whole --json >changed.json
+    python3 - "$told" <<'END' || fail "the building's run is seen differently: $told"
+import json, re, sys
+told = float(re.search(r"seen for ([0-9.]*)% of", sys.argv[1]).group(1)) / 100
+seen = 1 - json.load(open("changed.json"))["run"]["all"]["time_shares"][0]
+sys.exit(abs(told - seen) > 6e-5)
+END
+done < <(grep '^  ' told)
+expect_status 0 simrun house.yaml house.3dm --listen 127.0.0.1:0 --clock fast --until 1 --record page --report whole.html \
+    --expect 'no collision'
+grep -q 'no collision' whole.html || fail "the page has no expectations"
+[ "$(grep -o 'id="storey[12]"' whole.html | sort -u | wc -l)" -eq 2 ] || fail "the page has not both storeys"
+
 # All is seen already; and without movers there is no run to measure, as for coverage --run.
 printf '#env 1\nispace size=10,6,2.5\n' >hall.env
 printf '#3dm 1\nlaser id=l1 at=-4.5,0 range=20 fov=360\nhuman id=h at=-2,1 path=-2,1;2,1\n' >seen.3dm

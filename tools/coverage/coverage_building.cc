@@ -13,8 +13,10 @@
 #include "base/run_files.h"
 #include "building/building_coverage.h"
 #include "building/building_page.h"
+#include "building/building_suggestions.h"
 #include "cli/building_operands.h"
 #include "cli/outputs.h"
+#include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "coverage/coverage_run.h"
 #include "report/coverage_formats.h"
@@ -50,7 +52,6 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
     if (options.crowd) option = "--crowd";
     if (!options.paths.empty()) option = "--path";
     if (options.localise_to) option = "--localise";
-    if (options.suggestions) option = "--suggest";
     if (!options.trace.empty()) option = "--trace";
     for (const Requirement& requirement : options.requirements)
         if (requirement.density) option = "--require of a density class";
@@ -154,12 +155,23 @@ void writeFiles(const CoverageToolOptions& options, const BuildingInput& input,
     }
 }
 
+std::optional<Advice> adviceFor(const CoverageToolOptions& options, const BuildingInput& input,
+                                const BuildingCoverage& coverage) {
+    if (!options.suggestions) return std::nullopt;
+    const SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
+                                .measure = options.measure};
+    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
+    return Advice{suggestForBuilding(input.building, coverage, wanted, *progress),
+                  editCommand(input.named, options.rules)};
+}
+
 /// Returns the bytes of --report.
 std::string buildingReport(const CoverageToolOptions& options, const BuildingInput& input,
-                           const BuildingCoverage& coverage, const BuildingRunCoverage* run) {
+                           const BuildingCoverage& coverage, const BuildingRunCoverage* run,
+                           const Advice* advice) {
     const std::string suffix = suffixOf(options.report);
-    if (suffix == "json") return buildingCoverageJson(input.building, coverage, run);
-    BuildingPageInput page{input.building, coverage, "", options.history_line, {}, run};
+    if (suffix == "json") return buildingCoverageJson(input.building, coverage, run, advice);
+    BuildingPageInput page{input.building, coverage, "", options.history_line, {}, run, advice};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     for (const Requirement& requirement : options.requirements) {
         const Verdict verdict =
@@ -200,10 +212,13 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
         writeDependencies(options.common, input.files);
     }
     const BuildingRunCoverage* const of_run = run ? &*run : nullptr;
+    const std::optional<Advice> advice = adviceFor(options, input, coverage);
+    const Advice* const of_advice = advice ? &*advice : nullptr;
     if (!options.report.empty())
-        writeAll(options.report, buildingReport(options, input, coverage, of_run));
-    writeAll("-", options.json ? buildingCoverageJson(input.building, coverage, of_run)
-                               : buildingCoverageText(input.building, coverage, of_run));
+        writeAll(options.report, buildingReport(options, input, coverage, of_run, of_advice));
+    writeAll("-", options.json ? buildingCoverageJson(input.building, coverage, of_run, of_advice)
+                               : buildingCoverageText(input.building, coverage, of_run) +
+                                     (advice ? suggestionsText(*advice) : ""));
     const std::vector<JunitCase> verdicts = judgeBuilding(options, input.building, coverage);
     for (const JunitCase& verdict : verdicts)
         if (verdict.outcome == JunitCase::Outcome::Met)

@@ -23,6 +23,7 @@
 #include "scene/run/run_reader.h"
 #include "sim/world_state.h"
 #include "simrun/simrun_ports.h"
+#include "simrun/simrun_report.h"
 #include "simrun/simrun_run.h"
 
 namespace ispace {
@@ -36,8 +37,6 @@ void mustBeAboutBuildings(const SimrunOptions& options, const BuildingInput& inp
             throw UsageError(option + " is about one room: choose a storey with --storey (" +
                              input.building.document.storeyList() + ')');
     };
-    refuse(!options.report.empty(), "--report");
-    refuse(options.suggestions.has_value(), "--suggest");
     refuse(!options.load_folder.empty(), "--load");
 }
 
@@ -131,6 +130,18 @@ void forward(BuildingRun& run, SimTime from) {
                          formatSimTime(simulation.world().time()));
 }
 
+/// Writes --report and --suggest. \pre the records are complete
+void reportRun(const SimrunOptions& options, const BuildingInput& input, const BuildingRun& run,
+               const ExpectationJudge& judge, const std::string& command) {
+    if (options.report.empty() && !options.suggestions) return;
+    for (const JoinedRoom& room : run.rooms())
+        for (const std::string& file : Recorder::filesIn(options.record + '/' + room.id))
+            completeOutput(file);
+    if (!options.report.empty())
+        writeAll(options.report, reportFile(options, input, judge, command));
+    if (options.suggestions) writeAll("-", suggestionsText(options, input));
+}
+
 }  // namespace
 
 bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
@@ -203,6 +214,7 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
         if (run.replay(i) != nullptr && run.replay(i)->isCut())
             warn(options.common, "simrun",
                  run.rooms()[i].id + ": the record ends in the midst of a step, which is left out");
+    reportRun(options, *input, run, judge, history.back());
     conclude(judge, options, input->environment_operand, junit);
     return true;
 }

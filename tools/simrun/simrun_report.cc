@@ -56,14 +56,7 @@ std::optional<double> seenShare(const SimrunOptions& options, const Scene& scene
     return 1 - run.all.time_shares.front();
 }
 
-/// A change of a sensor, and the seen share after it.
-struct RunSuggestion {
-    Suggestion change;
-    double seen = 0;
-};
-
-/// Returns the additions, turns and shifts of suggestChanges() that raise the share, the best
-/// first.
+/// Returns the additions, turns and shifts of suggestChanges() that raise the share.
 std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options, const Scene& scene,
                                          double before) {
     const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
@@ -82,30 +75,35 @@ std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options, const Sce
         const std::optional<double> seen = seenShare(options, changed);
         if (seen && *seen > before) found.push_back({std::move(change), *seen});
     }
-    std::stable_sort(
-        found.begin(), found.end(),
-        [](const RunSuggestion& a, const RunSuggestion& b) { return a.seen > b.seen; });
     return found;
 }
 
 }  // namespace
 
 std::string suggestionsText(const SimrunOptions& options, const SceneInput& input) {
-    constexpr double kPoints = 100;
     for (const std::string& file : Recorder::filesIn(options.record)) completeOutput(file);
     std::vector<RunSuggestion> found;
     const std::optional<double> before = seenShare(options, input.scene);
     if (before) found = suggestForRun(options, input.scene, *before);
+    return suggestionsText(options, input.named, std::move(found), before.value_or(0));
+}
+
+std::string suggestionsText(const SimrunOptions& options, const std::vector<std::string>& named,
+                            std::vector<RunSuggestion> found, double before) {
+    constexpr double kPoints = 100;
+    std::stable_sort(
+        found.begin(), found.end(),
+        [](const RunSuggestion& a, const RunSuggestion& b) { return a.seen > b.seen; });
     if (found.empty()) return "no change of one sensor sees more of the run\n";
     if (const auto most = static_cast<std::size_t>(*options.suggestions); found.size() > most)
         found.erase(found.begin() + static_cast<std::ptrdiff_t>(most), found.end());
     std::string text = "suggestions:\n";
     for (const RunSuggestion& one : found)
         text += "  " + printable(one.change.text) + ": +" +
-                formatFixed(kPoints * (one.seen - *before), 2) +
+                formatFixed(kPoints * (one.seen - before), 2) +
                 " points, robots and people are seen for " + percentText(one.seen) +
                 " of their time\n    " +
-                commandOf(editCommand(input.named, options.rules), one.change.edits) + '\n';
+                commandOf(editCommand(named, options.rules), one.change.edits) + '\n';
     return text;
 }
 

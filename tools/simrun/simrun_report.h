@@ -3,7 +3,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "arrange/suggestion.h"
+#include "cli/building_operands.h"
 #include "cli/operands.h"
 #include "sim/expect.h"
 #include "simrun/simrun_options.h"
@@ -16,7 +19,24 @@ namespace ispace {
 std::string reportFile(const SimrunOptions& options, const SceneInput& input,
                        const ExpectationJudge& judge, const std::string& command);
 
+/// Likewise of a building, as coverage --run --report writes it.
+std::string reportFile(const SimrunOptions& options, const BuildingInput& input,
+                       const ExpectationJudge& judge, const std::string& command);
+
+/// A change of a sensor, and the share of the time of all movers for which a sensor sees them after
+/// it.
+struct RunSuggestion {
+    Suggestion change;
+    double seen = 0;
+};
+/// Returns the lines of --suggest. \param before the share without a change
+/// \param named operands of the command that makes a change
+std::string suggestionsText(const SimrunOptions& options, const std::vector<std::string>& named,
+                            std::vector<RunSuggestion> found, double before);
+
 /// Returns the lines of --suggest, in the form of coverage --suggest. \pre the record is complete
 std::string suggestionsText(const SimrunOptions& options, const SceneInput& input);
+/// Likewise of a building, with changes of any storey.
+std::string suggestionsText(const SimrunOptions& options, const BuildingInput& input);
 
 }  // namespace ispace

@@ -232,19 +232,21 @@ void addInstallation(const CoveragePageInput& input, ReportPage& page) {
     page.sections.push_back({"material", "Material", {std::move(material)}});
 }
 
-void addAdvice(const CoveragePageInput& input, ReportPage& page) {
-    if (input.parts.advice == nullptr) return;
+}  // namespace
+
+PageSection adviceSection(const Advice& advice) {
     PageSection section{"advice", "Suggestions", {}};
-    if (input.parts.advice->suggestions.empty())
+    if (advice.suggestions.empty())
         section.blocks.push_back(PageText{"No change of one sensor or piece of furniture helps."});
-    for (const Suggestion& suggestion : input.parts.advice->suggestions) {
+    for (const Suggestion& suggestion : advice.suggestions) {
         section.blocks.push_back(
             PageText{printable(suggestion.text) + ": " + gainText(suggestion) + "."});
-        section.blocks.push_back(
-            PageCode{commandOf(input.parts.advice->command, suggestion.edits)});
+        section.blocks.push_back(PageCode{commandOf(advice.command, suggestion.edits)});
     }
-    page.sections.push_back(std::move(section));
+    return section;
 }
+
+namespace {
 
 /// Makes a table of rows with their heads.
 PageTable tableOf(std::string caption, std::string sides, std::vector<TextRow> rows) {
@@ -386,7 +388,7 @@ ReportPage coveragePage(const CoveragePageInput& input) {
     addCameraRules(input, page);
     addObjectives(input, page);
     addRobustness(input, page);
-    addAdvice(input, page);
+    if (input.parts.advice != nullptr) page.sections.push_back(adviceSection(*input.parts.advice));
     addInstallation(input, page);
     if (input.parts.run != nullptr) addRun(input, page);
     page.sections.push_back(methodsOf(input));

@@ -33,6 +33,9 @@ struct CoveragePageInput {
 /// Returns a margin in percentage points, "+1.20 points", or "-".
 std::string marginText(const JudgedRequirement& requirement);
 
+/// Builds the section of suggestions, each with its command.
+PageSection adviceSection(const Advice& advice);
+
 /// Builds the report of a layout: summary, map, requirements, zones, the sheet of its installer,
 /// pictures, material, suggestions, methods and records.
 ReportPage coveragePage(const CoveragePageInput& input);

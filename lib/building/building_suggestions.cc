@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/building_suggestions.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "building/building_edit.h"
+#include "record/text.h"
+#include "scene/placement_schemas.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+namespace {
+
+/// Least gain of a suggestion, and greatest loss of one that saves a sensor, as shares of the
+/// storey's indoor floor, as in suggestChanges().
+constexpr double kLeastGain = 1e-3, kMostLoss = 0.01;
+constexpr std::size_t kKinds = 7;  // of suggestions, but for Together one of each a storey
+
+double seenShare(const BuildingCoverage& coverage) {
+    return coverage.coverage.exact.value_or(coverage.coverage.grid.value_or(0));
+}
+
+/// Gives the sensor that a suggestion adds an id.
+void nameAdded(Suggestion& suggestion, const Storey& storey, const std::vector<std::string>& ids) {
+    Record added = readRecord(suggestion.edits.front().text, "", sceneSchemas());
+    std::string id;
+    for (std::size_t n = 1; id.empty() || std::find(ids.begin(), ids.end(), id) != ids.end(); ++n)
+        id = wholeId(storey, added.keyword() + std::to_string(n));
+    added.set("id", id);
+    suggestion.edits.front() = parseEdit(Edit::Kind::Add, formatRecord(added));
+    suggestion.text += " on " + storey.id;
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Scene>> wholeScenes(const BuildingScene& building) {
+    std::vector<std::shared_ptr<const Scene>> whole;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const auto& scene = building.scenes[i];
+        const auto first = std::find(building.scenes.begin(), building.scenes.end(), scene);
+        const bool is_first = first == building.scenes.begin() + static_cast<std::ptrdiff_t>(i);
+        whole.push_back(is_first ? sceneOfBuilding(building, i) : nullptr);
+    }
+    return whole;
+}
+
+std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::size_t storey,
+                                         std::span<const std::shared_ptr<const Scene>> whole,
+                                         const SuggestOptions& options) {
+    const Scene& scene = *whole[storey];
+    SuggestOptions own = options;
+    own.most = kKinds;
+    own.requirements.clear();
+    for (const auto& other : whole)
+        if (other != nullptr && other.get() != &scene) own.others.push_back(other.get());
+    Worlds worlds(scene.environment);
+    const Coverage coverage = measureCoverage(scene, worlds, own.measure);
+    SilentProgress silent;
+    std::vector<Suggestion> found = suggestChanges(scene, coverage, own, building.devices, silent);
+    for (Suggestion& one : found)
+        if (one.kind == Suggestion::Kind::Add)
+            nameAdded(one, building.document.storeys[storey], scene.ids);
+    return found;
+}
+
+BuildingScene editedStorey(const BuildingScene& building, std::size_t storey, const Scene& whole,
+                           std::span<const Edit> edits) {
+    Document records;
+    records.records = edited(whole.records, edits, sceneSchemas());
+    BuildingScene changed = building;
+    changed.scenes[storey] = std::make_shared<const Scene>(
+        makeScene(std::move(layoutsOf(records, building.document)[storey].records),
+                  *building.scenes[storey], building.devices));
+    return changed;
+}
+
+std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
+                                           const BuildingCoverage& coverage,
+                                           const SuggestOptions& options, Progress& progress) {
+    const auto whole = wholeScenes(building);
+    const double before = seenShare(coverage);
+    std::vector<Suggestion> gains, savings;
+    progress.begin("storeys", static_cast<std::int64_t>(whole.size()));
+    for (std::size_t i = 0; i < whole.size() && !progress.stopped(); ++i) {
+        progress.advance(1);
+        if (whole[i] == nullptr) continue;
+        const double floor = coverage.storeys[i].report.indoor_area;
+        for (Suggestion& one : suggestForStorey(building, i, whole, options)) {
+            const bool saves =
+                one.kind == Suggestion::Kind::Replace || one.kind == Suggestion::Kind::Remove;
+            one.share = seenShare(
+                measureBuilding(editedStorey(building, i, *whole[i], one.edits), options.measure));
+            one.gained = (one.share - before) * coverage.indoor_area;
+            if (one.gained < (saves ? -kMostLoss : kLeastGain) * floor) continue;
+            (saves ? savings : gains).push_back(std::move(one));
+        }
+    }
+    progress.end();
+    std::stable_sort(gains.begin(), gains.end(),
+                     [](const Suggestion& a, const Suggestion& b) { return a.gained > b.gained; });
+    std::move(savings.begin(), savings.end(), std::back_inserter(gains));
+    if (gains.size() > options.most) gains.resize(options.most);
+    return gains;
+}
+
+}  // namespace ispace
