@@ -52,6 +52,12 @@ std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
                                                 std::span<const FloorOpening> openings,
                                                 std::size_t storey);
 
+/// Returns the room of a storey by itself, with the openings in its floor and ceiling and the
+/// stairs that begin there. Empty for a storey without openings.
+std::optional<Environment> roomWithOpenings(const BuildingScene& building,
+                                            std::span<const FloorOpening> openings,
+                                            std::size_t storey);
+
 /// The view of a sensor into another storey.
 struct StoreyView {
     std::size_t storey = 0;  ///< of the sensor

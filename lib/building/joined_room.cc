@@ -105,6 +105,7 @@ class Triangles {
 /// their openings.
 class Surroundings {
   public:
+    /// \param storeys a single one has its openings to others, too
     /// \param own the storey in whose frame the room is
     Surroundings(const BuildingScene& building, std::span<const FloorOpening> openings,
                  std::span<const std::size_t> storeys, std::size_t own, bool with_movers)
@@ -114,7 +115,9 @@ class Surroundings {
           with_movers_(with_movers),
           base_(building.document.storeys[own]) {
         for (const FloorOpening& opening : openings)
-            if (isHere(opening.below) && isHere(opening.above)) openings_.push_back(&opening);
+            if (storeys.size() == 1 ? isHere(opening.below) || isHere(opening.above)
+                                    : isHere(opening.below) && isHere(opening.above))
+                openings_.push_back(&opening);
     }
 
     Environment room() {
@@ -134,7 +137,8 @@ class Surroundings {
         for (const std::size_t storey : storeys_)
             if (storey != own_) addStorey(storey);
         addSides();
-        for (const FloorOpening* const opening : openings_) addSteps(*opening);
+        for (const FloorOpening* const opening : openings_)
+            if (isHere(opening->below)) addSteps(*opening);
         if (!triangles_.empty()) {
             Record mesh(*sceneSchemas().find("mesh"));
             mesh.set("file", std::string("storeys"));
@@ -334,6 +338,17 @@ std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,
 Environment joinedRoom(const BuildingScene& building, std::span<const FloorOpening> openings,
                        std::span<const std::size_t> storeys) {
     return Surroundings(building, openings, storeys, storeys.front(), false).room();
+}
+
+std::optional<Environment> roomWithOpenings(const BuildingScene& building,
+                                            std::span<const FloorOpening> openings,
+                                            std::size_t storey) {
+    const bool is_open =
+        std::any_of(openings.begin(), openings.end(), [&](const FloorOpening& opening) {
+            return opening.below == storey || opening.above == storey;
+        });
+    if (!is_open) return std::nullopt;
+    return Surroundings(building, openings, {&storey, 1}, storey, false).room();
 }
 
 std::optional<Environment> roomWithSurroundings(const BuildingScene& building,

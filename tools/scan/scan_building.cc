@@ -26,7 +26,6 @@ namespace {
 void mustBeAboutBuildings(const ScanToolOptions& options, const StoreyedDocument& building) {
     std::string option;
     if (!options.poses.empty()) option = "--poses";
-    if (!options.view.views.empty()) option = "--view";
     if (!options.view.run.empty()) option = "--run";
     if (options.batch.shard) option = "--shard";
     if (options.batch.resume) option = "--resume";
@@ -135,12 +134,18 @@ void mustHoldStoreys(const ScanToolOptions& options, const ReadingFormat& format
 
 bool scanBuilding(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
-    const auto read = readBuildingInput(requestOf(options));
+    SceneRequest request = requestOf(options);
+    request.layout_from_stdin = request.layout_from_stdin && options.view.views.empty();
+    const auto read = readBuildingInput(request);
     if (!read) return false;
     const BuildingInput& input = *read;
     mustBeAboutBuildings(options, input.building.document);
     warn(options.common, "scan", input.warnings);
-    warnOfSensors(options, input);
+    if (options.view.views.empty()) warnOfSensors(options, input);
+    if (!options.view.views.empty()) {
+        takeBuildingViews(options, input);
+        return true;
+    }
     const bool is_set = OutputSet::of(options.common.output).has_value();
     std::optional<OutputFile> file;
     std::int64_t done = 0;

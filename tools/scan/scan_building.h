@@ -2,6 +2,7 @@
 // scan of all storeys of a building.
 #pragma once
 
+#include "cli/building_operands.h"
 #include "scan/scan_options.h"
 
 namespace ispace {
@@ -10,5 +11,10 @@ namespace ispace {
 /// if ENV is a room or a storey is chosen
 /// \throws UsageError for options about one room, and for a format that holds one storey
 bool scanBuilding(const ScanCommand& command);
+
+/// Draws the views of a building: those from above of each storey, orbits of the whole, others on
+/// the storey that they name, with others as seen through shafts and over stairs.
+/// \throws UsageError for a view from a position or an id without a storey
+void takeBuildingViews(const ScanToolOptions& options, const BuildingInput& input);
 
 }  // namespace ispace

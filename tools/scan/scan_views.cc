@@ -11,10 +11,9 @@
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
-#include "raster/codec.h"
-#include "report/view/film.h"
 #include "report/view/run_picture.h"
 #include "scan/scan_options.h"
+#include "scan/scan_pictures.h"
 #include "trace/render/render.h"
 
 namespace ispace {
@@ -31,7 +30,8 @@ void nameApart(std::vector<ViewSpec>& views) {
     }
 }
 
-/// The red points of a plan.
+}  // namespace
+
 std::vector<Point3> viewersOf(const std::vector<ViewSpec>& views, const Scene& scene) {
     std::vector<Point3> viewers;
     for (const ViewSpec& view : views) {
@@ -43,98 +43,7 @@ std::vector<Point3> viewersOf(const std::vector<ViewSpec>& views, const Scene& s
     return viewers;
 }
 
-/// Draws views of a scene.
-struct DrawView {
-    const ScanToolOptions& options;
-    const Scene& scene;
-    const ViewOptions& drawing;
-    Progress& progress;
-
-    [[nodiscard]] PictureSize sizeOf(const ViewSpec& view) const {
-        const PictureSize size = ispace::sizeOf(view, scene, options.picture_size);
-        constexpr double kMostPixels = 64e6;
-        if (1.0 * size.columns * size.rows > kMostPixels)
-            throw UsageError("--size: " + std::to_string(size.columns) + " x " +
-                             std::to_string(size.rows) + " pixels, wanted at most 64 million");
-        return size;
-    }
-    [[nodiscard]] Image draw(const ViewSpec& view, PictureSize size) const {
-        Image image = viewPicture(scene, view, size, drawing);
-        progress.advance(1);
-        return image;
-    }
-};
-
-/// Writes pictures to a set of files, or to one file, as a sheet if there are several.
-class PictureFiles {
-  public:
-    PictureFiles(const ScanToolOptions& options, int frames)
-        : output_(options.common.output),
-          set_(OutputSet::of(output_)),
-          is_jpeg_(options.format == "jpeg"),
-          files_([this](const Image& image) { return encoded(image); }, writeFile) {
-        std::vector<std::string> names;
-        for (const ViewSpec& view : options.view.views) names.push_back(view.name);
-        if (set_) {
-            if (options.common.dependencies.wanted)
-                throw UsageError("-MD writes a rule for one product, and a set is many files");
-            set_->prepare(names, frames > 1, {ending()});
-        } else if (frames > 1) {
-            throw UsageError(std::to_string(frames) +
-                             " frames make as many pictures: name a folder (-o DIR/) or a pattern "
-                             "(-o '%s-%04d.png'), where %s is the view's name");
-        } else {
-            refuseTerminal(output_, options.format);
-        }
-    }
-
-    void write(const std::vector<ViewSpec>& views, int frame, const DrawView& draw) {
-        std::vector<PictureSize> sizes;
-        sizes.reserve(views.size());
-        for (const ViewSpec& view : views) sizes.push_back(draw.sizeOf(view));
-        const ContactSheet sheet(sizes);
-        std::vector<Image> images;
-        std::vector<std::string> names;
-        for (std::size_t i = 0; i < views.size(); ++i) {
-            Image image = draw.draw(views[i], set_ ? sizes[i] : sheet.sizeOf(i));
-            if (set_)
-                files_.add(set_->fileOf(views[i].name, frame, ending()), std::move(image));
-            else
-                images.push_back(std::move(image));
-            // The view of a camera is named after it (thesis, fig. 3.15).
-            names.push_back(views[i].mode == ViewMode::Camera ? views[i].id : views[i].name);
-        }
-        if (!set_) writeFile(output_, encoded(sheet.draw(images, names)));
-    }
-    /// After the last one.
-    void finish() { files_.finish(); }
-
-  private:
-    [[nodiscard]] std::string ending() const { return is_jpeg_ ? ".jpg" : ".png"; }
-
-    [[nodiscard]] std::string encoded(const Image& image) const {
-        return is_jpeg_ ? jpegOf(image) : pngOfShades(image.width, image.height, image.pixels);
-    }
-    static void writeFile(const std::string& name, const std::string& bytes) {
-        OutputFile file(name);
-        file.write(bytes);
-        file.commit();
-    }
-
-    static std::string jpegOf(const Image& image) {
-        std::vector<std::uint8_t> samples;
-        samples.reserve(3 * image.pixels.size());
-        for (const std::uint32_t pixel : image.pixels)
-            for (const unsigned shift : {16U, 8U, 0U})
-                samples.push_back(static_cast<std::uint8_t>(pixel >> shift));
-        return jpegOfRgb(image.width, image.height, samples);
-    }
-
-    std::string output_;
-    std::optional<OutputSet> set_;
-    bool is_jpeg_;
-    EncodeAhead files_;
-};
+namespace {
 
 /// Applies the changes that clients made to the world of a run before a time.
 void makeChanges(RunChanges& changes, Scene& scene, double time) {
@@ -218,7 +127,12 @@ void takeViews(const ScanCommand& command) {
     for (const ViewSpec& view : views)
         if (const std::string phrase = standpointWarning(view, scene); !phrase.empty())
             warn(options.common, "scan", phrase);
-    PictureFiles pictures(options, frames);
+    for (const ViewSpec& view : views)
+        if (!view.storey.empty())
+            throw UsageError("--view: " + view.storey + "/ is a storey, and this is one room");
+    std::vector<std::string> names;
+    for (const ViewSpec& view : views) names.push_back(view.name);
+    PictureFiles pictures(options, names, frames);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
     const std::int64_t count = frames * static_cast<std::int64_t>(views.size());
     progress->begin("pictures", count);
@@ -237,7 +151,16 @@ void takeViews(const ScanCommand& command) {
         drawing.light = options.photo.light;
         drawing.exposure = options.photo.exposure;
         drawing.viewers = viewersOf(views, scene);
-        pictures.write(views, frame, {options, scene, drawing, *progress});
+        std::vector<PictureJob> jobs;
+        for (const ViewSpec& view : views)
+            jobs.push_back({view.name, labelOf(view),
+                            pictureSizeOf(view, scene, options.picture_size),
+                            [&](PictureSize size) {
+                                Image image = viewPicture(scene, view, size, drawing);
+                                progress->advance(1);
+                                return image;
+                            }});
+        pictures.write(jobs, frame);
     }
     pictures.finish();
     progress->end();

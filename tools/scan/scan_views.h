@@ -31,6 +31,9 @@ OverlayLayers shownSight(const std::string& text);
 /// `N` or `W,H`, each side from 16 to 16384 pixels; rows are 0 for N. \throws UsageError
 PictureSize pictureSize(const std::string& text);
 
+/// Returns the positions of the viewers in a room, the red points of a plan.
+std::vector<Point3> viewersOf(const std::vector<ViewSpec>& views, const Scene& scene);
+
 /// Draws the views of a command instead of readings. \throws as readScene() and viewPicture()
 void takeViews(const ScanCommand& command);
 

@@ -152,6 +152,18 @@ std::string nameFor(const std::string& mode, const std::string& id) {
     return name;
 }
 
+/// Removes a storey, as in "upper/2", from the first field. Returns it, or "" for an id.
+std::string takeStorey(std::vector<std::string>& fields) {
+    const std::size_t slash = fields.front().find('/');
+    if (slash == std::string::npos) return "";
+    const std::string rest = fields.front().substr(slash + 1);
+    if (!rest.empty() && !parseDouble(rest)) return "";
+    std::string storey = fields.front().substr(0, slash);
+    fields.front() = rest;
+    if (rest.empty()) fields.erase(fields.begin());
+    return storey;
+}
+
 }  // namespace
 
 ViewSpec parseView(const std::string& text) {
@@ -162,6 +174,7 @@ ViewSpec parseView(const std::string& text) {
     std::vector<std::string> fields;
     if (colon != std::string::npos) fields = fieldsOf(text.substr(colon + 1));
 
+    if (!row.must_have_id && !fields.empty()) spec.storey = takeStorey(fields);
     std::vector<Part> parts = row.parts;
     const bool has_id =
         row.may_have_id && !fields.empty() && (row.must_have_id || !parseDouble(fields.front()));
@@ -176,7 +189,7 @@ ViewSpec parseView(const std::string& text) {
         refuse(row, fields.empty() ? "no place given" : "too few numbers");
     if (fields.size() > parts.size()) refuse(row, "too many numbers");
     for (std::size_t i = 0; i < fields.size(); ++i) readNumber(spec, row, parts[i], fields[i]);
-    spec.name = nameFor(row.name, spec.id);
+    spec.name = nameFor(row.name, spec.storey.empty() ? spec.id : spec.storey);
     return spec;
 }
 

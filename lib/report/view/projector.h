@@ -37,9 +37,13 @@ struct ViewSpec {
     /// Heading of the viewer; of Central and Orbit the viewer's direction as seen from the middle.
     std::optional<Angle> heading;
     std::optional<Angle> tilt;  ///< up is positive; of Central and Orbit the viewer's elevation
+    /// Of a building, from `bird:STOREY/...`; an id may have a storey, too.
+    std::string storey = {};
+    std::vector<Point3> contents = {};  ///< fills the picture of Orbit; empty: the room
 };
 
-/// Parses `MODE[:VALUE,…]`. \throws UsageError
+/// Parses `MODE[:VALUE,…]`, in which a storey and a slash may precede the first number.
+/// \throws UsageError
 ViewSpec parseView(const std::string& text);
 
 /// Returns "bird[:X,Y[,WIDTH]]", … in the order of ViewMode.

@@ -114,10 +114,25 @@ Standpoint lookIn(const Scene& scene, const Camera& camera, const Pose3& pose) {
             .place = pose.position};
 }
 
+/// Returns the mean of the points, at a third of their height.
+Point3 middleOf(const std::vector<Point3>& places) {
+    Vec2 sum;
+    Box2 heights;
+    for (const Point3& p : places) {
+        sum = sum + Vec2{p.x, p.y};
+        heights.add({0, p.z});
+    }
+    const auto count = static_cast<double>(places.size());
+    return {sum.x / count, sum.y / count, heights.low.y + heights.depth() / 3};
+}
+
 Standpoint orbit(const ViewSpec& spec, const Scene& scene, PictureSize size) {
-    const std::vector<Point3> extremes = extremesOf(scene);
+    const bool is_room = spec.contents.empty();
+    const std::vector<Point3> extremes = is_room ? extremesOf(scene) : spec.contents;
     const Box2& plan = scene.environment.limits();
-    const Point3 middle{plan.center().x, plan.center().y, scene.environment.height() / 3};
+    const Point3 middle =
+        is_room ? Point3{plan.center().x, plan.center().y, scene.environment.height() / 3}
+                : middleOf(extremes);
     double radius = 0;
     for (const Point3& p : extremes) radius = std::max(radius, length(p - middle));
     constexpr double kNear = 2.5;  // in radii: perspective without visible distortion

@@ -66,6 +66,13 @@ class ViewDrawer {
         return rasterOf(page);
     }
 
+    Image label(const Image& picture) {
+        Picture page(size_.columns, size_.rows);
+        page.image({0, 0}, picture, 1, 1);
+        addLabels(page);
+        return rasterOf(page);
+    }
+
   private:
     [[nodiscard]] std::size_t columns() const {
         return static_cast<std::size_t>(fine_) * static_cast<std::size_t>(size_.columns);
@@ -169,15 +176,27 @@ class ViewDrawer {
                 }
     }
 
+    /// Sets a pixel of the picture as rendered to what is behind the room.
+    void setBackground(std::vector<std::uint8_t>& bytes, std::size_t i) const {
+        constexpr std::uint32_t kWhite = 0xFFFFFF;
+        const auto fine = static_cast<std::size_t>(fine_);
+        const std::size_t pixel =
+            i / columns() / fine * static_cast<std::size_t>(size_.columns) + i % columns() / fine;
+        const std::uint32_t rgb =
+            options_.behind == nullptr ? kWhite : options_.behind->pixels[pixel];
+        for (unsigned k = 0; k < 3; ++k)
+            bytes[3 * i + k] = static_cast<std::uint8_t>(rgb >> (16 - 8 * k));
+    }
+
     /// Returns the rendered picture, scaled to its size.
     [[nodiscard]] Image finished() const {
         constexpr double kPaper = 1.15;  // floor looks dark beside white paper
         std::vector<std::uint8_t> bytes =
             toSrgb8(picture_, options_.exposure * (standpoint_.looks_in ? kPaper : 1));
-        if (standpoint_.looks_in)  // white background
+        if (standpoint_.looks_in)
             for (std::size_t i = 0; i < picture_.depths.size(); ++i)
                 if (!std::isfinite(picture_.depths[i]) && picture_.radiance[i] == Rgb{1, 1, 1})
-                    std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 255);
+                    setBackground(bytes, i);
         if (!highlighted_.empty()) outline(bytes);
         Image image{size_.columns, size_.rows, {}};
         const auto fine = static_cast<std::size_t>(fine_);
@@ -342,6 +361,11 @@ class ViewDrawer {
 Image viewPicture(const Scene& scene, const ViewSpec& spec, PictureSize size,
                   const ViewOptions& options) {
     return ViewDrawer(scene, spec, size, options).draw();
+}
+
+Image withLabels(const Image& picture, const Scene& scene, const ViewSpec& spec,
+                 const ViewOptions& options) {
+    return ViewDrawer(scene, spec, {picture.width, picture.height}, options).label(picture);
 }
 
 std::string standpointWarning(const ViewSpec& spec, const Scene& scene) {

@@ -31,12 +31,20 @@ struct ViewOptions {
     std::vector<std::vector<Point2>> ways = {};  ///< of robots so far
     /// Of the limbs of Scene::people, see humanParts(); empty: people stand.
     std::vector<Angle> swings = {};
+    /// A picture of the same size that stands for the empty background, where the viewer looks in
+    /// from outside; null: white.
+    const Image* behind = nullptr;
 };
 
 /// Renders a picture of a scene for people. Deterministic for any number of threads. \throws
 /// UsageError for unknown ids, FormatError for a texture that cannot be read
 Image viewPicture(const Scene& scene, const ViewSpec& spec, PictureSize size,
                   const ViewOptions& options);
+
+/// Writes the ids and dots of ViewOptions::labels into a picture of several scenes, for one of
+/// them. \pre the viewer looks in from outside
+Image withLabels(const Image& picture, const Scene& scene, const ViewSpec& spec,
+                 const ViewOptions& options);
 
 /// Returns a warning, as a phrase, if the viewer is below the floor, on the line of a wall, outside
 /// the room, or inside a solid; else "".

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scan/scan_pictures.h"
+
+#include <cstdint>
+#include <utility>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "raster/codec.h"
+#include "scan/scan_options.h"
+
+namespace ispace {
+
+namespace {
+
+void writeFile(const std::string& name, const std::string& bytes) {
+    OutputFile file(name);
+    file.write(bytes);
+    file.commit();
+}
+
+std::string jpegOf(const Image& image) {
+    std::vector<std::uint8_t> samples;
+    samples.reserve(3 * image.pixels.size());
+    for (const std::uint32_t pixel : image.pixels)
+        for (const unsigned shift : {16U, 8U, 0U})
+            samples.push_back(static_cast<std::uint8_t>(pixel >> shift));
+    return jpegOfRgb(image.width, image.height, samples);
+}
+
+}  // namespace
+
+std::string labelOf(const ViewSpec& view) {
+    return view.mode == ViewMode::Camera ? view.id : view.name;
+}
+
+PictureSize pictureSizeOf(const ViewSpec& view, const Scene& scene,
+                          std::optional<PictureSize> wanted) {
+    const PictureSize size = sizeOf(view, scene, wanted);
+    constexpr double kMostPixels = 64e6;
+    if (1.0 * size.columns * size.rows > kMostPixels)
+        throw UsageError("--size: " + std::to_string(size.columns) + " x " +
+                         std::to_string(size.rows) + " pixels, wanted at most 64 million");
+    return size;
+}
+
+PictureFiles::PictureFiles(const ScanToolOptions& options, const std::vector<std::string>& names,
+                           int frames)
+    : output_(options.common.output),
+      set_(OutputSet::of(output_)),
+      is_jpeg_(options.format == "jpeg"),
+      files_([this](const Image& image) { return encoded(image); }, writeFile) {
+    if (set_) {
+        if (options.common.dependencies.wanted)
+            throw UsageError("-MD writes a rule for one product, and a set is many files");
+        set_->prepare(names, frames > 1, {ending()});
+    } else if (frames > 1) {
+        throw UsageError(std::to_string(frames) +
+                         " frames make as many pictures: name a folder (-o DIR/) or a pattern "
+                         "(-o '%s-%04d.png'), where %s is the view's name");
+    } else {
+        refuseTerminal(output_, options.format);
+    }
+}
+
+void PictureFiles::write(const std::vector<PictureJob>& jobs, int frame) {
+    std::vector<PictureSize> sizes;
+    sizes.reserve(jobs.size());
+    for (const PictureJob& job : jobs) sizes.push_back(job.shape);
+    const ContactSheet sheet(sizes);
+    std::vector<Image> images;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        Image image = jobs[i].draw(set_ ? sizes[i] : sheet.sizeOf(i));
+        if (set_)
+            files_.add(set_->fileOf(jobs[i].name, frame, ending()), std::move(image));
+        else
+            images.push_back(std::move(image));
+        names.push_back(jobs[i].label);
+    }
+    if (!set_) writeFile(output_, encoded(sheet.draw(images, names)));
+}
+
+std::string PictureFiles::encoded(const Image& image) const {
+    return is_jpeg_ ? jpegOf(image) : pngOfShades(image.width, image.height, image.pixels);
+}
+
+}  // namespace ispace

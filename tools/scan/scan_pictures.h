@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files of --view.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/outputs.h"
+#include "report/view/film.h"
+#include "report/view/view.h"
+
+namespace ispace {
+
+struct ScanToolOptions;
+
+/// A picture to draw.
+struct PictureJob {
+    std::string name;   ///< unique, for file names
+    std::string label;  ///< on a sheet
+    PictureSize shape;  ///< of the picture alone
+    std::function<Image(PictureSize)> draw;
+};
+
+/// Returns the name of a view on a sheet: a camera's is its id (thesis, fig. 3.15).
+std::string labelOf(const ViewSpec& view);
+
+/// Returns the size of a view's picture. \throws UsageError for more than 64 million pixels
+PictureSize pictureSizeOf(const ViewSpec& view, const Scene& scene,
+                          std::optional<PictureSize> wanted);
+
+/// Writes pictures to a set of files, or to one file, as a sheet if there are several.
+class PictureFiles {
+  public:
+    /// \param names of all pictures of a frame \throws UsageError as outputs that cannot hold them
+    PictureFiles(const ScanToolOptions& options, const std::vector<std::string>& names, int frames);
+    void write(const std::vector<PictureJob>& jobs, int frame);
+    /// After the last one.
+    void finish() { files_.finish(); }
+
+  private:
+    [[nodiscard]] std::string ending() const { return is_jpeg_ ? ".jpg" : ".png"; }
+    [[nodiscard]] std::string encoded(const Image& image) const;
+
+    std::string output_;
+    std::optional<OutputSet> set_;
+    bool is_jpeg_;
+    EncodeAhead files_;
+};
+
+}  // namespace ispace
