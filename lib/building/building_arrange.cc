@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/number.h"
+#include "building/building_sight.h"
 #include "building/share_out.h"
 
 namespace ispace {
@@ -62,10 +63,11 @@ class StoreySearch {
 
 BuildingArrangement arrangeBuilding(const BuildingScene& building, const SensorSpec& sensor,
                                     int count, const ArrangeOptions& options, Progress& progress) {
+    const auto scenes = scenesOfFloors(building);
     StoreySearch search(sensor, building.devices, options, progress);
     std::vector<StoreyCurve> curves;
     double whole = 0;
-    for (const auto& scene : building.scenes) {
+    for (const auto& scene : scenes) {
         curves.push_back(search.curve(*scene, count));
         whole += scene->environment.indoor().area();
     }
@@ -73,8 +75,8 @@ BuildingArrangement arrangeBuilding(const BuildingScene& building, const SensorS
     BuildingArrangement result;
     result.counts = shared.counts;
     result.bound = whole > 0 ? std::min(1.0, shared.bound / whole) : 0;
-    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
-        const Scene& scene = *building.scenes[i];
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const Scene& scene = *scenes[i];
         const double area = scene.environment.indoor().area();
         result.groups.push_back(search.groupFor(scene, std::max(1, shared.counts[i])));
         result.storeys.emplace_back();

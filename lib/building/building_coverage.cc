@@ -42,7 +42,8 @@ class AreaSum {
 };
 
 std::optional<double> areaOf(const std::optional<double>& share, double area) {
-    if (!(area > 0)) return 0.0;  // no floor, no share of it
+    constexpr double kNoFloor = 1e-5;  // m2; see scenesOfFloors()
+    if (!(area > kNoFloor)) return 0.0;
     return share ? std::optional(*share * area) : std::nullopt;
 }
 
@@ -112,11 +113,12 @@ TextRow tableRow(const std::string& name, std::size_t sensors, double indoor,
 
 BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options) {
     BuildingCoverage measured;
+    measured.floors = scenesOfFloors(building);
     const std::vector<std::vector<StoreyView>> outside = viewsBetweenStoreys(building, options);
     using Views = std::vector<std::shared_ptr<const OutsideView>>;
     std::map<std::pair<const Scene*, Views>, std::size_t> known;
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
-        const Scene& scene = *building.scenes[i];
+        const Scene& scene = *measured.floors[i];
         Views views;
         for (const StoreyView& one : outside[i]) views.push_back(one.view);
         const auto [first, is_new] = known.try_emplace({&scene, views}, i);
@@ -130,6 +132,8 @@ BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOp
     }
     for (std::size_t i = 0; i < building.scenes.size(); ++i)
         nameWholly(building, i, outside[i], measured.storeys[i]);
+    for (std::size_t i = 0; i < building.scenes.size(); ++i)
+        measured.storeys[i].report.digest = building.scenes[i]->digest();
     addUp(measured);
     return measured;
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace ispace {
 /// The coverage of each storey, and their sums: areas add up, shares are of all floor. Ids in the
 /// reports name the storey, as in "ground/l1".
 struct BuildingCoverage {
-    std::vector<Coverage> storeys;          ///< with the views from other storeys
+    std::vector<Coverage> storeys;                     ///< with the views from other storeys
+    std::vector<std::shared_ptr<const Scene>> floors;  ///< what was measured, scenesOfFloors()
     std::vector<std::size_t> sensors;       ///< number of those that stand in each storey
     double indoor_area = 0, free_area = 0;  ///< m2
     Metric total_effective_area;            ///< m2
@@ -25,8 +27,8 @@ struct BuildingCoverage {
     std::vector<double> redundancy;         ///< see CoverageReport
 };
 
-/// Measures all storeys; those with equal rooms and views once. Rangers and cameras see through
-/// shafts and over stairs, see viewsBetweenStoreys().
+/// Measures the floor of all storeys, without openings in it; those with equal rooms and views
+/// once. Rangers and cameras see through shafts and over stairs, see viewsBetweenStoreys().
 BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options);
 
 /// Returns the rows of a table, its heads first: storeys, then the building.

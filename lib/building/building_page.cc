@@ -78,7 +78,7 @@ PageSection storeySection(const BuildingPageInput& input, std::size_t storey) {
     section.blocks.push_back(PageFigure{
         run == nullptr ? "Floor by the number of sensors that see it; coordinates in metres."
                        : "Ways of robots and people by the number of sensors that saw them.",
-        coverageMap(*input.building.scenes[storey], coverage, options)});
+        coverageMap(*input.coverage.floors[storey], coverage, options)});
     section.blocks.push_back(PageCode{coverageText(coverage.report)});
     if (run != nullptr) section.blocks.push_back(PageCode{runText(*run)});
     return section;

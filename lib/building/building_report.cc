@@ -8,6 +8,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "building/building_scene.h"
+#include "building/building_sight.h"
 #include "drawing/plan/plan.h"
 #include "env/environment.h"
 #include "scene/placement_schemas.h"
@@ -27,9 +28,20 @@ struct BuildingInfo {
 BuildingInfo describe(const BuildingScene& building) {
     BuildingInfo info;
     std::map<const Scene*, EnvironmentInfo> known;
-    for (const auto& scene : building.scenes) {
-        const auto [room, is_new] = known.try_emplace(scene.get());
-        if (is_new) room->second = describe(scene->environment, scene->records, scene->digest());
+    const auto floors = scenesOfFloors(building);
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Scene& scene = *building.scenes[i];
+        const auto [room, is_new] = known.try_emplace(floors[i].get());
+        if (is_new) {
+            room->second = describe(scene.environment, scene.records, scene.digest());
+            if (floors[i] != building.scenes[i]) {
+                const EnvironmentInfo floor =
+                    describe(floors[i]->environment, scene.records, scene.digest());
+                room->second.indoor_area = floor.indoor_area;
+                room->second.free_area = floor.free_area;
+                room->second.perimeter = floor.perimeter;
+            }
+        }
         info.storeys.push_back(room->second);
         info.indoor_area += room->second.indoor_area;
         info.free_area += room->second.free_area;

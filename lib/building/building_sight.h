@@ -35,6 +35,11 @@ struct FloorOpening {
 /// that are level have no opening between them.
 std::vector<FloorOpening> floorOpenings(const BuildingScene& building);
 
+/// Returns the scenes without the openings in their floors: the floor that one can stand on, which
+/// coverage and arrange count. The records are those of the storeys. Storeys that share a scene
+/// share the result if their openings are equal; storeys without openings keep their scenes.
+std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& building);
+
 /// Returns the room of the lowest of some storeys, with the bodies, floors and openings of the
 /// others in their positions above it. Floors and ceilings have no thickness, and openings are
 /// closed at the sides between the storey below and the floor. \pre `storeys` ascend

@@ -57,6 +57,42 @@ TEST(BuildingSight, ShaftFramesTheFloorBelow) {
     EXPECT_EQ(areaSeen(towerOf("", kDown, ""), 0), 0);
 }
 
+TEST(BuildingSight, OpeningsAreNoFloor) {
+    // A shaft of 2 m x 2 m and a flight of 1 m x 4 m in a room of 8 m x 6 m.
+    const std::string flight =
+        "- stairs: {id: s, storeys: 'ground,upper', at: [7, 1], heading: 90, size: [1, 4]}\n";
+    const BuildingScene building = towerOf("", "{desk: {id: d, at: [1, 1]}}", kShaft + flight);
+    const BuildingCoverage coverage = measureBuilding(building, {});
+    EXPECT_NEAR(coverage.storeys[0].report.indoor_area, 48, 1e-9);
+    EXPECT_NEAR(coverage.storeys[1].report.indoor_area, 48 - 4 - 4, 1e-9);
+    EXPECT_NEAR(coverage.indoor_area, 88, 1e-9);
+    EXPECT_EQ(coverage.floors[0], building.scenes[0]);
+    EXPECT_EQ(coverage.storeys[1].report.digest, building.scenes[1]->digest());
+    EXPECT_EQ(coverage.floors[1]->records, building.scenes[1]->records);
+}
+
+TEST(BuildingSight, AShaftMayTakeTheWholeFloor) {
+    const std::string whole =
+        "- shaft: {storeys: 'ground,upper', path: [[0, 0], [8, 0], [8, 6], [0, 6]]}\n";
+    const std::string wider =
+        "- shaft: {storeys: 'ground,upper', path: [[-1, -1], [9, -1], [9, 7], [-1, 7]]}\n";
+    for (const std::string& shaft : {whole, wider}) {
+        const BuildingScene building = towerOf("", kDown, shaft);
+        EXPECT_NEAR(measureBuilding(building, {}).storeys[1].report.indoor_area, 0, 1e-6);
+        EXPECT_GT(areaSeen(building, 0), 40);
+        EXPECT_TRUE(measureBuilding(building, {}).coverage.grid);
+        const auto room = roomWithSurroundings(building, floorOpenings(building), 1);
+        ASSERT_TRUE(room);
+        const RayWorld rays = RayWorld::ofEnvironment(*room);
+        Directions down;
+        down.resize(1);
+        down.set(0, {0, 0, -1});
+        std::array<float, 1> range = {kNoReturn};
+        rays.cast({4, 3, 2}, down, 20, range);
+        EXPECT_NEAR(range[0], 5, 1e-5);
+    }
+}
+
 TEST(BuildingSight, DepthOfTheFloorNarrowsTheOpening) {
     // The storey is 2.5 m high: the lower rim of the opening is 2.5 m below the eye.
     EXPECT_NEAR(areaSeen(towerOf("", kDown, kShaft, "2.5"), 0), 16, 1e-4);

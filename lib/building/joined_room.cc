@@ -2,8 +2,11 @@
 // The openings between storeys, and several storeys as one room.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -63,6 +66,68 @@ std::vector<Region> cutOut(const std::vector<Curve>& area, const std::vector<Pol
     for (const Polygon& opening : openings) layers.push_back({.curves = {curveOf(opening)}});
     return Overlay(layers).regions(
         [](const LayerLabel& label) { return label.marks == 1 && label.count == 0; });
+}
+
+/// Returns a triangle of a millimetre in a convex corner of the outline.
+Polygon cornerOf(const Polygon& outline) {
+    constexpr double kEdge = 1e-3;
+    const auto lowest = static_cast<std::size_t>(std::min_element(outline.begin(), outline.end(),
+                                                                  [](Point2 a, Point2 b) {
+                                                                      return std::pair(a.y, a.x) <
+                                                                             std::pair(b.y, b.x);
+                                                                  }) -
+                                                 outline.begin());
+    const Point2 corner = outline[lowest];
+    const auto toward = [&](Point2 next) {
+        const Vec2 way = next - corner;
+        return corner + std::min(kEdge, length(way) / 2) / length(way) * way;
+    };
+    const std::size_t count = outline.size();
+    return counterClockwise({corner, toward(outline[(lowest + 1) % count]),
+                             toward(outline[(lowest + count - 1) % count])});
+}
+
+/// Takes the openings out of the floor: faces of their own, without a point known to be inside. An
+/// environment has a floor: of one that is all open a corner remains.
+void openFloor(const Environment& room, const std::vector<Polygon>& openings,
+               std::vector<Record>& records) {
+    constexpr std::uint64_t kIndoor = 1, kKept = 2;
+    std::vector<Layer> layers = {
+        {.curves = curvesWithArcs(room.indoor()), .counts = false, .marks = kIndoor}};
+    for (const Polygon& opening : openings) layers.push_back({.curves = {curveOf(opening)}});
+    const auto is_floor = [](const LayerLabel& label) {
+        return label.marks == (kIndoor | kKept) || (label.marks == kIndoor && label.count == 0);
+    };
+    const auto is_open = [](const LayerLabel& label) {
+        return label.marks == kIndoor && label.count > 0;
+    };
+    std::optional<Overlay> overlay(std::in_place, layers);
+    std::vector<Region> floor = overlay->regions(is_floor);
+    if (floor.empty()) {
+        const std::vector<Region> open = overlay->regions(is_open);
+        if (open.empty()) return;
+        layers.push_back(
+            {.curves = {curveOf(cornerOf(open.front().outline))}, .counts = false, .marks = kKept});
+        floor = overlay.emplace(layers).regions(is_floor);
+    }
+    std::erase_if(records, [](const Record& record) { return record.keyword() == "inside"; });
+    for (const Region& part : floor) {
+        const Point2 place = interiorPoint(part);
+        Record inside(*sceneSchemas().find("inside"));
+        inside.set("at", Tuple{place.x, place.y});
+        records.push_back(std::move(inside));
+    }
+    constexpr double kFlat = 1e-6;  // a rim that is hardly a body
+    for (const Region& part : overlay->regions(is_open)) {
+        if (shortestEdge(part.outline) < 2 * kFlat) continue;  // no ray passes it
+        TupleList path;
+        for (const Point2 corner : part.outline) path.push_back({corner.x, corner.y});
+        Record rim(*sceneSchemas().find("fence"));
+        rim.set("path", path);
+        rim.set("closed", true);
+        rim.set("height", kFlat);
+        records.push_back(std::move(rim));
+    }
 }
 
 /// Collects triangles in the frame of a room.
@@ -174,41 +239,6 @@ class Surroundings {
         return outlines;
     }
 
-    /// Takes the openings out of the floor: faces of their own, without a point known to be inside.
-    static void openFloor(const Environment& room, const std::vector<Polygon>& openings,
-                          std::vector<Record>& records) {
-        std::vector<Layer> layers = {
-            {.curves = curvesWithArcs(room.indoor()), .counts = false, .marks = 1}};
-        for (const Polygon& opening : openings) layers.push_back({.curves = {curveOf(opening)}});
-        const Overlay overlay(layers);
-        const auto is_floor = [](const LayerLabel& label) {
-            return label.marks == 1 && label.count == 0;
-        };
-        const auto is_open = [](const LayerLabel& label) {
-            return label.marks == 1 && label.count > 0;
-        };
-        const std::vector<Region> floor = overlay.regions(is_floor);
-        if (floor.empty()) return;  // a room without floor has none to see through
-        std::erase_if(records, [](const Record& record) { return record.keyword() == "inside"; });
-        for (const Region& part : floor) {
-            const Point2 place = interiorPoint(part);
-            Record inside(*sceneSchemas().find("inside"));
-            inside.set("at", Tuple{place.x, place.y});
-            records.push_back(std::move(inside));
-        }
-        constexpr double kFlat = 1e-6;  // a rim that is hardly a body
-        for (const Region& part : overlay.regions(is_open)) {
-            if (shortestEdge(part.outline) < 2 * kFlat) continue;  // no ray passes it
-            TupleList path;
-            for (const Point2 corner : part.outline) path.push_back({corner.x, corner.y});
-            Record rim(*sceneSchemas().find("fence"));
-            rim.set("path", path);
-            rim.set("closed", true);
-            rim.set("height", kFlat);
-            records.push_back(std::move(rim));
-        }
-    }
-
     void addCeiling(const Plate& plate, std::size_t storey, const std::vector<Polygon>& above) {
         Polygon outline = plate.outline;
         for (Point2& p : outline) p = placeOf(storey, p);
@@ -318,6 +348,37 @@ std::vector<FloorOpening> floorOpenings(const BuildingScene& building) {
         }
     }
     return openings;
+}
+
+std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& building) {
+    constexpr double kEqualWithin = 1e-9;  // metres
+    const std::vector<FloorOpening> openings = floorOpenings(building);
+    std::map<std::pair<const Scene*, std::vector<std::int64_t>>, std::shared_ptr<const Scene>> made;
+    std::vector<std::shared_ptr<const Scene>> scenes = building.scenes;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        std::vector<Polygon> outlines;
+        std::vector<std::int64_t> numbers;
+        for (const FloorOpening& opening : openings) {
+            if (opening.above != i) continue;
+            Polygon& outline = outlines.emplace_back(opening.outline);
+            for (Point2& p : outline) {
+                p = inStorey(building.document.storeys[i], p);
+                for (const double value : {p.x, p.y})
+                    numbers.push_back(std::llround(value / kEqualWithin));
+            }
+        }
+        if (outlines.empty()) continue;
+        auto& known = made[{scenes[i].get(), std::move(numbers)}];
+        if (known == nullptr) {
+            Scene scene = *scenes[i];
+            std::vector<Record> records = scene.records;
+            openFloor(scene.environment, outlines, records);
+            scene.environment = Environment(records, assignIds(records), scene.environment);
+            known = std::make_shared<const Scene>(std::move(scene));
+        }
+        scenes[i] = known;
+    }
+    return scenes;
 }
 
 std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,

@@ -130,7 +130,7 @@ void writePanels(const CoverageToolOptions& options, const BuildingInput& input,
         map.title = input.building.document.storeys[i].id;
         map.redundancy_scale = scale;
         map.run = runOf(run, i);
-        panels.push_back(coverageMap(*input.building.scenes[i], coverage.storeys[i], map));
+        panels.push_back(coverageMap(*coverage.floors[i], coverage.storeys[i], map));
     }
     Picture page = panelsOf(panels);
     page.describe(baseName(input.environment_operand),
@@ -150,7 +150,7 @@ void writeFiles(const CoverageToolOptions& options, const BuildingInput& input,
         own.map.redundancy_scale = redundancyScale(coverage);
         own.map.run = runOf(run, i);
         claimOutput(own.common.output, "the map of a storey");
-        SceneInput room{*input.building.scenes[i], *storey.room, input.layout, {}, {}, {}, {}};
+        SceneInput room{*coverage.floors[i], *storey.room, input.layout, {}, {}, {}, {}};
         writeProduct(own, room, {coverage.storeys[i], {}});
     }
 }
