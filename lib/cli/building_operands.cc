@@ -256,8 +256,12 @@ void addZones(std::span<const std::string> zones, BuildingScene& building) {
     for (const auto& [storey, texts] : by_storey) {
         const Scene& scene = *building.scenes[storey];
         std::vector<Record> records = scene.records;
-        for (Record& zone : zoneRecords(texts, scene.environment, sceneSchemas()))
-            records.push_back(std::move(zone));
+        try {
+            for (Record& zone : zoneRecords(texts, scene.environment, sceneSchemas()))
+                records.push_back(std::move(zone));
+        } catch (const UsageError& error) {
+            throw UsageError("--zone: " + document.storeys[storey].id + ": " + error.what());
+        }
         building.scenes[storey] =
             std::make_shared<const Scene>(makeScene(std::move(records), scene, building.devices));
     }
