@@ -130,6 +130,37 @@ void forward(BuildingRun& run, SimTime from) {
                          formatSimTime(simulation.world().time()));
 }
 
+/// What the worlds tell on stderr after a step.
+class StepLogs {
+  public:
+    StepLogs(BuildingRun& run, const SimrunOptions& options)
+        : lag_(run.simulation(), options.common) {
+        for (std::size_t i = 0; i < run.rooms().size(); ++i)
+            if (const Replay* const replay = run.replay(i))
+                failures_.emplace_back(replay, options.common);
+            else
+                collisions_.emplace_back(run.world(i), options.common);
+    }
+    void tell() {
+        lag_.tell();
+        for (CollisionLog& log : collisions_) log.tell();
+        for (FailureLog& log : failures_) log.tell();
+    }
+
+  private:
+    std::vector<CollisionLog> collisions_;
+    std::vector<FailureLog> failures_;
+    LagLog lag_;
+};
+
+/// Reserves the files of all records.
+void claimRecords(const SimrunOptions& options, const BuildingRun& run) {
+    if (options.record.empty()) return;
+    for (const JoinedRoom& room : run.rooms())
+        for (const std::string& file : Recorder::filesIn(options.record + '/' + room.id))
+            claimOutput(file, "a file of --record");
+}
+
 /// Writes --report and --suggest. \pre the records are complete
 void reportRun(const SimrunOptions& options, const BuildingInput& input, const BuildingRun& run,
                const ExpectationJudge& judge, const std::string& command) {
@@ -154,10 +185,7 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     BuildingRun run = runOf(options, input->building);
     forward(run, options.from);
     Simulation& simulation = run.simulation();
-    if (!options.record.empty())
-        for (const JoinedRoom& room : run.rooms())
-            for (const std::string& file : Recorder::filesIn(options.record + '/' + room.id))
-                claimOutput(file, "a file of --record");
+    claimRecords(options, run);
     std::optional<BuildingScript> script;
     if (!options.script.empty()) {
         const bool is_stdin = options.script == "-";
@@ -165,19 +193,8 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
                        is_stdin ? displayName("-") : options.script, run);
         simulation.beforeStep([&] { script->give(run); });
     }
-    std::vector<CollisionLog> collisions;
-    std::vector<FailureLog> failures;
-    for (std::size_t i = 0; i < run.rooms().size(); ++i)
-        if (const Replay* const replay = run.replay(i))
-            failures.emplace_back(replay, options.common);
-        else
-            collisions.emplace_back(run.world(i), options.common);
-    LagLog lag(simulation, options.common);
-    simulation.onStep([&] {
-        lag.tell();
-        for (CollisionLog& log : collisions) log.tell();
-        for (FailureLog& log : failures) log.tell();
-    });
+    StepLogs logs(run, options);
+    simulation.onStep([&logs] { logs.tell(); });
     auto judge =
         ofOption("--expect", [&] { return ExpectationJudge(run.rooms(), options.expected); });
     judge.observe();
