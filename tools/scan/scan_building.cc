@@ -42,41 +42,44 @@ struct StoreySensors {
     Sensors sensors;
 };
 
-/// Returns true if any of the sensors looks out of its own plane.
-bool looksAround(const Sensors& sensors) {
-    return std::any_of(sensors.read.begin(), sensors.read.end(), [](const Sensor& sensor) {
-        return kindOf(sensor.model).stopped_by == Surfaces::Opaque &&
-               (!sensor.is<Laser>() || !scansSlice(sensor));
-    });
+/// Returns true for a sensor that looks out of its own plane.
+bool looksAround(const Sensor& sensor) {
+    return kindOf(sensor.model).stopped_by == Surfaces::Opaque &&
+           (!sensor.is<Laser>() || !scansSlice(sensor));
 }
 
 /// Returns the scene of a storey, in which sensors see through openings if they look around.
 Scene sceneOf(const BuildingScene& building, std::span<const FloorOpening> openings,
               const StoreySensors& one) {
     Scene scene = *building.scenes[one.storey];
-    if (openings.empty() || !looksAround(one.sensors)) return scene;
+    const std::vector<Sensor>& sensors = one.sensors.read;
+    if (openings.empty() || std::none_of(sensors.begin(), sensors.end(), looksAround)) return scene;
     if (auto room = roomWithSurroundings(building, openings, one.storey))
         scene.environment = *std::move(room);
     return scene;
 }
 
-/// Returns the storeys with sensors to read.
+/// Returns the sensors to read: of each storey those that see it alone, then those that see others.
 std::vector<std::unique_ptr<StoreySensors>> sensorsIn(const ScanToolOptions& options,
                                                       const BuildingInput& input) {
     std::vector<std::unique_ptr<StoreySensors>> all;
     for (std::size_t i = 0; i < input.building.scenes.size(); ++i) {
         const Scene& scene = *input.building.scenes[i];
         const Storey& storey = input.building.document.storeys[i];
-        std::vector<std::string> chosen;  // plain ids
-        for (const Sensor& sensor : scene.sensors)
-            if (isSelected(wholeId(storey, sensor.id), options.select)) chosen.push_back(sensor.id);
-        if (chosen.empty()) continue;
-        auto one = std::make_unique<StoreySensors>(
-            StoreySensors{i, {scene, {}, {}, {}, {}, input.named, {}}, sensorsOf(scene, chosen)});
-        one->input.layout = input.layout;
-        for (std::vector<Sensor>* sensors : {&one->sensors.read, &one->sensors.receivers})
-            for (Sensor& sensor : *sensors) sensor.id = wholeId(storey, sensor.id);
-        if (!one->sensors.read.empty()) all.push_back(std::move(one));
+        for (const bool looks_around : {false, true}) {  // those that see other storeys last
+            std::vector<std::string> chosen;             // plain ids
+            for (const Sensor& sensor : scene.sensors)
+                if (looksAround(sensor) == looks_around &&
+                    isSelected(wholeId(storey, sensor.id), options.select))
+                    chosen.push_back(sensor.id);
+            if (chosen.empty()) continue;
+            auto one = std::make_unique<StoreySensors>(StoreySensors{
+                i, {scene, {}, {}, {}, {}, input.named, {}}, sensorsOf(scene, chosen)});
+            one->input.layout = input.layout;
+            for (std::vector<Sensor>* sensors : {&one->sensors.read, &one->sensors.receivers})
+                for (Sensor& sensor : *sensors) sensor.id = wholeId(storey, sensor.id);
+            if (!one->sensors.read.empty()) all.push_back(std::move(one));
+        }
     }
     if (all.empty())
         throw UsageError(options.select.empty()
