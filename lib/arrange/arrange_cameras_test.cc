@@ -273,21 +273,26 @@ TEST(ArrangeCameras, AreRefinedByWhatTheyHaveEnoughPixelsOf) {
     ArrangeOptions options = fewPlaces();
     options.pixel_density = 80;
     options.refine = true;
-    const auto groups = groupsOf(scene, {"camera,fov=90,tilt=-35:2"});
-    const Arrangement refined = arranged(scene, groups, options);
-    EXPECT_GT(refined.refined_after, refined.refined_before);
-    // It is the exact area of cameras that see no farther.
-    const auto measured = [&](double pixels_per_metre) {
-        Scene whole = withPlaced(scene, groups, refined.sensors);
-        for (Sensor& sensor : whole.sensors)
-            sensor.model = withDensity(sensor.as<Camera>(), pixels_per_metre);
-        Worlds worlds(whole.environment);
-        return measureCoverage(whole, worlds, {}).report;
-    };
-    const CoverageReport report = measured(options.pixel_density);
-    EXPECT_EQ(report.coverage.grid, refined.coverage);
-    EXPECT_NEAR(*report.coverage.exact * report.indoor_area, refined.refined_after, 1e-6);
-    EXPECT_GT(measured(0).coverage.grid, refined.coverage);
+    for (const char* lens :
+         {"", ",coefficients=-0.2,0.03", ",projection=fisheye,coefficients=-0.05,0.01"}) {
+        const std::string sensors = "camera,fov=90,tilt=-35" + std::string(lens) + ":2";
+        const auto groups = groupsOf(scene, {sensors.c_str()});
+        const Arrangement refined = arranged(scene, groups, options);
+        EXPECT_GT(refined.refined_after, refined.refined_before) << lens;
+        // It is the exact area of cameras that see no farther.
+        const auto measured = [&](double pixels_per_metre) {
+            Scene whole = withPlaced(scene, groups, refined.sensors);
+            for (Sensor& sensor : whole.sensors)
+                sensor.model = withDensity(sensor.as<Camera>(), pixels_per_metre);
+            Worlds worlds(whole.environment);
+            return measureCoverage(whole, worlds, {}).report;
+        };
+        const CoverageReport report = measured(options.pixel_density);
+        EXPECT_EQ(report.coverage.grid, refined.coverage) << lens;
+        EXPECT_NEAR(*report.coverage.exact * report.indoor_area, refined.refined_after, 1e-6)
+            << lens;
+        EXPECT_GT(measured(0).coverage.grid, refined.coverage) << lens;
+    }
 }
 
 TEST(ArrangeCameras, WithoutEnoughPixelsAnywhereSeeNothing) {

@@ -4,11 +4,14 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <string>
 
+#include "coverage/level_set.h"
 #include "coverage/pixel_density.h"
 #include "coverage/requirement.h"
 #include "coverage/shadow_footprint.h"
+#include "geom/predicates.h"
 #include "support/test_covering_sensors.h"
 #include "support/test_scenes.h"
 
@@ -34,12 +37,21 @@ const std::string kOfficeCameras =
     "camera id=b at=5.8,3.8,2.8 heading=-145 tilt=-25 fov=70 pixels=1280,720\n"
     "camera id=c at=0,0,2.9 tilt=-90 projection=omni fov=180 pixels=1000,1000 range=9\n";
 
+/// Lenses of which the density varies with the direction.
+const std::string kBentCameras =
+    "camera id=d at=-5.8,3.8,2.6 heading=-35 tilt=-20 fov=95 coefficients=-0.2,0.03,0.002,-0.003 "
+    "pixels=1920,1080\n"
+    "camera id=e at=5.8,-3.8,2.8 heading=140 tilt=-35 roll=10 projection=fisheye fov=150 "
+    "coefficients=-0.03,-0.01,0.002 pixels=1600,1200\n"
+    "camera id=f at=0.5,0.5,2.9 tilt=-90 projection=omni mirror=0.9 fov=200 pixels=900,900\n"
+    "camera id=g at=-1,3.5,2.7 heading=-80 tilt=-10 fov=70 coefficients=0.25,0.1 pixels=800,600\n";
+
 TEST(Densities, AreasOfClassesAreThoseOfShorterRanges) {
-    const Scene scene = sceneOf(kOfficeCameras);
+    const Scene scene = sceneOf(kOfficeCameras + kBentCameras);
     const ShadowCaster caster(scene.environment);
-    const CoverageReport report = measured(kOfficeCameras).report;
-    ASSERT_EQ(report.sensors.size(), 3U);
-    for (std::size_t k = 0; k < 3; ++k) {
+    const CoverageReport report = measured(kOfficeCameras + kBentCameras).report;
+    ASSERT_EQ(report.sensors.size(), 7U);
+    for (std::size_t k = 0; k < report.sensors.size(); ++k) {
         const PictureMetrics& picture = *report.sensors[k].picture;
         ASSERT_EQ(picture.areas.size(), kClasses);
         for (std::size_t i = 0; i < kClasses; ++i) {
@@ -50,6 +62,58 @@ TEST(Densities, AreasOfClassesAreThoseOfShorterRanges) {
             EXPECT_NEAR(*picture.areas[i].grid, area, 0.02 * area + 0.05) << k << ' ' << i;
         }
     }
+}
+
+/// The floor of a class, against the density of its points.
+TEST(Densities, OfLensesEndAtCurves) {
+    const std::string empty = "ispace size=30,30,6\n";
+    for (const SensorView& view : measured(empty + kBentCameras).sensors) {
+        const Scene scene = sceneOf(empty + kBentCameras);
+        const Sensor& sensor = scene.sensors[view.index];
+        const Camera& camera = sensor.as<Camera>();
+        const LensResolution lens(camera);
+        const Frame3 frame(sensor.pose);
+        std::mt19937_64 random(view.index);
+        std::uniform_real_distribution<double> side(-14, 14);
+        std::vector<std::vector<Polygon>> regions;
+        for (const CoveredSet& set : view.classes) {
+            regions.emplace_back();
+            for (const Curve& curve : *set.region) regions.back().push_back(chords(curve, 1e-6));
+        }
+        for (int i = 0; i < 2000; ++i) {
+            const double x = side(random);
+            const Point2 p{x, side(random)};
+            const Vec3 local = frame.toLocal({p.x, p.y, 0});
+            const auto pixel = camera.project(local);
+            const bool is_in_view = pixel && camera.holds(*pixel);
+            const double density = is_in_view ? lens.densityAt(local) : 0;
+            for (std::size_t k = 0; k < regions.size(); ++k) {
+                const double wanted = densityClasses()[k].pixels_per_metre;
+                if (std::fabs(density - wanted) < 1e-4 * wanted) continue;
+                bool is_inside = false;
+                for (const Polygon& polygon : regions[k])
+                    is_inside = is_inside != (locate(polygon, p) == Side::Inside);
+                EXPECT_EQ(is_inside, density >= wanted)
+                    << view.id << ' ' << p.x << ' ' << p.y << ' ' << density << ' ' << wanted;
+            }
+        }
+    }
+}
+
+TEST(LevelSets, HaveTheirAreas) {
+    const Box2 box{{-5, -5}, {5, 5}};
+    const auto area = [&box](auto value) { return signedArea(levelSet(value, box)); };
+    const auto far = [](Point2 p, double x, double y) { return std::hypot(p.x - x, p.y - y); };
+    EXPECT_NEAR(area([&](Point2 p) { return 3 - far(p, 0.3, 0.2); }), 9 * kPi, 1e-4);
+    EXPECT_NEAR(area([&](Point2 p) { return (3 - far(p, 0, 0)) * (far(p, 0, 0) - 1); }), 8 * kPi,
+                1e-4);
+    // Two discs that touch: no matter how they are joined there.
+    EXPECT_NEAR(
+        area([&](Point2 p) { return std::max(1.5 - far(p, -1.5, 0), 1.5 - far(p, 1.5, 0)); }),
+        2 * 2.25 * kPi, 0.03);
+    EXPECT_NEAR(area([&](Point2 p) { return 2 - std::fabs(p.x) - std::fabs(p.y); }), 8, 1e-2);
+    EXPECT_EQ(area([](Point2) { return -1.0; }), 0);
+    EXPECT_TRUE(levelSet([](Point2) { return 1.0; }, Box2{}).empty());
 }
 
 /// Furniture and walls away from the cameras change no share.
@@ -87,7 +151,7 @@ TEST(Densities, NeedTheFloorNearCamerasOnly) {
 }
 
 TEST(Densities, MeanIsThatOfPlaces) {
-    for (const SensorMetrics& sensor : measured(kOfficeCameras).report.sensors) {
+    for (const SensorMetrics& sensor : measured(kOfficeCameras + kBentCameras).report.sensors) {
         const PictureMetrics& picture = *sensor.picture;
         EXPECT_NEAR(*picture.mean_density.exact, *picture.mean_density.grid,
                     5e-3 * *picture.mean_density.exact)

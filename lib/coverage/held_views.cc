@@ -81,7 +81,7 @@ bool HeldViews::isHeld(const FieldOfView& view, Point3 place) const {
     if (!table_) return view.holds(place);
     const Vec3 local = view.frame.toLocal(place);
     const double distance = std::sqrt(dot(local, local));
-    if (!withinRange(distance, view.max_range)) return false;
+    if (!withinRange(distance, view.max_range) || !view.isDense(local)) return false;
     const PictureTable::Answer answer = table_->locate(local, distance);
     if (answer == PictureTable::Answer::Unsure) return view.points(local);
     return answer == PictureTable::Answer::Inside;
@@ -116,6 +116,7 @@ HeldViews::Verdict HeldViews::decide(Point3 center, Vec2 half, std::uint64_t amo
             continue;
         else if (answer == PictureTable::Answer::Unsure)
             margin.least = -HUGE_VAL;
+        if (view.least_density > 0) margin.least = -HUGE_VAL;  // varies with the direction
         if (margin.least > slack)
             verdict.held |= bits & -bits;
         else if (margin.most >= -slack)

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "coverage/level_set.h"
 #include "coverage/shadow_footprint.h"
 #include "geom/arrangement.h"
 #include "geom/predicates.h"
@@ -21,30 +22,56 @@
 namespace ispace {
 
 FloorDensity::FloorDensity(const Camera& camera, const Pose3& pose, double plane)
-    : focal_(rangeOf(camera, 1)),
+    : focal_(std::min(camera.fx, camera.fy)),
       drop_(plane - pose.position.z),
       is_by_depth_(camera.lens == Lens::Pinhole),
       foot_(pose.position.onFloor()),
-      axis_(Frame3(pose).forward),
-      slope_(std::hypot(axis_.x, axis_.y)) {}
+      frame_(pose),
+      axis_(frame_.forward),
+      slope_(std::hypot(axis_.x, axis_.y)) {
+    if (!LensResolution::isEven(camera)) lens_.emplace(camera);
+}
 
 double FloorDensity::at(Point2 place) const {
     const Vec2 way = place - foot_;
+    if (lens_) return lens_->densityAt(localOf(way));
     const double far = is_by_depth_ ? axis_.x * way.x + axis_.y * way.y + axis_.z * drop_
                                     : std::hypot(way.x, way.y, drop_);
     return far > 0 ? focal_ / far : std::numeric_limits<double>::infinity();
 }
 
+namespace {
+
+std::vector<Curve> movedTo(Point2 foot, std::vector<Curve> curves) {
+    const Vec2 way = foot - Point2{};
+    for (Curve& curve : curves)
+        for (CurveEdge& edge : curve)
+            edge = {edge.from + way, edge.to + way, edge.radius, edge.center + way};
+    return curves;
+}
+
+}  // namespace
+
+std::vector<Curve> denseFloor(const LensResolution& lens, const Frame3& frame, double drop,
+                              double pixels_per_metre) {
+    const double far = lens.most() / pixels_per_metre;
+    if (!(std::fabs(drop) < far)) return {};
+    constexpr double kBeyond = 1.05;  // the border of the box is not dense
+    const double reach = kBeyond * std::sqrt(far * far - drop * drop);
+    const auto value = [&](Point2 p) {
+        const Vec3 local = frame.toLocal(frame.origin + Vec3{p.x, p.y, drop});
+        // Linear in the distance, without a pole at the camera.
+        return lens.at(local) / pixels_per_metre - std::sqrt(dot(local, local));
+    };
+    return levelSet(value, {{-reach, -reach}, {reach, reach}});
+}
+
 std::vector<Curve> FloorDensity::least(double pixels_per_metre, const Box2& box) const {
+    if (lens_) return movedTo(foot_, denseFloor(*lens_, frame_, drop_, pixels_per_metre));
     const double far = focal_ / pixels_per_metre;
     if (!is_by_depth_) {
         if (!(std::fabs(drop_) < far)) return {};
-        Curve disc = circleOf(std::sqrt(far * far - drop_ * drop_));
-        for (CurveEdge& edge : disc) {
-            const Vec2 way = foot_ - Point2{};
-            edge = {edge.from + way, edge.to + way, edge.radius, edge.center + way};
-        }
-        return {std::move(disc)};
+        return movedTo(foot_, {circleOf(std::sqrt(far * far - drop_ * drop_))});
     }
     const Polygon polygon = {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
     const double offset = far - axis_.z * drop_ + axis_.x * foot_.x + axis_.y * foot_.y;
@@ -97,14 +124,43 @@ double FloorDensity::around(Point2 a, Point2 b) const {
     return focal_ * cross(from, way) * sum / pieces;
 }
 
+/// Likewise of the density of a lens, by its integral along the ray from the foot.
+double FloorDensity::byLens(Point2 a, Point2 b) const {
+    constexpr std::array<double, 4> kPlaces = {-0.861136311594052575, -0.339981043584856265,
+                                               0.339981043584856265, 0.861136311594052575};
+    constexpr std::array<double, 4> kWeights = {0.347854845137453857, 0.652145154862546143,
+                                                0.652145154862546143, 0.347854845137453857};
+    const auto along_ray = [&](Vec2 to) {  // the mean of t density(t to), t from 0 to 1
+        constexpr int kPieces = 8;
+        double sum = 0;
+        for (int i = 0; i < kPieces; ++i)
+            for (std::size_t k = 0; k < kPlaces.size(); ++k) {
+                const double t = (i + (1 + kPlaces[k]) / 2) / kPieces;
+                sum += kWeights[k] / 2 / kPieces * t * lens_->densityAt(localOf(t * to));
+            }
+        return sum;
+    };
+    const Vec2 from = a - foot_, way = b - a;
+    const double scale = std::fabs(drop_) + distance(foot_, Segment2{a, b});
+    constexpr double kMaxPieces = 64;
+    const double pieces = std::clamp(std::ceil(2 * length(way) / scale), 1.0, kMaxPieces);
+    double sum = 0;
+    for (double i = 0; i < pieces; ++i)
+        for (std::size_t k = 0; k < kPlaces.size(); ++k)
+            sum += kWeights[k] / 2 * along_ray(from + (i + (1 + kPlaces[k]) / 2) / pieces * way);
+    return cross(from, way) * sum / pieces;
+}
+
 double FloorDensity::integral(std::span<const Curve> curves) const {
     constexpr double kLevel = 1e-9;
-    if (is_by_depth_ && slope_ < kLevel)
+    if (!lens_ && is_by_depth_ && slope_ < kLevel)
         return focal_ / std::fabs(axis_.z * drop_) * signedArea(curves);
     double sum = 0;
     for (const Curve& curve : curves)
         forEachEdge(chords(curve, kConicError), [&](const Segment2& edge) {
-            sum += is_by_depth_ ? alongAxis(edge.a, edge.b) : around(edge.a, edge.b);
+            sum += lens_          ? byLens(edge.a, edge.b)
+                   : is_by_depth_ ? alongAxis(edge.a, edge.b)
+                                  : around(edge.a, edge.b);
         });
     return sum;
 }
@@ -150,7 +206,9 @@ std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
     constexpr double kAround = 1;
     box = {{box.low.x - kAround, box.low.y - kAround},
            {box.high.x + kAround, box.high.y + kAround}};
-    const DensityRange range = densityRange(density, *view.region, density.foot());
+    // The density of other lenses has no bounds at the vertices.
+    DensityRange range{0, std::numeric_limits<double>::infinity()};
+    if (density.isEven()) range = densityRange(density, *view.region, density.foot());
     std::vector<Layer> layers = {{.curves = *view.region}};
     std::vector<std::size_t> cut;  // classes whose bound may cross the view
     for (std::size_t i = 0; i < classes.size(); ++i) {
@@ -160,9 +218,10 @@ std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
             sets[i].region = *view.region;
             continue;
         }
+        std::vector<Curve> dense = density.least(wanted, box);
+        if (dense.empty()) continue;
         cut.push_back(i);
-        layers.push_back(
-            {.curves = density.least(wanted, box), .counts = false, .marks = classMark(i)});
+        layers.push_back({.curves = std::move(dense), .counts = false, .marks = classMark(i)});
     }
     if (cut.empty()) return sets;
     const Overlay overlay(layers);

@@ -2,42 +2,57 @@
 // Private to lib/coverage: metrics of cameras on a plane, one by one and together.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "coverage/coverage.h"
 #include "coverage/metrics.h"
 #include "scene/sensor/camera.h"
+#include "scene/sensor/lens_resolution.h"
 
 namespace ispace {
 
-/// Pixels a metre of a camera on a level plane, see rangeOf(): its focal length divided by depth or
-/// distance.
+/// Pixels a metre of a camera on a level plane, see LensResolution.
 class FloorDensity {
   public:
     FloorDensity(const Camera& camera, const Pose3& pose, double plane);
 
-    /// Returns the density at a point of the plane; +infinity at the camera and, of a pinhole,
-    /// beside it.
+    /// Returns the density at a point of the plane; +infinity at the camera and, of a pinhole
+    /// without distortion, beside it.
     [[nodiscard]] double at(Point2 place) const;
-    /// Returns the part of `box` with at least this density, for a fisheye or mirror a disc about
-    /// the foot. Empty curves if it is lower everywhere.
+    /// Returns the part of `box` with at least this density: of a pinhole without distortion a half
+    /// plane, of an equidistant fisheye a disc about the foot, of other lenses a levelSet().
+    /// Empty curves if it is lower everywhere.
     [[nodiscard]] std::vector<Curve> least(double pixels_per_metre, const Box2& box) const;
     /// Returns the point of the plane below or above the camera.
     [[nodiscard]] Point2 foot() const { return foot_; }
+    /// Returns true if the density falls with depth or distance alone.
+    [[nodiscard]] bool isEven() const { return !lens_; }
     /// Integrates the density over the area of curves, in pixels times metres. Chords replace arcs.
     [[nodiscard]] double integral(std::span<const Curve> curves) const;
 
   private:
     [[nodiscard]] double alongAxis(Point2 a, Point2 b) const;
     [[nodiscard]] double around(Point2 a, Point2 b) const;
+    [[nodiscard]] double byLens(Point2 a, Point2 b) const;
+    [[nodiscard]] Vec3 localOf(Vec2 way) const {
+        return frame_.toLocal(frame_.origin + Vec3{way.x, way.y, drop_});
+    }
 
     double focal_, drop_;
     bool is_by_depth_;
     Point2 foot_;
+    Frame3 frame_;
     Vec3 axis_;
-    double slope_;  ///< change of depth per metre along the plane
+    double slope_;                        ///< change of depth per metre along the plane
+    std::optional<LensResolution> lens_;  ///< of lenses that are not even
 };
+
+/// Returns the part of a plane, `drop` above the camera, where a lens that is not even has at least
+/// this density, relative to the foot.
+std::vector<Curve> denseFloor(const LensResolution& lens, const Frame3& frame, double drop,
+                              double pixels_per_metre);
 
 /// Returns the views of cameras.
 std::vector<const SensorView*> camerasOf(const Coverage& coverage);

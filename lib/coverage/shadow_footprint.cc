@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "coverage/pixel_density.h"
 #include "coverage/shadow_bodies.h"
 #include "geom/overlay/overlay.h"
 #include "geom/tolerance.h"
@@ -232,6 +233,13 @@ Footprint::Footprint(const FieldOfView& view, double drop, bool disc_is_left_out
     if (!view.is_by_depth && !disc_is_left_out) mark({circleOf(reach)});
     const Frame3& frame = view.frame;
     if (view.shape == FieldOfView::Shape::Picture) addPicture(view, drop);
+    if (view.least_density > 0) {
+        std::vector<Curve> dense = denseFloor(*view.resolution, frame, drop, view.least_density);
+        if (dense.empty())
+            box = {};
+        else
+            mark(std::move(dense));
+    }
     if (view.shape == FieldOfView::Shape::Cone) {
         if (view.half_x < right_angle)
             addCone(frame.forward, view.half_x, drop, true);

@@ -165,7 +165,7 @@ std::string reasonOfDensity(const ArrangeWork& work) {
             return "nowhere on the " + std::string(work.how.plane > 0 ? "plane" : "floor") +
                    " are there " + formatDouble(density) + " pixels a metre (--density): " +
                    (camera->model.empty() ? "a camera" : camera->model) + " has so many up to " +
-                   formatFixed(rangeOf(*camera, density), 2) + " m away";
+                   formatFixed(withDensity(*camera, density).max_range, 2) + " m away";
     return "";
 }
 

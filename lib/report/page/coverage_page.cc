@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -18,6 +19,7 @@
 #include "report/page/installation.h"
 #include "report/run_report.h"
 #include "scene/sensor/density_classes.h"
+#include "scene/sensor/lens_resolution.h"
 
 namespace ispace {
 
@@ -110,6 +112,22 @@ PageSection summaryOf(const CoveragePageInput& input) {
     return section;
 }
 
+/// Sets the pixels a radian of a camera.
+void addResolution(const Camera& camera, MapSensor& sensor) {
+    constexpr int kRings = 32, kBearings = 16;
+    const LensResolution lens(camera);
+    sensor.widest = camera.widestInPicture();
+    sensor.bearings = camera.isLopsided() ? kBearings : 1;
+    for (std::size_t k = 0; k < sensor.bearings; ++k) {
+        const double bearing = 2 * std::numbers::pi * static_cast<double>(k) / kBearings;
+        for (int i = 0; i <= kRings; ++i) {
+            const auto [c, s] = cosSin(i * (1.0 / kRings) * sensor.widest);
+            sensor.resolution.push_back(
+                lens.at({c, -s * std::cos(bearing), -s * std::sin(bearing)}));
+        }
+    }
+}
+
 PageSection mapOf(const CoveragePageInput& input) {
     ScreenMap screen = drawScreenMap(input.scene, input.coverage);
     MapIndex index{screen.view, {}, {"density 2015", "density 2025", "views"}};
@@ -120,7 +138,8 @@ PageSection mapOf(const CoveragePageInput& input) {
         const bool is_level = sensor.is<Laser>() && sensor.pose.isLevel();
         index.sensors.push_back({view.id, std::string(view.kind->noun), view.pose,
                                  is_level ? view.pose.position.z : input.coverage.report.plane,
-                                 camera == nullptr ? 0 : camera->fx, colors[index.sensors.size()]});
+                                 colors[index.sensors.size()]});
+        if (camera != nullptr) addResolution(*camera, index.sensors.back());
     }
     PageSection section{"map", "Map", {}};
     section.blocks.push_back(
@@ -337,10 +356,9 @@ PageSection methodsOf(const CoveragePageInput& input) {
     if (!report.exact_missing.empty())
         add("Some figures are counted on cells: " + printable(report.exact_missing) + ".");
     if (!report.densities.indoor.empty())
-        add("Pixels a metre are the focal length in pixels over the depth along the axis, in the "
-            "plane, without distortion; those beside people are of their faces, at 1.60 m, by the "
-            "lens "
-            "with its distortion. Light, motion and focus are not part of them.");
+        add("Pixels a metre are those of the lens with its distortion on a flat target that faces "
+            "the camera, along the line on it that has fewest; those beside people are of their "
+            "faces, at 1.60 m. Light, motion and focus are not part of them.");
     add("A layout is as good as its plan: measure the room before mounting, and keep the distances "
         "to walls rather than the coordinates where the two differ.");
     return section;

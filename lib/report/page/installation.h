@@ -33,9 +33,7 @@ PageTable wallFacesTable(const std::vector<Installation>& installations);
 PageFigure installationPlan(const Scene& scene, const Coverage& coverage,
                             const std::vector<Installation>& installations);
 
-/// Returns the pixels a metre of a camera at a point, by its lens with its distortion: of lines
-/// parallel to the picture of a pinhole, else across the line of sight, the least of two
-/// directions.
+/// Returns the pixels a metre of a camera at a point, see LensResolution; 0 behind a pinhole.
 double lensDensity(const Sensor& sensor, Point3 place);
 
 /// Draws the picture that a camera takes, or the floor that another sensor sees, for each sensor

@@ -183,10 +183,13 @@ TEST(LensDensity, IsThatOfTheLens) {
     EXPECT_NEAR(density_of(pinhole, {4, 0, 2}), 200, 1e-6);
     EXPECT_NEAR(density_of(pinhole, {4, 3, 1}), 200, 1e-6);
     EXPECT_EQ(density_of(pinhole, {-4, 0, 2}), 0);
-    // With k1 < 0 lines towards the edge shrink by 1 + 3 k1 r^2, at r = 3/4.
-    const double k1 = -0.1, r = 0.75;
+    // With k1 < 0 lines about the centre shrink by 1 + k1 r^2, at r = 3/4, those towards the edge
+    // by 1 + 3 k1 r^2. A target that faces the camera is seen 1 / cos steeper along the latter.
+    const double r = 0.75, cosine = 0.8;
     EXPECT_NEAR(density_of(pinhole + " coefficients=-0.1,0,0,0", {4, 3, 2}),
-                200 * (1 + 3 * k1 * r * r), 0.01);
+                200 * (1 - 0.1 * r * r), 1e-9);
+    EXPECT_NEAR(density_of(pinhole + " coefficients=-0.2,0,0,0", {4, 3, 2}),
+                200 * (1 - 3 * 0.2 * r * r) / cosine, 1e-9);
     // Of an equidistant fisheye pixels a radian over the distance, in the middle and at the edge.
     const std::string fisheye = "projection=fisheye fov=180 pixels=1000,1000 tilt=-90";
     const double radian = 500 / (std::numbers::pi / 2);

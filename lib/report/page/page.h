@@ -44,8 +44,12 @@ struct MapSensor {
     std::string id, noun;
     Pose3 pose;
     double plane = 0;  ///< height of the floor that it covers
-    double focal = 0;  ///< of a camera, pixels; 0: no camera
     Color color = palette::kSensor;
+    /// Of a camera: pixels a radian (see LensResolution) at even steps of the angle off the axis up
+    /// to `widest`, for each of `bearings` even steps of the bearing about the axis in turn.
+    std::vector<double> resolution = {};
+    std::size_t bearings = 1;
+    Angle widest = {};
 };
 
 /// A map that the script of an HTML page makes interactive: layers to switch, zoom, and a readout

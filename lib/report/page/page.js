@@ -85,6 +85,22 @@ for (const figure of document.querySelectorAll('figure.map')) {
     });
   });
 
+  // Pixels a metre: pixels a radian of the lens over the distance.
+  const densityOf = (sensor, dx, dy, dz) => {
+    const along = ([x, y, z]) => dx * x + dy * y + dz * z;
+    const [depth, left, up] = [along(sensor.axis), along(sensor.left), along(sensor.up)];
+    const rings = sensor.resolution.length / sensor.bearings - 1;
+    const ring = Math.min(rings, Math.atan2(Math.hypot(left, up), depth) / sensor.widest * rings);
+    const turn = (Math.atan2(-up, -left) / (2 * Math.PI) + 1) % 1 * sensor.bearings;
+    const pixelsAt = (bearing) => {
+      const first = bearing % sensor.bearings * (rings + 1), k = Math.min(rings - 1, Math.floor(ring));
+      const [low, high] = [sensor.resolution[first + k], sensor.resolution[first + k + 1]];
+      return low + (ring - k) * (high - low);
+    };
+    const bearing = Math.floor(turn), low = pixelsAt(bearing), high = pixelsAt(bearing + 1);
+    return (low + (turn - bearing) * (high - low)) / Math.hypot(dx, dy, dz);
+  };
+
   // The readout.
   const tell = ([px, py]) => {
     const x = worldX + (px - pageX) / scale, y = worldY - (py - pageY) / scale;
@@ -96,9 +112,7 @@ for (const figure of document.querySelectorAll('figure.map')) {
     }).map((sensor) => {
       const [dx, dy, dz] = [x - sensor.at[0], y - sensor.at[1], sensor.plane - sensor.at[2]];
       const text = `${sensor.id} ${Math.hypot(dx, dy, dz).toFixed(2)} m`;
-      if (!sensor.focal) return text;
-      const depth = dx * sensor.axis[0] + dy * sensor.axis[1] + dz * sensor.axis[2];
-      return depth > 0 ? `${text}, ${(sensor.focal / depth).toFixed(0)} px/m` : text;
+      return sensor.resolution ? `${text}, ${densityOf(sensor, dx, dy, dz).toFixed(0)} px/m` : text;
     });
     output.textContent = `(${x.toFixed(2)}, ${y.toFixed(2)}) m: ` +
       (seers.length ? `seen by ${seers.length}: ${seers.join('; ')}` : 'seen by no sensor');

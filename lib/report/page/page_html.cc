@@ -63,17 +63,25 @@ std::string indexJson(const MapIndex& index) {
     json.key("sensors").beginArray();
     for (const MapSensor& sensor : index.sensors) {
         const Point3 at = sensor.pose.position;
-        const Vec3 axis = Frame3(sensor.pose).forward;
         json.beginObject();
         json.key("id").value(sensor.id);
         json.key("noun").value(sensor.noun);
         json.key("at").value(std::vector<double>{micro(at.x), micro(at.y), micro(at.z)});
         json.key("plane").value(sensor.plane);
         json.key("color").value(cssColor(sensor.color));
-        if (sensor.focal > 0) {
-            json.key("axis").value(
-                std::vector<double>{micro(axis.x), micro(axis.y), micro(axis.z)});
-            json.key("focal").value(micro(sensor.focal));
+        if (!sensor.resolution.empty()) {
+            const Frame3 frame(sensor.pose);
+            const auto numbers = [&micro](Vec3 v) {
+                return std::vector<double>{micro(v.x), micro(v.y), micro(v.z)};
+            };
+            json.key("axis").value(numbers(frame.forward));
+            json.key("left").value(numbers(frame.left));
+            json.key("up").value(numbers(frame.up));
+            json.key("widest").value(micro(sensor.widest.radians()));
+            json.key("bearings").value(sensor.bearings);
+            json.key("resolution").beginArray();
+            for (const double pixels : sensor.resolution) json.value(std::round(10 * pixels) / 10);
+            json.endArray();
         }
         json.endObject();
     }

@@ -48,7 +48,9 @@ TEST(Page, HtmlEscapesTextAndNumbersIds) {
 
 TEST(Page, MapTellsTheScriptItsSensors) {
     ReportPage page{"map", "", {}};
-    MapIndex index{{10, {0, 0}, {5, 5}}, {{"c1", "camera", {{1, 2, 2.5}, {}, {}, {}}, 0, 500}}, {}};
+    MapIndex index{{10, {0, 0}, {5, 5}}, {{"c1", "camera", {{1, 2, 2.5}, {}, {}, {}}, 0}}, {}};
+    index.sensors[0].resolution = {500, 510.26, 600};
+    index.sensors[0].widest = Angle::radians(0.5);
     page.sections.push_back(
         {"map", "Map", {PageMap{{"", pictureOf(40, 30)}, pictureOf(40, 30), index}}});
     EXPECT_TRUE(holds(htmlOf(page),
@@ -56,7 +58,9 @@ TEST(Page, MapTellsTheScriptItsSensors) {
                       "&quot;sensors&quot;:[{&quot;id&quot;:&quot;c1&quot;,&quot;noun&quot;:"
                       "&quot;camera&quot;,&quot;at&quot;:[1,2,2.5],&quot;plane&quot;:0,&quot;color&"
                       "quot;:&quot;#b3261e&quot;,"
-                      "&quot;axis&quot;:[1,0,0],&quot;focal&quot;:500}]}\""));
+                      "&quot;axis&quot;:[1,0,0],&quot;left&quot;:[0,1,0],&quot;up&quot;:[0,0,1],"
+                      "&quot;widest&quot;:0.5,&quot;bearings&quot;:1,"
+                      "&quot;resolution&quot;:[500,510.3,600]}]}\""));
 }
 
 std::size_t pagesOf(const std::string& pdf) {

@@ -3,7 +3,6 @@
 // it serves, of a laser its scan, of others the floor that they see.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "base/number.h"
@@ -15,6 +14,7 @@
 #include "report/map/map_parts.h"
 #include "report/page/installation.h"
 #include "scene/placement_schemas.h"
+#include "scene/sensor/lens_resolution.h"
 #include "sense/photo.h"
 
 namespace ispace {
@@ -275,27 +275,10 @@ PageFigure scanOf(const Scene& scene, const SensorView& view, Color color) {
 }  // namespace
 
 double lensDensity(const Sensor& sensor, Point3 place) {
-    constexpr double kHalf = 0.005;  // of the line that is measured, metres
     const Camera& camera = sensor.as<Camera>();
-    const Vec3 way = Frame3(sensor.pose).toLocal(place);
-    const double far = camera.lens == Lens::Pinhole ? way.x : length(way);
-    if (!(far > 0)) return 0;
-    // Parallel to the picture of a pinhole, else across the line of sight.
-    Vec3 across{0, 1, 0}, upright{0, 0, 1};
-    if (camera.lens != Lens::Pinhole) {
-        const double level = std::hypot(way.x, way.y);
-        if (level > 0) across = {-way.y / level, way.x / level, 0};
-        upright = (1 / far) * cross(way, across);
-    }
-    double least = std::numeric_limits<double>::infinity();
-    for (const Vec3& direction : {across, upright}) {
-        const Vec3 half = kHalf * direction;
-        const auto a = camera.project({way.x - half.x, way.y - half.y, way.z - half.z});
-        const auto b = camera.project({way.x + half.x, way.y + half.y, way.z + half.z});
-        if (!a || !b) return rangeOf(camera, 1) / far;  // beside the picture
-        least = std::min(least, std::hypot(b->column - a->column, b->row - a->row) / (2 * kHalf));
-    }
-    return least;
+    const Vec3 local = Frame3(sensor.pose).toLocal(place);
+    if (camera.lens == Lens::Pinhole && !(local.x > 0)) return 0;
+    return LensResolution(camera).densityAt(local);
 }
 
 std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& coverage) {

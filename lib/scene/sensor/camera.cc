@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/number.h"
+#include "scene/sensor/lens_resolution.h"
 
 namespace ispace {
 
@@ -250,15 +251,16 @@ std::optional<double> pixelDensityOf(std::string_view text) {
     return number && *number > 0 && std::isfinite(*number) ? number : std::nullopt;
 }
 
-double rangeOf(const Camera& camera, double pixels_per_metre) {
-    // Pixels a radian in the middle, where all these lenses have fewest.
-    const double focal = std::min(camera.fx, camera.fy) / (1 + camera.mirror);
-    return focal / pixels_per_metre;
-}
-
 Camera withDensity(Camera camera, double pixels_per_metre) {
-    if (pixels_per_metre > 0)
-        camera.max_range = std::min(camera.max_range, rangeOf(camera, pixels_per_metre));
+    if (!(pixels_per_metre > 0)) return camera;
+    if (LensResolution::isEven(camera)) {
+        const double focal = std::min(camera.fx, camera.fy);
+        camera.max_range = std::min(camera.max_range, focal / pixels_per_metre);
+        return camera;
+    }
+    camera.least_density = std::max(camera.least_density, pixels_per_metre);
+    camera.max_range =
+        std::min(camera.max_range, LensResolution(camera).farthest(pixels_per_metre));
     return camera;
 }
 

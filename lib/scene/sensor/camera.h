@@ -47,6 +47,8 @@ struct Camera {
     Angle widest = Angle::degrees(90);
     /// Limits of the depth along the axis (pinhole) or distance (others), metres.
     double min_range = 0, max_range = kMaxSeen;
+    /// Pixels a metre that points in view have at least, by LensResolution; 0 for any.
+    double least_density = 0;
     double rate = 30;           ///< pictures a second
     double full_well = 10'000;  ///< electrons of a white pixel: shot noise is their square root
     double read_noise = 4;      ///< electrons, standard deviation
@@ -128,10 +130,9 @@ std::span<const PixelDensity> pixelLevels();
 /// `scrutinise`; empty for other text. \see pixelDensities, pixelLevels
 std::optional<double> pixelDensityOf(std::string_view text);
 
-/// Computes the range at which a camera has this pixel density, as `max_range` counts: the focal
-/// length in pixels over the density. \pre pixels_per_metre > 0
-double rangeOf(const Camera& camera, double pixels_per_metre);
-/// Clips the camera's range to that of a pixel density; 0 keeps the range.
+/// Limits the view to the points of which the picture has at least this many pixels a metre (see
+/// LensResolution); 0 keeps the view. Clips the range to the greatest at which a point of the
+/// picture has them, and sets `least_density` unless that range is the same in all directions.
 Camera withDensity(Camera camera, double pixels_per_metre);
 
 /// Returns the field of view at a pose, without occlusion.

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
+#include <random>
 #include <string>
 #include <vector>
 
+#include "scene/sensor/lens_resolution.h"
 #include "support/test_sensors.h"
 
 namespace ispace {
@@ -172,10 +175,102 @@ TEST(Camera, SeesAsFarAsThereArePixelsAMetre) {
     // A pixel at the end of that range is a 125th of a metre wide there.
     const auto a = camera.project({4, 0, 0}), b = camera.project({4, 1, 0});
     EXPECT_NEAR(std::fabs(a->column - b->column), 125, 1e-9);
-    // Off the axis a mirror's pixels are denser.
-    camera.lens = Lens::Mirror;
-    camera.mirror = 1;
-    EXPECT_EQ(withDensity(camera, 125).max_range, 2);
+}
+
+TEST(Camera, LimitsTheViewOfALensByDirection) {
+    // Under a parabola pixels a radian are f / (1 + cos), at 90 degrees twice those on the axis.
+    const Camera mirror = cameraFrom("projection=omni mirror=1 fx=500 pixels=1200,1200");
+    const Camera dense = withDensity(mirror, 125);
+    EXPECT_GE(dense.max_range, 4);
+    EXPECT_EQ(dense.least_density, 125);
+    const FieldOfView view = fieldOfView(dense, Pose3{});
+    EXPECT_TRUE(view.holds({1.999, 0, 0}));
+    EXPECT_FALSE(view.holds({2.001, 0, 0}));
+    EXPECT_TRUE(view.holds({0.001, 3.99, 0}));
+    EXPECT_FALSE(view.holds({0.001, 4.01, 0}));
+    // A barrel: fewer pixels towards the edge than a pinhole has at this depth.
+    const Camera barrel = withDensity(cameraFrom("fx=500 coefficients=-0.1"), 125);
+    const double r = 0.6, least = 500 * (1 - 0.1 * r * r) / 125;
+    EXPECT_TRUE(fieldOfView(barrel, Pose3{}).holds({3.99, 0, 0}));
+    EXPECT_TRUE(fieldOfView(barrel, Pose3{}).holds({least - 0.01, r * (least - 0.01), 0}));
+    EXPECT_FALSE(fieldOfView(barrel, Pose3{}).holds({least + 0.01, r * (least + 0.01), 0}));
+}
+
+/// Pixels between the pictures of two points a centimetre apart, in a direction across the line of
+/// sight.
+double pixelsAcross(const Camera& camera, Point3 place, double bearing, double apart) {
+    const Vec3 way = place - Point3{};
+    Vec3 a = cross(way, std::fabs(way.x) < std::fabs(way.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+    a = (1 / length(a)) * a;
+    const Vec3 b = (1 / length(way)) * cross(way, a);
+    const double c = apart / 2 * std::cos(bearing), s = apart / 2 * std::sin(bearing);
+    const Vec3 half{c * a.x + s * b.x, c * a.y + s * b.y, c * a.z + s * b.z};
+    const Vec3 first = place + half - Point3{}, second = place + -1 * half - Point3{};
+    if (camera.lens == Lens::Mirror) {
+        const auto p = camera.project(first), q = camera.project(second);
+        return std::hypot(p->column - q->column, p->row - q->row);
+    }
+    const cv::Point2d p = byOpenCv(camera, first), q = byOpenCv(camera, second);
+    return std::hypot(p.x - q.x, p.y - q.y);
+}
+
+TEST(LensResolution, IsThatOfPointsACentimetreApart) {
+    constexpr double kApart = 0.01;
+    const char* const lenses[] = {
+        "fx=700 pixels=1400,1000",
+        "fx=600 coefficients=-0.28,0.09,0.0012,-0.0007,-0.01",
+        "fx=500 coefficients=0.1,0.02,0.01,0.02",
+        "fx=500 coefficients=-0.15,0.01,-0.02,0.03 pixels=900,700",
+        "projection=fisheye fov=170 pixels=1280,960",
+        "projection=fisheye fov=150 coefficients=0.02,-0.01,0.003,-0.0005",
+        "projection=fisheye fov=140 coefficients=-0.06,-0.01",
+        "projection=omni fov=220 mirror=0.9 pixels=480,480",
+        "projection=omni mirror=0.6 fx=300 pixels=640,480"};
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> share(0, 1);
+    for (const char* lens : lenses) {
+        const Camera camera = cameraFrom(lens);
+        const LensResolution resolution(camera);
+        for (int i = 0; i < 300; ++i) {
+            const double column = share(random) * (camera.columns - 1);
+            const auto ray = camera.ray({column, share(random) * (camera.rows - 1)});
+            // Not at the end of the lens, beyond which one of the points may lie.
+            if (!ray || ray->x < cos(camera.widest) + 0.05) continue;
+            if (camera.lens != Lens::Mirror && ray->x < 0.05) continue;
+            const Point3 place = Point3{} + (1 + 9 * share(random)) * *ray;
+            double least = HUGE_VAL;
+            for (double bearing = 0; bearing < 180; bearing += 1)
+                least = std::min(
+                    least, pixelsAcross(camera, place, bearing * std::acos(-1) / 180, kApart));
+            const double density = resolution.densityAt(place - Point3{});
+            EXPECT_NEAR(density, least / kApart, 2e-3 * density) << lens << ' ' << ray->x;
+            EXPECT_LE(density * length(place - Point3{}), resolution.most());
+            const double far = camera.lens == Lens::Pinhole ? place.x : length(place - Point3{});
+            EXPECT_LE(far, resolution.farthest(density));
+        }
+    }
+}
+
+TEST(LensResolution, HasClosedForms) {
+    const LensResolution pinhole(cameraFrom("fx=700 pixels=1400,1000"));
+    const LensResolution fisheye(cameraFrom("projection=fisheye fx=400 pixels=1000,1000"));
+    const LensResolution mirror(cameraFrom("projection=omni mirror=0.6 fx=300 pixels=640,480"));
+    for (const double angle : {0.0, 0.1, 0.4, 0.7}) {
+        const Vec3 way{3 * std::cos(angle), 3 * std::sin(angle), 0};
+        EXPECT_NEAR(pinhole.densityAt(way), 700 / way.x, 1e-9);
+        EXPECT_NEAR(fisheye.densityAt(way), 400 / 3.0, 1e-9);
+        EXPECT_NEAR(mirror.densityAt(way), 300 / (way.x + 0.6 * 3), 1e-9);
+        // Towards the edge of a pinhole's picture pixels a radian grow by 1 / cos^2.
+        const Camera camera = cameraFrom("fx=700 pixels=1400,1000");
+        const auto at = [&](double turn) {
+            return *camera.project({std::cos(turn), std::sin(turn), 0});
+        };
+        EXPECT_NEAR((at(angle - 1e-4).column - at(angle + 1e-4).column) / 2e-4,
+                    700 / (std::cos(angle) * std::cos(angle)), 1e-3);
+    }
+    EXPECT_TRUE(std::isinf(pinhole.densityAt({})));
+    // Beyond the picture the density is that of its rim.
+    EXPECT_NEAR(mirror.densityAt({-1, 0, 0}), mirror.densityAt({-1, 1e-9, 0}), 1e-6);
 }
 
 TEST(Camera, SaysWhatIsWrong) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scene/sensor/camera.h"
+#include "scene/sensor/lens_resolution.h"
 
 namespace ispace {
 
@@ -59,12 +60,20 @@ FieldOfView FieldOfView::picture(const Pose3& pose, const Camera& camera) {
     view.max_range = camera.max_range;
     view.is_by_depth = camera.lens == Lens::Pinhole;
     view.camera = std::make_shared<const Camera>(camera);
+    if (camera.least_density > 0) {
+        view.resolution = std::make_shared<const LensResolution>(camera);
+        view.least_density = camera.least_density;
+    }
     return view;
 }
 
 bool FieldOfView::isInPicture(Vec3 local) const {
     const auto place = camera->project(local);
     return place && camera->holds(*place);
+}
+
+bool FieldOfView::hasDensity(Vec3 local) const {
+    return resolution->densityAt(local) >= least_density;
 }
 
 double FieldOfView::farthest() const {

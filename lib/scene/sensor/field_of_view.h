@@ -16,6 +16,7 @@
 namespace ispace {
 
 struct Camera;
+class LensResolution;
 
 /// The rule of all range tests: compare as float32, end included. Distances stored as floats then
 /// give the same result for any shorter range.
@@ -48,6 +49,9 @@ struct FieldOfView {
     double across = 0, upright = 0;
     Tangents sides;                        ///< of a pyramid
     std::shared_ptr<const Camera> camera;  ///< of a picture
+    /// Of a picture whose points need `least_density` pixels a metre.
+    std::shared_ptr<const LensResolution> resolution = nullptr;
+    double least_density = 0;
 
     /// \pre the sides are not empty: left + right > 0, up + down > 0
     static FieldOfView pyramid(const Pose3& pose, const Tangents& sides, double max_range,
@@ -62,16 +66,21 @@ struct FieldOfView {
     /// Uses the camera's range: of pinholes along the axis.
     static FieldOfView picture(const Pose3& pose, const Camera& camera);
 
-    /// Returns true if a point is in view and in range.
+    /// Returns true if a point is in view, in range, and dense enough.
     [[nodiscard]] bool holds(Point3 place) const;
     /// Returns true if the direction to a point (in its frame) is in view; the sensor's own
     /// position is.
     [[nodiscard]] bool points(Vec3 local) const;
+    /// Returns true if the picture has enough pixels a metre at a point of its frame.
+    [[nodiscard]] bool isDense(Vec3 local) const {
+        return !(least_density > 0) || hasDensity(local);
+    }
     /// Returns an upper bound of the distance of points in view.
     [[nodiscard]] double farthest() const;
 
   private:
     [[nodiscard]] bool isInPicture(Vec3 local) const;
+    [[nodiscard]] bool hasDensity(Vec3 local) const;
 };
 
 inline bool FieldOfView::points(Vec3 local) const {
@@ -97,7 +106,7 @@ inline bool FieldOfView::points(Vec3 local) const {
 inline bool FieldOfView::holds(Point3 place) const {
     const Vec3 local = frame.toLocal(place);
     const double range = is_by_depth ? local.x : std::sqrt(dot(local, local));
-    return withinRange(range, max_range) && points(local);
+    return withinRange(range, max_range) && points(local) && isDense(local);
 }
 
 /// Corners of drawn circles; these bodies occlude no rays, so coarse suffices.

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+
+#include "geom/point.h"
+#include "geom/pose.h"
+#include "scene/sensor/camera.h"
+
+namespace ispace {
+
+/// Pixels that a flat target gets in the picture of a lens, by direction. The target faces the
+/// camera; of its lines the one along which the picture has fewest pixels counts: along or across
+/// the direction to the centre of the picture, or, with tangential distortion, between them. The
+/// pixels count as squares of the larger side.
+///
+/// Pixels a metre are atAngle() divided by the distance. For a pinhole that is the focal length
+/// divided by depth, for an equidistant fisheye the focal length divided by distance.
+class LensResolution {
+  public:
+    explicit LensResolution(const Camera& camera);
+
+    /// Returns true for lenses with the closed form above: the density follows from depth or
+    /// distance alone.
+    [[nodiscard]] static bool isEven(const Camera& camera);
+
+    /// Returns pixels a radian in a direction of the camera's frame, of any length but 0. Beyond
+    /// the picture's greatest angle off the axis they are those at this angle.
+    [[nodiscard]] double at(Vec3 direction) const;
+    /// Returns pixels a metre at a point of the camera's frame; +infinity at the camera.
+    [[nodiscard]] double densityAt(Vec3 local) const;
+    /// Returns an upper bound of the distance, of a pinhole of the depth, at which the picture has
+    /// this many pixels a metre.
+    [[nodiscard]] double farthest(double pixels_per_metre) const;
+    /// Returns an upper bound of at().
+    [[nodiscard]] double most() const;
+
+  private:
+    /// Returns atAngle() for the sphere of radius 1 and a focal length of 1: `along` and `across`
+    /// are the cosine and sine of the angle off the axis, (u, v) the unit vector of its bearing in
+    /// the picture.
+    [[nodiscard]] double unitAt(double along, double across, double u, double v) const;
+    [[nodiscard]] double unitPinhole(double tangent, double u, double v) const;
+
+    Lens lens_;
+    double focal_, mirror_;
+    std::array<double, 5> distortion_;
+    double widest_;  ///< angle off the axis, radians
+    double cos_widest_, sin_widest_;
+    bool is_lopsided_;
+};
+
+}  // namespace ispace
