@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -9,9 +11,9 @@ namespace ispace {
 
 namespace {
 
-// An A4 sheet, its margins and the sizes of text, in millimetres.
+// An A4 sheet, its margins and the sizes of text, in millimetres; the smallest is above 8 points.
 constexpr double kWidth = 210, kHeight = 297, kMargin = 16, kColumn = kWidth - 2 * kMargin;
-constexpr double kBody = 3.5, kSmall = 3, kTitle = 6.2, kHeading = 4.7, kLeast = 2.3;
+constexpr double kBody = 3.5, kSmall = 3, kTitle = 6.2, kHeading = 4.7, kLeast = 2.9;
 constexpr double kLine = 1.42;  // of a text's size
 
 constexpr TextStyle kCaption{kSmall, false, Align::Left, palette::kFaintInk, {}};
@@ -132,6 +134,47 @@ Columns columnsOf(const PageTable& table) {
     return columns;
 }
 
+/// Splits a table that is too wide for a sheet, even with broken lines, into tables that each
+/// begin with its first column.
+std::vector<PageTable> splitTable(const PageTable& table) {
+    constexpr double kWidest = 36, kGap = 2;  // millimetres; wider cells break
+    const TextStyle style{kLeast, false, Align::Left, palette::kInk, {}};
+    std::vector<double> widths(table.heads.size());
+    const auto add = [&](const TextRow& row) {
+        for (std::size_t i = 0; i < std::min(row.size(), widths.size()); ++i)
+            widths[i] = std::max(widths[i], std::min(kWidest, textWidth(row[i], style)) + kGap);
+    };
+    add(table.heads);
+    for (const TextRow& row : table.rows) add(row);
+    const double others = std::accumulate(widths.begin() + 1, widths.end(), 0.0);
+    const double room = kColumn + kGap - widths.front();
+    if (widths.size() < 3 || others <= room || room <= kWidest) return {table};
+    const double share = others / std::ceil(others / room);  // about as wide as each other
+    std::vector<PageTable> parts;
+    double width = 0;
+    const auto sideOf = [&table](std::size_t i) {
+        return i < table.sides.size() ? table.sides[i] : table.sides.back();
+    };
+    for (std::size_t i = 1; i < widths.size(); ++i) {
+        if (parts.empty() || width + widths[i] > room || width + widths[i] / 2 > share) {
+            parts.push_back({parts.empty() ? table.caption : "",
+                             std::string(1, sideOf(0)),
+                             {table.heads.front()},
+                             {},
+                             table.tones});
+            for (const TextRow& row : table.rows) parts.back().rows.push_back({row.front()});
+            width = 0;
+        }
+        PageTable& part = parts.back();
+        part.heads.push_back(table.heads[i]);
+        part.sides += sideOf(i);
+        for (std::size_t k = 0; k < table.rows.size(); ++k)
+            part.rows[k].push_back(i < table.rows[k].size() ? table.rows[k][i] : "");
+        width += widths[i];
+    }
+    return parts;
+}
+
 class PdfWriter {
   public:
     explicit PdfWriter(const ReportPage& page) : sheets_(page.title), page_(page) {}
@@ -165,7 +208,8 @@ class PdfWriter {
 
   private:
     /// The height of the part of a block that must not be broken; at least that part.
-    static double leastHeight(const PageTable& table) {
+    static double leastHeight(const PageTable& whole) {
+        const PageTable table = splitTable(whole).front();
         return kLine * (kSmall * static_cast<double>(captionOf(table.caption, kColumn).size()) +
                         4 * columnsOf(table).size);
     }
@@ -213,7 +257,10 @@ class PdfWriter {
         return palette::kInk;
     }
 
-    void add(const PageTable& table) {
+    void add(const PageTable& whole) {
+        for (const PageTable& table : splitTable(whole)) addPart(table);
+    }
+    void addPart(const PageTable& table) {
         const Columns columns = columnsOf(table);
         sheets_.need(leastHeight(table));
         sheets_.text(table.caption, kCaption);

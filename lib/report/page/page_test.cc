@@ -89,6 +89,29 @@ TEST(Page, PdfFillsSheets) {
     EXPECT_EQ(pagesOf(pdfOf(page)), 6U);
 }
 
+TEST(Page, PdfSplitsTablesThatAreTooWide) {
+    const auto with = [](std::vector<PageBlock> blocks) {
+        ReportPage page{"wide", "", {}};
+        page.sections.push_back({"sheet", "Sheet", std::move(blocks)});
+        return pdfOf(page);
+    };
+    const std::string cell = "a cell of two lines or more, as it is wide";
+    PageTable whole{"a caption", "lr", {"id"}, {{"c1"}, {"c2"}}, {Tone::Good}};
+    PageTable first = whole, second = whole;
+    second.caption.clear();
+    for (int i = 0; i < 8; ++i) {
+        PageTable& part = i < 4 ? first : second;
+        for (PageTable* table : {&whole, &part}) {
+            table->heads.push_back("head " + std::to_string(i));
+            for (TextRow& row : table->rows) row.push_back(cell + std::to_string(i));
+        }
+    }
+    EXPECT_EQ(with({whole}), with({first, second}));
+    // One that fits stays whole.
+    EXPECT_NE(with({first}), with({second}));
+    EXPECT_EQ(pagesOf(with({whole})), 1U);
+}
+
 TEST(Page, PicturesInPicturesKeepTheirShapes) {
     Picture page(100, 100);
     page.circle({50, 50}, 5, {palette::kInk});
