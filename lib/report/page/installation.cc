@@ -44,7 +44,7 @@ std::string wallText(const Installation& one, std::size_t which, Point2 at) {
     if (wall.end)
         return metresText(wall.distance) + " along " + wall.wall + " from (" +
                metresText(wall.end->x) + ", " + metresText(wall.end->y) + "), " +
-               sideText(wall.foot - *wall.end);
+               sideText(wall.along());
     if (wall.isOnWall()) return "on " + wall.wall;
     return metresText(wall.distance) + " to " + wall.wall + ", " + sideText(wall.foot - at);
 }
@@ -98,8 +98,8 @@ PageTable installationTable(const Scene& scene, const Coverage& coverage,
     PageTable table{
         "metres from the plan's origin and from the faces of walls; heading in degrees "
         "counter-clockwise from the x axis, tilt above level; +y: the wall lies in that direction "
-        "from the sensor, at right angles; along: from that end of the wall, to the foot of the "
-        "sensor on it",
+        "from the sensor, at right angles; along: from that corner, parallel to the wall, to "
+        "the sensor",
         "llrrrrrlrrl",
         {"sensor", "device", "x", "y", "height", "heading", "tilt", "lens or view", "nearest wall",
          "next wall", "sees"},

@@ -140,7 +140,8 @@ PageFigure installationPlan(const Scene& scene, const Coverage& coverage,
         const Point2 at = view * scene.sensors[one.sensor].pose.position.onFloor();
         const Vec2 aside = offWall(one, scene.sensors[one.sensor].pose, view);
         for (const WallDistance& wall : one.walls) {
-            const Point2 from = wall.end ? view * *wall.end : at, foot = view * wall.foot;
+            const Point2 from = wall.end ? view * (wall.foot - wall.distance * wall.along()) : at;
+            const Point2 foot = view * wall.foot;
             if (distance(from, foot) > kLeastLine)
                 drawDimension(picture, from + aside, foot + aside, formatFixed(wall.distance, 2),
                               labels);

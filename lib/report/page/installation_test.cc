@@ -156,6 +156,26 @@ TEST(Installation, MeasuresAlongAWallWithoutAnotherOne) {
     findAgain(sliver, "laser id=l at=10,0.3,1\nlaser id=m at=19,0.7,1\n", 2);
 }
 
+TEST(Installation, MeasuresFromACornerWhereTheNextWallIsFar) {
+    const std::string corridor =
+        "#env 1\nfence id=f path=0,0;40,0;40,2;0,2 closed=yes height=3\n"
+        "wall id=stub from=17,0 to=17,0.5 height=3\n";
+    const std::string layout = "laser id=l at=20,1.1,1\nlaser id=m at=36,1.9,1\n";
+    const std::vector<Installation> all = installationsOf(sceneOf(corridor + layout));
+    ASSERT_EQ(all.size(), 2U);
+    ASSERT_TRUE(all[0].walls[1].end);
+    EXPECT_EQ(*all[0].walls[1].end, (Point2{17, 0.5}));
+    EXPECT_NEAR(all[0].walls[1].distance, 3, 1e-12);
+    EXPECT_FALSE(all[1].walls[1].end);
+    EXPECT_NEAR(all[1].walls[1].distance, 4, 1e-12);
+    findAgain(corridor, layout, 2);
+    // The steps of a map are no corners.
+    const std::string stepped =
+        "#env 1\nfence id=f path=0,0;17,0;17,0.1;18,0.1;18,0;40,0;40,2;0,2 closed=yes height=3\n";
+    const std::vector<Installation> steps = installationsOf(sceneOf(stepped + layout));
+    EXPECT_FALSE(steps[0].walls[1].end && steps[0].walls[1].end->x < 30);
+}
+
 TEST(Installation, TurnedRoomsAreFoundAgain) {
     for (const int degrees : {7, 30, 45, 61}) {
         const Angle turn = Angle::degrees(degrees);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <utility>
@@ -22,7 +23,39 @@ constexpr double kOnFace = 1e-3;
 struct WallFaces {
     std::vector<Segment2> lines;
     std::vector<std::size_t> owners;
+    std::vector<Point2> corners;  ///< that a person finds again
 };
+
+Vec2 directionAlong(const Segment2& face) {
+    return (1 / distance(face.a, face.b)) * (face.b - face.a);
+}
+
+/// Adds the ends of faces: those at which no other face begins, and those at which two faces of
+/// some length turn by 45 degrees or more.
+void addCorners(WallFaces& faces) {
+    constexpr double kLeast = 0.3;  // metres: steps of a map are shorter
+    struct End {
+        std::size_t count = 0;
+        bool is_long = true;
+        Vec2 first, last;  // directions away from the end
+    };
+    std::map<std::pair<double, double>, End> ends;
+    for (const Segment2& line : faces.lines)
+        for (const bool is_first : {true, false}) {
+            const Point2 at = is_first ? line.a : line.b;
+            const Vec2 along = (is_first ? 1.0 : -1.0) * directionAlong(line);
+            End& end = ends[{at.x, at.y}];
+            if (end.count == 0) end.first = along;
+            end.last = along;
+            ++end.count;
+            end.is_long = end.is_long && distance(line.a, line.b) >= kLeast;
+        }
+    for (const auto& [at, end] : ends) {
+        const bool turns = end.count > 2 || (end.count == 2 && dot(end.first, end.last) > -0.709);
+        if (end.is_long && (end.count == 1 || turns))
+            faces.corners.push_back({at.first, at.second});
+    }
+}
 
 WallFaces facesAt(const Environment& environment, double height) {
     const std::shared_ptr<const Level> level = environment.level(height);
@@ -38,11 +71,8 @@ WallFaces facesAt(const Environment& environment, double height) {
     for (std::size_t i = 0; i < slice.solids.size(); ++i)
         forEachEdge(slice.solids[i],
                     [&](const Segment2& edge) { add(edge, slice.solid_owners[i]); });
+    addCorners(faces);
     return faces;
-}
-
-Vec2 directionAlong(const Segment2& face) {
-    return (1 / distance(face.a, face.b)) * (face.b - face.a);
 }
 
 /// Returns the foot of the perpendicular from p on the face or its extension.
@@ -94,6 +124,10 @@ class NearWalls {
         const NearFace* second = nearestAcross(along, 0.709);
         if (second == nullptr) second = nearestAcross(along, 0.906);
         if (second == nullptr) return {measureOf(*first), alongOf(*first)};
+        constexpr double kFar = 5;  // metres, of a tape
+        if (second->distance > kFar)
+            if (const auto corner = alongFromCorner(*first, second->distance))
+                return {measureOf(*first), *corner};
         return {measureOf(*first), measureOf(*second)};
     }
 
@@ -134,6 +168,27 @@ class NearWalls {
         measure.end = is_first ? face.a : face.b;
         measure.distance = distance(*measure.end, one.foot);
         return measure;
+    }
+    /// Measures along the face from the nearest visible corner that leads to less than `most`;
+    /// empty if there is none.
+    [[nodiscard]] std::optional<WallDistance> alongFromCorner(const NearFace& one,
+                                                              double most) const {
+        const Vec2 along = directionAlong(faces_.lines[one.face]);
+        std::vector<std::pair<double, Point2>> corners;
+        for (const Point2 corner : faces_.corners)
+            if (const double far = distance(at_, corner);
+                far < most && std::fabs(dot(corner - one.foot, along)) > kOnFace)
+                corners.emplace_back(far, corner);
+        std::stable_sort(corners.begin(), corners.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (const auto& [far, corner] : corners) {
+            if (isHidden(at_, corner, faces_.lines)) continue;
+            WallDistance measure = measureOf(one);
+            measure.end = corner;
+            measure.distance = std::fabs(dot(corner - one.foot, along));
+            return measure;
+        }
+        return std::nullopt;
     }
     /// Measures from the nearest visible end of a face, where no foot lies on one.
     [[nodiscard]] std::vector<WallDistance> fromCorner() const {
