@@ -153,7 +153,10 @@ envc room.env --report room.html
 grep -q '48.00 m2' room.html || fail "the area of the room is missing"
 envc room.env --report room.pdf -o room.glb
 [ -s room.glb ] || fail "no product beside the report"
-expect_error 2 envc envc room.env --report room.json
+envc room.env --report room.json
+envc room.env --info --json >info.json
+expect_same room.json info.json "--report FILE.json and --info --json"
+expect_error 2 envc envc room.env --report room.txt
 expect_error 2 envc envc room.env --report room.html --info
 expect_error 2 envc envc room.env --report -
 

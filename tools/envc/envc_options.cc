@@ -106,10 +106,11 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
               Enters::Nothing);
     line.flag("--json", options.json, "the report of --info, or --rooms list, as JSON",
               Enters::Nothing);
-    line.file("--report", "FILE", options.report,
-              "write a report of the room for people, as a page with its plan (.html, .pdf); "
-              "without -o and --to this alone",
-              Enters::Nothing);
+    line.file(
+        "--report", "FILE", options.report,
+        "write a report of the room: a page with its plan (.html, .pdf), or the JSON of --info "
+        "(.json); without -o and --to this alone",
+        Enters::Nothing);
     line.flag("--check", options.check,
               "report errors and warnings about the environment and its objects", Enters::Nothing);
     constexpr int kSuggestions = 5, kMaxSuggestions = 100;
@@ -259,7 +260,7 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
         throw UsageError("--suggest is about the findings of --check: give both");
     if (line.given("--report")) {
         if (isStdout(options.report)) throw UsageError("give --report a file, such as room.html");
-        (void)outputFormat({}, options.report, {"html", "pdf"});
+        (void)outputFormat({}, options.report, {"html", "pdf", "json"});
         if (options.info || options.check || options.list_rooms ||
             (options.format != nullptr && options.format->write == nullptr))
             throw UsageError(

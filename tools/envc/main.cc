@@ -142,6 +142,18 @@ Room makeRoom(Document document, const DeviceCatalogue& devices) {
     return {std::move(document), std::move(scene)};
 }
 
+void writeReport(const EnvcOptions& options, const Scene& scene, const FoundRooms* found,
+                 const std::vector<Diagnostic>& warnings) {
+    const std::string kind = suffixOf(options.report);
+    if (kind == "json")
+        return writeAll(options.report,
+                        infoJson(describe(scene.environment, scene.records, scene.digest())));
+    RoomPageInput page{scene, "", options.history_line, found, warnings};
+    if (options.inputs.front() != "-") page.name = baseName(options.inputs.front());
+    const ReportPage pages = roomPage(page);
+    writeAll(options.report, kind == "pdf" ? pdfOf(pages) : htmlOf(pages));
+}
+
 void compile(const EnvcOptions& options, Document document, const FoundRooms* found,
              const ImportReport& report) {
     // The model contains its environment: a path to another file would only go stale.
@@ -158,12 +170,7 @@ void compile(const EnvcOptions& options, Document document, const FoundRooms* fo
     const std::vector<Diagnostic> warnings = document.warnings;
     const auto& [compiled, scene] = leftToExit(makeRoom(std::move(document), devices));
     const std::string& output = options.common.output;
-    if (!options.report.empty()) {
-        RoomPageInput page{scene, "", options.history_line, found, warnings};
-        if (options.inputs.front() != "-") page.name = baseName(options.inputs.front());
-        const ReportPage pages = roomPage(page);
-        writeAll(options.report, suffixOf(options.report) == "pdf" ? pdfOf(pages) : htmlOf(pages));
-    }
+    if (!options.report.empty()) writeReport(options, scene, found, warnings);
     if (options.info) {
         const EnvironmentInfo info = describe(scene.environment, scene.records, scene.digest());
         writeAll(output, options.json ? infoJson(info) : infoText(info));
