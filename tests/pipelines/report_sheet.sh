@@ -39,8 +39,24 @@ WALLS = {"outer": [(-4, -3), (4, -3), (4, 2), (2, 3), (-4, 3), (-4, -3)], "inner
 AXES = {"+x": 0, "+y": 90, "-x": 180, "-y": -90}
 ROUNDING = 0.005 + 1e-9
 
+def along(text):
+    """Likewise of a sensor so far from a corner, parallel to a side of a wall."""
+    distance, wall, x, y, side = re.fullmatch(
+        r"([\d.]+) along (\w+)(?: face \d+)? from \((-?[\d.]+), (-?[\d.]+)\), (.*)", text).groups()
+    angle = math.radians(AXES[side] if side in AXES else float(side.removesuffix(" deg")))
+    ways = []
+    for (ax, ay), (bx, by) in zip(WALLS[wall], WALLS[wall][1:]):
+        for sign in (-1, 1):
+            heading = math.atan2(sign * (by - ay), sign * (bx - ax))
+            ways.append((abs(math.remainder(heading - angle, math.tau)), heading))
+    off, heading = min(ways)
+    assert off < math.radians(0.1), f"no side of {wall} runs {side}"
+    nx, ny = math.cos(heading), math.sin(heading)
+    return nx, ny, nx * float(x) + ny * float(y) + float(distance)
+
 def constraint(text):
     """The line n p = c on which a sensor lies that is so far from a side of a wall."""
+    if " along " in text: return along(text)
     distance, wall, side = re.fullmatch(r"([\d.]+) to (\w+)(?: face \d+)?, (.*)", text).groups()
     angle = math.radians(AXES[side] if side in AXES else float(side.removesuffix(" deg")))
     corners, best = WALLS[wall], None
