@@ -30,16 +30,6 @@ namespace ispace {
 
 namespace {
 
-/// Options that are about one room.
-void mustBeAboutBuildings(const SimrunOptions& options, const BuildingInput& input) {
-    const auto refuse = [&](bool is_given, const std::string& option) {
-        if (is_given)
-            throw UsageError(option + " is about one room: choose a storey with --storey (" +
-                             input.building.document.storeyList() + ')');
-    };
-    refuse(!options.load_folder.empty(), "--load");
-}
-
 void warnOfScenes(const SimrunOptions& options, const BuildingInput& input) {
     warn(options.common, "simrun", input.warnings);
     for (std::size_t i = 0; i < input.building.scenes.size(); ++i)
@@ -179,7 +169,6 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     const SimrunOptions& options = command.options();
     auto input = readInput(options, recordedBuilding(options.replay));
     if (!input) return false;
-    mustBeAboutBuildings(options, *input);
     addZones(options.zones, input->building);
     warnOfScenes(options, *input);
     BuildingRun run = runOf(options, input->building);
@@ -202,7 +191,10 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     if (!options.expected.empty()) simulation.keepOrder();
     ServerLimits limits = limitsOf(options);
     limits.source = std::make_shared<SceneFolder>(
-        std::filesystem::path(input->environment_operand).parent_path().string(), options.rules);
+        options.load_folder.empty()
+            ? std::filesystem::path(input->environment_operand).parent_path().string()
+            : options.load_folder,
+        options.rules);
     Server server(simulation, options.listen, limits, &run);
     const ServedAddresses addresses =
         servePorts(server, options, baseName(input->environment_operand));
