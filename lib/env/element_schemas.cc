@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "env/element_keys.h"
+
 namespace ispace {
 
 namespace {
@@ -306,77 +308,6 @@ void addInfra(std::vector<Schema>& out) {
                           countKey("cols", "bars across", 3, 1000)}));
 }
 
-KeySpec levelKey() { return numberKey("level", Unit::Share, "share of its full light", 1, 0, 1); }
-
-KeySpec lightColorKey(Tuple standard) {
-    return {.name = "color",
-            .type = KeyType::Tuple,
-            .help = "red,green,blue of its light, each from 0 to 1",
-            .default_value = std::move(standard),
-            .min_count = 3,
-            .max_count = 3,
-            .lower = 0,
-            .upper = 1};
-}
-
-Schema projectorSchema() {
-    constexpr double kNarrowest = 0.1, kWidest = 170;
-    KeySpec heading = headingKey();
-    heading.help = "direction that it faces at pan=0, from +x";
-    KeySpec fov{.name = "fov",
-                .type = KeyType::Tuple,
-                .unit = Unit::Angle,
-                .help = "full angles of its light across and upright",
-                .default_value = Tuple{36, 21},
-                .min_count = 2,
-                .max_count = 2,
-                .lower = kNarrowest,
-                .upper = kWidest};
-    return schema(
-        "projector", RecordType::Infra,
-        "a projector that turns, whose picture or plain light pictures show on walls, "
-        "floor and people; it has no body",
-        {floorAtKey(), heightKey(2.2, "height of its lens above the floor"), std::move(heading),
-         flagKey("on", "it shines"), levelKey(), lightColorKey({1, 1, 1}),
-         numberKey("pan", Unit::Angle, "turn of its axis to the left of its heading", 0, -180, 180),
-         numberKey("tilt", Unit::Angle, "turn of its axis upwards", 0, -90, 90), std::move(fov),
-         numberKey("lumens", Unit::None, "its full light, lumens", 1000, 0, 1e6),
-         textureKey("that it throws, through which its light passes")});
-}
-
-/// Actuators: their states are keys, see stateKeys().
-void addAppliances(std::vector<Schema>& out) {
-    out.push_back(
-        schema("lamp", RecordType::Infra,
-               "a panel of light in the ceiling, which pictures show: with lamps the "
-               "room has no other light than these",
-               {floorAtKey(), flagKey("on", "it shines"), levelKey(), lightColorKey({1, 1, 0.97}),
-                numberKey("lumens", Unit::None, "its full light for light meters, lumens", 3600, 0,
-                          1e6)}));
-    out.push_back(projectorSchema());
-    KeySpec power = levelKey();
-    power.help = "share of its full power";
-    out.push_back(schema("heater", RecordType::Infra,
-                         "a heater, which warms the zones of thermometers; it has no body",
-                         {floorAtKey(), flagKey("on", "it heats"), std::move(power),
-                          numberKey("watts", Unit::None, "its full power, W", 1000, 0, 1e6)}));
-    out.push_back(schema(
-        "speaker", RecordType::Infra, "a speaker, which microphones hear; it has no body",
-        {floorAtKey(), heightKey(1, "height above the floor"), flagKey("on", "it sounds"),
-         numberKey("volume", Unit::None, "sound pressure level at a metre, dB", 70, 0, 200)}));
-    out.push_back(schema(
-        "panel", RecordType::Infra,
-        "a panel at which the cables of sensors end, for the sheets of reports; it has no body",
-        {floorAtKey(), heightKey(1.5, "height above the floor"),
-         numberKey("cost", Unit::None, "of a metre of cable, in any currency", 0, 0, 1e6)}));
-    out.push_back(
-        schema("switch", RecordType::Infra,
-               "a switch on a wall, which clients press and watch; it switches no lamp "
-               "by itself",
-               {floorAtKey(), headingKey(), heightKey(1.05, "height of its middle above the floor"),
-                flagKey("on", "it is on")}));
-}
-
 Schema meshSchema() {
     return schema(
         "mesh", RecordType::Other, "a body from a file: OBJ, STL, PLY, COLLADA, glTF, GLB or IFC",
@@ -456,6 +387,25 @@ void addThings(std::vector<Schema>& out) {
 
 }  // namespace
 
+namespace keys {
+
+KeySpec floorAt() { return floorAtKey(); }
+KeySpec heading() { return headingKey(); }
+KeySpec height(double standard, std::string help) { return heightKey(standard, std::move(help)); }
+KeySpec flag(std::string name, std::string help) {
+    return flagKey(std::move(name), std::move(help));
+}
+KeySpec number(std::string name, Unit unit, std::string help, double standard, double lower,
+               double upper) {
+    return numberKey(std::move(name), unit, std::move(help), standard, lower, upper);
+}
+KeySpec texture(const std::string& where) { return textureKey(where); }
+Schema schemaOf(std::string keyword, RecordType type, std::string help, std::vector<KeySpec> keys) {
+    return schema(std::move(keyword), type, std::move(help), std::move(keys));
+}
+
+}  // namespace keys
+
 std::vector<Schema> environmentSchemas() {
     std::vector<Schema> out;
     addSpaces(out);
@@ -463,7 +413,7 @@ std::vector<Schema> environmentSchemas() {
     addWalls(out);
     addOpenings(out);
     addInfra(out);
-    addAppliances(out);
+    keys::addAppliances(out);
     addThings(out);
     out.push_back(meshSchema());
     return out;
