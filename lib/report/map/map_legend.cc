@@ -124,9 +124,9 @@ LegendBlock bySensorBlock(const CoverageReport& report, std::size_t sets) {
 /// Lists the classes of a standard, each without the finer ones; skips those without floor.
 LegendBlock densityBlock(const CoverageReport& report, DensityStandard standard) {
     const Metric& seen = report.densities.seen;
-    LegendBlock block = metricBlock(
-        standard == DensityStandard::Levels2025 ? "Pixels a metre, 2025" : "Pixels a metre, 2015",
-        seen.exact.has_value());
+    LegendBlock block =
+        metricBlock(standard == DensityStandard::Levels2025 ? "Pixels/m, 2025" : "Pixels/m, 2015",
+                    seen.exact.has_value());
     const auto add = [&](Color color, std::string text, const Metric& share) {
         LegendItem item{Sign::Patch, color, palette::kObjectEdge, std::move(text), ""};
         setMetric(item, block, share, percent);

@@ -14,7 +14,7 @@ namespace ispace {
 
 namespace {
 
-constexpr double kSheetEm = 2.6;  // text size of the plan, millimetres
+constexpr double kSheetEm = 2.9;  // text size of the plan, millimetres: above 8 points
 constexpr std::size_t kManyMarks = 40;
 
 /// Adds the walls of the plan, which labels should not cover.
@@ -40,7 +40,7 @@ void drawPanel(Picture& picture, const PageView& view, const Element& element,
                  {palette::kWhite, Stroke{palette::kInk, 0.3}});
     picture.line({at.x - half, at.y + half}, {at.x + half, at.y - half}, {palette::kInk, 0.3});
     labels.addMark(at, std::nullopt);
-    const TextStyle style{0.8 * kSheetEm, false, Align::Center, palette::kInk,
+    const TextStyle style{kSheetEm, false, Align::Center, palette::kInk,
                           palette::kWhite.faded(0.85)};
     if (const auto middle =
             labels.placeLabel(at, Angle(), textWidth(element.id, style), style.size, false))
@@ -71,7 +71,7 @@ Vec2 offWall(const Installation& one, const Pose3& pose, const PageView& view) {
 /// no other text.
 void drawDimension(Picture& picture, Point2 from, Point2 to, const std::string& text,
                    LabelPlacer& labels) {
-    const TextStyle style{0.8 * kSheetEm, false, Align::Center, palette::kInk,
+    const TextStyle style{kSheetEm, false, Align::Center, palette::kInk,
                           palette::kWhite.faded(0.85)};
     const Stroke pen{palette::kInk, 0.18};
     const double way = distance(from, to);

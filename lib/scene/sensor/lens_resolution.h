@@ -14,7 +14,7 @@ namespace ispace {
 /// the direction to the centre of the picture, or, with tangential distortion, between them. The
 /// pixels count as squares of the larger side.
 ///
-/// Pixels a metre are atAngle() divided by the distance. For a pinhole that is the focal length
+/// Pixels a metre are at() divided by the distance. For a pinhole that is the focal length
 /// divided by depth, for an equidistant fisheye the focal length divided by distance.
 class LensResolution {
   public:
@@ -36,9 +36,8 @@ class LensResolution {
     [[nodiscard]] double most() const;
 
   private:
-    /// Returns atAngle() for the sphere of radius 1 and a focal length of 1: `along` and `across`
-    /// are the cosine and sine of the angle off the axis, (u, v) the unit vector of its bearing in
-    /// the picture.
+    /// Returns at() for a focal length of 1: `along` and `across` are the cosine and sine of the
+    /// angle off the axis, (u, v) the unit vector of its bearing in the picture.
     [[nodiscard]] double unitAt(double along, double across, double u, double v) const;
     [[nodiscard]] double unitPinhole(double tangent, double u, double v) const;
 
