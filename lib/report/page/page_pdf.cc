@@ -152,13 +152,13 @@ std::vector<PageTable> splitTable(const PageTable& table) {
     const double share = others / std::ceil(others / room);  // about as wide as each other
     std::vector<PageTable> parts;
     double width = 0;
-    const auto sideOf = [&table](std::size_t i) {
+    const auto side_of = [&table](std::size_t i) {
         return i < table.sides.size() ? table.sides[i] : table.sides.back();
     };
     for (std::size_t i = 1; i < widths.size(); ++i) {
         if (parts.empty() || width + widths[i] > room || width + widths[i] / 2 > share) {
             parts.push_back({parts.empty() ? table.caption : "",
-                             std::string(1, sideOf(0)),
+                             std::string(1, side_of(0)),
                              {table.heads.front()},
                              {},
                              table.tones});
@@ -167,7 +167,7 @@ std::vector<PageTable> splitTable(const PageTable& table) {
         }
         PageTable& part = parts.back();
         part.heads.push_back(table.heads[i]);
-        part.sides += sideOf(i);
+        part.sides += side_of(i);
         for (std::size_t k = 0; k < table.rows.size(); ++k)
             part.rows[k].push_back(i < table.rows[k].size() ? table.rows[k][i] : "");
         width += widths[i];
