@@ -556,11 +556,12 @@ def sdf_cuts(size):
     tooth = ("<link name='l{0}'><pose>{1:g} {2:g} 0 0 0 {3:g}</pose><collision name='c'><geometry><mesh><uri>wall.obj</uri>"
              "</mesh></geometry></collision></link>")
     count = max(4, size // len(tooth))
-    links = [tooth.format(i, 8 * math.cos(2 * math.pi * i / count), 8 * math.sin(2 * math.pi * i / count),
+    radius = 0.015 * count / (2 * math.pi)  # as many walls a metre, each longer than the welding of corners
+    links = [tooth.format(i, radius * math.cos(2 * math.pi * i / count), radius * math.sin(2 * math.pi * i / count),
                           2 * math.pi * i / count) for i in range(count)]
     return {"world.sdf": "<sdf version='1.7'><world name='w'><model name='m'><static>true</static>" + "".join(links) +
             "</model></world></sdf>\n",
-            "wall.obj": prism(0, 0, -60 / count, (0.05, 120 / count))}
+            "wall.obj": prism(0, 0, -0.018, (0.05, 0.036))}
 
 
 def aria_lines(size):
