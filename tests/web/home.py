@@ -94,6 +94,8 @@ with Run(environment=HOME, layout=LAYOUT) as run, Page(run.url, 1280, 1400) as p
     eventually("the projector turns", lambda: state(run, "p1 pan") == "30")
     enter(page, "l1 level", "50%")
     eventually("the lamp dims", lambda: shown(page)["l1 level"] == "0.5")
+    enter(page, "l1 level", "50%")
+    eventually("the same level as the world has it", lambda: shown(page)["l1 level"] == "0.5")
     enter(page, "p1 tilt", "up")
     eventually("a complaint", lambda: "tilt" in page.log())
     check(state(run, "p1 tilt") == "0", "the projector tilts")

@@ -84,7 +84,9 @@ export class States {
     field.onclick = () => field.select();
     field.onchange = async () => {
       field.blur();  // so that it shows the value as the world has it
-      if (!await this.set(id, key, field.value.trim())) field.value = known;
+      await this.set(id, key, field.value.trim());
+      // No event follows a refusal, nor the same value in another form, such as 50% for 0.5.
+      if (document.activeElement !== field) field.value = known;
     };
     label.append(`${id} ${key} `, field);
     item.append(label);
@@ -94,11 +96,9 @@ export class States {
     };
   }
 
-  /** Returns whether the world took it. */
   async set(id, key, value) {
     const answer = await this.link.ask(`ACT ${id} ${key}=${value}`);
     if (!answer.startsWith('OK')) this.tell(complaint(answer), true);
     else if (SWITCHES.has(key)) this.take([[id, key, value]]);
-    return answer.startsWith('OK');
   }
 }
