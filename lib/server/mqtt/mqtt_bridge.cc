@@ -2,6 +2,7 @@
 #include "server/mqtt/mqtt_bridge.h"
 
 #include <algorithm>
+#include <set>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -40,6 +41,23 @@ std::vector<MqttThing> thingsOf(const ServerState& state, const std::string& pre
     return things;
 }
 
+/// Names all things that may have states, with their keywords.
+std::string namedThings(const ServerState& state) {
+    std::string names;
+    const auto add = [&names](const std::string& name) { names.append(name).append(1, '\n'); };
+    for (const auto& [room, world] : state.worlds()) {
+        const Scene& scene = world->scene();
+        add(room);
+        for (std::size_t i = 0; i < scene.records.size(); ++i) {
+            add(scene.ids[i]);
+            add(scene.records[i].keyword());
+        }
+        // A sensor has a state once it has a pose.
+        for (const Sensor& sensor : world->sensors()) add(sensor.id);
+    }
+    return names;
+}
+
 /// Requests that wait for the world; further commands are refused.
 constexpr std::size_t kMaxRequests = 1000;
 constexpr std::size_t kMaxPayload = 256;
@@ -62,28 +80,40 @@ std::string MqttBridge::topicOf(std::string_view id, std::string_view key) const
 }
 
 /// Describes new things, or all of them after a connection, and removes those that are gone.
+/// Most changes set a state, and bring no thing.
 void MqttBridge::introduce(bool all) {
     changes_ = changesOfAll();
-    const std::vector<MqttThing> things = thingsOf(*state_, prefix_);
+    std::string names = namedThings(*state_);
+    if (!all && names == names_) return;
+    names_ = std::move(names);
     Topics topics;
-    std::set<std::string> descriptions;
+    Descriptions descriptions;
     std::vector<MqttMessage> news;
-    for (const MqttThing& thing : things) {
-        bool has_news = all;
+    for (const MqttThing& thing : thingsOf(*state_, prefix_)) {
+        const auto known = descriptions_.find({thing.id, thing.keyword});
+        bool has_news = all || known == descriptions_.end();
         for (const MqttKey& key : thing.keys) {
             topics.emplace(key.topic, Topic{thing.id, key.name, isActuator(thing.keyword)});
             has_news = has_news || !topics_.contains(key.topic);
         }
+        std::vector<std::string>& described = descriptions[{thing.id, thing.keyword}];
+        if (!has_news) {
+            described = known->second;
+            continue;
+        }
         for (MqttMessage& description : discoveryOf(thing, prefix_)) {
-            const bool is_new = has_news || !descriptions_.contains(description.topic);
-            descriptions.insert(description.topic);
-            if (is_new) news.push_back(std::move(description));
+            described.push_back(description.topic);
+            news.push_back(std::move(description));
         }
     }
     // An empty retained message removes the one that the broker has.
     const auto remove = [this](const std::string& topic) { client_->publish({topic, "", true}); };
-    for (const std::string& topic : descriptions_)
-        if (!descriptions.contains(topic)) remove(topic);
+    std::set<std::string_view> kept;
+    for (const auto& [thing, described] : descriptions)
+        kept.insert(described.begin(), described.end());
+    for (const auto& [thing, described] : descriptions_)
+        for (const std::string& topic : described)
+            if (!kept.contains(topic)) remove(topic);
     for (const auto& [topic, of] : topics_)
         if (!topics.contains(topic)) remove(topic);
     for (MqttMessage& description : news) client_->publish(std::move(description));

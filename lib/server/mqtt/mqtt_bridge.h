@@ -6,9 +6,10 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "scene/room_state.h"
 #include "server/mqtt/mqtt_client.h"
@@ -41,6 +42,8 @@ class MqttBridge {
         bool is_actuator = false;
     };
     using Topics = std::map<std::string, Topic, std::less<>>;
+    /// Topics of discovery, by id and keyword of their thing.
+    using Descriptions = std::map<std::pair<std::string, std::string>, std::vector<std::string>>;
     [[nodiscard]] std::int64_t changesOfAll() const;
     void introduce(bool all);
     void publishAll();
@@ -55,8 +58,9 @@ class MqttBridge {
     std::string prefix_;
     Session session_;
     std::deque<std::string> requests_;
-    Topics topics_;                       // of all states
-    std::set<std::string> descriptions_;  // topics of discovery
+    Topics topics_;  // of all states
+    Descriptions descriptions_;
+    std::string names_;  // of the things when they were introduced
     int connections_ = 0;
     std::int64_t changes_ = -1;  // of the worlds when they were introduced
 };

@@ -218,6 +218,25 @@ TEST_F(BridgeTest, IntroducesNewThings) {
     EXPECT_EQ(broker.last("home/b1/on"), "ON");
 }
 
+TEST_F(BridgeTest, AStateIsNoNews) {
+    broker.published.clear();
+    tell("home/lp/level/set", "25");
+    EXPECT_EQ(broker.published, (std::vector<MqttMessage>{{"home/lp/level", "25", true}}));
+}
+
+TEST_F(BridgeTest, DescribesAThingOfAnotherKeyword) {
+    ask("ADD window id=w at=0,-3");
+    step();
+    const std::string topic = "homeassistant/cover/home_w/config";
+    EXPECT_NE(broker.last(topic).find("\"device_class\":\"window\""), std::string::npos);
+    ask("DELETE w");
+    ask("ADD door id=w at=0,-3");
+    step();
+    EXPECT_NE(broker.last(topic).find("\"device_class\":\"door\""), std::string::npos);
+    EXPECT_EQ(broker.last("homeassistant/switch/home_w___blind/config"), "");
+    EXPECT_EQ(broker.last("home/w/blind"), "");
+}
+
 TEST_F(BridgeTest, RemovesThingsThatAreGone) {
     ask("DELETE lp");
     step();
