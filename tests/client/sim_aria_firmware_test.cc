@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -85,6 +86,20 @@ TEST_F(SimAriaFirmware, ConfigurationArrivesInTheNextCycle) {
     EXPECT_EQ(arrivals.count, 3);
 }
 
+// The thread sanitizer sees unguarded figures.
+TEST_F(SimAriaFirmware, ConfigurationArrivesBesideTheProgram) {
+    connect();
+    ArRobotConfigPacketReader reader(&robot);
+    for (int i = 0; i < 20; ++i) {
+        ASSERT_TRUE(reader.requestPacket());
+        const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        while (!reader.hasPacketArrived() && std::chrono::steady_clock::now() < patience)
+            ArUtil::sleep(20);
+        ASSERT_TRUE(reader.hasPacketArrived()) << "request " << i;
+        EXPECT_STREQ(reader.getName(), "r1");
+    }
+}
+
 TEST_F(SimAriaFirmware, AStoppedStateReflectionSendsNoMotion) {
     connect();
     ArActionConstantVelocity drive("drive", 200);
@@ -136,6 +151,7 @@ TEST_F(SimAriaFirmware, AClosedConnectionEndsInTheNextCycle) {
     connection.close();
     robot.loopOnce();
     EXPECT_FALSE(robot.isConnected());
+    EXPECT_EQ(connection.getStatus(), ArDeviceConnection::STATUS_CLOSED_NORMALLY);
     EXPECT_EQ(lost.count, 1);
     ASSERT_EQ(connection.open(), 0);
     ASSERT_TRUE(robot.blockingConnect());

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
@@ -226,7 +227,7 @@ TEST(SimAriaConfig, RoundTripAndErrors) {
 
 TEST(SimAriaArguments, ValuesDefaultsAndTheRest) {
     ArArgumentBuilder builder;
-    builder.add("-speed %d -name \"two words\" -wrong x -on true rest", 42);
+    builder.add("-speed %d -name \"two words\" -wrong x -far 3000000000 -on true rest", 42);
     ArArgumentParser parser(&builder);
     int speed = 0, wrong = 7, none = 5;
     bool set = true, on = false;
@@ -237,6 +238,8 @@ TEST(SimAriaArguments, ValuesDefaultsAndTheRest) {
     EXPECT_TRUE(parser.checkParameterArgumentString("-name", &name));
     EXPECT_STREQ(name, "two words");
     EXPECT_FALSE(parser.checkParameterArgumentInteger("-wrong", &wrong, &set));
+    EXPECT_FALSE(set);
+    EXPECT_FALSE(parser.checkParameterArgumentInteger("-far", &wrong, &set));
     EXPECT_FALSE(set);
     EXPECT_EQ(wrong, 7);
     EXPECT_TRUE(parser.checkParameterArgumentInteger("-none", &none, &set));
@@ -255,18 +258,22 @@ TEST(SimAriaArguments, ValuesDefaultsAndTheRest) {
 
 TEST(SimAriaArguments, WordsAsNumbers) {
     ArArgumentBuilder builder;
-    builder.addPlain("42 -3.5 true 4x \"\" 0");
+    builder.addPlain("42 -3.5 true 4x \"\" 0 3000000000 -2147483648 99999999999999999999");
     bool ok = false;
     EXPECT_EQ(builder.getArgInt(0, &ok), 42);
     EXPECT_TRUE(ok && builder.isArgInt(5));
     EXPECT_EQ(builder.getArgInt(1), 0);
     EXPECT_EQ(builder.getArgDouble(1, &ok), -3.5);
     EXPECT_TRUE(ok);
-    for (const std::size_t i : {1U, 2U, 3U, 4U, 6U}) EXPECT_FALSE(builder.isArgInt(i)) << i;
-    for (const std::size_t i : {2U, 3U, 4U, 6U}) EXPECT_FALSE(builder.isArgDouble(i)) << i;
+    for (const std::size_t i : {1U, 2U, 3U, 4U, 6U, 8U, 9U}) EXPECT_FALSE(builder.isArgInt(i)) << i;
+    EXPECT_EQ(builder.getArgInt(6), 0) << "beyond an int";
+    EXPECT_EQ(builder.getArgDouble(6), 3e9);
+    EXPECT_EQ(builder.getArgInt(7, &ok), std::numeric_limits<int>::min());
+    EXPECT_TRUE(ok);
+    for (const std::size_t i : {2U, 3U, 4U, 9U}) EXPECT_FALSE(builder.isArgDouble(i)) << i;
     EXPECT_TRUE(builder.getArgBool(2, &ok) && ok);
     EXPECT_FALSE(builder.getArgBool(5, &ok));
-    EXPECT_TRUE(ok && builder.isArgBool(2) && !builder.isArgBool(0) && !builder.isArgBool(6));
+    EXPECT_TRUE(ok && builder.isArgBool(2) && !builder.isArgBool(0) && !builder.isArgBool(9));
 }
 
 TEST(SimAriaSockets, ALineEachWay) {

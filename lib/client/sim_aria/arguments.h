@@ -8,11 +8,20 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <list>
 #include <string>
 #include <vector>
 
 #include <sim_aria/util.h>
+
+namespace sim_aria {
+
+inline bool isInt(long long value) {
+    return value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max();
+}
+
+}  // namespace sim_aria
 
 /// Builds a list of words.
 class ArArgumentBuilder {
@@ -53,10 +62,13 @@ class ArArgumentBuilder {
     const char* getArg(std::size_t i) const {
         return i < myWords.size() ? myWords[i].c_str() : nullptr;
     }
-    /// The word as a number, 0 if it is none; `ok` tells which.
+    /// The word as a number, 0 if it is none or beyond an int; `ok` tells which.
     int getArgInt(std::size_t i, bool* ok = nullptr) const {
         return static_cast<int>(parsed(i, ok, [](const char* text, char** end) {
-            return static_cast<double>(std::strtol(text, end, 10));
+            const long long value = std::strtoll(text, end, 10);
+            // No number ends at its begin.
+            if (!sim_aria::isInt(value)) *end = const_cast<char*>(text);
+            return static_cast<double>(value);
         }));
     }
     double getArgDouble(std::size_t i, bool* ok = nullptr) const {
@@ -161,8 +173,9 @@ class ArArgumentParser {
     }
     bool checkParameterArgumentInteger(const char* word, int* to, bool* wasReallySet = nullptr) {
         return number(word, wasReallySet, [to](const char* text, char** end) {
-            const int read = static_cast<int>(std::strtol(text, end, 10));
-            if (**end == 0) *to = read;
+            const long long read = std::strtoll(text, end, 10);
+            if (!sim_aria::isInt(read)) *end = const_cast<char*>(text);
+            if (**end == 0) *to = static_cast<int>(read);
         });
     }
     bool checkParameterArgumentDouble(const char* word, double* to, bool* wasReallySet = nullptr) {

@@ -3,6 +3,7 @@
 #define SIM_ARIA_ROBOT_CONFIG_H
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -20,6 +21,12 @@ struct FirmwareFigures {
     std::string name, sub_type;
     double vel = 0, rot_vel = 0, accel = 0, rot_accel = 0;
     int front_bumpers = 0, rear_bumpers = 0, sonars = 0;
+    friend bool operator==(const FirmwareFigures& a, const FirmwareFigures& b) {
+        return a.name == b.name && a.sub_type == b.sub_type && a.vel == b.vel &&
+               a.rot_vel == b.rot_vel && a.accel == b.accel && a.rot_accel == b.rot_accel &&
+               a.front_bumpers == b.front_bumpers && a.rear_bumpers == b.rear_bumpers &&
+               a.sonars == b.sonars;
+    }
 };
 
 }  // namespace sim_aria
@@ -44,7 +51,8 @@ class ArRobotConfigPacketReader {
     /// \return false if not connected, or the only request was made
     bool requestPacket();
     bool hasPacketBeenRequested() const { return !myRobot || myRequested; }
-    bool hasPacketArrived() const { return myHasArrived; }
+    /// Then the figures stay as they are, also if read beside the cycle of the robot.
+    bool hasPacketArrived() const { return myHasArrived.load(std::memory_order_acquire); }
     const char* getType() const { return "Pioneer"; }
     const char* getSubType() const { return myFigures.sub_type.c_str(); }
     const char* getName() const { return myFigures.name.c_str(); }
@@ -98,7 +106,7 @@ class ArRobotConfigPacketReader {
     bool myOnlyOnce = false, myRequested = false;
     ArFunctor* myArrivedCB = nullptr;
     std::unique_ptr<Handler> myHandler;
-    bool myHasArrived = true;
+    std::atomic<bool> myHasArrived{true};
 };
 
 #endif  // SIM_ARIA_ROBOT_CONFIG_H

@@ -143,16 +143,19 @@ inline bool ArRobot::cycle() {
         if (!myLink) return myConnected;
         try {
             ++myCounter;
-            if (myStatus && *myStatus != ArDeviceConnection::STATUS_OPEN)
-                throw ispace::client::Error("the program has closed the connection");
-            read();
-            think();
-            return true;
+            if (!myStatus || *myStatus == ArDeviceConnection::STATUS_OPEN) {
+                read();
+                think();
+                return true;
+            }
+            ArLog::log(ArLog::Terse, "The program has closed the connection to the robot");
         } catch (const ispace::client::Error& error) {
             ArLog::log(ArLog::Terse, "Lost the robot: %s", error.what());
-            lose();
-            if (myStatus) *myStatus = ArDeviceConnection::STATUS_CLOSED_ERROR;
+            int open = ArDeviceConnection::STATUS_OPEN;
+            if (myStatus)
+                myStatus->compare_exchange_strong(open, ArDeviceConnection::STATUS_CLOSED_ERROR);
         }
+        lose();
     }
     call(Loss);
     return false;

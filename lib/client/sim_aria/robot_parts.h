@@ -328,18 +328,23 @@ inline const ArLaser* ArRobot::findLaser(int number) const {
 inline bool ArRobotConfigPacketReader::requestPacket() {
     if (!myRobot) return true;
     if (!myRobot->isConnected() || (myOnlyOnce && myRequested)) return false;
+    // The cycle may answer as soon as it knows the handler.
+    myRobot->lock();
     if (!myHandler) myHandler.reset(new Handler(this, &ArRobotConfigPacketReader::arrive));
     myRobot->remPacketHandler(myHandler.get());
     myRobot->addPacketHandler(myHandler.get(), ArListPos::FIRST);
     myRequested = true;
     myHasArrived = false;
+    myRobot->unlock();
     return myRobot->comInt(ArCommands::CONFIG, 1);
 }
 
 inline bool ArRobotConfigPacketReader::arrive(ArRobotPacket* /*packet*/) {
     myRobot->remPacketHandler(myHandler.get());
-    myFigures = myRobot->getOrigRobotConfig()->myFigures;
-    myHasArrived = true;
+    // Another thread may read the figures of an earlier request: the same are not written again.
+    const sim_aria::FirmwareFigures& figures = myRobot->getOrigRobotConfig()->myFigures;
+    if (!(myFigures == figures)) myFigures = figures;
+    myHasArrived.store(true, std::memory_order_release);
     if (myArrivedCB) myArrivedCB->invoke();
     return false;
 }
