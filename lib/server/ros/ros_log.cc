@@ -28,12 +28,12 @@ void RosLog::sync() {
     feed_->sync();
     if (std::exchange(version_, feed_->version()) == feed_->version()) return;
     writeBefore(kEnd);
-    std::erase_if(lines_,
-                  [this](const auto& one) { return !feed_->entries().contains(one.first); });
-    for (const auto& [number, entry] : feed_->entries()) {
+    const RosFeed::Entries& entries = feed_->entries();
+    std::erase_if(lines_, [&entries](const auto& one) { return !entries.contains(one.first); });
+    for (const auto& [number, entry] : entries) {
         if (entry.channel.isInput() || lines_.contains(number)) continue;
         if (channels_ == max_channels_) {
-            left_out_.insert(number);
+            left_out_.insert(entry.channel.topic);
             continue;
         }
         lines_[number].channel =

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "base/file.h"
@@ -31,7 +32,8 @@ class RosLog {
     void stepped();
     /// Writes the end of the file.
     void finish();
-    /// Returns the number of topics without a channel in the file.
+    /// Returns the number of topics without a channel in the file; one that comes again counts
+    /// once.
     [[nodiscard]] std::size_t leftOut() const { return left_out_.size(); }
 
   private:
@@ -51,8 +53,8 @@ class RosLog {
     /// Of the present time, by time and topic.
     std::map<std::pair<std::uint64_t, std::uint32_t>, std::shared_ptr<const RosMessage>> waiting_;
     std::size_t max_channels_, channels_ = 0;
-    std::set<std::uint32_t> left_out_;  // by number in the feed
-    std::int64_t version_ = -1;         // of the feed's topics
+    std::set<std::string> left_out_;  // topics, some of which a change has removed
+    std::int64_t version_ = -1;       // of the feed's topics
 };
 
 }  // namespace ispace
