@@ -116,6 +116,47 @@ TEST(LevelSets, HaveTheirAreas) {
     EXPECT_TRUE(levelSet([](Point2) { return 1.0; }, Box2{}).empty());
 }
 
+TEST(LevelSets, EndAtTheirBox) {
+    const Box2 box{{-1, 2}, {3, 4}};
+    EXPECT_NEAR(signedArea(levelSet([](Point2) { return 1.0; }, box)), 8, 0.1);
+    const auto half = levelSet([](Point2 p) { return 1e3 * (p.x + p.y - 4); }, box);
+    EXPECT_NEAR(signedArea(half), 4, 0.1);
+}
+
+/// Barrels fold the picture back within it: their densities fall to 0 at the fold.
+TEST(Densities, OfFoldedLensesAreNested) {
+    const std::string down =
+        "ispace size=12,12,3\ncamera at=0,0,2.8 tilt=-90 fov=80 "
+        "coefficients=-0.4,0,0,0 pixels=3840,2160\n";
+    const std::string tilted =
+        "ispace size=12,12,3\ncamera at=-3,0,2.8 tilt=-45 fov=60 "
+        "coefficients=-0.5,0,0,0 pixels=3840,2160\n";
+    const std::string turned =
+        "ispace size=300,300,9\ncamera at=0,0,8 heading=45 tilt=-20 fov=60 "
+        "coefficients=-0.5,0,0,0 pixels=3840,2160\n";
+    const auto expect_nested = [](const std::string& lines, double plane, double cell) {
+        CoverageOptions options{.plane = plane};
+        options.cells = CellSize{cell};
+        const SensorMetrics sensor = measured(lines, options).report.sensors.at(0);
+        const double view = *sensor.area.exact;
+        EXPECT_GT(view, 0.1) << lines;
+        double last = view;
+        for (const std::size_t i : classesByDensity()) {
+            const Metric& area = sensor.picture->areas[i];
+            const double error = 4 * cell * std::sqrt(*area.grid) + 4 * cell * cell;
+            EXPECT_NEAR(*area.exact, *area.grid, error) << lines << plane << ' ' << i;
+            EXPECT_LE(*area.exact, last + 1e-9) << lines << plane << ' ' << i;
+            last = *area.exact;
+        }
+        EXPECT_GT(*sensor.picture->areas[classesByDensity()[0]].exact, 0.9 * view) << lines;
+    };
+    for (const double plane : {0.0, 1.2, 1.7}) {
+        expect_nested(down, plane, 0.05);
+        expect_nested(tilted, plane, 0.02);
+    }
+    expect_nested(turned, 0, 0.2);
+}
+
 /// Furniture and walls away from the cameras change no share.
 TEST(Densities, NeedTheFloorNearCamerasOnly) {
     std::string lines = "ispace size=60,40,3\nzone id=z path=-20,-12;4,-12;4,-8;-20,-8\n";

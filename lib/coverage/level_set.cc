@@ -19,7 +19,8 @@ using Value = std::function<double(Point2)>;
 
 /// Finds the root between a point with a value of 0 or more and one with a negative value, by
 /// regula falsi (Illinois).
-Point2 rootBetween(const Value& value, Point2 inside, double at_inside, Point2 outside,
+template <typename Function>
+Point2 rootBetween(const Function& value, Point2 inside, double at_inside, Point2 outside,
                    double at_outside) {
     constexpr int kSteps = 60;
     constexpr double kNear = 1e-10;  // metres
@@ -49,29 +50,36 @@ Point2 rootBetween(const Value& value, Point2 inside, double at_inside, Point2 o
 /// Traces the boundary through the cells of a grid of samples ("marching squares").
 class LevelTracer {
   public:
-    LevelTracer(const Value& value, const Box2& box) : value_(value), box_(box) {
-        samples_.reserve(static_cast<std::size_t>(kSide) * kSide);
-        for (int row = 0; row < kSide; ++row)
-            for (int column = 0; column < kSide; ++column)
-                samples_.push_back(value_(place(column, row)));
+    LevelTracer(const Value& value, const Box2& box, int side, std::vector<double> samples)
+        : value_(value), box_(box), side_(side), samples_(std::move(samples)) {
+        constexpr double kShare = 0.25;  // of a cell
+        const Vec2 inset{kShare * box.width() / (side - 1), kShare * box.depth() / (side - 1)};
+        inner_ = {box.low + inset, box.high - inset};
+        std::size_t i = 0;
+        for (int row = 0; row < side_; ++row)
+            for (int column = 0; column < side_; ++column, ++i)
+                samples_[i] = std::min(samples_[i], within(place(column, row)));
     }
 
     std::vector<Curve> run() {
-        for (int row = 0; row + 1 < kSide; ++row)
-            for (int column = 0; column + 1 < kSide; ++column) crossCell(column, row);
+        for (int row = 0; row + 1 < side_; ++row)
+            for (int column = 0; column + 1 < side_; ++column) crossCell(column, row);
         std::vector<Curve> curves;
         while (!next_.empty()) {
             Curve curve;
             const std::size_t first = next_.begin()->first;
             std::size_t from = first;
+            std::vector<Point2> roots = {roots_.at(first)};
             while (true) {
                 const auto step = next_.find(from);
                 if (step == next_.end()) break;
                 const std::size_t to = step->second;
                 next_.erase(step);
-                follow(roots_.at(from), roots_.at(to), kDeepest, curve);
+                roots.push_back(roots_.at(to));
                 from = to;
             }
+            for (std::size_t i = 0; i + 1 < roots.size(); i += kJoined)
+                join(roots, i, std::min(i + kJoined, roots.size() - 1), curve);
             std::erase_if(curve, [](const CurveEdge& edge) { return edge.from == edge.to; });
             if (from == first && curve.size() > 1) curves.push_back(std::move(curve));
         }
@@ -79,22 +87,34 @@ class LevelTracer {
     }
 
   private:
-    static constexpr int kSide = kLevelSamples;
     static constexpr int kDeepest = 8;
+    static constexpr std::size_t kJoined = 16;  // pieces in an arc at most
 
     [[nodiscard]] Point2 place(int column, int row) const {
-        return {box_.low.x + box_.width() * column / (kSide - 1),
-                box_.low.y + box_.depth() * row / (kSide - 1)};
+        return levelPlace(box_, side_, column, row);
     }
     [[nodiscard]] double sample(int column, int row) const {
-        return samples_[static_cast<std::size_t>(row) * kSide + static_cast<std::size_t>(column)];
+        return samples_[static_cast<std::size_t>(row) * static_cast<std::size_t>(side_) +
+                        static_cast<std::size_t>(column)];
+    }
+    /// Returns the distance from the border, negative outside.
+    [[nodiscard]] double within(Point2 p) const {
+        return std::min(std::min(p.x - inner_.low.x, inner_.high.x - p.x),
+                        std::min(p.y - inner_.low.y, inner_.high.y - p.y));
+    }
+    [[nodiscard]] double valueAt(Point2 p) const { return std::min(value_(p), within(p)); }
+    [[nodiscard]] Point2 root(Point2 inside, double at_inside, Point2 outside,
+                              double at_outside) const {
+        return rootBetween([this](Point2 p) { return valueAt(p); }, inside, at_inside, outside,
+                           at_outside);
     }
     /// Returns the number of the side of a cell: 0 its lower one, then counter-clockwise. Cells
     /// share their sides.
-    static std::size_t sideOf(int column, int row, int side) {
+    [[nodiscard]] std::size_t sideOf(int column, int row, int side) const {
         const bool is_upright = side == 1 || side == 3;
         const int c = column + (side == 1 ? 1 : 0), r = row + (side == 2 ? 1 : 0);
-        return 2 * (static_cast<std::size_t>(r) * kSide + static_cast<std::size_t>(c)) +
+        return 2 * (static_cast<std::size_t>(r) * static_cast<std::size_t>(side_) +
+                    static_cast<std::size_t>(c)) +
                (is_upright ? 1 : 0);
     }
 
@@ -115,12 +135,11 @@ class LevelTracer {
             const std::size_t key = sideOf(column, row, static_cast<int>(side));
             if (roots_.count(key) != 0) continue;
             const Point2 p = place(column + ax, row + ay), q = place(column + bx, row + by);
-            roots_.emplace(
-                key, a >= 0 ? rootBetween(value_, p, a, q, b) : rootBetween(value_, q, b, p, a));
+            roots_.emplace(key, a >= 0 ? root(p, a, q, b) : root(q, b, p, a));
         }
         if (crossed == 0) return;
         const Point2 low = place(column, row), high = place(column + 1, row + 1);
-        const bool joins = crossed == 4 && value_(low + 0.5 * (high - low)) >= 0;
+        const bool joins = crossed == 4 && valueAt(low + 0.5 * (high - low)) >= 0;
         for (int side = 0; side < 4; ++side) {
             if (leaves[static_cast<std::size_t>(side)] != true) continue;
             // The last entry before it, or, if opposite corners are joined through the middle, the
@@ -137,9 +156,9 @@ class LevelTracer {
     [[nodiscard]] std::optional<Point2> bulge(Point2 a, Point2 b) const {
         const Vec2 way = b - a, normal = 0.5 * perpendicular(way);
         const Point2 middle = a + 0.5 * way, left = middle + normal, right = middle - normal;
-        const double at_left = value_(left), at_right = value_(right);
+        const double at_left = valueAt(left), at_right = valueAt(right);
         if (!(at_left >= 0 && at_right < 0)) return std::nullopt;
-        return rootBetween(value_, left, at_left, right, at_right);
+        return root(left, at_left, right, at_right);
     }
 
     /// Appends arcs from a to b, points of the boundary.
@@ -162,8 +181,30 @@ class LevelTracer {
         follow(*middle, b, depth - 1, curve);
     }
 
+    /// Appends arcs through points of the boundary, from roots[first] to roots[last].
+    void join(const std::vector<Point2>& roots, std::size_t first, std::size_t last,
+              Curve& curve) const {
+        constexpr std::size_t kEnough = 4;  // pieces, so that points lie between those of the arc
+        if (last - first == 1) return follow(roots[first], roots[last], kDeepest, curve);
+        const std::size_t middle = first + (last - first) / 2;
+        if (last - first >= kEnough) {
+            const CurveEdge edge = arcThrough(roots[first], roots[middle], roots[last]);
+            bool is_near = true;
+            for (std::size_t i = first + 1; i < last; ++i)
+                is_near = is_near && distanceFrom(edge, roots[middle], roots[i]) <= kConicError;
+            if (is_near) {
+                curve.push_back(edge);
+                return;
+            }
+        }
+        join(roots, first, middle, curve);
+        join(roots, middle, last, curve);
+    }
+
     const Value& value_;
     const Box2& box_;
+    int side_;
+    Box2 inner_;  ///< where the area may lie
     std::vector<double> samples_;
     std::map<std::size_t, Point2> roots_;      // by side
     std::map<std::size_t, std::size_t> next_;  // from side to side
@@ -171,9 +212,25 @@ class LevelTracer {
 
 }  // namespace
 
-std::vector<Curve> levelSet(const std::function<double(Point2)>& value, const Box2& box) {
+Point2 levelPlace(const Box2& box, int side, int column, int row) {
+    return {box.low.x + box.width() * column / (side - 1),
+            box.low.y + box.depth() * row / (side - 1)};
+}
+
+std::vector<Curve> levelSet(const std::function<double(Point2)>& value, const Box2& box,
+                            std::vector<double> samples) {
+    if (box.empty() || samples.empty()) return {};
+    const int side = static_cast<int>(std::lround(std::sqrt(samples.size())));
+    return LevelTracer(value, box, side, std::move(samples)).run();
+}
+
+std::vector<Curve> levelSet(const std::function<double(Point2)>& value, const Box2& box, int side) {
+    std::vector<double> samples;
     if (box.empty()) return {};
-    return LevelTracer(value, box).run();
+    for (int row = 0; row < side; ++row)
+        for (int column = 0; column < side; ++column)
+            samples.push_back(value(levelPlace(box, side, column, row)));
+    return levelSet(value, box, std::move(samples));
 }
 
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "coverage/level_set.h"
+#include "coverage/dense_floor.h"
 #include "coverage/shadow_footprint.h"
 #include "geom/arrangement.h"
 #include "geom/predicates.h"
@@ -52,22 +52,13 @@ std::vector<Curve> movedTo(Point2 foot, std::vector<Curve> curves) {
 
 }  // namespace
 
-std::vector<Curve> denseFloor(const LensResolution& lens, const Frame3& frame, double drop,
-                              double pixels_per_metre) {
-    const double far = lens.most() / pixels_per_metre;
-    if (!(std::fabs(drop) < far)) return {};
-    constexpr double kBeyond = 1.05;  // the border of the box is not dense
-    const double reach = kBeyond * std::sqrt(far * far - drop * drop);
-    const auto value = [&](Point2 p) {
-        const Vec3 local = frame.toLocal(frame.origin + Vec3{p.x, p.y, drop});
-        // Linear in the distance, without a pole at the camera.
-        return lens.at(local) / pixels_per_metre - std::sqrt(dot(local, local));
-    };
-    return levelSet(value, {{-reach, -reach}, {reach, reach}});
+DenseFloor FloorDensity::denseFloor(const Box2& box) const {
+    const Vec2 way = Point2{} - foot_;
+    return {*lens_, frame_, drop_, Box2{box.low + way, box.high + way}};
 }
 
 std::vector<Curve> FloorDensity::least(double pixels_per_metre, const Box2& box) const {
-    if (lens_) return movedTo(foot_, denseFloor(*lens_, frame_, drop_, pixels_per_metre));
+    if (lens_) return movedTo(foot_, denseFloor(box).least(pixels_per_metre));
     const double far = focal_ / pixels_per_metre;
     if (!is_by_depth_) {
         if (!(std::fabs(drop_) < far)) return {};
@@ -210,25 +201,31 @@ std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
     DensityRange range{0, std::numeric_limits<double>::infinity()};
     if (density.isEven()) range = densityRange(density, *view.region, density.foot());
     std::vector<Layer> layers = {{.curves = *view.region}};
-    std::vector<std::size_t> cut;  // classes whose bound may cross the view
-    for (std::size_t i = 0; i < classes.size(); ++i) {
+    std::vector<std::size_t> cut;  // classes whose bound may cross the view, rising
+    std::optional<DenseFloor> floor;
+    for (const std::size_t i : classesByDensity()) {
         const double wanted = classes[i].pixels_per_metre;
         if (wanted > range.most) continue;
         if (wanted <= range.least) {
             sets[i].region = *view.region;
             continue;
         }
-        std::vector<Curve> dense = density.least(wanted, box);
-        if (dense.empty()) continue;
+        if (!density.isEven() && !floor) floor.emplace(density.denseFloor(box));
+        std::vector<Curve> dense =
+            floor ? movedTo(density.foot(), floor->least(wanted)) : density.least(wanted, box);
         cut.push_back(i);
-        layers.push_back({.curves = std::move(dense), .counts = false, .marks = classMark(i)});
+        if (!dense.empty())
+            layers.push_back({.curves = std::move(dense), .counts = false, .marks = classMark(i)});
     }
-    if (cut.empty()) return sets;
+    if (layers.size() == 1) return sets;
     const Overlay overlay(layers);
-    for (const std::size_t i : cut)
-        sets[i].region = overlay.curves([i](const LayerLabel& label) {
-            return label.count > 0 && (label.marks & classMark(i)) != 0;
+    std::uint64_t marks = 0;  // of the class and of all denser ones, which are parts of it
+    for (std::size_t k = cut.size(); k-- > 0;) {
+        marks |= classMark(cut[k]);
+        sets[cut[k]].region = overlay.curves([marks](const LayerLabel& label) {
+            return label.count > 0 && (label.marks & marks) != 0;
         });
+    }
     return sets;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coverage/coverage.h"
+#include "coverage/dense_floor.h"
 #include "coverage/metrics.h"
 #include "scene/sensor/camera.h"
 #include "scene/sensor/lens_resolution.h"
@@ -22,9 +23,11 @@ class FloorDensity {
     /// without distortion, beside it.
     [[nodiscard]] double at(Point2 place) const;
     /// Returns the part of `box` with at least this density: of a pinhole without distortion a half
-    /// plane, of an equidistant fisheye a disc about the foot, of other lenses a levelSet().
+    /// plane, of an equidistant fisheye a disc about the foot, of other lenses a DenseFloor.
     /// Empty curves if it is lower everywhere.
     [[nodiscard]] std::vector<Curve> least(double pixels_per_metre, const Box2& box) const;
+    /// Returns the parts of `box`, for many densities. \pre !isEven()
+    [[nodiscard]] DenseFloor denseFloor(const Box2& box) const;
     /// Returns the point of the plane below or above the camera.
     [[nodiscard]] Point2 foot() const { return foot_; }
     /// Returns true if the density falls with depth or distance alone.
@@ -48,11 +51,6 @@ class FloorDensity {
     double slope_;                        ///< change of depth per metre along the plane
     std::optional<LensResolution> lens_;  ///< of lenses that are not even
 };
-
-/// Returns the part of a plane, `drop` above the camera, where a lens that is not even has at least
-/// this density, relative to the foot.
-std::vector<Curve> denseFloor(const LensResolution& lens, const Frame3& frame, double drop,
-                              double pixels_per_metre);
 
 /// Returns the views of cameras.
 std::vector<const SensorView*> camerasOf(const Coverage& coverage);

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "coverage/pixel_density.h"
+#include "coverage/dense_floor.h"
 #include "coverage/shadow_bodies.h"
 #include "geom/overlay/overlay.h"
 #include "geom/tolerance.h"
@@ -234,7 +234,8 @@ Footprint::Footprint(const FieldOfView& view, double drop, bool disc_is_left_out
     const Frame3& frame = view.frame;
     if (view.shape == FieldOfView::Shape::Picture) addPicture(view, drop);
     if (view.least_density > 0) {
-        std::vector<Curve> dense = denseFloor(*view.resolution, frame, drop, view.least_density);
+        std::vector<Curve> dense =
+            DenseFloor::alone(*view.resolution, frame, drop, box, view.least_density);
         if (dense.empty())
             box = {};
         else
