@@ -67,15 +67,15 @@ double LensResolution::unitAt(double along, double across, double u, double v) c
 }
 
 double LensResolution::at(Vec3 direction) const {
-    const double across = std::hypot(direction.y, direction.z);
-    const double far = std::hypot(direction.x, across);
+    const double squared = direction.y * direction.y + direction.z * direction.z;
+    const double across = std::sqrt(squared);
+    const double far = std::sqrt(direction.x * direction.x + squared);
     double u = 1, v = 0;
     if (across > 0) {
         u = -direction.y / across;
         v = -direction.z / across;
     }
-    if (std::atan2(across, direction.x) >= widest_)
-        return focal_ * unitAt(cos_widest_, sin_widest_, u, v);
+    if (direction.x <= cos_widest_ * far) return focal_ * unitAt(cos_widest_, sin_widest_, u, v);
     return focal_ * unitAt(direction.x / far, across / far, u, v);
 }
 
