@@ -137,6 +137,7 @@ Columns columnsOf(const PageTable& table) {
 /// Splits a table that is too wide for a sheet, even with broken lines, into tables that each
 /// begin with its first column.
 std::vector<PageTable> splitTable(const PageTable& table) {
+    if (table.heads.size() < 3) return {table};
     constexpr double kWidest = 36, kGap = 2;  // millimetres; wider cells break
     const TextStyle style{kLeast, false, Align::Left, palette::kInk, {}};
     std::vector<double> widths(table.heads.size());
@@ -148,7 +149,7 @@ std::vector<PageTable> splitTable(const PageTable& table) {
     for (const TextRow& row : table.rows) add(row);
     const double others = std::accumulate(widths.begin() + 1, widths.end(), 0.0);
     const double room = kColumn + kGap - widths.front();
-    if (widths.size() < 3 || others <= room || room <= kWidest) return {table};
+    if (others <= room || room <= kWidest) return {table};
     const double share = others / std::ceil(others / room);  // about as wide as each other
     std::vector<PageTable> parts;
     double width = 0;

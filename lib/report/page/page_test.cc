@@ -110,6 +110,8 @@ TEST(Page, PdfSplitsTablesThatAreTooWide) {
     // One that fits stays whole.
     EXPECT_NE(with({first}), with({second}));
     EXPECT_EQ(pagesOf(with({whole})), 1U);
+    // Tables without heads have no columns.
+    EXPECT_EQ(pagesOf(with({PageTable{"a caption", "l", {}, {}}})), 1U);
 }
 
 TEST(Page, PicturesInPicturesKeepTheirShapes) {
