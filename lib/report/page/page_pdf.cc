@@ -120,7 +120,7 @@ Columns columnsOf(const PageTable& table) {
         for (const TextRow& row : table.rows) add(row);
     };
     measure();
-    if (columns.total() <= kColumn) return columns;
+    if (table.heads.empty() || columns.total() <= kColumn) return columns;
     columns.size = std::max(kLeast, columns.size * kColumn / columns.total());
     columns.gap = 2;
     measure();
