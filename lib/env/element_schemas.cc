@@ -159,22 +159,17 @@ KeySpec numberKey(std::string name, Unit unit, std::string help, double standard
             .upper = upper};
 }
 
-KeySpec positiveNumber(KeySpec key) {
-    key.lower_open = true;
-    return key;
-}
-
 /// Returns the keys of a zone's heat, for thermometers.
 std::vector<KeySpec> heatKeys() {
+    constexpr double kLeast = 1e-3;  // keeps the temperature finite
     return {numberKey("celsius", Unit::None, "its temperature at the start, degrees Celsius", 20,
                       -100, 100),
-            positiveNumber(numberKey("storage", Unit::None,
-                                     "heat that its air and walls store, kJ/K for a square metre",
-                                     165, 0, 1e4)),
-            positiveNumber(numberKey(
-                "loss", Unit::None,
-                "heat that it loses to the outside, W/K for a square metre, all windows shut", 1.5,
-                0, 1e4))};
+            numberKey("storage", Unit::None,
+                      "heat that its air and walls store, kJ/K for a square metre", 165, kLeast,
+                      1e4),
+            numberKey("loss", Unit::None,
+                      "heat that it loses to the outside, W/K for a square metre, all windows shut",
+                      1.5, kLeast, 1e4)};
 }
 
 void addSpaces(std::vector<Schema>& out) {
@@ -197,7 +192,7 @@ void addSpaces(std::vector<Schema>& out) {
     out.push_back(std::move(zone));
     out.push_back(
         schema("weather", RecordType::Space,
-               "the weather outside, for thermometers: a schedule may change it",
+               "the weather outside, for thermometers: scripts and clients may change it",
                {numberKey("celsius", Unit::None, "of the air, degrees Celsius", 10, -100, 100),
                 numberKey("sun", Unit::None, "that falls on each window, W for a square metre", 0,
                           0, 1500)}));

@@ -79,6 +79,43 @@ TEST(Temperature, FollowsWindowsAndTheSun) {
         << "of another zone";
 }
 
+TEST(Temperature, OfAWindowIsOfTheZoneBehindIt) {
+    const std::string room =
+        "weather celsius=0 sun=500\nzone id=west at=-2,0 size=4,6\nzone id=east at=2,0 size=4,6\n";
+    const auto steady = [&](const char* zone, const char* window) {
+        return temperatureIn(room + window, 0,
+                             std::string("thermometer at=0,0 zone=") + zone + '\n')
+            .steady;
+    };
+    const char* const corner = "window at=0.2,3 size=1 height=1\n";
+    EXPECT_NEAR(steady("east", corner), 300 / 36.0, 1e-12);
+    EXPECT_EQ(steady("west", corner), 0);
+    const char* const between = "fence id=f path=0,-2;0,2\nwindow wall=f size=1,0.1,1 offset=3\n";
+    EXPECT_EQ(steady("east", between), 0);
+    EXPECT_EQ(steady("west", between), 0);
+}
+
+TEST(Temperature, OfAWellInsulatedZoneRisesByItsPower) {
+    const double rise = temperatureIn(std::string(kCold) +
+                                          "zone id=z at=0,0 size=4,5 loss=0.001 storage=1e4\n"
+                                          "heater at=0,0 on=yes watts=1000\n",
+                                      1)
+                            .celsius -
+                        20;
+    EXPECT_NEAR(rise, (1000 - 0.02 * 20) / (1e7 * 20), 1e-14);
+    EXPECT_THROW(temperatureIn("zone id=z at=0,0 size=4,5 loss=1e-9\n"), FormatError);
+}
+
+TEST(Temperature, RequiresZonesWithAnExtent) {
+    try {
+        temperatureIn("zone id=z at=0,0\n");
+        FAIL() << "no extent";
+    } catch (const FormatError& error) {
+        EXPECT_NE(std::string(error.what()).find("room.env:3:1"), std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(Temperature, FindsWindowsAlongTheirWalls) {
     // 1 m before the end of the second wall of the fence: at 4,2.
     const std::string room =

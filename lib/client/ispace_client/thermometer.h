@@ -9,7 +9,7 @@ namespace client {
 
 /// The temperature of a zone.
 struct Temperature : Reading {
-    double celsius = 0;  ///< in tenths
+    double celsius = 0;  ///< degrees Celsius, rounded to 0.1
 
     static Temperature from(const Message& message) {
         Temperature reading;

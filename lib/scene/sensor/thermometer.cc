@@ -147,65 +147,142 @@ std::vector<HeatSource> sourcesOf(const RoomRecords& room) {
     return sources;
 }
 
-bool isNear(const Polygon& outline, Point2 p, double within) {
-    bool is_near = locate(outline, p) != Side::Outside;
-    forEachEdge(outline,
-                [&](const Segment2& edge) { is_near = is_near || distance(p, edge) <= within; });
-    return is_near;
-}
-
-/// Returns the index of the zone: the named one, else the first in which the thermometer stands.
-std::size_t zoneOf(const Record& thermometer, const RoomRecords& room) {
-    const bool is_named = thermometer.has("zone");
-    std::vector<std::string> zones;
-    for (std::size_t i = 0; i < room.records.size(); ++i) {
-        if (room.records[i].keyword() != "zone") continue;
-        zones.push_back(room.ids[i]);
-        if (is_named ? zones.back() == thermometer.text("zone")
-                     : !thermometer.has("on") &&
-                           locate(zoneOutline(room.records[i]),
-                                  poseOf(thermometer).position.onFloor()) != Side::Outside)
-            return i;
+/// A zone of the room and its heat.
+struct HeatZone {
+    std::size_t record = 0;  // index
+    Box2 box;
+    ZoneHeat heat;
+    [[nodiscard]] bool has(Point2 p) const {
+        return box.contains(p) && locate(heat.outline, p) != Side::Outside;
     }
-    if (!is_named)
-        throw FormatError(
-            thermometer.finding("zone",
-                                "`zone`: it stands in no zone, whose temperature it would "
-                                "report; name one"));
-    throw FormatError(thermometer.finding("zone", "`zone`: no zone has the id `" +
-                                                      thermometer.text("zone") + '`' +
-                                                      didYouMean(thermometer.text("zone"), zones)));
+};
+/// The id of a zone, in a list in the order of ids.
+struct HeatZoneId {
+    std::string id;
+    std::size_t zone = 0;  // index among the zones
+};
+
+constexpr double kWindowDistance = 0.3;  // windows are as far from the outlines at most
+constexpr double kWindowReach = 0.5;     // from a window to the spots on both sides of it
+
+/// Returns the vector from a window to a spot on one side of it, across the nearest edge of a zone;
+/// empty if no zone has an edge near it.
+std::optional<Vec2> acrossWindow(const std::vector<HeatZone>& zones, Point2 at) {
+    std::optional<Vec2> across;
+    double nearest = kWindowDistance;
+    for (const HeatZone& zone : zones) {
+        const Point2 near = {std::clamp(at.x, zone.box.low.x, zone.box.high.x),
+                             std::clamp(at.y, zone.box.low.y, zone.box.high.y)};
+        if (!(distance(at, near) <= kWindowDistance)) continue;
+        forEachEdge(zone.heat.outline, [&](const Segment2& edge) {
+            const double away = distance(at, edge);
+            const Vec2 way = edge.b - edge.a;
+            if (!(away <= nearest && length(way) > 0)) return;
+            nearest = away;
+            across = (kWindowReach / length(way)) * perpendicular(way);
+        });
+    }
+    return across;
 }
 
-/// Computes the heat of a zone with the windows on its outline.
-void lookUpZone(SensorModel& model, const Record& record, const RoomRecords& room) {
-    constexpr double kJoules = 1000;         // in a kilojoule
-    constexpr double kOpenLoss = 90;         // W/K through a square metre of an open window
-    constexpr double kSolarFactor = 0.6;     // share of the sun that heats the zone, double panes
-    constexpr double kWindowDistance = 0.3;  // openings are as far from their walls at most
-    Thermometer& thermometer = std::get<Thermometer>(model);
-    ZoneHeat& heat = thermometer.heat;
-    const std::size_t index = zoneOf(record, room);
-    const Record& zone = room.records[index];
-    thermometer.zone = room.ids[index];
-    heat.outline = zoneOutline(zone);
+/// Adds a window to the heat of the zones on one side of it, if no zone is on the other.
+void addWindow(std::vector<HeatZone>& zones, const HeatWindow& window, double sun) {
+    constexpr double kOpenLoss = 90;      // W/K through a square metre of an open window
+    constexpr double kSolarFactor = 0.6;  // share of the sun that heats the zone, double panes
+    const std::optional<Vec2> across = acrossWindow(zones, window.at);
+    if (!across) return;
+    std::vector<HeatZone*> left, right;
+    for (HeatZone& zone : zones) {
+        if (zone.has(window.at + *across)) left.push_back(&zone);
+        if (zone.has(window.at + -1.0 * *across)) right.push_back(&zone);
+    }
+    if (!left.empty() && !right.empty()) return;
+    left.insert(left.end(), right.begin(), right.end());
+    for (HeatZone* const zone : left) {
+        if (window.is_open) zone->heat.loss += kOpenLoss * window.area;
+        if (window.lets_sun_in) zone->heat.power += kSolarFactor * sun * window.area;
+    }
+}
+
+/// Computes the heat of all zones with the windows on their outlines.
+std::vector<HeatZone> zonesOf(const RoomRecords& room) {
+    constexpr double kJoules = 1000;      // in a kilojoule
+    constexpr double kLeastArea = 0.001;  // m2: of a degenerate zone
+    ZoneHeat bare;
     double sun = 0;
     for (const Record& weather : room.records) {
         if (weather.keyword() != "weather") continue;
-        heat.outside = weather.number("celsius");
+        bare.outside = weather.number("celsius");
         sun = weather.number("sun");
     }
-    const double area = std::abs(signedArea(heat.outline));
-    heat.start = zone.number("celsius");
-    heat.storage = zone.number("storage") * kJoules * area;
-    heat.loss = zone.number("loss") * area;
-    for (const HeatWindow& one : room.shared<HeatWindow>([&room] { return windowsOf(room); })) {
-        if (!isNear(heat.outline, one.at, kWindowDistance)) continue;
-        if (one.is_open) heat.loss += kOpenLoss * one.area;
-        if (one.lets_sun_in) heat.power += kSolarFactor * sun * one.area;
+    std::vector<HeatZone> zones;
+    for (std::size_t i = 0; i < room.records.size(); ++i) {
+        const Record& record = room.records[i];
+        if (record.keyword() != "zone") continue;
+        if (!record.has("path") && !record.has("size"))
+            throw FormatError(
+                record.finding("zone has no extent: give `path`, or `at` and `size`"));
+        ZoneHeat heat = bare;
+        heat.outline = zoneOutline(record);
+        const double area = std::max(std::abs(signedArea(heat.outline)), kLeastArea);
+        heat.start = record.number("celsius");
+        heat.storage = record.number("storage") * kJoules * area;
+        heat.loss = record.number("loss") * area;
+        const Box2 box = bounds(heat.outline);
+        zones.push_back({i, box, std::move(heat)});
     }
-    for (const HeatSource& one : room.shared<HeatSource>([&room] { return sourcesOf(room); }))
-        if (locate(heat.outline, one.at) != Side::Outside) heat.power += one.watts;
+    for (const HeatWindow& one : windowsOf(room))
+        if (one.is_open || (one.lets_sun_in && sun > 0)) addWindow(zones, one, sun);
+    for (const HeatSource& one : sourcesOf(room))
+        for (HeatZone& zone : zones)
+            if (zone.has(one.at)) zone.heat.power += one.watts;
+    return zones;
+}
+
+std::vector<HeatZoneId> zoneIds(const SharedList<HeatZone>& zones, const RoomRecords& room) {
+    std::vector<HeatZoneId> ids;
+    for (const HeatZone& zone : zones) ids.push_back({room.ids[zone.record], ids.size()});
+    std::stable_sort(ids.begin(), ids.end(),
+                     [](const HeatZoneId& a, const HeatZoneId& b) { return a.id < b.id; });
+    return ids;
+}
+
+const HeatZone& zoneNamed(const Record& thermometer, const SharedList<HeatZone>& zones,
+                          const RoomRecords& room) {
+    const std::string& name = thermometer.text("zone");
+    const auto ids = room.shared<HeatZoneId>([&] { return zoneIds(zones, room); });
+    const auto* const found =
+        std::lower_bound(ids.begin(), ids.end(), name,
+                         [](const HeatZoneId& one, const std::string& id) { return one.id < id; });
+    if (found != ids.end() && found->id == name) return zones.begin()[found->zone];
+    std::vector<std::string> known;
+    for (const HeatZone& zone : zones) known.push_back(room.ids[zone.record]);
+    throw FormatError(thermometer.finding(
+        "zone", "`zone`: no zone has the id `" + name + '`' + didYouMean(name, known)));
+}
+
+/// Copies the heat of the zone: the named one, else the first in which the thermometer stands.
+void lookUpZone(SensorModel& model, const Record& record, const RoomRecords& room) {
+    const auto zones = room.shared<HeatZone>([&room] { return zonesOf(room); });
+    const HeatZone* zone = nullptr;
+    if (record.has("zone")) {
+        zone = &zoneNamed(record, zones, room);
+    } else if (!record.has("at") && !record.has("on")) {
+        return;  // it has no position yet
+    } else {
+        if (!record.has("on")) {
+            const Point2 at = poseOf(record).position.onFloor();
+            zone = std::find_if(zones.begin(), zones.end(),
+                                [at](const HeatZone& one) { return one.has(at); });
+        }
+        if (zone == nullptr || zone == zones.end())
+            throw FormatError(
+                record.finding("zone", "`zone`: it stands in no zone, whose temperature it would "
+                                       "report; name one"));
+    }
+    Thermometer& thermometer = std::get<Thermometer>(model);
+    thermometer.zone = room.ids[zone->record];
+    thermometer.heat = zone->heat;
 }
 
 std::vector<Mesh> thermometerBody() {

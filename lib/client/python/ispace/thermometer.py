@@ -14,7 +14,7 @@ class Temperature(Reading):
     """The temperature of a zone."""
 
     def _check(self) -> None:
-        self.celsius = self.fields.number("celsius")  #: in tenths
+        self.celsius = self.fields.number("celsius")  #: degrees Celsius, rounded to 0.1
 
 
 class Thermometer(SensorOf[Temperature]):
