@@ -104,8 +104,9 @@ void SensorReader::addSensors() {
 
 void SensorReader::follow(const SensorReader& before,
                           const std::unordered_set<std::string_view>& stayers,
-                          const Movers& movers) {
+                          SimTime time, const Movers& movers) {
     followTrail(before, stayers, movers);
+    followZones(before, time, movers);
     std::unordered_map<std::string_view, std::size_t> old;
     for (std::size_t i = 0; i < before.sensors_.size(); ++i) old.emplace(before.sensors_[i].id, i);
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
@@ -245,6 +246,7 @@ void SensorReader::update(std::span<const std::size_t> due, SimTime time, const 
     updateBodies(movers);
     makeTrailBodies(due);
     if (!has_others) return;
+    heatZones(due);
     updateVelocities(movers);
     std::size_t receiver = 0, tag = 0;
     for (const Sensor& sensor : sensors_) {
@@ -398,6 +400,7 @@ SensorReading SensorReader::begun(std::size_t sensor, SimTime time, const Movers
     reading.time = time;
     reading.seq = periods_[sensor].newest(time);
     reading.pose = poseOf(sensors_[sensor], movers);
+    continueZone(sensor, reading);
     return reading;
 }
 

@@ -17,6 +17,7 @@
 #include "scene/scene.h"
 #include "sense/photo.h"
 #include "sense/scan.h"
+#include "sense/zone_temperatures.h"
 #include "sim/motion.h"
 #include "sim/mover.h"
 #include "sim/sensor_reading.h"
@@ -61,10 +62,11 @@ class SensorReader {
         trail_.clear();
     }
     /// Call it before the first reading in another scene: unchanged sensors keep their last
-    /// reading, and gates their counts; scans that have begun go on. \param movers of this scene
+    /// reading, gates their counts, and zones their temperatures; scans that have begun go on.
+    /// \param movers of this scene
     /// \pre all of `before` is read
     void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers,
-                const Movers& movers);
+                SimTime time, const Movers& movers);
     /// Records that robots or people have moved.
     void moved() { moved_ = trail_moved_ = pictures_moved_ = true; }
     /// Records that movers were set to other poses, so that no gate counts a passage.
@@ -129,6 +131,9 @@ class SensorReader {
     void updateVelocities(const Movers& movers);
     void setBodies(const MoverPoses& places, std::span<const double> heights,
                    MovingBodies& bodies) const;
+    void continueZone(std::size_t sensor, SensorReading& reading) const;
+    void heatZones(std::span<const std::size_t> due);
+    void followZones(const SensorReader& before, SimTime time, const Movers& movers);
     void followTrail(const SensorReader& before,
                      const std::unordered_set<std::string_view>& stayers, const Movers& movers);
     static SimTime durationOf(const Laser& laser, SimTime step);
@@ -154,6 +159,7 @@ class SensorReader {
     TakerOptions taking_;
     SimTime step_;
     FloorSensors floor_;
+    ZoneTemperatures zones_;
     std::vector<Sensor> sensors_;  // at their starts
     Worlds* worlds_;
     std::vector<Periods> periods_;

@@ -286,7 +286,7 @@ std::shared_ptr<World::Data> World::Data::next(
             after->end(i, Outcome::Stopped);
         }
     }
-    after->sensors.follow(sensors, stayers, after->where());
+    after->sensors.follow(sensors, stayers, time, after->where());
     after->sensors.begin(time, after->where());
     return after;
 }
