@@ -44,8 +44,8 @@ Temperature readingOf(const Thermometer& thermometer, const Moment& now) {
 void follow(const Temperature& before, Temperature& now) {
     const double passed = now.time - before.time;
     if (passed >= 0)
-        measure(now, before.truth -
-                         (now.steady - before.truth) * std::expm1(-passed / now.constant));
+        measure(now,
+                before.truth - (now.steady - before.truth) * std::expm1(-passed / now.constant));
 }
 
 }  // namespace ispace
