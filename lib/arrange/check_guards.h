@@ -12,7 +12,9 @@
 namespace ispace {
 
 struct GuardCheck {
-    std::size_t bound = 0;  ///< no fewer points see the floor; valid whatever the weights are
+    /// No fewer points see the floor; valid whatever the weights are. 0 for trees that prove less
+    /// than the certificate states, which are checked no further.
+    std::size_t bound = 0;
     double missed = 0;      ///< floor that the guards leave unseen, m2
     double area = 0;        ///< of the floor, m2
     std::size_t trees = 0, leaves = 0;
@@ -27,8 +29,8 @@ struct GuardCheck {
 /// cones in a part have no more weight than a point may see, and are of one tree. Sight along
 /// lines alone, through a corner at which walls touch, does not count: such guards would leave
 /// floor around the witness unseen, which others see then, and with it the witness. \param name of
-/// the certificate, for errors \throws FormatError for witnesses off the floor, and for views of
-/// too many cones
+/// the certificate, for errors \throws FormatError for witnesses off the floor, for views of too
+/// many cones, and for leaves that cut the floor into too many parts
 GuardCheck checkGuards(std::span<const Region> floor, std::span<const Point2> guards,
                        const GuardCertificate& certificate, const std::string& name);
 

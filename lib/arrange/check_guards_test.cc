@@ -131,6 +131,19 @@ TEST(CheckGuards, FollowsPairs) {
     EXPECT_EQ(branched.bound, 3U);
     ASSERT_EQ(branched.trees.size(), 1U);
     EXPECT_GT(branched.trees[0].size(), 1U);
+    // In a room of which a point sees one of them, the branches hold as well.
+    const Region comb = unevenComb(7);
+    for (std::size_t i = 0; i < 7; ++i) seven.witnesses[i] = comb.outline[3 + 3 * i];
+    GuardCertificate real = certifyGuards(seven);
+    ASSERT_GT(real.trees[0].size(), 1U);
+    const GuardCheck check = checkOf(comb, {}, real);
+    EXPECT_EQ(check.bound, 3U);
+    EXPECT_GT(check.leaves, 1U);
+    // Where a point sees all, they prove a single one.
+    for (std::size_t i = 0; i < 7; ++i)
+        real.witnesses[i] = {1.0 + 0.1 * static_cast<double>(i), -0.1};
+    real.bound = 1;
+    EXPECT_EQ(checkOf(comb, {}, real).bound, 1U);
 }
 
 TEST(CheckGuards, TooLargeClaimsAreNotConfirmed) {
@@ -158,6 +171,74 @@ TEST(CheckGuards, TooLargeClaimsAreNotConfirmed) {
     std::swap(split.trees[0][1], split.trees[0][2]);
 
     EXPECT_NE(refusalOf(split).find("no pair"), std::string::npos);
+}
+
+TEST(CheckGuards, TreesThatShareAPointDoNotAddUp) {
+    GuardCertificate shared;
+    shared.witnesses = {{1, 1}, {1.5, 1}};
+    shared.trees = {{{true, {}, {{0, kUnit}}}}, {{true, {}, {{1, kUnit}}}}};
+    EXPECT_EQ(checkOf(roomsWithPillar(), {}, shared).bound, 1U);
+    shared.bound = 2;
+    EXPECT_LT(checkOf(roomsWithPillar(), {}, shared).bound, 2U);
+    // In two rooms of the comb they do.
+    const Region comb = unevenComb(3);
+    shared.witnesses = {comb.outline[3], comb.outline[6]};
+    EXPECT_EQ(checkOf(comb, {}, shared).bound, 2U);
+}
+
+TEST(CheckGuards, StopsAtALeafThatProvesTooFew) {
+    GuardCertificate weak;
+    weak.bound = 2;
+    weak.witnesses = {{1, 1}, {1.5, 1}};
+    const GuardCertificate::Node leaf{true, {}, {{0, kUnit}, {1, kUnit}}};
+    weak.trees = {{{false, {0, 1}, {}}, leaf, leaf}};
+    const GuardCheck check = checkOf(roomsWithPillar(), {}, weak);
+    EXPECT_EQ(check.bound, 0U);
+    EXPECT_GT(check.cells, 0U);
+    // Less weight than the bound takes is not followed at all.
+    weak.trees = {{{true, {}, {{0, kUnit}}}}};
+    EXPECT_EQ(checkOf(roomsWithPillar(), {}, weak).cells, 0U);
+}
+
+TEST(CheckGuards, RefusesFloorInTooManyParts) {
+    const Region comb = unevenComb(20);
+    const auto refusal = [&comb](const GuardCertificate& certificate) {
+        try {
+            checkOf(comb, {}, certificate);
+        } catch (const FormatError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    // Many witnesses in the shaft of the comb, of which a point sees many.
+    GuardCertificate many;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> x(0.1, 39), y(-0.29, -0.01);
+    GuardCertificate::Node leaf;
+    for (std::uint32_t i = 0; i < 3000; ++i) {
+        many.witnesses.push_back({x(random), y(random)});
+        leaf.weights.emplace_back(i, kUnit / 1000);
+    }
+    many.trees = {{leaf}};
+    EXPECT_NE(refusal(many).find("too many parts"), std::string::npos);
+    // The budget is that of all leaves.
+    GuardCertificate deep;
+    for (std::uint32_t i = 0; i < 41; ++i) deep.witnesses.push_back(comb.outline[i]);
+    leaf.weights.clear();
+    for (std::uint32_t i = 0; i < 41; ++i) leaf.weights.emplace_back(i, kUnit - 1);
+    deep.trees.emplace_back();
+    const auto grow = [&](const auto& self, std::uint32_t depth) -> void {
+        const bool is_leaf = depth == 14;
+        deep.trees[0].push_back(is_leaf ? leaf : GuardCertificate::Node{false, {0, depth + 1}, {}});
+        if (is_leaf) return;
+        self(self, depth + 1);
+        self(self, depth + 1);
+    };
+    grow(grow, 0);
+    EXPECT_NE(refusal(deep).find("too many parts"), std::string::npos);
+    GuardCertificate wide;
+    wide.witnesses.assign(1'000'000, {1, -0.1});
+    EXPECT_NE(refusal(wide).find("too many"), std::string::npos);
 }
 
 TEST(CheckGuards, RefusesTreesThatAreNone) {

@@ -32,9 +32,8 @@ void verifyGuards(const ArrangeToolOptions& options, const Scene& scene, const s
     const GuardCertificate certificate = readGuardCertificate(text, file);
     const GuardCheck check = checkGuarded(scene, certificate, file);
     if (check.bound < certificate.bound)
-        throw UnmetError(printable(file) + ": its weights prove that " +
-                         std::to_string(check.bound) + " lasers are needed, not the " +
-                         std::to_string(certificate.bound) + " that it states");
+        throw UnmetError(printable(file) + ": its weights do not prove the " +
+                         std::to_string(certificate.bound) + " lasers that it states");
     const auto lasers =
         std::count_if(scene.sensors.begin(), scene.sensors.end(),
                       [](const Sensor& sensor) { return kindOf(sensor.model).perceives; });
