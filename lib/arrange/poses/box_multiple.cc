@@ -125,10 +125,12 @@ double BoxViews::sharedBy(std::span<const Placed> sensors, std::size_t times, do
         return (area + sum / kParts) / kWhole;
     };
     double bound = ofAreas(sensors, times);
-    for (std::size_t i = 0; i < prices.size() && bound > enough; ++i) {
+    for (std::size_t i = 0; i < prices.size(); ++i) {
         const std::size_t next = (i + likely) % prices.size();
         bound = std::min(bound, bound_for(prices[next]));
-        if (bound <= enough) likely = next;
+        if (bound > enough) continue;
+        likely = next;
+        return enough;  // the bound itself depends on the price, and so on earlier calls
     }
     return bound;
 }
