@@ -15,8 +15,8 @@ struct GuardCheck {
     /// No fewer points see the floor; valid whatever the weights are. 0 for trees that prove less
     /// than the certificate states, which are checked no further.
     std::size_t bound = 0;
-    double missed = 0;      ///< floor that the guards leave unseen, m2
-    double area = 0;        ///< of the floor, m2
+    double missed = 0;  ///< floor that the guards leave unseen, m2
+    double area = 0;    ///< of the floor, m2
     std::size_t trees = 0, leaves = 0;
     std::size_t cells = 0;  ///< convex parts of the floor of which the witnesses were counted
 };

@@ -162,14 +162,14 @@ KeySpec numberKey(std::string name, Unit unit, std::string help, double standard
 /// Returns the keys of a zone's heat, for thermometers.
 std::vector<KeySpec> heatKeys() {
     constexpr double kLeast = 1e-3;  // keeps the temperature finite
-    return {numberKey("celsius", Unit::None, "its temperature at the start, degrees Celsius", 20,
-                      -100, 100),
-            numberKey("storage", Unit::None,
-                      "heat that its air and walls store, kJ/K for a square metre", 165, kLeast,
-                      1e4),
-            numberKey("loss", Unit::None,
-                      "heat that it loses to the outside, W/K for a square metre, all windows shut",
-                      1.5, kLeast, 1e4)};
+    return {
+        numberKey("celsius", Unit::None, "its temperature at the start, degrees Celsius", 20, -100,
+                  100),
+        numberKey("storage", Unit::None,
+                  "heat that its air and walls store, kJ/K for a square metre", 165, kLeast, 1e4),
+        numberKey("loss", Unit::None,
+                  "heat that it loses to the outside, W/K for a square metre, all windows shut",
+                  1.5, kLeast, 1e4)};
 }
 
 void addSpaces(std::vector<Schema>& out) {

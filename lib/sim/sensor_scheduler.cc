@@ -103,8 +103,8 @@ void SensorReader::addSensors() {
 }
 
 void SensorReader::follow(const SensorReader& before,
-                          const std::unordered_set<std::string_view>& stayers,
-                          SimTime time, const Movers& movers) {
+                          const std::unordered_set<std::string_view>& stayers, SimTime time,
+                          const Movers& movers) {
     followTrail(before, stayers, movers);
     followZones(before, time, movers);
     std::unordered_map<std::string_view, std::size_t> old;

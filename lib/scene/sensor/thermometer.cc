@@ -277,8 +277,9 @@ void lookUpZone(SensorModel& model, const Record& record, const RoomRecords& roo
         }
         if (zone == nullptr || zone == zones.end())
             throw FormatError(
-                record.finding("zone", "`zone`: it stands in no zone, whose temperature it would "
-                                       "report; name one"));
+                record.finding("zone",
+                               "`zone`: it stands in no zone, whose temperature it would "
+                               "report; name one"));
     }
     Thermometer& thermometer = std::get<Thermometer>(model);
     thermometer.zone = room.ids[zone->record];
