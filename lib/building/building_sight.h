@@ -40,6 +40,10 @@ std::vector<FloorOpening> floorOpenings(const BuildingScene& building);
 /// share the result if their openings are equal; storeys without openings keep their scenes.
 std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& building);
 
+/// Returns the scene of a storey without the openings in its floor, in its records, too, so that
+/// scenes that are made of them keep the openings.
+std::shared_ptr<const Scene> openedScene(const BuildingScene& building, std::size_t storey);
+
 /// Returns the room of the lowest of some storeys, with the bodies, floors and openings of the
 /// others in their positions above it. Floors and ceilings have no thickness, and openings are
 /// closed at the sides between the storey below and the floor. \pre `storeys` ascend

@@ -2,12 +2,14 @@
 #include "building/building_suggestions.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <string>
 #include <utility>
 
 #include "building/building_edit.h"
+#include "building/building_sight.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "trace/ray_world.h"
@@ -39,25 +41,29 @@ void nameAdded(Suggestion& suggestion, const Storey& storey, const std::vector<s
 }  // namespace
 
 std::vector<std::shared_ptr<const Scene>> wholeScenes(const BuildingScene& building) {
+    const auto floors = scenesOfFloors(building);
+    const auto is_first = [&floors](std::size_t i) {
+        return std::find(floors.begin(), floors.end(), floors[i]) - floors.begin() ==
+               static_cast<std::ptrdiff_t>(i);
+    };
     std::vector<std::shared_ptr<const Scene>> whole;
-    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
-        const auto& scene = building.scenes[i];
-        const auto first = std::find(building.scenes.begin(), building.scenes.end(), scene);
-        const bool is_first = first == building.scenes.begin() + static_cast<std::ptrdiff_t>(i);
-        whole.push_back(is_first ? sceneOfBuilding(building, i) : nullptr);
-    }
+    for (std::size_t i = 0; i < floors.size(); ++i)
+        whole.push_back(is_first(i) ? sceneOfBuilding(building, i) : nullptr);
     return whole;
 }
 
 std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::size_t storey,
                                          std::span<const std::shared_ptr<const Scene>> whole,
                                          const SuggestOptions& options) {
-    const Scene& scene = *whole[storey];
+    BuildingScene named = building;
+    named.scenes[storey] = whole[storey];
+    const std::shared_ptr<const Scene> opened = openedScene(named, storey);
+    const Scene& scene = *opened;
     SuggestOptions own = options;
     own.most = kKinds;
     own.requirements.clear();
     for (const auto& other : whole)
-        if (other != nullptr && other.get() != &scene) own.others.push_back(other.get());
+        if (other != nullptr && other != whole[storey]) own.others.push_back(other.get());
     Worlds worlds(scene.environment);
     const Coverage coverage = measureCoverage(scene, worlds, own.measure);
     SilentProgress silent;

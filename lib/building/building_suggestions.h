@@ -13,13 +13,13 @@
 namespace ispace {
 
 /// Returns the scenes with the ids of all records across the building; null for a storey that
-/// shares its scene with one below.
+/// shares its scene and the openings in its floor with one below.
 std::vector<std::shared_ptr<const Scene>> wholeScenes(const BuildingScene& building);
 
-/// Finds the changes of one storey by suggestChanges(), which may add sensors like those of other
-/// storeys: with ids across the building, which added sensors have, too, but with the gains of the
-/// storey by itself. Requirements are ignored. \param whole wholeScenes() \pre that of the storey
-/// is not null
+/// Finds the changes of one storey, without the openings in its floor, by suggestChanges(), which
+/// may add sensors like those of other storeys: with ids across the building, which added sensors
+/// have, too, but with the gains of the storey by itself. Requirements are ignored. \param whole
+/// wholeScenes() \pre that of the storey is not null
 std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::size_t storey,
                                          std::span<const std::shared_ptr<const Scene>> whole,
                                          const SuggestOptions& options);
@@ -30,9 +30,9 @@ BuildingScene editedStorey(const BuildingScene& building, std::size_t storey, co
 
 /// Finds changes of a measured building that would help, the one with the largest gain first; then
 /// those that save a sensor or its cost: those of suggestForStorey() on each storey, of storeys
-/// that share a scene on the lowest. Gains and shares are of the floor of the whole building, by
-/// measureBuilding(), so the floor counts that sensors see on other storeys.
-/// \param coverage of the building, by options.measure
+/// that share a scene and openings on the lowest. Gains and shares are of the floor of the whole
+/// building, by measureBuilding(), so the floor counts that sensors see on other storeys. \param
+/// coverage of the building, by options.measure
 std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
                                            const BuildingCoverage& coverage,
                                            const SuggestOptions& options, Progress& progress);

@@ -35,31 +35,6 @@ Polygon counterClockwise(Polygon outline) {
     return outline;
 }
 
-/// Returns the opening of a flight that leads straight ahead; without outline for others.
-FloorOpening openingOf(const Record& stairs) {
-    const Point2 foot = pointOf(stairs.tuple("at"));
-    const Pose2 frame{foot, stairs.angle("heading")};
-    const double width = stairs.tuple("size")[0], run = stairs.tuple("size")[1];
-    constexpr double kStraight = 1e-3;
-    FloorOpening opening;
-    if (stairs.has("top") &&
-        distance(pointOf(stairs.tuple("top")), frame * Point2{run, 0}) > kStraight)
-        return opening;
-    const Point2 right = frame * Point2{0, -width / 2}, left = frame * Point2{0, width / 2};
-    const Point2 far_right = frame * Point2{run, -width / 2};
-    const Point2 far_left = frame * Point2{run, width / 2};
-    opening.outline = {right, far_right, far_left, left};
-    opening.flight = {{right, left}, {far_right, far_left}};
-    return opening;
-}
-
-FloorOpening openingOfShaft(const Record& shaft) {
-    FloorOpening opening;
-    for (const Tuple& corner : shaft.list("path")) opening.outline.push_back(pointOf(corner));
-    opening.outline = counterClockwise(std::move(opening.outline));
-    return opening;
-}
-
 /// Returns the area less the openings.
 std::vector<Region> cutOut(const std::vector<Curve>& area, const std::vector<Polygon>& openings) {
     std::vector<Layer> layers = {{.curves = area, .counts = false, .marks = 1}};
@@ -329,26 +304,19 @@ class Surroundings {
     Triangles triangles_;
 };
 
-}  // namespace
-
-std::vector<FloorOpening> floorOpenings(const BuildingScene& building) {
-    std::vector<FloorOpening> openings;
-    for (const StoreyPassage& passage : building.document.passages) {
-        const bool is_shaft = passage.record.keyword() == "shaft";
-        if (!is_shaft && passage.record.keyword() != "stairs") continue;
-        FloorOpening opening =
-            is_shaft ? openingOfShaft(passage.record) : openingOf(passage.record);
-        if (opening.outline.size() < 3 || signedArea(opening.outline) == 0) continue;
-        for (std::size_t k = 0; k + 1 < passage.storeys.size(); ++k) {
-            opening.below = passage.storeys[k];
-            opening.above = passage.storeys[k + 1];
-            const auto& storeys = building.document.storeys;
-            if (storeys[opening.below].floor < storeys[opening.above].floor)
-                openings.push_back(opening);
-        }
+/// Returns the outlines of the openings in the floor of a storey, in its frame.
+std::vector<Polygon> outlinesIn(const BuildingScene& building,
+                                std::span<const FloorOpening> openings, std::size_t storey) {
+    std::vector<Polygon> outlines;
+    for (const FloorOpening& opening : openings) {
+        if (opening.above != storey) continue;
+        Polygon& outline = outlines.emplace_back(opening.outline);
+        for (Point2& p : outline) p = inStorey(building.document.storeys[storey], p);
     }
-    return openings;
+    return outlines;
 }
+
+}  // namespace
 
 std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& building) {
     constexpr double kEqualWithin = 1e-9;  // metres
@@ -356,18 +324,13 @@ std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& bu
     std::map<std::pair<const Scene*, std::vector<std::int64_t>>, std::shared_ptr<const Scene>> made;
     std::vector<std::shared_ptr<const Scene>> scenes = building.scenes;
     for (std::size_t i = 0; i < scenes.size(); ++i) {
-        std::vector<Polygon> outlines;
+        const std::vector<Polygon> outlines = outlinesIn(building, openings, i);
+        if (outlines.empty()) continue;
         std::vector<std::int64_t> numbers;
-        for (const FloorOpening& opening : openings) {
-            if (opening.above != i) continue;
-            Polygon& outline = outlines.emplace_back(opening.outline);
-            for (Point2& p : outline) {
-                p = inStorey(building.document.storeys[i], p);
+        for (const Polygon& outline : outlines)
+            for (const Point2 p : outline)
                 for (const double value : {p.x, p.y})
                     numbers.push_back(std::llround(value / kEqualWithin));
-            }
-        }
-        if (outlines.empty()) continue;
         auto& known = made[{scenes[i].get(), std::move(numbers)}];
         if (known == nullptr) {
             Scene scene = *scenes[i];
@@ -381,19 +344,13 @@ std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& bu
     return scenes;
 }
 
-std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,
-                                            std::span<const FloorOpening> openings) {
-    std::vector<std::vector<bool>> reached(storeys, std::vector<bool>(storeys));
-    std::vector<std::vector<std::size_t>> above(storeys);
-    for (const FloorOpening& opening : openings) above[opening.below].push_back(opening.above);
-    // The lowest storey is the first.
-    for (std::size_t i = storeys; i-- > 0;)
-        for (const std::size_t next : above[i]) {
-            reached[i][next] = true;
-            for (std::size_t k = next + 1; k < storeys; ++k)
-                if (reached[next][k]) reached[i][k] = true;
-        }
-    return reached;
+std::shared_ptr<const Scene> openedScene(const BuildingScene& building, std::size_t storey) {
+    const auto& scene = building.scenes[storey];
+    const auto outlines = outlinesIn(building, floorOpenings(building), storey);
+    if (outlines.empty()) return scene;
+    std::vector<Record> records = scene->records;
+    openFloor(scene->environment, outlines, records);
+    return std::make_shared<const Scene>(makeScene(std::move(records), *scene, building.devices));
 }
 
 Environment joinedRoom(const BuildingScene& building, std::span<const FloorOpening> openings,

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/building_suggestions.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "building/building_sight.h"
+
+namespace ispace {
+namespace {
+
+BuildingScene sceneOf(const std::string& text) {
+    return makeBuildingScene(readBuilding(text, "house.yaml", {}), {}, {});
+}
+
+TEST(BuildingSuggestions, AddNoSensorInAShaft) {
+    const BuildingScene building = sceneOf(
+        "- storey: {id: g, height: 3, records: [{ispace: {size: 10 x 10}}]}\n"
+        "- storey: {id: u, z: 3, records: [{ispace: {size: 10 x 10}}, "
+        "{laser: {id: l, at: [-4.8, -4.8, 1], range: 4, fov: 360}}]}\n"
+        "- shaft: {id: s, storeys: 'g,u', path: '-2,-2;4,-2;4,4;-2,4'}\n");
+    const auto whole = wholeScenes(building);
+    const auto floors = scenesOfFloors(building);
+    int added = 0;
+    for (const Suggestion& one : suggestForStorey(building, 1, whole, {})) {
+        const BuildingScene changed = editedStorey(building, 1, *whole[1], one.edits);
+        for (const Sensor& sensor : changed.scenes[1]->sensors)
+            EXPECT_EQ(floors[1]->environment.indoor().locate(sensor.pose.position.onFloor()),
+                      Side::Inside)
+                << one.text;
+        if (one.kind != Suggestion::Kind::Add) continue;
+        ++added;
+        // The gain is that of the floor around the shaft, as measured after the change.
+        const auto share = [](const BuildingScene& of) {
+            const BuildingCoverage measured = measureBuilding(of, {});
+            return measured.storeys[1].report.coverage.exact.value();
+        };
+        EXPECT_NEAR(one.gained, (share(changed) - share(building)) * 64, 1e-6);
+    }
+    EXPECT_EQ(added, 1);
+}
+
+TEST(BuildingSuggestions, AreForTheLowestOfEqualStoreys) {
+    const BuildingScene building = sceneOf(
+        "- storey: {id: a, height: 3, records: &room [{ispace: {size: 8 x 6}}, "
+        "{laser: {id: l, at: [3, -2, 1], range: 3}}]}\n"
+        "- storey: {id: b, z: 3, records: *room}\n- storey: {id: c, z: 6, records: *room}\n"
+        "- storey: {id: d, z: 9, records: *room}\n"
+        "- shaft: {id: s, storeys: 'b,c,d', path: '-1,-1;1,-1;1,1;-1,1'}\n");
+    const auto whole = wholeScenes(building);
+    ASSERT_EQ(whole.size(), 4U);
+    EXPECT_NE(whole[0], nullptr);
+    EXPECT_EQ(whole[1], nullptr);  // as the lowest: the shaft opens the floors above
+    ASSERT_NE(whole[2], nullptr);
+    EXPECT_EQ(whole[2]->ids, (std::vector<std::string>{"c/ispace1", "c/l"}));
+    EXPECT_EQ(whole[3], nullptr);
+    EXPECT_FALSE(suggestForStorey(building, 2, whole, {}).empty());
+}
+
+}  // namespace
+}  // namespace ispace
