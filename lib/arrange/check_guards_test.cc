@@ -270,6 +270,11 @@ TEST(CheckGuards, TextSurvivesWritingAndReading) {
         EXPECT_NE(refusalOf(head + wrong), "") << wrong;
     EXPECT_NE(refusalOf(std::string("#certificate 1\nbound 3\n")), "");
     EXPECT_NE(refusalOf(std::string("guards 3\n")), "");
+    // Certificates that prove no guards.
+    EXPECT_NE(refusalOf(head).find("proves no guards"), std::string::npos);
+    EXPECT_NE(
+        refusalOf("#certificate 1\nguards 0\nwitnesses\n0 1\ntree\nleaf 0:5\n").find("at least 1"),
+        std::string::npos);
 }
 
 }  // namespace

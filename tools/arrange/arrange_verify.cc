@@ -20,6 +20,10 @@ namespace ispace {
 
 namespace {
 
+std::string lasersText(std::size_t count) {
+    return std::to_string(count) + (count == 1 ? " laser" : " lasers");
+}
+
 /// Checks a proof of the fewest lasers.
 void verifyGuards(const ArrangeToolOptions& options, const Scene& scene, const std::string& text) {
     constexpr int kDigits = 3;
@@ -41,12 +45,20 @@ void verifyGuards(const ArrangeToolOptions& options, const Scene& scene, const s
     if (check.missed > kMissedShare * check.area)
         throw UnmetError(printable(file) + ": the layout leaves " + missed + " of " +
                          formatFixed(check.area, 2) + " m2 unseen");
+    const auto count = static_cast<std::size_t>(lasers);
+    if (count < check.bound)
+        throw UnmetError(printable(file) + ": the layout is short by its unseen floor of " +
+                         missed + ": " + lasersText(count) + " cannot see all, at least " +
+                         std::to_string(check.bound) + " are needed in any poses");
+    const std::string gap =
+        count == check.bound ? "proven fewest" : "gap " + lasersText(count - check.bound);
     tell(options.common, "arrange",
          "the layout sees the floor of " + formatFixed(check.area, 2) + " m2 but for " + missed +
-             " by " + std::to_string(lasers) + (lasers == 1 ? " laser" : " lasers") +
-             "; at least " + std::to_string(check.bound) + " are needed in any poses: verified " +
-             "(witnesses: " + std::to_string(certificate.witnesses.size()) + ", trees: " +
-             std::to_string(check.trees) + ", leaves: " + std::to_string(check.leaves) +
+             " by " + lasersText(count) + "; at least " + std::to_string(check.bound) +
+             (check.bound == 1 ? " is" : " are") + " needed in any poses (" + gap +
+             "): verified (witnesses: " + std::to_string(certificate.witnesses.size()) +
+             ", trees: " + std::to_string(check.trees) +
+             ", leaves: " + std::to_string(check.leaves) +
              ", parts of the floor: " + std::to_string(check.cells) + ")");
 }
 

@@ -123,7 +123,7 @@ GuardCertificate readGuardCertificate(std::string_view text, const std::string& 
     const auto bound = first.starts_with(kGuards)
                            ? wholeOf<std::size_t>(first.substr(kGuards.size()))
                            : std::nullopt;
-    if (!bound) lines.refuse("wanted `guards NUMBER`");
+    if (!bound || *bound == 0) lines.refuse("wanted `guards NUMBER`, at least 1");
     GuardCertificate certificate;
     certificate.bound = *bound;
     if (lines.next() != "witnesses") lines.refuse("wanted `witnesses`");
@@ -144,6 +144,7 @@ GuardCertificate readGuardCertificate(std::string_view text, const std::string& 
         else
             certificate.trees.back().push_back(nodeOf(line, lines));
     }
+    if (certificate.trees.empty()) lines.refuse("proves no guards: wanted `tree`");
     return certificate;
 }
 
