@@ -304,14 +304,12 @@ class Surroundings {
     Triangles triangles_;
 };
 
-/// Returns the outlines of the openings in the floor of a storey, in its frame.
-std::vector<Polygon> outlinesIn(const BuildingScene& building,
-                                std::span<const FloorOpening> openings, std::size_t storey) {
-    std::vector<Polygon> outlines;
-    for (const FloorOpening& opening : openings) {
-        if (opening.above != storey) continue;
-        Polygon& outline = outlines.emplace_back(opening.outline);
-        for (Point2& p : outline) p = inStorey(building.document.storeys[storey], p);
+/// Returns in [i] the outlines of the openings in the floor of storey i, in its frame.
+std::vector<std::vector<Polygon>> outlinesInFloors(const BuildingScene& building) {
+    std::vector<std::vector<Polygon>> outlines(building.scenes.size());
+    for (const FloorOpening& opening : floorOpenings(building)) {
+        Polygon& outline = outlines[opening.above].emplace_back(opening.outline);
+        for (Point2& p : outline) p = inStorey(building.document.storeys[opening.above], p);
     }
     return outlines;
 }
@@ -320,11 +318,11 @@ std::vector<Polygon> outlinesIn(const BuildingScene& building,
 
 std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& building) {
     constexpr double kEqualWithin = 1e-9;  // metres
-    const std::vector<FloorOpening> openings = floorOpenings(building);
+    const std::vector<std::vector<Polygon>> of_floors = outlinesInFloors(building);
     std::map<std::pair<const Scene*, std::vector<std::int64_t>>, std::shared_ptr<const Scene>> made;
     std::vector<std::shared_ptr<const Scene>> scenes = building.scenes;
     for (std::size_t i = 0; i < scenes.size(); ++i) {
-        const std::vector<Polygon> outlines = outlinesIn(building, openings, i);
+        const std::vector<Polygon>& outlines = of_floors[i];
         if (outlines.empty()) continue;
         std::vector<std::int64_t> numbers;
         for (const Polygon& outline : outlines)
@@ -346,7 +344,7 @@ std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& bu
 
 std::shared_ptr<const Scene> openedScene(const BuildingScene& building, std::size_t storey) {
     const auto& scene = building.scenes[storey];
-    const auto outlines = outlinesIn(building, floorOpenings(building), storey);
+    const std::vector<Polygon> outlines = outlinesInFloors(building)[storey];
     if (outlines.empty()) return scene;
     std::vector<Record> records = scene->records;
     openFloor(scene->environment, outlines, records);
