@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geom/polygon.h"
+#include "sense/selection.h"
 
 namespace ispace {
 
