@@ -5,38 +5,15 @@
 #include <cmath>
 #include <optional>
 
-#include "base/error.h"
+#include "arrange/certificate_lines.h"
 #include "base/number.h"
 
 namespace ispace {
 
 namespace {
 
-constexpr std::string_view kGuardMagic = "#certificate 1", kGuards = "guards ";
+constexpr std::string_view kGuards = "guards ";
 constexpr std::size_t kMostWitnesses = 100'000, kMostNodes = 100'000;
-
-/// Reads words of lines, which it counts.
-class GuardLines {
-  public:
-    GuardLines(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
-
-    [[nodiscard]] bool atEnd() const { return rest_.empty(); }
-    [[nodiscard]] std::string_view peek() const { return rest_.substr(0, rest_.find('\n')); }
-    std::string_view next() {
-        const std::string_view line = peek();
-        rest_.remove_prefix(std::min(line.size() + 1, rest_.size()));
-        ++number_;
-        return line;
-    }
-    [[noreturn]] void refuse(const std::string& message) const {
-        throw FormatError({name_, number_, 0, message});
-    }
-
-  private:
-    std::string_view rest_;
-    const std::string& name_;
-    int number_ = 0;
-};
 
 /// Removes the first word, up to a separator.
 std::string_view takeWord(std::string_view& line, char separator) {
@@ -54,7 +31,7 @@ std::optional<Number> wholeOf(std::string_view word) {
     return number;
 }
 
-GuardCertificate::Node nodeOf(std::string_view line, const GuardLines& lines) {
+GuardCertificate::Node nodeOf(std::string_view line, const CertificateLines& lines) {
     GuardCertificate::Node node;
     const std::string_view kind = takeWord(line, ' ');
     node.is_leaf = kind == "leaf";
@@ -92,9 +69,7 @@ void addNode(const GuardCertificate::Node& node, std::string& text) {
 
 std::string certificateText(const GuardCertificate& certificate,
                             const std::vector<std::string>& history) {
-    std::string text(kGuardMagic);
-    text += '\n';
-    for (const std::string& line : history) text.append("# ").append(line) += '\n';
+    std::string text = certificateHead(history);
     text.append(kGuards).append(std::to_string(certificate.bound)) += "\nwitnesses\n";
     for (const Point2 p : certificate.witnesses)
         text.append(formatDouble(p.x)).append(" ").append(formatDouble(p.y)) += '\n';
@@ -115,10 +90,7 @@ bool isOfGuards(std::string_view certificate) {
 }
 
 GuardCertificate readGuardCertificate(std::string_view text, const std::string& name) {
-    GuardLines lines(text, name);
-    if (lines.next() != kGuardMagic)
-        lines.refuse("not a certificate of this version: wanted " + std::string(kGuardMagic));
-    while (lines.peek().starts_with('#')) lines.next();
+    CertificateLines lines(text, name);
     const std::string_view first = lines.next();
     const auto bound = first.starts_with(kGuards)
                            ? wholeOf<std::size_t>(first.substr(kGuards.size()))

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/error.h"
+#include "arrange/certificate_lines.h"
 #include "base/message.h"
 #include "base/number.h"
 
@@ -12,7 +12,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::string_view kMagic = "#certificate 1", kBound = "bound ";
+constexpr std::string_view kBound = "bound ";
 constexpr std::size_t kWidth = 100;  // of a line of a tree
 
 struct Tree {
@@ -23,36 +23,11 @@ constexpr Tree kTrees[] = {{"boxes", "xyh.", &PoseCertificate::boxes},
                            {"pairs", "01.-", &PoseCertificate::pairs},
                            {"tuples", "0123.-", &PoseCertificate::tuples}};
 
-/// Reads lines, which it counts.
-class CertificateLines {
-  public:
-    CertificateLines(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
-
-    [[nodiscard]] bool atEnd() const { return rest_.empty(); }
-    [[nodiscard]] std::string_view peek() const { return rest_.substr(0, rest_.find('\n')); }
-    std::string_view next() {
-        const std::string_view line = peek();
-        rest_.remove_prefix(std::min(line.size() + 1, rest_.size()));
-        ++number_;
-        return line;
-    }
-    [[noreturn]] void refuse(const std::string& message) const {
-        throw FormatError({name_, number_, 0, message});
-    }
-
-  private:
-    std::string_view rest_;
-    const std::string& name_;
-    int number_ = 0;
-};
-
 }  // namespace
 
 std::string certificateText(const PoseCertificate& certificate,
                             const std::vector<std::string>& history) {
-    std::string text(kMagic);
-    text += '\n';
-    for (const std::string& line : history) text.append("# ").append(line) += '\n';
+    std::string text = certificateHead(history);
     text.append(kBound).append(formatDouble(certificate.bound)) += '\n';
     for (const Tree& tree : kTrees) {
         text.append(tree.name) += '\n';
@@ -65,9 +40,6 @@ std::string certificateText(const PoseCertificate& certificate,
 
 PoseCertificate readCertificate(std::string_view text, const std::string& name) {
     CertificateLines lines(text, name);
-    if (lines.next() != kMagic)
-        lines.refuse("not a certificate of this version: wanted " + std::string(kMagic));
-    while (lines.peek().starts_with('#')) lines.next();
     const std::string_view first = lines.next();
     const auto bound =
         first.starts_with(kBound) ? parseDouble(first.substr(kBound.size())) : std::nullopt;
