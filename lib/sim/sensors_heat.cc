@@ -2,6 +2,8 @@
 // Zones have one temperature for all their thermometers.
 #include "sim/sensor_scheduler.h"
 
+#include <utility>
+
 namespace ispace {
 
 /// Sets a thermometer's value so that its next one continues from the zone's last state.
@@ -28,10 +30,11 @@ void SensorReader::heatZones(std::span<const std::size_t> due) {
 /// Advances the zones to the end of the scene before.
 void SensorReader::followZones(const SensorReader& before, SimTime time, const Movers& movers) {
     zones_ = before.zones_;
+    bool are_bodies_here = false;
     for (const Sensor& sensor : before.sensors_) {
         const auto* const thermometer = sensor.tryAs<Thermometer>();
         if (thermometer == nullptr) continue;
-        updateBodies(movers);
+        if (!std::exchange(are_bodies_here, true)) updateBodies(movers);
         zones_.advance(*thermometer, seconds(time), bodies_);
     }
 }
