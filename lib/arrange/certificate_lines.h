@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/arrange: the lines that all certificates have in common.
+// lib/arrange: the lines that all certificates have in common. Uses base alone.
 #pragma once
 
 #include <algorithm>
