@@ -42,23 +42,6 @@ KeySpec atKey() {
     return key;
 }
 
-KeySpec floorAtKey() {
-    KeySpec key = pointKey("at", "centre x,y");
-    key.default_value = Tuple{0, 0};
-    return key;
-}
-
-KeySpec headingKey() {
-    return {.name = "heading",
-            .type = KeyType::Number,
-            .unit = Unit::Angle,
-            .help = "direction of the length, counter-clockwise from +x",
-            .default_value = 0.0,
-            .lower = -kMaxDistance,
-            .upper = kMaxDistance,
-            .role = Role::Heading};
-}
-
 /// Returns the key of extents, each above 0.
 KeySpec sizeKey(std::string help, std::size_t min_count, std::size_t max_count) {
     KeySpec key = lengths("size", std::move(help), min_count, max_count);
@@ -83,11 +66,67 @@ KeySpec heightKey(std::string help = "height, unless size holds it") {
             .lower_open = true};
 }
 
-KeySpec heightKey(double standard, std::string help = "height, unless size holds it") {
+}  // namespace
+
+namespace keys {
+
+KeySpec floorAt() {
+    KeySpec key = pointKey("at", "centre x,y");
+    key.default_value = Tuple{0, 0};
+    return key;
+}
+
+KeySpec heading() {
+    return {.name = "heading",
+            .type = KeyType::Number,
+            .unit = Unit::Angle,
+            .help = "direction of the length, counter-clockwise from +x",
+            .default_value = 0.0,
+            .lower = -kMaxDistance,
+            .upper = kMaxDistance,
+            .role = Role::Heading};
+}
+
+KeySpec height(double standard, std::string help) {
     KeySpec key = heightKey(std::move(help));
     key.default_value = standard;
     return key;
 }
+
+KeySpec flag(std::string name, std::string help) {
+    return {.name = std::move(name),
+            .type = KeyType::Flag,
+            .help = std::move(help),
+            .default_value = false};
+}
+
+KeySpec texture(const std::string& where) {
+    return {.name = "texture",
+            .type = KeyType::Text,
+            .help = "picture " + where +
+                    ", edge to edge: PNG, JPEG and others, relative to the folder of this file",
+            .role = Role::File};
+}
+
+Schema schemaOf(std::string keyword, RecordType type, std::string help, std::vector<KeySpec> keys) {
+    keys.insert(keys.begin(), idKey());
+    return {std::move(keyword), type, std::move(help), std::move(keys)};
+}
+
+KeySpec number(std::string name, Unit unit, std::string help, double standard, double lower,
+               double upper) {
+    return {.name = std::move(name),
+            .type = KeyType::Number,
+            .unit = unit,
+            .help = std::move(help),
+            .default_value = standard,
+            .lower = lower,
+            .upper = upper};
+}
+
+}  // namespace keys
+
+namespace {
 
 KeySpec thicknessKey(std::string help) {
     return {.name = "thickness",
@@ -104,13 +143,6 @@ KeySpec kindKey(std::string help, std::vector<std::string> choices) {
     key.default_value = choices.front();
     key.choices = std::move(choices);
     return key;
-}
-
-KeySpec flagKey(std::string name, std::string help) {
-    return {.name = std::move(name),
-            .type = KeyType::Flag,
-            .help = std::move(help),
-            .default_value = false};
 }
 
 KeySpec textKey(std::string name, std::string help) {
@@ -134,68 +166,45 @@ KeySpec tagKey() {
 
 namespace {
 
-/// `where`: how the picture lies on the body.
-KeySpec textureKey(const std::string& where) {
-    return {.name = "texture",
-            .type = KeyType::Text,
-            .help = "picture " + where +
-                    ", edge to edge: PNG, JPEG and others, relative to the folder of this file",
-            .role = Role::File};
-}
-
-Schema schema(std::string keyword, RecordType type, std::string help, std::vector<KeySpec> keys) {
-    keys.insert(keys.begin(), idKey());
-    return {std::move(keyword), type, std::move(help), std::move(keys)};
-}
-
-KeySpec numberKey(std::string name, Unit unit, std::string help, double standard, double lower,
-                  double upper) {
-    return {.name = std::move(name),
-            .type = KeyType::Number,
-            .unit = unit,
-            .help = std::move(help),
-            .default_value = standard,
-            .lower = lower,
-            .upper = upper};
-}
-
 /// Returns the keys of a zone's heat, for thermometers.
 std::vector<KeySpec> heatKeys() {
     constexpr double kLeast = 1e-3;  // keeps the temperature finite
     return {
-        numberKey("celsius", Unit::None, "its temperature at the start, degrees Celsius", 20, -100,
-                  100),
-        numberKey("storage", Unit::None,
-                  "heat that its air and walls store, kJ/K for a square metre", 165, kLeast, 1e4),
-        numberKey("loss", Unit::None,
-                  "heat that it loses to the outside, W/K for a square metre, all windows shut",
-                  1.5, kLeast, 1e4)};
+        keys::number("celsius", Unit::None, "its temperature at the start, degrees Celsius", 20,
+                     -100, 100),
+        keys::number("storage", Unit::None,
+                     "heat that its air and walls store, kJ/K for a square metre", 165, kLeast,
+                     1e4),
+        keys::number("loss", Unit::None,
+                     "heat that it loses to the outside, W/K for a square metre, all windows shut",
+                     1.5, kLeast, 1e4)};
 }
 
 void addSpaces(std::vector<Schema>& out) {
-    out.push_back(schema(
+    out.push_back(keys::schemaOf(
         "ispace", RecordType::Space, "a room: floor and four walls",
-        {floorAtKey(), headingKey(), sizeKey("length,width[,height] of the room", 2, 3, {8, 8}),
-         heightKey(kWallHeight), flagKey("ceiling", "close it with a ceiling")}));
+        {keys::floorAt(), keys::heading(),
+         sizeKey("length,width[,height] of the room", 2, 3, {8, 8}), keys::height(kWallHeight),
+         keys::flag("ceiling", "close it with a ceiling")}));
     KeySpec inside_at = pointKey("at", "the point x,y");
     inside_at.required = true;
-    out.push_back(schema("inside", RecordType::Space,
-                         "a point known to be inside the room; several make several rooms",
-                         {std::move(inside_at)}));
-    Schema zone = schema("zone", RecordType::Space,
-                         "a part of the floor, called by its id: a polygon or a rectangle",
-                         {pathKey("corners of the polygon, three or more"), floorAtKey(),
-                          headingKey(), sizeKey("length,width of the rectangle", 2, 2),
-                          textKey("number", "number of the room, as on its door"),
-                          textKey("name", "name of the room")});
+    out.push_back(keys::schemaOf("inside", RecordType::Space,
+                                 "a point known to be inside the room; several make several rooms",
+                                 {std::move(inside_at)}));
+    Schema zone = keys::schemaOf("zone", RecordType::Space,
+                                 "a part of the floor, called by its id: a polygon or a rectangle",
+                                 {pathKey("corners of the polygon, three or more"), keys::floorAt(),
+                                  keys::heading(), sizeKey("length,width of the rectangle", 2, 2),
+                                  textKey("number", "number of the room, as on its door"),
+                                  textKey("name", "name of the room")});
     for (KeySpec& key : heatKeys()) zone.keys.push_back(std::move(key));
     out.push_back(std::move(zone));
-    out.push_back(
-        schema("weather", RecordType::Space,
-               "the weather outside, for thermometers: scripts and clients may change it",
-               {numberKey("celsius", Unit::None, "of the air, degrees Celsius", 10, -100, 100),
-                numberKey("sun", Unit::None, "that falls on each window, W for a square metre", 0,
-                          0, 1500)}));
+    out.push_back(keys::schemaOf(
+        "weather", RecordType::Space,
+        "the weather outside, for thermometers: scripts and clients may change it",
+        {keys::number("celsius", Unit::None, "of the air, degrees Celsius", 10, -100, 100),
+         keys::number("sun", Unit::None, "that falls on each window, W for a square metre", 0, 0,
+                      1500)}));
 }
 
 void addFloors(std::vector<Schema>& out) {
@@ -205,12 +214,13 @@ void addFloors(std::vector<Schema>& out) {
                      .default_value = 0.0,
                      .lower = 0,
                      .upper = 1};
-    out.push_back(schema(
+    out.push_back(keys::schemaOf(
         "floor", RecordType::Floor, "a covering of a part of the floor",
-        {floorAtKey(), headingKey(), sizeKey("length,width of the covering", 2, 2, {8, 8}),
+        {keys::floorAt(), keys::heading(), sizeKey("length,width of the covering", 2, 2, {8, 8}),
          kindKey("one colour, or squares in two", {"plain", "checker"}), std::move(friction),
-         textureKey("that covers it once, its lower edge along the length, its top to the left of "
-                    "the heading")}));
+         keys::texture(
+             "that covers it once, its lower edge along the length, its top to the left of "
+             "the heading")}));
 }
 
 void addWalls(std::vector<Schema>& out) {
@@ -218,20 +228,20 @@ void addWalls(std::vector<Schema>& out) {
     // in the others.
     KeySpec wall_size = lengths("size", "length[,thickness[,height]]", 1, 3);
     wall_size.lower = 0;
-    out.push_back(
-        schema("wall", RecordType::Wall, "a straight wall, by its ends or by centre and length",
-               {pointKey("from", "one end of the mid-line"), pointKey("to", "the other end"),
-                atKey(), headingKey(), std::move(wall_size), heightKey(kWallHeight),
-                thicknessKey("thickness, unless size holds it"),
-                kindKey("material", {"plain", "brick", "wood", "concrete"}),
-                textureKey("that covers each of its two faces once, upright, from neither side "
-                           "mirrored")}));
-    out.push_back(schema(
+    out.push_back(keys::schemaOf(
+        "wall", RecordType::Wall, "a straight wall, by its ends or by centre and length",
+        {pointKey("from", "one end of the mid-line"), pointKey("to", "the other end"), atKey(),
+         keys::heading(), std::move(wall_size), keys::height(kWallHeight),
+         thicknessKey("thickness, unless size holds it"),
+         kindKey("material", {"plain", "brick", "wood", "concrete"}),
+         keys::texture("that covers each of its two faces once, upright, from neither side "
+                       "mirrored")}));
+    out.push_back(keys::schemaOf(
         "fence", RecordType::Wall, "walls along a path, as drawn in the fast construct mode",
         {pathKey("corners of the mid-line, two or more"), pointKey("from", "one end"),
-         pointKey("to", "the other end"), flagKey("closed", "join the last point to the first"),
-         heightKey(kWallHeight, "height"), thicknessKey("thickness"),
-         textureKey("that covers both faces of each of its walls once, upright")}));
+         pointKey("to", "the other end"), keys::flag("closed", "join the last point to the first"),
+         keys::height(kWallHeight, "height"), thicknessKey("thickness"),
+         keys::texture("that covers both faces of each of its walls once, upright")}));
 }
 
 KeySpec countKey(std::string name, std::string help, double standard, double most) {
@@ -246,7 +256,7 @@ KeySpec countKey(std::string name, std::string help, double standard, double mos
 
 /// Returns the keys that give the position of a door or a window.
 std::vector<KeySpec> openingKeys(double standard_width) {
-    KeySpec heading = headingKey();
+    KeySpec heading = keys::heading();
     heading.help = "direction of the wall, where several are near";
     heading.default_value.reset();
     return {{.name = "wall",
@@ -269,12 +279,12 @@ std::vector<KeySpec> openingKeys(double standard_width) {
 
 void addOpenings(std::vector<Schema>& out) {
     std::vector<KeySpec> door = openingKeys(0.9);
-    door.push_back(heightKey(2, "height, unless size holds it"));
-    door.push_back(flagKey("open", "yes: one can pass, and the rooms on both sides are one"));
-    out.push_back(schema("door", RecordType::Wall, "an opening down to the floor, with a leaf",
-                         std::move(door)));
+    door.push_back(keys::height(2, "height, unless size holds it"));
+    door.push_back(keys::flag("open", "yes: one can pass, and the rooms on both sides are one"));
+    out.push_back(keys::schemaOf("door", RecordType::Wall,
+                                 "an opening down to the floor, with a leaf", std::move(door)));
     std::vector<KeySpec> window = openingKeys(1.2);
-    window.push_back(heightKey(1.2, "height, unless size holds it"));
+    window.push_back(keys::height(1.2, "height, unless size holds it"));
     window.push_back({.name = "sill",
                       .type = KeyType::Number,
                       .unit = Unit::Length,
@@ -288,26 +298,26 @@ void addOpenings(std::vector<Schema>& out) {
                   .default_value = "clear",
                   .choices = {"clear", "opaque", "none"}};
     window.push_back(std::move(glass));
-    window.push_back(flagKey("open", "yes: its pane is away"));
-    window.push_back(flagKey("blind", "yes: its blind is shut, and light stops"));
-    out.push_back(schema("window", RecordType::Wall, "an opening above a sill, with a pane",
-                         std::move(window)));
+    window.push_back(keys::flag("open", "yes: its pane is away"));
+    window.push_back(keys::flag("blind", "yes: its blind is shut, and light stops"));
+    out.push_back(keys::schemaOf("window", RecordType::Wall, "an opening above a sill, with a pane",
+                                 std::move(window)));
 }
 
 void addInfra(std::vector<Schema>& out) {
-    out.push_back(schema("infra", RecordType::Infra,
-                         "a frame of bars under the ceiling, to hang sensors from",
-                         {floorAtKey(), headingKey(), sizeKey("length,width", 2, 2, {4, 4}),
-                          heightKey(2.4, "height of the bars' underside"),
-                          countKey("rows", "bars along the length", 3, 1000),
-                          countKey("cols", "bars across", 3, 1000)}));
+    out.push_back(keys::schemaOf(
+        "infra", RecordType::Infra, "a frame of bars under the ceiling, to hang sensors from",
+        {keys::floorAt(), keys::heading(), sizeKey("length,width", 2, 2, {4, 4}),
+         keys::height(2.4, "height of the bars' underside"),
+         countKey("rows", "bars along the length", 3, 1000),
+         countKey("cols", "bars across", 3, 1000)}));
 }
 
 Schema meshSchema() {
-    return schema(
+    return keys::schemaOf(
         "mesh", RecordType::Other, "a body from a file: OBJ, STL, PLY, COLLADA, glTF, GLB or IFC",
         {atKey(),
-         headingKey(),
+         keys::heading(),
          {.name = "file",
           .type = KeyType::Text,
           .help = "the file, relative to the folder of this one",
@@ -346,60 +356,42 @@ void addThings(std::vector<Schema>& out) {
     const std::string box = "length,width[,height]";
     const std::string round = "length,width[,height], or the diameter";
     const auto other = [&out](std::string keyword, std::string help, std::vector<KeySpec> keys) {
-        keys.insert(keys.begin(), {atKey(), headingKey()});
+        keys.insert(keys.begin(), {atKey(), keys::heading()});
         keys.push_back(tagKey());
-        out.push_back(
-            schema(std::move(keyword), RecordType::Other, std::move(help), std::move(keys)));
+        out.push_back(keys::schemaOf(std::move(keyword), RecordType::Other, std::move(help),
+                                     std::move(keys)));
     };
-    out.push_back(
-        schema("pillar", RecordType::Infra, "a pillar of the building",
-               {atKey(), headingKey(),
-                sizeKey("length,width[,height], or the width of all sides", 1, 3, {0.4, 0.4}),
-                heightKey(kWallHeight), kindKey("its section", {"square", "round"})}));
-    other("table", "a round table on one foot", {sizeKey(round, 1, 3, {0.9, 0.9}), heightKey(0.7)});
+    out.push_back(keys::schemaOf(
+        "pillar", RecordType::Infra, "a pillar of the building",
+        {atKey(), keys::heading(),
+         sizeKey("length,width[,height], or the width of all sides", 1, 3, {0.4, 0.4}),
+         keys::height(kWallHeight), kindKey("its section", {"square", "round"})}));
+    other("table", "a round table on one foot",
+          {sizeKey(round, 1, 3, {0.9, 0.9}), keys::height(0.7)});
     other("desk", "a desk; its length lies along the heading, its open side to the right",
-          {sizeKey(box, 2, 3, {1.2, 0.8}), heightKey(0.7),
+          {sizeKey(box, 2, 3, {1.2, 0.8}), keys::height(0.7),
            kindKey("on four legs, or on panels down to the floor", {"legs", "closed"})});
     other("chair", "a chair; its back is behind, against the heading",
-          {sizeKey(box, 2, 3, {0.45, 0.45}), heightKey(0.85)});
+          {sizeKey(box, 2, 3, {0.45, 0.45}), keys::height(0.85)});
     other("barrier", "a thin upright board",
-          {sizeKey(box, 2, 3, {1.2, 0.05}), heightKey(1),
-           textureKey("that covers each of its two long sides once, upright")});
+          {sizeKey(box, 2, 3, {1.2, 0.05}), keys::height(1),
+           keys::texture("that covers each of its two long sides once, upright")});
     other("boxes", "boxes upon each other",
-          {sizeKey("length,width[,height] of the stack", 2, 3, {0.6, 0.4}), heightKey(0.9),
+          {sizeKey("length,width[,height] of the stack", 2, 3, {0.6, 0.4}), keys::height(0.9),
            countKey("count", "how many", 3, 100)});
     other("screen", "a projection screen on two feet; its length lies along the heading",
-          {sizeKey(box, 2, 3, {1.8, 0.5}), heightKey(2),
-           textureKey("that covers each side of its board once, upright")});
+          {sizeKey(box, 2, 3, {1.8, 0.5}), keys::height(2),
+           keys::texture("that covers each side of its board once, upright")});
     other("cube", "a box",
           {sizeKey("the edge, or length,width[,height]", 1, 3, {0.5}),
            heightKey("height, unless size holds it; without both the length"),
-           textureKey("that covers each of its four sides once, upright, and its top, with the "
-                      "picture's right towards the heading")});
+           keys::texture("that covers each of its four sides once, upright, and its top, with the "
+                         "picture's right towards the heading")});
     other("cylinder", "an upright cylinder, elliptic where length and width differ",
-          {sizeKey(round, 1, 3, {0.3, 0.3}), heightKey(0.5)});
+          {sizeKey(round, 1, 3, {0.3, 0.3}), keys::height(0.5)});
 }
 
 }  // namespace
-
-namespace keys {
-
-KeySpec floorAt() { return floorAtKey(); }
-KeySpec heading() { return headingKey(); }
-KeySpec height(double standard, std::string help) { return heightKey(standard, std::move(help)); }
-KeySpec flag(std::string name, std::string help) {
-    return flagKey(std::move(name), std::move(help));
-}
-KeySpec number(std::string name, Unit unit, std::string help, double standard, double lower,
-               double upper) {
-    return numberKey(std::move(name), unit, std::move(help), standard, lower, upper);
-}
-KeySpec texture(const std::string& where) { return textureKey(where); }
-Schema schemaOf(std::string keyword, RecordType type, std::string help, std::vector<KeySpec> keys) {
-    return schema(std::move(keyword), type, std::move(help), std::move(keys));
-}
-
-}  // namespace keys
 
 std::vector<Schema> environmentSchemas() {
     std::vector<Schema> out;
