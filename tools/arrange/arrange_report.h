@@ -7,6 +7,7 @@
 
 #include "arrange/arrange_run.h"
 #include "report/camera_rules_report.h"
+#include "report/objective_report.h"
 
 namespace ispace {
 
