@@ -131,6 +131,7 @@ void takeViews(const ScanCommand& command) {
         if (!view.storey.empty())
             throw UsageError("--view: " + view.storey + "/ is a storey, and this is one room");
     std::vector<std::string> names;
+    names.reserve(views.size());
     for (const ViewSpec& view : views) names.push_back(view.name);
     PictureFiles pictures(options, names, frames);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
@@ -152,6 +153,7 @@ void takeViews(const ScanCommand& command) {
         drawing.exposure = options.photo.exposure;
         drawing.viewers = viewersOf(views, scene);
         std::vector<PictureJob> jobs;
+        jobs.reserve(views.size());
         for (const ViewSpec& view : views)
             jobs.push_back({view.name, labelOf(view),
                             pictureSizeOf(view, scene, options.picture_size),
