@@ -194,6 +194,19 @@ TEST(Environment, ReportsAllFindingsWithTheirPlace) {
               "room.env:8:12: error: fence crosses itself near (1.0, 1.0)\n");
 }
 
+TEST(Environment, HasOneWeather) {
+    EXPECT_EQ(findings("ispace\nweather sun=500\n"), "");
+    EXPECT_EQ(findings("weather sun=500\nispace\nweather id=w\n"),
+              "room.env:4:1: error: the room has weather already, in line 2\n");
+
+    const std::vector<Record> one = document("ispace\nweather id=w\n").records;
+    const std::vector<Record> changed = document("ispace\nweather id=w sun=500\n").records;
+    const std::vector<Record> two = document("ispace\nweather id=w\nweather id=v\n").records;
+    const Environment before = environment(one);
+    EXPECT_NO_THROW(Environment(changed, assignIds(changed), before));
+    EXPECT_THROW(Environment(two, assignIds(two), before), FormatError);
+}
+
 TEST(Environment, RefusesWhatVanishesInRounding) {
     EXPECT_NE(findings("ispace\ncube at=1000000,0 size=1e-11\n").find("too small"),
               std::string::npos);

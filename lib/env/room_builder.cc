@@ -46,6 +46,20 @@ std::vector<const Record*> insideRecords(std::span<const Element> elements) {
     return inside;
 }
 
+/// All weather is the same outside: a second record would contradict the first.
+void checkWeather(std::span<const Element> elements, Diagnostics& findings) {
+    const Record* first = nullptr;
+    for (const Element& element : elements) {
+        const Record& record = element.record;
+        if (record.keyword() != "weather") continue;
+        if (first != nullptr)
+            findings.add(record.finding("the room has weather already, in " +
+                                        otherPlace(first->place(), record.place())));
+        else
+            first = &record;
+    }
+}
+
 /// Limit of corners in all shapes: a constant, and more for each written record than for one that a
 /// repetition creates. A few lines can define round and checkered objects without end; hand-written
 /// plans stay far below the limit.
@@ -83,6 +97,7 @@ class Builder {
         else
             takeInBlocks(records, ids);
         inside_ = insideRecords(elements_);
+        checkWeather(elements_, findings_);
         if (plan_.walls.empty() && walls_whole_)
             findings_.add(fileFinding(elements_, noWallsText()));
         // The region inside a self-crossing wall is meaningless and may take long to find.
@@ -348,6 +363,7 @@ std::optional<EditedElements> editElements(std::span<const Element> before, std:
     EditedElements edited{{}, corners};
     edited.elements.reserve(before.size() + 1);
     std::size_t next = 0;  // of `before`
+    bool has_new_weather = false;
     const auto is_at = [&](std::size_t i, std::size_t record) {
         return i < before.size() && record < ids.size() && before[i].id == ids[record];
     };
@@ -380,6 +396,7 @@ std::optional<EditedElements> editElements(std::span<const Element> before, std:
         const auto body = std::make_shared<Body>(bodyBesideWalls(records[i]));
         Diagnostics findings;
         checkShape(records[i], *body, findings);
+        has_new_weather = has_new_weather || records[i].keyword() == "weather";
         if (shapesWalls(records[i]) || !findings.empty()) return std::nullopt;
         edited.is_changed = true;
         edited.corners += cornersOf(*body);
@@ -388,6 +405,11 @@ std::optional<EditedElements> editElements(std::span<const Element> before, std:
     while (next < before.size())
         if (!drop(before[next++])) return std::nullopt;
     if (edited.corners > kMaxCorners) return std::nullopt;
+    if (has_new_weather) {
+        Diagnostics findings;
+        checkWeather(edited.elements, findings);
+        if (!findings.empty()) return std::nullopt;
+    }
     return edited;
 }
 
