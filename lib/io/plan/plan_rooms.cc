@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "env/environment.h"
 #include "geom/arrangement.h"
 #include "geom/planar_map.h"
+#include "io/plan/room_warnings.h"
 
 namespace ispace {
 
@@ -25,15 +25,6 @@ constexpr std::array kDoorways{0.4, 0.7, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5};
 /// Drawings with more lines or faces are tried only once: many crossing lines take long enough.
 constexpr std::size_t kMaxLinesTried = 10'000, kMaxFacesTried = 1'000;
 
-/// A room below this share of the drawing's extent, or of the largest enclosable area, is
-/// uncertain.
-constexpr double kSmallShare = 0.5;
-
-/// A part of the drawing that takes this share of a rectangle around all is no furniture.
-constexpr double kFrameShare = 0.2;
-/// A frame encloses this share of its bounds.
-constexpr double kFrameFilled = 0.85;
-
 /// Wider gaps are doorways, between corners of thick walls, too.
 constexpr double kMinDoorway = 0.3;
 
@@ -42,22 +33,6 @@ constexpr double kMinRoom = 1, kMinInnerRoom = 4;
 
 /// Metres; smaller and larger plans are in other units.
 constexpr double kMinPlan = 2, kMaxPlan = 2000;
-
-/// Rooms left out are counted up to here.
-constexpr std::size_t kMaxGroups = 500;
-
-constexpr std::size_t kMaxPlaces = 6;  // in one message
-/// Metres; messages round gaps to the millimetre.
-constexpr double kMinListedGap = 0.0005;
-
-/// Metres from the edge of the plan at which a room touches it.
-constexpr double kAtBorder = 1e-3;
-
-double areaOf(const Box2& box) { return box.width() * box.depth(); }
-
-std::string sizeText(const Box2& box) {
-    return formatFixed(box.width(), 1) + " x " + formatFixed(box.depth(), 1) + " m";
-}
 
 class RoomChooser {
   public:
@@ -76,7 +51,7 @@ class RoomChooser {
         if (is_odd_)
             out_.warn("the plan is " + lengthText(extent) + " m wide: is its unit right?" +
                       (plan_.unit_hint ? plan_.unit_hint(extent) : ""));
-        Attempt best = chosen();
+        RoomAttempt best = chosen();
         PlanRooms rooms;
         if (out_.wantsRooms()) handOver(best);
         rooms.writes_inside = options_.known_inside.empty() || !options_.inside.empty();
@@ -98,21 +73,11 @@ class RoomChooser {
     }
 
   private:
-    /// The rooms after closing gaps up to a width.
-    struct Attempt {
-        double width;
-        std::size_t closings;  ///< lines that close gaps
-        PlanFaces faces;
-        std::vector<const PlanFaces::Group*> groups = {};
-        double area = 0;
-        bool is_whole = false;  ///< every requested point is in a room
-    };
-
     /// Inside points choose among the rooms that are enclosed without them; only if one lies
     /// outside all of these, gaps are closed for the points' sake.
-    Attempt chosen() {
+    RoomAttempt chosen() {
         const std::vector<Point2> points = std::exchange(points_, {});
-        Attempt best = likeliest();
+        RoomAttempt best = likeliest();
         if (points.empty()) return best;
         points_ = points;
         wider_.reset();
@@ -121,15 +86,15 @@ class RoomChooser {
         return best.is_whole ? std::move(best) : likeliest();
     }
 
-    Attempt likeliest() {
+    RoomAttempt likeliest() {
         const double width = options_.close_gaps.value_or(0);
-        Attempt best = attempt(width, waysUpTo(width));
+        RoomAttempt best = attempt(width, waysUpTo(width));
         if (!options_.close_gaps && isUncertain(best)) best = closed(std::move(best));
         return best;
     }
 
     /// Reports the rooms of the plan; outside the kept rooms only the largest.
-    void handOver(const Attempt& taken) {
+    void handOver(const RoomAttempt& taken) {
         const Box2 all = boundsOf(plan_.lines);
         const NearSegments walls(lines_, work_);
         std::size_t others = 0;
@@ -137,7 +102,7 @@ class RoomChooser {
             const bool is_kept =
                 std::find(taken.groups.begin(), taken.groups.end(), &group) != taken.groups.end();
             if (!is_kept && (others == FoundRooms::kMost || group.area < kMinRoom ||
-                             !isRoom(taken.faces, group)))
+                             !isRoom(plan_, taken.faces, group)))
                 continue;
             others += is_kept ? 0 : 1;
             FoundRoom room{group.area, {}, {}, false, is_kept, {}};
@@ -158,13 +123,8 @@ class RoomChooser {
         }
     }
 
-    [[nodiscard]] bool isRoom(const PlanFaces& faces, const PlanFaces::Group& group) const {
-        if (faces.isHollow(group)) return false;
-        return !plan_.is_floor || plan_.is_floor(interiorPoint(faces.faces()[group.faces.front()]));
-    }
-
     /// Lines that could close gaps, the narrowest first, so that those up to a width are a prefix.
-    struct EdgeWaypoints {
+    struct GapLines {
         std::vector<Segment2> lines;
         std::vector<double> widths;  // of the gaps, that grow
 
@@ -174,8 +134,8 @@ class RoomChooser {
         }
     };
 
-    [[nodiscard]] EdgeWaypoints waysUpTo(double width) const {
-        EdgeWaypoints ways;
+    [[nodiscard]] GapLines waysUpTo(double width) const {
+        GapLines ways;
         if (!(width > 0)) return ways;
         std::vector<Point2> corners;
         if (width >= kMinDoorway) corners = PlanFaces(lines_, work_).wallCorners();
@@ -188,24 +148,24 @@ class RoomChooser {
         return ways;
     }
 
-    [[nodiscard]] Attempt attempt(double width, const EdgeWaypoints& ways) const {
+    [[nodiscard]] RoomAttempt attempt(double width, const GapLines& ways) const {
         const std::span<const Segment2> closing = ways.upTo(width);
         return attemptOf(width, closing.size(), PlanFaces(lines_, work_, plan_.doors, closing));
     }
 
-    [[nodiscard]] Attempt attemptOf(double width, std::size_t closings, PlanFaces faces) const {
-        Attempt attempt{width, closings, std::move(faces)};
+    [[nodiscard]] RoomAttempt attemptOf(double width, std::size_t closings, PlanFaces faces) const {
+        RoomAttempt attempt{width, closings, std::move(faces)};
         take(attempt);
         return attempt;
     }
 
-    void take(Attempt& attempt) const {
+    void take(RoomAttempt& attempt) const {
         takeGroups(attempt);
         attempt.area = 0;
         for (const PlanFaces::Group* group : attempt.groups) attempt.area += group->area;
     }
 
-    void takeGroups(Attempt& attempt) const {
+    void takeGroups(RoomAttempt& attempt) const {
         const PlanFaces& faces = attempt.faces;
         attempt.is_whole = true;
         if (!points_.empty()) {
@@ -222,17 +182,17 @@ class RoomChooser {
         if (options_.rooms == RoomChoice::All) return takeAll(attempt);
         if (plan_.home) {
             const PlanFaces::Group* group = faces.groupAt(*plan_.home);
-            attempt.is_whole = group != nullptr && isRoom(faces, *group);
+            attempt.is_whole = group != nullptr && isRoom(plan_, faces, *group);
             if (attempt.is_whole) return attempt.groups.push_back(group);
         }
         for (const PlanFaces::Group& group : faces.groups())
-            if (isRoom(faces, group)) return attempt.groups.push_back(&group);
+            if (isRoom(plan_, faces, group)) return attempt.groups.push_back(&group);
     }
 
-    void takeAll(Attempt& attempt) const {
+    void takeAll(RoomAttempt& attempt) const {
         const PlanFaces& faces = attempt.faces;
         for (const PlanFaces::Group& group : faces.groups()) {
-            if (group.area < kMinRoom || !isRoom(faces, group)) continue;
+            if (group.area < kMinRoom || !isRoom(plan_, faces, group)) continue;
             const Point2 corner = faces.faces()[group.faces.front()].outline.front();
             const bool is_inner = std::any_of(
                 attempt.groups.begin(), attempt.groups.end(), [&](const PlanFaces::Group* outer) {
@@ -245,18 +205,18 @@ class RoomChooser {
         }
     }
 
-    [[nodiscard]] bool isUncertain(const Attempt& attempt) const {
+    [[nodiscard]] bool isUncertain(const RoomAttempt& attempt) const {
         if (is_odd_) return false;  // report one warning only
+        const Box2 drawn = boundsOf(plan_.lines);
         return attempt.groups.empty() || !attempt.is_whole ||
-               attempt.area < kSmallShare * areaOf(boundsOf(plan_.lines));
+               attempt.area < kSmallShare * drawn.width() * drawn.depth();
     }
 
     /// Compares attempts: lines and closings are split at their crossings once for all widths, so
     /// that finding faces is a walk. Rooms are those of attempt() up to rounding.
     class Trials {
       public:
-        Trials(const RoomChooser& chooser, const EdgeWaypoints& ways)
-            : chooser_(chooser), ways_(ways) {
+        Trials(const RoomChooser& chooser, const GapLines& ways) : chooser_(chooser), ways_(ways) {
             std::vector<Segment2> all = chooser.lines_;
             all.insert(all.end(), ways.lines.begin(), ways.lines.end());
             std::vector<LinePiece> cut = noded(linePieces(all));
@@ -274,7 +234,7 @@ class RoomChooser {
             for (const std::size_t closing : pieces_.closing_of) needs_.push_back(needs[closing]);
         }
 
-        [[nodiscard]] Attempt at(double width) const {
+        [[nodiscard]] RoomAttempt at(double width) const {
             const std::size_t count = ways_.upTo(width).size();
             const auto end = std::upper_bound(needs_.begin(), needs_.end(), count);
             const auto pieces = static_cast<std::size_t>(end - needs_.begin());
@@ -284,7 +244,7 @@ class RoomChooser {
 
       private:
         const RoomChooser& chooser_;
-        const EdgeWaypoints& ways_;
+        const GapLines& ways_;
         PlanFaces::Pieces pieces_;
         std::vector<std::size_t>
             needs_;  // number of closed gaps from which a piece exists; ascending
@@ -292,11 +252,11 @@ class RoomChooser {
 
     /// The attempt with the smallest width that encloses half of the best, if that is better.
     template <typename Widths>
-    std::optional<Attempt> smallestGood(const Widths& widths, const Attempt& open) {
-        std::vector<Attempt> attempts;
+    std::optional<RoomAttempt> smallestGood(const Widths& widths, const RoomAttempt& open) {
+        std::vector<RoomAttempt> attempts;
         double best = 0;
         bool any_whole = false;
-        const EdgeWaypoints ways = waysUpTo(widths.back());
+        const GapLines ways = waysUpTo(widths.back());
         const Trials trials(*this, ways);
         for (const double width : widths) {
             // Without a new gap the rooms are those of the width before.
@@ -305,19 +265,19 @@ class RoomChooser {
             attempts.push_back(trials.at(width));
             any_whole = any_whole || attempts.back().is_whole;
         }
-        for (const Attempt& a : attempts)
+        for (const RoomAttempt& a : attempts)
             if (a.is_whole == any_whole) best = std::max(best, a.area);
         // Halves are common where plans are regular, and the areas are rounded.
         constexpr double kAlmost = 1 - 1e-9;
         if (any_whole == open.is_whole && !(best * kSmallShare * kAlmost > open.area))
             return std::nullopt;
-        for (const Attempt& a : attempts)
+        for (const RoomAttempt& a : attempts)
             if (a.is_whole == any_whole && a.area > 0 && a.area >= best * kSmallShare * kAlmost)
                 return attempt(a.width, ways);
         return std::nullopt;
     }
 
-    Attempt closed(Attempt open) {
+    RoomAttempt closed(RoomAttempt open) {
         if (lines_.size() > kMaxLinesTried || open.faces.faces().size() > kMaxFacesTried)
             return open;
         if (auto better = smallestGood(kSmallGaps, open)) open = *std::move(better);
@@ -357,8 +317,8 @@ class RoomChooser {
         return reached;
     }
 
-    void report(const Attempt& taken, const PlanRooms& rooms) {
-        warnOfGaps(rooms.closing, taken.width);
+    void report(const RoomAttempt& taken, const PlanRooms& rooms) {
+        warnOfGaps(rooms.closing, taken.width, out_);
         std::size_t faces = 0;
         Box2 kept;
         for (const PlanRegion& region : rooms.regions)
@@ -374,109 +334,10 @@ class RoomChooser {
             out_.warn("only " + areaText(taken.area) +
                       " are enclosed, the walls are open; with --close-gaps " +
                       formatDouble(wider_->first) + " it would be " + areaText(wider_->second));
-        if (points_.empty() && !is_odd_ && !wider_) warnOfTheRest(taken, kept);
-        if (plan_.is_drawing && points_.empty() && rooms.regions.size() == 1)
-            warnOfFrame(taken, rooms.regions.front());
-    }
-
-    /// Warns if the room is a rectangle around the drawing with large parts of it inside.
-    void warnOfFrame(const Attempt& taken, const PlanRegion& region) {
-        const Box2 all = boundsOf(plan_.lines);
-        const Box2 rim{all.low + Vec2{kAtBorder, kAtBorder}, all.high - Vec2{kAtBorder, kAtBorder}};
-        const Polygon& outline = region.rooms.front().outline;
-        const auto is_inside = [&rim](Point2 p) { return rim.contains(p); };
-        const Box2 around = bounds(outline);
-        // A title block may take a corner.
-        const bool is_rectangle = !is_inside(around.low) && !is_inside(around.high) &&
-                                  std::abs(signedArea(outline)) > kFrameFilled * areaOf(all);
-        if (!is_rectangle || lines_.size() > kMaxLinesTried) return;
-        std::vector<Segment2> within;
-        for (const Segment2& line : lines_)
-            if (is_inside(line.a) && is_inside(line.b)) within.push_back(line);
-        double largest = 0;
-        for (const Box2& part : partsOf(within)) largest = std::max(largest, areaOf(part));
-        if (largest < kFrameShare * areaOf(all)) return;
-        std::string text =
-            "the room is the rectangle around the whole drawing: if that is the "
-            "frame of a sheet, ";
-        const auto other = std::find_if(taken.faces.groups().begin(), taken.faces.groups().end(),
-                                        [&](const PlanFaces::Group& group) {
-                                            return &group != taken.groups.front() &&
-                                                   group.area > kSmallShare * largest &&
-                                                   isRoom(taken.faces, group);
-                                        });
-        if (other == taken.faces.groups().end())
-            text += "leave it out, for example with --wall-layer";
-        else
-            text += "--inside X,Y chooses a room in it, the largest has " + areaText(other->area) +
-                    " about " + placeText(interiorPoint(taken.faces.faces()[other->faces.front()]));
-        out_.warn(std::move(text));
-    }
-
-    /// Returns the bounds of the lines that ends join.
-    static std::vector<Box2> partsOf(std::span<const Segment2> lines) {
-        std::vector<std::size_t> parent(lines.size());
-        std::iota(parent.begin(), parent.end(), std::size_t{0});
-        const auto root = [&parent](std::size_t i) {
-            while (parent[i] != i) i = parent[i] = parent[parent[i]];
-            return i;
-        };
-        std::map<std::pair<double, double>, std::size_t> at;
-        for (std::size_t i = 0; i < lines.size(); ++i)
-            for (const Point2 end : {lines[i].a, lines[i].b}) {
-                const Point2 p = wholeMicrometres(end);
-                parent[root(i)] = root(at.emplace(std::pair{p.x, p.y}, i).first->second);
-            }
-        std::map<std::size_t, Box2> boxes;
-        for (std::size_t i = 0; i < lines.size(); ++i)
-            for (const Point2 end : {lines[i].a, lines[i].b})
-                boxes.try_emplace(root(i), Box2{end, end}).first->second.add(end);
-        std::vector<Box2> parts;
-        parts.reserve(boxes.size());
-        for (const auto& [first, box] : boxes) parts.push_back(box);
-        return parts;
-    }
-
-    void warnOfTheRest(const Attempt& taken, const Box2& kept) {
-        const Box2 all = boundsOf(plan_.lines);
-        const PlanFaces::Group* largest_other = nullptr;
-        double others = 0;
-        std::size_t looked_at = 0;
-        for (const PlanFaces::Group& group : taken.faces.groups()) {
-            if (std::find(taken.groups.begin(), taken.groups.end(), &group) != taken.groups.end())
-                continue;
-            if (++looked_at > kMaxGroups) break;
-            if (!isRoom(taken.faces, group)) continue;
-            if (largest_other == nullptr) largest_other = &group;
-            others += group.area;
-        }
-        if (areaOf(kept) >= kSmallShare * areaOf(all) && taken.area >= others) return;
-        std::string text = "kept " + areaText(taken.area) + " on " + sizeText(kept) +
-                           " of a drawing of " + sizeText(all);
-        if (largest_other != nullptr)
-            text += "; other rooms have " + areaText(others) + ", the largest of them " +
-                    areaText(largest_other->area) + " about " +
-                    placeText(interiorPoint(taken.faces.faces()[largest_other->faces.front()])) +
-                    ": --inside X,Y chooses rooms, --rooms all keeps all";
-        out_.warn(std::move(text));
-    }
-
-    void warnOfGaps(std::span<const Segment2> closing, double width) {
-        std::vector<std::pair<double, Point2>> gaps;
-        for (const Segment2& line : closing)
-            if (const double gap = distance(line.a, line.b); gap >= kMinListedGap)
-                gaps.emplace_back(gap, line.a + 0.5 * (line.b - line.a));
-        if (gaps.empty()) return;
-        std::stable_sort(gaps.begin(), gaps.end(),
-                         [](const auto& a, const auto& b) { return a.first > b.first; });
-        std::string text = "the walls do not close: closed " + countText(gaps.size(), "gap") +
-                           " of up to " + formatDouble(width) + " m (";
-        for (std::size_t i = 0; i < std::min(gaps.size(), kMaxPlaces); ++i)
-            text += (i == 0 ? "" : ", ") + formatFixed(gaps[i].first, 3) + " m at " +
-                    placeText(gaps[i].second);
-        if (gaps.size() > kMaxPlaces)
-            text += " and " + std::to_string(gaps.size() - kMaxPlaces) + " more";
-        out_.warn(text + "); --close-gaps M sets the widest");
+        if (points_.empty() && !is_odd_ && !wider_) warnOfTheRest(plan_, taken, kept, out_);
+        if (plan_.is_drawing && points_.empty() && rooms.regions.size() == 1 &&
+            lines_.size() <= kMaxLinesTried)
+            warnOfFrame(plan_, lines_, taken, rooms.regions.front(), out_);
     }
 
     const PlanWalls& plan_;
