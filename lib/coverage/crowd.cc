@@ -109,7 +109,7 @@ std::vector<Crowd> crowdsOfRun(const std::string& folder, const Scene& scene, st
         if (moment < wanted) continue;
         Crowd& crowd = crowds.emplace_back();
         for (const RunState& state : reader.states())
-            if (const RunMember& member = reader.who()[state.who]; member.is_person)
+            if (const RunMember& member = reader.members()[state.member]; member.is_person)
                 crowd.push_back({state.pose.position, height_of(member.id)});
     }
     return crowds;

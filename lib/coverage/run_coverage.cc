@@ -40,22 +40,22 @@ class Members {
     /// Checks the members at the start. \throws FormatError for a member that is not in the scene
     void check() {
         for (const RunState& state : reader_->states())
-            if (ownerOf(state.who) == MovingBodies::kNoOwner)
+            if (ownerOf(state.member) == MovingBodies::kNoOwner)
                 throw FormatError({reader_->name(), 0, 0,
                                    "the scene has no robot or person " +
-                                       excerpt(reader_->who()[state.who].id) +
+                                       excerpt(reader_->members()[state.member].id) +
                                        ": it is not that of the record"});
     }
 
     /// Returns the same as carrierOf(); kNoOwner for movers added during the run.
-    std::uint32_t ownerOf(std::size_t who) {
-        for (std::size_t i = owners_.size(); i < reader_->who().size(); ++i)
-            owners_.push_back(find(reader_->who()[i]));
-        return owners_[who];
+    std::uint32_t ownerOf(std::size_t member) {
+        for (std::size_t i = owners_.size(); i < reader_->members().size(); ++i)
+            owners_.push_back(find(reader_->members()[i]));
+        return owners_[member];
     }
     /// Returns the maximum speed of any mover, m/s: with a margin, as a run may change records.
     double fastest(const RunState& state) {
-        const std::uint32_t owner = ownerOf(state.who);
+        const std::uint32_t owner = ownerOf(state.member);
         constexpr double kUnknown = std::numeric_limits<double>::infinity(), kMargin = 2;
         if (owner == MovingBodies::kNoOwner) return kUnknown;
         const double going = std::hypot(state.speed, state.sidespeed);
@@ -66,7 +66,7 @@ class Members {
     }
     /// Moves all movers of the scene to their poses in `state`.
     void move(const RunState& state) {
-        const std::uint32_t owner = ownerOf(state.who);
+        const std::uint32_t owner = ownerOf(state.member);
         if (owner == MovingBodies::kNoOwner) return;
         (owner < kFirstPerson ? robots[owner] : people[owner - kFirstPerson]) = state.pose;
     }
@@ -110,10 +110,10 @@ class SightSum {
         std::size_t way = 0;                // index of its last way
     };
 
-    void lookAt(std::size_t who, double time, Point2 place, std::size_t count, double fastest);
+    void lookAt(std::size_t member, double time, Point2 place, std::size_t count, double fastest);
     void addTo(RunSightMetrics& metrics, std::size_t count, double time, double way);
-    void closeGap(std::size_t who, double time, Point2 place);
-    void draw(std::size_t who, Point2 place, std::size_t count);
+    void closeGap(std::size_t member, double time, Point2 place);
+    void draw(std::size_t member, Point2 place, std::size_t count);
 
     RunCoverage sight_;
     std::vector<Last> last_;
@@ -129,17 +129,17 @@ void SightSum::addTo(RunSightMetrics& metrics, std::size_t count, double time, d
     metrics.length += way;
 }
 
-void SightSum::closeGap(std::size_t who, double time, Point2 place) {
-    Last& last = last_[who];
+void SightSum::closeGap(std::size_t member, double time, Point2 place) {
+    Last& last = last_[member];
     if (!last.gap) return;
     last.gap->end = time;
     last.gap->to = place;
     const double duration = time - last.gap->begin;
     if (last.was_seen) {
-        ++sight_.members[who].losses;
-        sight_.losses.push_back({who, last.gap->begin, duration, last.gap->from});
+        ++sight_.members[member].losses;
+        sight_.losses.push_back({member, last.gap->begin, duration, last.gap->from});
     }
-    for (RunSightMetrics* metrics : {&sight_.members[who], &sight_.all}) {
+    for (RunSightMetrics* metrics : {&sight_.members[member], &sight_.all}) {
         const auto& longest = metrics->longest_gap;
         if (duration > 0 && (!longest || duration > longest->end - longest->begin))
             metrics->longest_gap = last.gap;
@@ -147,8 +147,8 @@ void SightSum::closeGap(std::size_t who, double time, Point2 place) {
     last.gap.reset();
 }
 
-void SightSum::draw(std::size_t who, Point2 place, std::size_t count) {
-    Last& last = last_[who];
+void SightSum::draw(std::size_t member, Point2 place, std::size_t count) {
+    Last& last = last_[member];
     const bool has_jumped = std::exchange(last.has_jumped, false);
     const bool goes_on = last.is_there && !has_jumped && sight_.ways[last.way].sensors == count;
     if (goes_on) {
@@ -158,12 +158,12 @@ void SightSum::draw(std::size_t who, Point2 place, std::size_t count) {
     }
     if (last.is_there && !has_jumped) sight_.ways[last.way].points.push_back(place);
     last.way = sight_.ways.size();
-    sight_.ways.push_back({who, count, {place}});
+    sight_.ways.push_back({member, count, {place}});
 }
 
-void SightSum::lookAt(std::size_t who, double time, Point2 place, std::size_t count,
+void SightSum::lookAt(std::size_t member, double time, Point2 place, std::size_t count,
                       double fastest) {
-    Last& last = last_[who];
+    Last& last = last_[member];
     if (last.is_there) {
         const double passed = time - last.time;
         double way = distance(last.place, place);
@@ -171,16 +171,16 @@ void SightSum::lookAt(std::size_t who, double time, Point2 place, std::size_t co
             way = 0;
             last.has_jumped = true;
         }
-        addTo(sight_.members[who], last.count, passed, way);
+        addTo(sight_.members[member], last.count, passed, way);
         addTo(sight_.all, last.count, passed, way);
     }
     if (count > 0) {
-        closeGap(who, time, place);
+        closeGap(member, time, place);
         last.was_seen = true;
     } else if (!last.gap) {
         last.gap = UnseenInterval{time, time, place, place};
     }
-    draw(who, place, count);
+    draw(member, place, count);
     last.is_there = true;
     last.time = time;
     last.place = place;
@@ -192,19 +192,19 @@ void SightSum::add(const Sample& sample) {
     sight_.end = sample.time;
     for (std::size_t i = 0; i < sample.states.size(); ++i) {
         const RunState& state = sample.states[i];
-        if (state.who >= last_.size()) {
-            last_.resize(state.who + 1);
-            sight_.members.resize(state.who + 1);
+        if (state.member >= last_.size()) {
+            last_.resize(state.member + 1);
+            sight_.members.resize(state.member + 1);
         }
-        lookAt(state.who, sample.time, state.pose.position, sample.counts[i], sample.fastest[i]);
+        lookAt(state.member, sample.time, state.pose.position, sample.counts[i], sample.fastest[i]);
     }
 }
 
 void SightSum::leaveOut(Members& members) {
-    for (std::size_t who = 0; who < last_.size(); ++who) {
-        Last& last = last_[who];
-        if (!last.is_there || members.ownerOf(who) != MovingBodies::kNoOwner) continue;
-        closeGap(who, last.time, last.place);
+    for (std::size_t member = 0; member < last_.size(); ++member) {
+        Last& last = last_[member];
+        if (!last.is_there || members.ownerOf(member) != MovingBodies::kNoOwner) continue;
+        closeGap(member, last.time, last.place);
         last.is_there = last.has_jumped = false;
     }
 }
@@ -217,11 +217,11 @@ void turnIntoShares(RunSightMetrics& metrics) {
 }
 
 RunCoverage SightSum::finish(const RunReader& reader) {
-    for (std::size_t who = 0; who < last_.size(); ++who) {
-        closeGap(who, last_[who].time, last_[who].place);
-        RunSightMetrics& metrics = sight_.members[who];
-        metrics.id = reader.who()[who].id;
-        metrics.is_person = reader.who()[who].is_person;
+    for (std::size_t member = 0; member < last_.size(); ++member) {
+        closeGap(member, last_[member].time, last_[member].place);
+        RunSightMetrics& metrics = sight_.members[member];
+        metrics.id = reader.members()[member].id;
+        metrics.is_person = reader.members()[member].is_person;
         sight_.all.losses += metrics.losses;
         turnIntoShares(metrics);
     }
@@ -244,7 +244,7 @@ void flush(const DetectionMonitor& watch, Members& members, std::vector<Sample>&
         const WatchMoment moment{.robots = sample.robots, .people = sample.people};
         std::vector<DetectionMonitor::Target> targets;
         for (const RunState& state : sample.states)
-            targets.push_back({state.pose.position, members.ownerOf(state.who)});
+            targets.push_back({state.pose.position, members.ownerOf(state.member)});
         sample.counts = watch.seenBy(targets, moment);
     });
     for (const Sample& sample : samples) sum.add(sample);

@@ -35,14 +35,14 @@ struct RunSightMetrics {
 
 /// A piece of a mover's way seen by a constant number of sensors.
 struct SeenWay {
-    std::size_t who = 0;  ///< index in RunCoverage::members
+    std::size_t member = 0;  ///< index in RunCoverage::members
     std::size_t sensors = 0;
     std::vector<Point2> points = {};  ///< a single one if it stood there
 };
 
 /// A point at which sight of a mover was lost.
 struct TrackLoss {
-    std::size_t who = 0;
+    std::size_t member = 0;
     /// Seconds; until the end of the run if sight was not restored.
     double begin = 0, duration = 0;
     Point2 place;

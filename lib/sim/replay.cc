@@ -73,7 +73,7 @@ void Replay::placeAtStart(Scene& scene) const {
     std::unordered_map<std::string_view, Pose2> places;
     std::unordered_set<std::string_view> ids;
     for (const RunState& state : start_) {
-        const RunMember& member = reader_.who()[state.who];
+        const RunMember& member = reader_.members()[state.member];
         const auto has = [&member](const auto& list) {
             return std::any_of(list.begin(), list.end(),
                                [&member](const auto& each) { return each.id == member.id; });
@@ -152,9 +152,9 @@ void Replay::prepareAll(World& world, std::optional<SimTime> to) {
 void Replay::find(const World& world) {
     if (changes_ != world.changes()) movers_.clear();
     changes_ = world.changes();
-    const std::vector<RunMember>& who = reader_.who();
-    for (std::size_t i = movers_.size(); i < who.size(); ++i)
-        movers_.push_back(world.moverNamed(who[i].id));
+    const std::vector<RunMember>& members = reader_.members();
+    for (std::size_t i = movers_.size(); i < members.size(); ++i)
+        movers_.push_back(world.moverNamed(members[i].id));
 }
 
 /// Reads the collisions of the next step.
@@ -194,7 +194,7 @@ bool Replay::step(World& world, bool reads) {
     }
     odometries_.assign(world.robots().size(), std::nullopt);
     for (const RunState& state : reader_.states()) {
-        const auto mover = movers_[state.who];
+        const auto mover = movers_[state.member];
         if (!mover) continue;
         states_[*mover] = statusOf(state);
         if (*mover < odometries_.size()) odometries_[*mover] = state.odometry;

@@ -34,7 +34,7 @@ void writeRecord(std::string_view bytes) {
 void checkMoment(const RunReader& reader, double before) {
     fuzz::require(reader.time() >= before, "time runs backwards");
     for (const RunState& state : reader.states())
-        fuzz::require(state.who < reader.who().size(), "a state of an unknown member");
+        fuzz::require(state.member < reader.members().size(), "a state of an unknown member");
     for (const RunBumpers& bumpers : reader.bumpers())
         fuzz::require(!bumpers.hit.empty(), "bumpers without one");
 }

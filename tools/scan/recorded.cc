@@ -44,7 +44,7 @@ class RecordedOdometry {
             Moment& moment = latest_.emplace_back();
             moment.time = run_.time();
             for (const RunState& state : run_.states()) {
-                const std::string& id = run_.who()[state.who].id;
+                const std::string& id = run_.members()[state.member].id;
                 moment.poses.emplace_back(id, state.odometry.value_or(state.pose));
             }
             while (latest_.size() > 1 && latest_[1].time <= moment.time - kept_)
@@ -80,7 +80,7 @@ std::vector<RunMember> membersOf(const std::string& folder) {
     RunReader run(folder);
     while (run.next()) {
     }
-    return run.who();
+    return run.members();
 }
 
 /// Writes the poses of all movers, up to the times of the readings, to a stream of a format.

@@ -70,10 +70,10 @@ void RunPicture::meet(const RunMember& member) {
 
 void RunPicture::add(const RunReader& reader) {
     time_ = reader.time();
-    while (members_.size() < reader.who().size()) meet(reader.who()[members_.size()]);
+    while (members_.size() < reader.members().size()) meet(reader.members()[members_.size()]);
     for (Member& member : members_) member.is_there = false;
     for (const RunState& state : reader.states()) {
-        Member& member = members_[state.who];
+        Member& member = members_[state.member];
         const Point2 place = state.pose.position;
         if (!member.way.empty()) member.length += distance(member.pose.position, place);
         if (member.way.empty() || distance(member.way.back(), place) >= kThinning)
@@ -251,9 +251,9 @@ void movePerson(Scene& scene, std::size_t person, const Pose2& pose) {
 RunRecord::RunRecord(RunReader reader) : name_(reader.name()) {
     while (reader.next())
         for (const RunState& state : reader.states())
-            steps_.push_back({reader.time(), state.who, state.pose,
+            steps_.push_back({reader.time(), state.member, state.pose,
                               limbSwing(state.phase, std::hypot(state.speed, state.sidespeed))});
-    who_ = reader.who();
+    members_ = reader.members();
     if (steps_.empty()) throw FormatError({name_, 0, 0, "holds no pose of a robot"});
 }
 
@@ -262,7 +262,7 @@ void RunRecord::checkStart(const Scene& scene) const {
     if (begin() > 0) return;
     for (const Step& step : steps_) {
         if (step.time > begin()) return;
-        const RunMember& member = who_[step.who];
+        const RunMember& member = members_[step.member];
         if (!has(scene, member.id))
             throw FormatError({name_, 0, 0,
                                std::string("the scene has no ") +
@@ -274,21 +274,21 @@ std::map<std::size_t, const RunRecord::Step*> RunRecord::lastSteps(double time) 
     std::map<std::size_t, const Step*> last;
     const auto later = std::upper_bound(steps_.begin(), steps_.end(), time,
                                         [](double t, const Step& step) { return t < step.time; });
-    for (auto step = steps_.begin(); step != later; ++step) last[step->who] = &*step;
+    for (auto step = steps_.begin(); step != later; ++step) last[step->member] = &*step;
     return last;
 }
 
 std::vector<Angle> RunRecord::swingsAt(const Scene& scene, double time) const {
     std::vector<Angle> swings(scene.people.size());
-    for (const auto& [who, step] : lastSteps(time))
+    for (const auto& [member, step] : lastSteps(time))
         for (std::size_t i = 0; i < swings.size(); ++i)
-            if (scene.people[i].id == who_[who].id) swings[i] = step->swing;
+            if (scene.people[i].id == members_[member].id) swings[i] = step->swing;
     return swings;
 }
 
 void RunRecord::apply(Scene& scene, double time) const {
-    for (const auto& [who, step] : lastSteps(time)) {
-        const auto index_in = [&id = who_[who].id](const auto& list) {
+    for (const auto& [member, step] : lastSteps(time)) {
+        const auto index_in = [&id = members_[member].id](const auto& list) {
             const auto found = std::find_if(list.begin(), list.end(),
                                             [&id](const auto& one) { return one.id == id; });
             return static_cast<std::size_t>(found - list.begin());
@@ -305,13 +305,13 @@ std::vector<std::vector<Point2>> RunRecord::waysUntil(double time) const {
     std::map<std::size_t, std::vector<Point2>> ways;
     for (const Step& step : steps_) {
         if (step.time > time) break;
-        std::vector<Point2>& way = ways[step.who];
+        std::vector<Point2>& way = ways[step.member];
         constexpr double kStep = 0.02;
         if (way.empty() || distance(way.back(), step.pose.position) > kStep)
             way.push_back(step.pose.position);
     }
     std::vector<std::vector<Point2>> out;
-    for (auto& [who, way] : ways)
+    for (auto& [member, way] : ways)
         if (way.size() > 1) out.push_back(std::move(way));
     return out;
 }

@@ -95,16 +95,16 @@ class RunRecord {
   private:
     struct Step {
         double time = 0;
-        std::size_t who = 0;
+        std::size_t member = 0;
         Pose2 pose;
         Angle swing = {};  // of a person's limbs
     };
 
-    /// Returns the last step of each mover at or before this time, by `who`.
+    /// Returns the last step of each mover at or before this time, by `member`.
     [[nodiscard]] std::map<std::size_t, const Step*> lastSteps(double time) const;
 
     std::string name_;
-    std::vector<RunMember> who_;
+    std::vector<RunMember> members_;
     std::vector<Step> steps_;  // sorted by time, not empty
 };
 

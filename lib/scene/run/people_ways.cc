@@ -63,7 +63,7 @@ PeopleWays waysOfRun(RunReader& reader) {
     WayCutter cutter;
     while (reader.next())
         for (const RunState& state : reader.states())
-            if (const RunMember& member = reader.who()[state.who]; member.is_person)
+            if (const RunMember& member = reader.members()[state.member]; member.is_person)
                 cutter.add(member.id, reader.time(), state.pose.position);
     return cutter.finish();
 }

@@ -110,9 +110,12 @@ enum Column {
 /// Reads the moments of one file.
 class MomentFile {
   public:
-    /// Members are added to `who`, which must outlive the reader.
-    MomentFile(std::string name, LineSource lines, bool is_people, std::vector<RunMember>& who)
-        : name_(std::move(name)), lines_(std::move(lines)), is_people_(is_people), who_(&who) {
+    /// Members are added to `members`, which must outlive the reader.
+    MomentFile(std::string name, LineSource lines, bool is_people, std::vector<RunMember>& members)
+        : name_(std::move(name)),
+          lines_(std::move(lines)),
+          is_people_(is_people),
+          members_(&members) {
         readHeader();
         readLine();
     }
@@ -146,7 +149,7 @@ class MomentFile {
     std::string name_;
     LineSource lines_;
     bool is_people_;
-    std::vector<RunMember>* who_;
+    std::vector<RunMember>* members_;
     std::unordered_map<std::string, std::size_t> index_;
     std::array<std::size_t, kColumns.size()> place_{};  // of each column; npos: it is missing
     std::size_t columns_ = 0;
@@ -186,8 +189,8 @@ double MomentFile::number(Column column) const {
 }
 
 std::size_t MomentFile::indexOf(std::string_view id) {
-    const auto [found, is_new] = index_.try_emplace(std::string(id), who_->size());
-    if (is_new) who_->push_back({std::string(id), is_people_});
+    const auto [found, is_new] = index_.try_emplace(std::string(id), members_->size());
+    if (is_new) members_->push_back({std::string(id), is_people_});
     return found->second;
 }
 
@@ -211,7 +214,7 @@ void MomentFile::readLine() {
     row.time = number(kTime);
     if (!parseRunTime(fields_[0])) fail("t is out of bounds: " + excerpt(fields_[0]));
     if (before && row.time < before->time) fail("time runs backwards");
-    row.state.who = indexOf(fields_[place_[kId]]);
+    row.state.member = indexOf(fields_[place_[kId]]);
     row.state.pose = {{number(kX), number(kY)}, Angle::degrees(number(kHeading))};
     row.state.speed = number(kSpeed);
     row.state.rotspeed = Angle::degrees(number(kRotspeed));
@@ -227,9 +230,9 @@ bool MomentFile::read(std::vector<RunState>& states) {
     const double time = row_->time;
     std::size_t count = 0;
     for (; row_ && row_->time == time; ++count) {
-        const auto [latest, is_new] = latest_.try_emplace(row_->state.who, time);
+        const auto [latest, is_new] = latest_.try_emplace(row_->state.member, time);
         if (!is_new && latest->second == time)
-            fail((*who_)[row_->state.who].id + " is there twice at t=" + formatDouble(time));
+            fail((*members_)[row_->state.member].id + " is there twice at t=" + formatDouble(time));
         latest->second = time;
         states.push_back(row_->state);
         readLine();
@@ -289,7 +292,7 @@ bool exists(const std::string& file) { return std::filesystem::exists(file); }
 
 struct RunReader::Data {
     void add(const std::string& name, LineSource lines, bool is_people) {
-        files.emplace_back(name, std::move(lines), is_people, who);
+        files.emplace_back(name, std::move(lines), is_people, members);
         if (files.size() > 1 && !files.front().upcoming()) files.erase(files.begin());
         if (files.size() > 1 && !files.back().upcoming()) files.pop_back();
     }
@@ -309,7 +312,7 @@ struct RunReader::Data {
     [[nodiscard]] std::optional<double> upcoming();
 
     std::string name;
-    std::vector<RunMember> who;
+    std::vector<RunMember> members;
     std::vector<MomentFile> files;
     std::optional<EventFile> events;
     // The odometry rows of `files`, with a separate list of members.
@@ -375,7 +378,7 @@ RunReader::RunReader(std::string robots, std::string people, std::string events,
 bool RunReader::Data::readOdometry() {
     const bool has_robots =
         std::any_of(states.begin(), states.end(),
-                    [this](const RunState& state) { return !who[state.who].is_person; });
+                    [this](const RunState& state) { return !members[state.member].is_person; });
     if (!has_robots) return true;
     if (!odometry->upcoming()) return false;
     if (*odometry->upcoming() != time)
@@ -386,8 +389,8 @@ bool RunReader::Data::readOdometry() {
     // The same robots in the same order.
     auto belief = beliefs.begin();
     for (RunState& state : states) {
-        if (who[state.who].is_person) continue;
-        if (belief == beliefs.end() || believers[belief->who].id != who[state.who].id)
+        if (members[state.member].is_person) continue;
+        if (belief == beliefs.end() || believers[belief->member].id != members[state.member].id)
             odometry->fail("the robots at t=" + formatDouble(time) + " are not those of " + name);
         state.odometry = (belief++)->pose;
     }
@@ -434,7 +437,7 @@ std::optional<std::span<const RunCollision>> RunReader::collisions() const {
                          : std::nullopt;
 }
 std::span<const RunBumpers> RunReader::bumpers() const { return data_->bumpers; }
-const std::vector<RunMember>& RunReader::who() const { return data_->who; }
+const std::vector<RunMember>& RunReader::members() const { return data_->members; }
 bool RunReader::isCut() const { return data_->is_cut; }
 bool RunReader::hasOdometry() const { return data_->odometry.has_value(); }
 const std::string& RunReader::name() const { return data_->name; }

@@ -40,7 +40,7 @@ std::optional<RunInfo> recordedInfo(const std::string& folder);
 
 /// State of a robot or a person at a moment of a run.
 struct RunState {
-    std::size_t who = 0;  ///< index of RunReader::who()
+    std::size_t member = 0;  ///< index of RunReader::members()
     Pose2 pose;
     double speed = 0, accel = 0;  ///< m/s, m/s^2, forward
     Angle rotspeed, rotaccel;     ///< a second, a second a second
@@ -98,7 +98,7 @@ class RunReader {
     /// Returns the bumpers that changed at this moment, or since the moment before.
     [[nodiscard]] std::span<const RunBumpers> bumpers() const;
     /// Returns all movers so far; indices stay valid.
-    [[nodiscard]] const std::vector<RunMember>& who() const;
+    [[nodiscard]] const std::vector<RunMember>& members() const;
     /// Returns true if an incomplete last moment was skipped; known at the end.
     [[nodiscard]] bool isCut() const;
     /// Returns true if the record has odometry.

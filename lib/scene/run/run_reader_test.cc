@@ -73,7 +73,7 @@ TEST(RunReader, ReadsMomentsOfRobotsAndPeople) {
     ASSERT_TRUE(reader.next());
     EXPECT_EQ(reader.time(), 0.005);
     const RunState& robot = reader.states()[0];
-    EXPECT_EQ(reader.who()[robot.who].id, "r1");
+    EXPECT_EQ(reader.members()[robot.member].id, "r1");
     EXPECT_EQ(robot.pose, (Pose2{{0.5, 0}, Angle::degrees(10)}));
     EXPECT_EQ(robot.speed, 0.3);
     EXPECT_EQ(robot.rotspeed, Angle::degrees(20));
@@ -82,8 +82,8 @@ TEST(RunReader, ReadsMomentsOfRobotsAndPeople) {
     EXPECT_FALSE(robot.is_stalled);
     EXPECT_TRUE(reader.states()[1].is_stalled);
     const RunState& person = reader.states()[2];
-    EXPECT_EQ(reader.who()[person.who].id, "h1");
-    EXPECT_TRUE(reader.who()[person.who].is_person);
+    EXPECT_EQ(reader.members()[person.member].id, "h1");
+    EXPECT_TRUE(reader.members()[person.member].is_person);
     EXPECT_EQ(person.phase, 0.25);
     EXPECT_FALSE(reader.next());
     EXPECT_FALSE(reader.isCut());
@@ -114,7 +114,7 @@ TEST(RunReader, SomeMayComeAndGo) {
     RunReader reader(
         "t,id,x,y,heading_deg\n0,a,0,0,0\n0,b,0,0,0\n1,a,0,0,0\n2,a,0,0,0\n2,c,1,1,1\n", "");
     EXPECT_EQ(readAllOf(reader), 3);
-    EXPECT_EQ(reader.who().size(), 3U);
+    EXPECT_EQ(reader.members().size(), 3U);
 }
 
 std::string errorOf(const std::string& robots, const std::string& people = "") {
@@ -207,7 +207,8 @@ TEST(RunReader, PeopleComeAndGoInAChangedWorld) {
     std::string moments;
     while (reader.next()) {
         moments += std::to_string(static_cast<int>(reader.time()));
-        for (const RunState& state : reader.states()) moments += ' ' + reader.who()[state.who].id;
+        for (const RunState& state : reader.states())
+            moments += ' ' + reader.members()[state.member].id;
         moments += '\n';
     }
     EXPECT_EQ(moments, "0 r1 r2\n1 r1 h1\n2 r1\n3 h1\n5 r1\n");
@@ -225,7 +226,7 @@ TEST(RunReader, ReadsWhatRobotsBelieve) {
     ASSERT_TRUE(reader.next());
     EXPECT_EQ(reader.states()[0].odometry, (Pose2{{0.4, 0.1}, Angle::degrees(9)}));
     EXPECT_FALSE(reader.states()[2].odometry) << "a person";
-    EXPECT_EQ(reader.who().size(), 3U);
+    EXPECT_EQ(reader.members().size(), 3U);
     EXPECT_FALSE(reader.next());
     EXPECT_FALSE(reader.isCut());
 

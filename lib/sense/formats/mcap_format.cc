@@ -173,8 +173,8 @@ class Mcap final : public FormatBase {
         std::vector<RosTransform> transforms;
         std::string odometries;
         for (const RunState& state : states) {
-            const std::uint64_t now = rosTime(time, options_.members[state.who].id);
-            const Member& one = members_[state.who];
+            const std::uint64_t now = rosTime(time, options_.members[state.member].id);
+            const Member& one = members_[state.member];
             if (!state.odometry) {
                 addMoverFrame(transforms, now, one.name, state.pose);
                 continue;
