@@ -4,15 +4,19 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "building/building_scene.h"
 #include "coverage/coverage.h"
 #include "coverage/outside_view.h"
 #include "env/environment.h"
 #include "geom/polygon.h"
+#include "sense/detection.h"
+#include "trace/ray_world.h"
 
 namespace ispace {
 
@@ -55,11 +59,46 @@ std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,
                                             std::span<const FloorOpening> openings);
 
 /// Returns the room of a storey in its frame, with openings in its floor and ceiling, and the
-/// storeys above and below that its sensors may see through them, robots and people included. Its
-/// floor ends at the openings, and so does its indoor region. Empty for a storey without openings.
+/// storeys above and below that its sensors may see through them, with robots and people or without
+/// them. Its floor ends at the openings, and so does its indoor region. Empty for a storey without
+/// openings.
 std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
                                                 std::span<const FloorOpening> openings,
-                                                std::size_t storey);
+                                                std::size_t storey, bool with_movers = true);
+
+/// Returns true for a sensor that sees other storeys: by light, in more than its own level plane.
+bool looksAround(const Sensor& sensor);
+
+/// The storeys around each storey of a running building. It knows the other storeys as they were at
+/// the start, without their robots and people. Thread-safe.
+class RoomsAround {
+  public:
+    /// \param plane at which sensors of other storeys see robots and people
+    explicit RoomsAround(const BuildingScene& building, double plane = 0);
+    /// Returns roomWithSurroundings() of a storey whose scene may have changed. Null for a storey
+    /// without openings, and if no sensor of the scene looks around. Scenes that follow each other
+    /// with equal rooms share it.
+    std::shared_ptr<const SurroundedRoom> around(std::size_t storey, const Scene& scene);
+    /// Returns the fixed sensors of other storeys that see the plane of a storey, as in coverage.
+    OutsideWatch outside(std::size_t storey, const Scene& scene);
+
+  private:
+    /// A room, and the storey that it was built of.
+    struct Known {
+        Environment storey;
+        std::shared_ptr<const SurroundedRoom> room;
+    };
+
+    std::shared_ptr<const SurroundedRoom> room(std::size_t storey, const Scene& scene);
+    [[nodiscard]] std::vector<std::vector<Sensor>> sensorsOutside() const;
+
+    BuildingScene building_;
+    double plane_;
+    std::vector<FloorOpening> openings_;
+    Lazy<std::vector<std::vector<Sensor>>> outside_;  // by the storey that they see
+    std::mutex mutex_;
+    std::vector<std::shared_ptr<const Known>> latest_;  // by storey
+};
 
 /// Returns the room of a storey by itself, with the openings in its floor and ceiling and the
 /// stairs that begin there. Empty for a storey without openings.

@@ -3,16 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "building/building_coverage.h"
 #include "record/text.h"
+#include "sense/detection.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -223,6 +226,63 @@ TEST(BuildingSight, RaysPassOpeningsInTheRoomWithItsSurroundings) {
     EXPECT_EQ(castTo(ground, {3.5, 3, 1}, {0, 0, 1}), std::numeric_limits<double>::infinity());
     EXPECT_NEAR(castTo(ground, {3.5, 2.2, 1}, {0, 3.8, 4.3}), std::hypot(3.8, 4.3), 1e-4);
     EXPECT_FALSE(roomWithSurroundings(towerOf("", "", ""), {}, 0));
+}
+
+/// Returns the scene of a storey with its first record of this keyword at another position, or
+/// without it.
+Scene edited(const BuildingScene& building, std::size_t storey, const std::string& keyword,
+             std::optional<Tuple> at) {
+    const Scene& scene = *building.scenes[storey];
+    std::vector<Record> records = scene.records;
+    const auto record = std::find_if(records.begin(), records.end(),
+                                     [&](const Record& each) { return each.keyword() == keyword; });
+    if (at)
+        record->set("at", *at);
+    else
+        records.erase(record);
+    return makeScene(std::move(records), scene, building.devices);
+}
+
+TEST(RoomsAround, AreBuiltAnewIfTheRoomOfTheStoreyChanges) {
+    const BuildingScene building =
+        towerOf("{desk: {id: d, at: [6.5, 3]}}, " + kUp, "{laser: {id: l, at: [1, 3]}}", kShaft);
+    RoomsAround rooms(building);
+    const auto start = rooms.around(0, *building.scenes[0]);
+    ASSERT_NE(start, nullptr);
+    EXPECT_EQ(rooms.around(0, edited(building, 0, "camera", Tuple{3.5, 3, 1})), start);
+    EXPECT_LT(castTo(start->environment(), {6.5, 3, 1.5}, {0, 0, -1}), 1);
+    const Scene cleared = edited(building, 0, "desk", std::nullopt);
+    const auto changed = rooms.around(0, cleared);
+    EXPECT_NEAR(castTo(changed->environment(), {6.5, 3, 1.5}, {0, 0, -1}), 1.5, 1e-6);
+    EXPECT_EQ(castTo(changed->environment(), {4, 3, 1.5}, {0, 0, 1}),
+              std::numeric_limits<double>::infinity());
+    EXPECT_EQ(rooms.around(0, cleared), changed);
+    // Level lasers see their storey alone.
+    EXPECT_EQ(rooms.around(1, *building.scenes[1]), nullptr);
+    EXPECT_EQ(rooms.around(0, edited(building, 0, "camera", std::nullopt)), nullptr);
+}
+
+TEST(RoomsAround, FixedSensorsOfOtherStoreysSeeTheFloorThatTheyCover) {
+    const BuildingScene building = towerOf(
+        "", kDown + ", {robot: {id: r, at: [2, 3]}}, {camera: {id: m, on: r, tilt: -60}}", kShaft);
+    RoomsAround rooms(building);
+    const OutsideWatch watch = rooms.outside(0, *building.scenes[0]);
+    ASSERT_EQ(watch.sensors.size(), 1U);
+    EXPECT_EQ(watch.sensors.front().id, "c");
+    EXPECT_EQ(watch.sensors.front().pose.position.z, 5);
+    const DetectionMonitor monitor(*building.scenes[0],
+                                   {.outside = [&](const Scene&) { return watch; }});
+    // The square of 5 m that ShaftFramesTheFloorBelow measures.
+    for (double x = 0.05; x < 8; x += 0.2)
+        for (double y = 0.05; y < 6; y += 0.2) {
+            const bool is_seen = std::fabs(x - 4) < 2.5 && std::fabs(y - 3) < 2.5;
+            EXPECT_EQ(monitor.seenBy({{x, y}}), is_seen ? 1U : 0U) << x << ',' << y;
+        }
+    EXPECT_TRUE(rooms.outside(1, *building.scenes[1]).sensors.empty());
+    // A floor is not seen from below, a plane above it is.
+    const BuildingScene upwards = towerOf(kUp, "", kShaft);
+    EXPECT_TRUE(RoomsAround(upwards).outside(1, *upwards.scenes[1]).sensors.empty());
+    EXPECT_EQ(RoomsAround(upwards, 1).outside(1, *upwards.scenes[1]).sensors.size(), 1U);
 }
 
 /// 200 equal storeys around a shaft, with a camera in it on each.

@@ -369,7 +369,7 @@ std::optional<Environment> roomWithOpenings(const BuildingScene& building,
 
 std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
                                                 std::span<const FloorOpening> openings,
-                                                std::size_t storey) {
+                                                std::size_t storey, bool with_movers) {
     const auto above = storeysAbove(building.scenes.size(), openings);
     const auto floor_of = [&](std::size_t i) { return building.document.storeys[i].floor; };
     std::vector<std::size_t> near;
@@ -390,7 +390,7 @@ std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
         }
     if (near.size() == 1) return std::nullopt;
     std::sort(near.begin(), near.end());
-    return Surroundings(building, openings, near, storey, true).room();
+    return Surroundings(building, openings, near, storey, with_movers).room();
 }
 
 }  // namespace ispace

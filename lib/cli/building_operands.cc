@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/run_files.h"
+#include "building/building_sight.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "env/zone.h"
@@ -70,7 +71,10 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
                                        std::optional<std::uint64_t> max_work,
                                        std::vector<std::string>& warnings) {
     BuildingRunCoverage run;
+    RoomsAround rooms(building, watch.plane);
+    WatchOptions own_watch = watch;
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        own_watch.outside = [&rooms, i](const Scene& scene) { return rooms.outside(i, scene); };
         const std::string& id = building.document.storeys[i].id;
         std::string own = folder;
         own.append("/").append(id);
@@ -79,7 +83,7 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
             const auto scene = sceneWithWholeIds(building, i);
             RunReader reader(own);
             RunChanges changes = changesOfRun(own, *scene, max_work);
-            storey = measureRun(*scene, reader, watch, &changes);
+            storey = measureRun(*scene, reader, own_watch, &changes);
             if (!changes.failure().empty()) warnings.push_back(id + ": " + changes.failure());
             if (reader.isCut())
                 warnings.push_back(id +

@@ -15,7 +15,10 @@
 namespace ispace {
 
 BuildingRun::Data::Data(const BuildingScene& the_building, const BuildingRunOptions& the_options)
-    : building(the_building), options(the_options), passages(passagesOf(building)) {
+    : building(the_building),
+      options(the_options),
+      passages(passagesOf(building)),
+      around(std::make_shared<RoomsAround>(building)) {
     addRooms();
     addTravellers();
     Simulation& leader = *rooms.front().simulation;
@@ -32,7 +35,16 @@ BuildingRun::Data::Data(const BuildingScene& the_building, const BuildingRunOpti
 
 void BuildingRun::Data::addRoom(Room room, std::shared_ptr<const Scene> scene) {
     if (!options.replay.empty()) scene = openReplay(room, *scene);
-    room.world = std::make_unique<World>(std::move(scene), options.step, options.run);
+    RunOptions run = options.run;
+    if (room.storey) {
+        run.around = [rooms = around, storey = *room.storey](const Scene& now) {
+            return rooms->around(storey, now);
+        };
+        run.outside = [rooms = around, storey = *room.storey](const Scene& now) {
+            return rooms->outside(storey, now);
+        };
+    }
+    room.world = std::make_unique<World>(std::move(scene), options.step, run);
     const bool leads = rooms.empty();
     room.simulation = std::make_unique<Simulation>(*room.world, std::vector<TimedCommand>(),
                                                    leads ? options.clock : Clock{Clock::Kind::Fast},

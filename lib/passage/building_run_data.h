@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "building/building_sight.h"
 #include "passage/building_run.h"
 #include "passage/cabin.h"
 #include "passage/lift_record.h"
@@ -173,7 +174,8 @@ struct BuildingRun::Data {
     BuildingScene building;
     BuildingRunOptions options;
     std::vector<StoreyLink> passages;
-    std::vector<Room> rooms;  // storeys, then the cabin or the flights of each passage
+    std::shared_ptr<RoomsAround> around;  // what sensors see of other storeys
+    std::vector<Room> rooms;              // storeys, then the cabin or the flights of each passage
     std::vector<JoinedRoom> joined;
     std::vector<std::size_t> first_room;             // of each passage
     std::vector<Lift> lifts;                         // by passage; unused for stairs

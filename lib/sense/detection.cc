@@ -31,6 +31,7 @@ struct Watcher {
     double reach = 0;                     // no point in view is farther away on the floor
     std::size_t together = 1;             // number of its kind required for a detection
     bool is_blind = false;                // it is inside a solid
+    bool is_outside = false;              // of the room, see OutsideWatch
 
     [[nodiscard]] bool rides() const { return carrier != MovingBodies::kNoOwner; }
     [[nodiscard]] Pose3 poseAt(const WatchMoment& moment) const;
@@ -80,10 +81,11 @@ struct DetectionMonitor::Data {
     [[nodiscard]] bool sees(const Watcher& watcher, const Pose3& pose, Point2 place) const;
     [[nodiscard]] bool scans(const Watcher& watcher, const Pose3& pose, Point2 place) const;
     [[nodiscard]] bool scansAslant(const Watcher& watcher, const Pose3& pose, Point2 place) const;
-    [[nodiscard]] bool isClear(const Sensor& sensor, Point3 origin, Point3 target) const;
+    [[nodiscard]] bool isClear(const Watcher& watcher, Point3 origin, Point3 target) const;
 
     double plane;
     Worlds worlds;
+    OutsideWatch outside;
     std::vector<Watcher> watchers;
 };
 
@@ -101,13 +103,22 @@ DetectionMonitor::Data::Data(const Scene& scene, const WatchOptions& options)
         else
             worlds.prepareMesh(kindOf(sensor.model).stopped_by);
     }
+    if (options.outside) outside = options.outside(scene);
+    for (const Sensor& sensor : outside.sensors) {
+        watchers.push_back(watcherOf(sensor, people, options.density));
+        watchers.back().is_outside = true;
+    }
+    if (!outside.sensors.empty()) static_cast<void>(outside.room->mesh());
 }
 
-bool DetectionMonitor::Data::isClear(const Sensor& sensor, Point3 origin, Point3 target) const {
+bool DetectionMonitor::Data::isClear(const Watcher& watcher, Point3 origin, Point3 target) const {
     if (target == origin) return true;
     const std::array<Point3, 1> targets = {target};
     std::array<std::uint8_t, 1> seen = {0};
-    worlds.mesh(kindOf(sensor.model).stopped_by).query(origin, targets, seen);
+    const RayWorld& mesh = watcher.is_outside
+                               ? outside.room->mesh()
+                               : worlds.mesh(kindOf(watcher.sensor.model).stopped_by);
+    mesh.query(origin, targets, seen);
     return seen[0] != 0;
 }
 
@@ -143,14 +154,14 @@ bool DetectionMonitor::Data::scansAslant(const Watcher& watcher, const Pose3& po
         Sensor moved = watcher.sensor;
         moved.pose = pose;
         return is_near(target) && SweptScan(moved).passes(target) &&
-               isClear(watcher.sensor, pose.position, target);
+               isClear(watcher, pose.position, target);
     }
     const ScanPlane scan(pose);
     if (scan.up() == 0) return false;  // upright: a line, as seen from above
     const Point3 target{place.x, place.y, scan.heightAt(place)};
     return target.z >= 0 && is_near(target) &&
            watcher.window->holds(scan.frame().toLocal(target)) &&
-           isClear(watcher.sensor, pose.position, target);
+           isClear(watcher, pose.position, target);
 }
 
 bool DetectionMonitor::Data::sees(const Watcher& watcher, const Pose3& pose, Point2 place) const {
@@ -163,10 +174,10 @@ bool DetectionMonitor::Data::sees(const Watcher& watcher, const Pose3& pose, Poi
     }
     const Point3 target{place.x, place.y, plane};
     if (!watcher.rides())
-        return watcher.view->holds(target) && isClear(watcher.sensor, pose.position, target);
+        return watcher.view->holds(target) && isClear(watcher, pose.position, target);
     FieldOfView view = *watcher.view;
     view.frame = Frame3(pose);
-    return view.holds(target) && isClear(watcher.sensor, pose.position, target);
+    return view.holds(target) && isClear(watcher, pose.position, target);
 }
 
 DetectionMonitor::DetectionMonitor(const Scene& scene, const WatchOptions& options)

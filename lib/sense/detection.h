@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,10 +13,20 @@
 
 namespace ispace {
 
+class SurroundedRoom;
+
+/// Sensors beyond a room that see into it through openings.
+struct OutsideWatch {
+    std::shared_ptr<const SurroundedRoom> room;  ///< with those around it; null without sensors
+    std::vector<Sensor> sensors;                 ///< fixed, with a field of view; in its frame
+};
+
 /// Conditions of a detection.
 struct WatchOptions {
     double plane = 0;    ///< height at which all sensors but level lasers detect movers
     double density = 0;  ///< pixels a metre that a camera requires; 0: any
+    /// Returns the sensors beyond a scene; empty: there are none.
+    std::function<OutsideWatch(const Scene&)> outside = {};
 };
 
 /// Poses of all movers at a moment; empty spans mean the start.

@@ -231,7 +231,7 @@ void EventLog::Data::tellSight() {
     std::vector<Pose2> poses(walkers.size());
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = world->status(i).pose;
     if (watch && poses == watched) return;  // most of a day nobody moves
-    if (!watch) watch.emplace(world->scene());
+    if (!watch) watch.emplace(world->scene(), WatchOptions{.outside = world->options().outside});
     const std::span<const Pose2> all(poses);
     const std::size_t robots = world->robots().size();
     const WatchMoment moment{.robots = all.first(robots), .people = all.subspan(robots)};

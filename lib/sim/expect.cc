@@ -287,7 +287,9 @@ void ExpectationJudge::Data::find() {
     for (JudgedRoom& room : rooms) {
         if (std::exchange(room.changes, room.world->changes()) == room.world->changes()) continue;
         has_changed = true;
-        if (is_watched) room.watch.emplace(room.world->scene());
+        if (is_watched)
+            room.watch.emplace(room.world->scene(),
+                               WatchOptions{.outside = room.world->options().outside});
     }
     if (!has_changed) return;
     for (Trial& trial : trials) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "sense/detection.h"
 #include "sim/command.h"
 #include "sim/mover.h"
 #include "sim/sensor_reading.h"
@@ -75,6 +76,12 @@ struct RunOptions {
     /// Readings have the noise of their sensors' records: that of the reading with the same number
     /// and seed by `scan --noise`. Sonars, bumpers, mats and gates are noiseless.
     bool sensor_noise = false;
+    /// Returns the room of a scene joined with those around it, which its sensors see; empty, or
+    /// null: the room alone. Called in any thread
+    std::function<std::shared_ptr<const SurroundedRoom>(const Scene&)> around = {};
+    /// Sensors beyond the room that see its robots and people, see WatchOptions. Called in any
+    /// thread
+    std::function<OutsideWatch(const Scene&)> outside = {};
 };
 
 /// Robots, people and sensors in an environment, in fixed steps.

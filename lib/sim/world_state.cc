@@ -23,7 +23,8 @@ SceneResources::SceneResources(std::shared_ptr<const Scene> made_of, const RunOp
       obstacles(obstaclesOf(scene->environment, moversOf(*scene),
                             before == nullptr ? nullptr : &before->obstacles)),
       friction(scene->environment),
-      worlds(scene->environment) {
+      around(options.around ? options.around(*scene) : nullptr),
+      worlds(scene->environment, around) {
     if (meshes.opaque) worlds.prepareMesh();
     if (meshes.solid) worlds.prepareMesh(Surfaces::Solid);
     // Built here, so that neither the first client to require them nor the others must wait.
@@ -43,7 +44,12 @@ SceneResources::SceneResources(std::shared_ptr<const Scene> made_of, const RunOp
     PhotoOptions photo;
     photo.with_noise = options.sensor_noise;
     photo.seed = options.seed;
-    photographer = std::make_unique<Photographer>(*scene, photo);
+    if (around != nullptr) {
+        Scene whole = *scene;
+        whole.environment = around->environment();
+        photographed = std::make_unique<const Scene>(std::move(whole));
+    }
+    photographer = std::make_unique<Photographer>(photographed ? *photographed : *scene, photo);
 }
 
 namespace {

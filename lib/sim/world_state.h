@@ -40,7 +40,9 @@ struct SceneResources {
     ObstacleSets obstacles;
     ObstacleSets echoes;  // by sonarTop(); built when all sonars are read at once
     FrictionMap friction;
+    std::shared_ptr<const SurroundedRoom> around;  // null: the room alone
     Worlds worlds;
+    std::unique_ptr<const Scene> photographed;   // in the room with those around it, if there are
     std::unique_ptr<Photographer> photographer;  // if there are cameras
 };
 

@@ -226,8 +226,10 @@ bool hasClearGlass(const Environment& environment) {
 // Only the preparing thread adds worlds, so it reads without a lock; other threads may read while
 // it builds.
 
-Worlds::Worlds(const Environment& environment)
-    : environment_(&environment), has_clear_(hasClearGlass(environment)) {}
+Worlds::Worlds(const Environment& environment, std::shared_ptr<const SurroundedRoom> around)
+    : environment_(&environment),
+      around_(std::move(around)),
+      has_clear_(hasClearGlass(environment)) {}
 
 const RayWorld* Worlds::sliceAt(double height) const {
     const std::shared_lock lock(mutex_);
@@ -247,6 +249,11 @@ void Worlds::prepare(const Pose3& pose, const Worlds* before) {
 }
 
 void Worlds::prepareMesh(Surfaces surfaces) {
+    if (around_ != nullptr && surfaces == Surfaces::Opaque) {
+        static_cast<void>(around_->mesh());
+        is_around_prepared_ = true;
+        return;
+    }
     std::optional<RayWorld>& mesh = hearsMore(surfaces) ? solid_ : mesh_;
     if (mesh) return;
     RayWorld made = RayWorld::ofEnvironment(*environment_, surfaces);
@@ -261,6 +268,7 @@ const RayWorld& Worlds::at(const Pose3& pose) const {
 }
 
 const RayWorld& Worlds::mesh(Surfaces surfaces) const {
+    if (around_ != nullptr && surfaces == Surfaces::Opaque) return around_->mesh();
     const std::shared_lock lock(mutex_);
     const std::optional<RayWorld>& mesh = hearsMore(surfaces) ? solid_ : mesh_;
     assert(mesh);

@@ -9,7 +9,9 @@
 #include <optional>
 #include <shared_mutex>
 #include <span>
+#include <utility>
 
+#include "base/parallel.h"
 #include "env/environment.h"
 #include "env/mesh.h"
 #include "geom/point.h"
@@ -75,6 +77,22 @@ class RayWorld {
     std::unique_ptr<Data> data_;
 };
 
+/// A room joined with those around it, and its mesh for rays of light, which is built when it is
+/// first required. Thread-safe.
+class SurroundedRoom {
+  public:
+    explicit SurroundedRoom(Environment environment) : environment_(std::move(environment)) {}
+    [[nodiscard]] const Environment& environment() const { return environment_; }
+    /// \throws as RayWorld::ofEnvironment()
+    [[nodiscard]] const RayWorld& mesh() const {
+        return mesh_.get([this] { return RayWorld::ofEnvironment(environment_); });
+    }
+
+  private:
+    Environment environment_;
+    Lazy<RayWorld> mesh_;
+};
+
 /// The ray worlds of one environment: one slice per height for level sensors, the mesh for all
 /// others, with and without clear glass.
 ///
@@ -91,7 +109,10 @@ class Worlds {
         bool opaque = false, solid = false;
     };
 
-    explicit Worlds(const Environment& environment);
+    /// \param around the same room with those around it, which light in all directions meets; null:
+    ///        the room alone. Level slices and sound are those of the room
+    explicit Worlds(const Environment& environment,
+                    std::shared_ptr<const SurroundedRoom> around = nullptr);
     /// \param before worlds of another environment, which may share its data; see ofLevel()
     void prepare(const Pose3& pose, const Worlds* before = nullptr);
     /// Builds the mesh for sensors that look in all directions: surfaces that stop light, or
@@ -106,22 +127,26 @@ class Worlds {
     [[nodiscard]] const RayWorld& mesh(Surfaces surfaces = Surfaces::Opaque) const;
     [[nodiscard]] const Environment& environment() const { return *environment_; }
     /// Prepared meshes, as known to the preparing thread.
-    [[nodiscard]] Meshes meshes() const { return {mesh_.has_value(), solid_.has_value()}; }
+    [[nodiscard]] Meshes meshes() const {
+        return {mesh_.has_value() || is_around_prepared_, solid_.has_value()};
+    }
 
   private:
     /// Returns the slice of a height, or null.
     [[nodiscard]] const RayWorld* sliceAt(double height) const;
-    /// True if these surfaces stop more rays than the opaque ones.
+    /// True if these surfaces may stop other rays than the opaque ones.
     [[nodiscard]] bool hearsMore(Surfaces surfaces) const {
-        return has_clear_ && surfaces == Surfaces::Solid;
+        return (has_clear_ || around_ != nullptr) && surfaces == Surfaces::Solid;
     }
 
     const Environment* environment_;
+    std::shared_ptr<const SurroundedRoom> around_;
     mutable std::shared_mutex mutex_;  // guards the members below; only prepare() adds to them
     std::map<double, RayWorld> slices_;
     std::optional<RayWorld> mesh_;
     std::optional<RayWorld> solid_;  // if it differs from mesh_
     bool has_clear_;
+    bool is_around_prepared_ = false;
 };
 
 }  // namespace ispace

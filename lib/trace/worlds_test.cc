@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <thread>
 #include <vector>
@@ -75,6 +76,26 @@ TEST(Worlds, SoundIsStoppedByClearGlassToo) {
     worlds.mesh(Surfaces::Solid).cast(from, along({1, 0, 0}), 100, {&sound, 1});
     EXPECT_EQ(light, 6);
     EXPECT_EQ(sound, 3);
+}
+
+TEST(Worlds, OnlyLightInAllDirectionsMeetsTheRoomsAround) {
+    const Scene scene = furnishedRoom();
+    const auto around = std::make_shared<const SurroundedRoom>(
+        testing::scene("ispace at=4,3 size=8,6,2.5\ncube at=6,3 size=1,1,1\n").environment);
+    Worlds worlds(scene.environment, around), others(scene.environment, around);
+    const Pose3 level = at(7.5, 3, 0.8, 180), down = at(6, 3, 1.5, 0, -90);
+    worlds.prepare(level);
+    EXPECT_FALSE(worlds.meshes().opaque);
+    worlds.prepare(down);
+    worlds.prepareMesh(Surfaces::Solid);
+    EXPECT_TRUE(worlds.meshes().opaque);
+    EXPECT_EQ(ahead(worlds, level), 7.5F);
+    EXPECT_NEAR(ahead(worlds, down), 0.5, 1e-6);
+    float sound = 0;
+    worlds.mesh(Surfaces::Solid).cast(down.position, along({0, 0, -1}), 100, {&sound, 1});
+    EXPECT_NEAR(sound, 1, 1e-6);
+    others.prepareMesh();
+    EXPECT_EQ(&others.mesh(), &worlds.mesh()) << "it is built once";
 }
 
 TEST(Worlds, HeightsBeyondThoseKeptAreTracedInTheMesh) {

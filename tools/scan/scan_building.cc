@@ -42,12 +42,6 @@ struct StoreySensors {
     Sensors sensors;
 };
 
-/// Returns true for a sensor that looks out of its own plane.
-bool looksAround(const Sensor& sensor) {
-    return kindOf(sensor.model).stopped_by == Surfaces::Opaque &&
-           (!sensor.is<Laser>() || !scansSlice(sensor));
-}
-
 /// Returns the scene of a storey, in which sensors see through openings if they look around.
 Scene sceneOf(const BuildingScene& building, std::span<const FloorOpening> openings,
               const StoreySensors& one) {
