@@ -166,9 +166,10 @@ bool BuildingRun::Data::isFree(std::size_t room, Point2 at, const Traveller& who
 }
 
 void BuildingRun::Data::change(std::size_t room, std::vector<Record> records,
-                               std::vector<std::string> requests) {
+                               std::vector<std::string> requests,
+                               std::span<const std::string> placed) {
     World& world = *rooms[room].world;
-    world.change(makeScene(std::move(records), world.scene(), building.devices));
+    world.change(makeScene(std::move(records), world.scene(), building.devices), placed);
     for (std::string& request : requests)
         rooms[room].simulation->tellChange(std::move(request), "");
 }

@@ -94,6 +94,9 @@ class BuildingRun final : public JoinedWorlds {
                     std::string_view storey) override;
     std::string endTrip(const std::string& mover, Outcome outcome) override;
     void abandonTrip(const std::string& mover) override;
+    std::string place(const std::string& mover, const std::optional<RoomPoint>& at,
+                      std::optional<Angle> heading) override;
+    void restart() override;
     std::string call(std::string_view lift, std::string_view storey) override;
     [[nodiscard]] std::vector<LiftState> lifts() const override;
     [[nodiscard]] std::span<const TripEnd> tripEnds() const override;

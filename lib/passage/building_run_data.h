@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -169,12 +170,16 @@ struct BuildingRun::Data {
     /// Moves a mover to another room. \returns false if it is not free there
     bool move(Traveller& who, std::size_t room, const Pose2& pose);
     [[nodiscard]] bool isFree(std::size_t room, Point2 at, const Traveller& who) const;
-    void change(std::size_t room, std::vector<Record> records, std::vector<std::string> requests);
+    void change(std::size_t room, std::vector<Record> records, std::vector<std::string> requests,
+                std::span<const std::string> placed = {});
+    void endCommands(const Traveller& who);
+    std::string place(Traveller& who, std::size_t room, const Pose2& pose);
+    void restart();
 
     BuildingScene building;
     BuildingRunOptions options;
     std::vector<StoreyLink> passages;
-    std::shared_ptr<RoomsAround> around;  // what sensors see of other storeys
+    std::shared_ptr<RoomsAround> around;  // views of other storeys
     std::vector<Room> rooms;              // storeys, then the cabin or the flights of each passage
     std::vector<JoinedRoom> joined;
     std::vector<std::size_t> first_room;             // of each passage

@@ -93,27 +93,6 @@ std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_v
     }
 }
 
-/// The findings about the movers of a change, in one line.
-std::string warningOf(const World& world, const std::vector<std::string>& movers) {
-    constexpr std::size_t kMost = 3;
-    if (movers.empty()) return "";
-    std::vector<std::string> warnings;
-    const auto is_moved = [&movers](const std::string& id) {
-        return std::find(movers.begin(), movers.end(), id) != movers.end();
-    };
-    for (const Finding& finding :
-         checkScene(world.scene(), {.checks = {"outside", "paths"}, .ids = is_moved}))
-        warnings.push_back(finding.message);
-    for (const std::string& id : movers)
-        for (std::string& warning : startWarnings(world, id))
-            warnings.push_back(std::move(warning));
-    if (warnings.size() > kMost) {
-        warnings.resize(kMost);
-        warnings.emplace_back("and more");
-    }
-    return joined(warnings, "; ");
-}
-
 /// A pending change request.
 class Changing {
   public:
@@ -201,6 +180,34 @@ std::string Changing::end(const std::exception_ptr& failure) {
 }
 
 }  // namespace
+
+std::string warningOf(const World& world, const std::vector<std::string>& movers) {
+    constexpr std::size_t kMost = 3;
+    if (movers.empty()) return "";
+    std::vector<std::string> warnings;
+    const auto is_moved = [&movers](const std::string& id) {
+        return std::find(movers.begin(), movers.end(), id) != movers.end();
+    };
+    for (const Finding& finding :
+         checkScene(world.scene(), {.checks = {"outside", "paths"}, .ids = is_moved}))
+        warnings.push_back(finding.message);
+    for (const std::string& id : movers)
+        for (std::string& warning : startWarnings(world, id))
+            warnings.push_back(std::move(warning));
+    if (warnings.size() > kMost) {
+        warnings.resize(kMost);
+        warnings.emplace_back("and more");
+    }
+    return joined(warnings, "; ");
+}
+
+void changeRooms(const ServedRooms& rooms, const std::function<void()>& change) {
+    const WallTime began = std::chrono::steady_clock::now();
+    for (ServerState* const state : rooms.states) state->simulation().finishRecord(WallTime::max());
+    change();
+    for (ServerState* const state : rooms.states) state->sync();
+    rooms.states.front()->changes().spend(began, std::chrono::steady_clock::now());
+}
 
 std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
                                                       const std::string& verb,

@@ -2,8 +2,10 @@
 // Requests that change the world. Private to lib/server.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "server/server_state.h"
 
@@ -15,5 +17,11 @@ namespace ispace {
 std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
                                                       const std::string& verb = "",
                                                       const std::string& prefix = "");
+
+/// Changes the rooms of a building together, between two steps. \pre all states mayChangeNow()
+void changeRooms(const ServedRooms& rooms, const std::function<void()>& change);
+
+/// Returns the findings about movers that were put somewhere, in one line.
+std::string warningOf(const World& world, const std::vector<std::string>& movers);
 
 }  // namespace ispace

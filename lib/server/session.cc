@@ -405,8 +405,7 @@ void Session::help(Words /*words*/) {
             request.answer == &Session::goTo || request.answer == &Session::ride ||
             request.answer == &Session::call || request.answer == &Session::lifts;
         if (is_of_rooms && rooms() == nullptr) continue;
-        const bool replaces = request.verb == "RESET" || request.verb == "LOAD";
-        if (replaces && rooms() != nullptr) continue;  // refused in buildings
+        if (request.verb == "LOAD" && rooms() != nullptr) continue;  // refused in buildings
         if (request.answer == &Session::token && state_->limits().token.empty()) continue;
         out_.append(separator).append(request.verb);
         if (!request.arguments.empty()) out_.append(" ").append(request.arguments);

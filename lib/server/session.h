@@ -149,6 +149,7 @@ class Session {
     void goOn();
     [[nodiscard]] bool mayChange() const;
     void changeRoom(Words words);
+    bool placeMover(Words words);
     [[nodiscard]] bool maySeek() const { return state_->areAllAtRest(); }
     [[nodiscard]] bool hasCome() const { return !coming_; }
     [[nodiscard]] bool sendsPendingScan(Words words);

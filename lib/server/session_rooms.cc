@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Requests of runs with several worlds: trips, lifts, and the names of things across the worlds.
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -116,7 +117,6 @@ bool mountsOn(const World& world, std::string_view word) {
     return world.moverNamed(carrier).has_value();
 }
 
-/// Finds the room of a request SET, ADD, DELETE or ACT.
 /// True if a word of SET gives a thing an id of another room: "upper/f.id=ground/r1".
 bool namesOtherRoom(std::string_view word) {
     constexpr std::string_view kNewId = ".id=";
@@ -124,6 +124,7 @@ bool namesOtherRoom(std::string_view word) {
     return at != std::string_view::npos && word.find('/', at) != std::string_view::npos;
 }
 
+/// Finds the room of a request SET, ADD, DELETE or ACT.
 RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_view> words) {
     RoomRequest out;
     const auto fail = [&out](int code, std::string fault) {
@@ -165,7 +166,8 @@ RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_
             for (const JoinedRoom& other : rooms) {
                 const World& world = other.simulation->world();
                 if (world.moverNamed(whole))
-                    return fail(403, whole + " is driven, not set: take the role ROBOT or PERSON");
+                    return fail(403, verb == "SET" ? "of " + whole + " at and heading can be set"
+                                                   : whole + " stays in the building");
                 if (verb == "ADD" && world.sensorNamed(whole))
                     return fail(400, "the id " + whole + " is taken");
             }
@@ -184,10 +186,79 @@ RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_
 
 }  // namespace
 
-/// Changes a thing of a building that stands in a room, or its state.
+namespace {
+
+/// The mover and the value of a request SET MOVER.at=VALUE or SET MOVER.heading=VALUE.
+struct PlaceRequest {
+    std::string mover;
+    std::string_view value;
+    bool is_point = false;
+};
+
+std::optional<PlaceRequest> placeRequest(const JoinedWorlds& worlds,
+                                         std::span<const std::string_view> words) {
+    if (words.size() != 2 || words[0] != "SET") return std::nullopt;
+    const std::string_view word = words[1];
+    const std::size_t equal = word.find('=');
+    const std::size_t dot = word.substr(0, equal).rfind('.');
+    if (equal == std::string_view::npos || dot == std::string_view::npos) return std::nullopt;
+    const std::string_view key = word.substr(dot + 1, equal - dot - 1);
+    PlaceRequest request{std::string(word.substr(0, dot)), word.substr(equal + 1), key == "at"};
+    const bool is_pose = (request.is_point || key == "heading") && worlds.roomOf(request.mover);
+    return is_pose ? std::optional(std::move(request)) : std::nullopt;
+}
+
+}  // namespace
+
+/// Puts a robot or a person elsewhere. \returns false for other requests
+bool Session::placeMover(Words words) {
+    JoinedWorlds& worlds = *rooms()->worlds;
+    const auto request = placeRequest(worlds, words);
+    if (!request) return false;
+    const auto fail = [this](int code, const std::string& text) {
+        error(code, {text});
+        return true;
+    };
+    std::optional<RoomPoint> at;
+    std::optional<Angle> heading;
+    if (request->is_point) {
+        const std::array<std::string_view, 2> point = {"PATH", request->value};
+        const ParsedTrip parsed = parseTrip(point, worlds.rooms(), *worlds.roomOf(request->mover));
+        if (!parsed.fault.empty()) return fail(400, parsed.fault);
+        if (parsed.plan.points.size() > 1) return fail(400, "at wants one point, as upper/1,2");
+        at = parsed.plan.points.front();
+    } else {
+        const auto degrees = parseDouble(request->value);
+        if (!degrees) return fail(400, "heading wants degrees, not " + excerpt(request->value));
+        heading = Angle::degrees(*degrees);
+    }
+    if (!mayChange()) {
+        hold(words, &Session::mayChange);
+        return true;
+    }
+    std::string refusal;
+    changeRooms(*rooms(), [&] { refusal = worlds.place(request->mover, at, heading); });
+    if (!refusal.empty()) return fail(409, refusal);
+    const std::size_t room = *worlds.roomOf(request->mover);
+    const World& world = rooms()->states[room]->simulation().world();
+    out_.append("OK SET t=").append(formatMilliseconds(world.time()));
+    if (const std::string warning = warningOf(world, {request->mover}); !warning.empty())
+        out_.append(" warning=").append(warning);
+    out_ += '\n';
+    return true;
+}
+
+/// Changes a thing of a building that stands in a room, or its state, the position of a robot or a
+/// person, or restarts the whole.
 void Session::changeRoom(Words words) {
     if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
-    if (!mayMove()) return;
+    if (!mayMove() || placeMover(words)) return;
+    if (words[0] == "RESET") {
+        if (!mayChange()) return hold(words, &Session::mayChange);
+        changeRooms(*rooms(), [this] { rooms()->worlds->restart(); });
+        out_.append("OK RESET t=").append(formatMilliseconds(world().time())).append("\n");
+        return;
+    }
     const RoomRequest request = roomRequest(*rooms()->worlds, words);
     if (request.code != 0) return error(request.code, {request.fault});
     ServerState& state = *rooms()->states[request.room];

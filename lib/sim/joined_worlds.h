@@ -107,6 +107,13 @@ class JoinedWorlds {
     virtual std::string endTrip(const std::string& mover, Outcome outcome) = 0;
     /// Ends a trip as stopped; in a lift or on stairs once the mover is out and off the landing.
     virtual void abandonTrip(const std::string& mover) = 0;
+    /// Puts a mover, at rest, to a point of a storey, to a heading, or to both; its trip and its
+    /// command end as stopped. \returns the reason why that is impossible, or ""
+    virtual std::string place(const std::string& mover, const std::optional<RoomPoint>& at,
+                              std::optional<Angle> heading) = 0;
+    /// Restarts all rooms and lifts as at the start of the run; time goes on. Trips and commands
+    /// under way end as stopped, and trips of records begin anew.
+    virtual void restart() = 0;
     /// Calls a lift. \returns the reason why it does not come, or ""
     virtual std::string call(std::string_view lift, std::string_view storey) = 0;
     [[nodiscard]] virtual std::vector<LiftState> lifts() const = 0;

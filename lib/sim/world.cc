@@ -314,6 +314,10 @@ void World::resume(std::size_t mover, const CarriedState& state) {
         data.gaits[mover - data.odometers.size()] = state.gait;
 }
 
+void World::countOn(std::size_t mover, const CarriedState& state) {
+    data_->states[mover].ids = state.ids;
+}
+
 int World::issueId(std::size_t mover) { return ++data_->states[mover].ids; }
 
 void World::stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,

@@ -243,6 +243,8 @@ class World {
     [[nodiscard]] std::shared_ptr<const CarriedState> carried(std::size_t mover) const;
     /// Goes on from there, at the mover's present pose. \pre the state is of the same kind of mover
     void resume(std::size_t mover, const CarriedState& state);
+    /// Continues its command ids alone from there.
+    void countOn(std::size_t mover, const CarriedState& state);
     /// Returns a new id for a command of this mover that is carried out by a sequence of others.
     int issueId(std::size_t mover);
 

@@ -307,7 +307,7 @@ RosPose poseOf(std::string_view message) {
     out.frame = readHeader(in).frame;
     out.pose.position.x = in.number<double>();
     out.pose.position.y = in.number<double>();
-    in.number<double>();
+    out.height = in.number<double>();
     const auto x = in.number<double>(), y = in.number<double>(), z = in.number<double>(),
                w = in.number<double>();
     out.pose.heading =

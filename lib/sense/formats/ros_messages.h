@@ -125,6 +125,7 @@ RosTwist twistOf(RosType type, std::string_view message);
 struct RosPose {
     std::string frame;
     Pose2 pose;
+    double height = 0;  ///< metres
 };
 /// Reads the pose of a PoseWithCovarianceStamped, turned about z alone.
 RosPose poseOf(std::string_view message);

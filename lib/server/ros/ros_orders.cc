@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "base/number.h"
+#include "env/point_location.h"
+#include "sim/odometry.h"
 
 namespace ispace {
 
@@ -144,16 +147,58 @@ void RosOrders::drive(const std::string& robot, const RosTwist& twist) {
 void RosOrders::place(const std::string& robot, const RosPose& pose) {
     const Point2 at = pose.pose.position;
     const double heading = pose.pose.heading.degrees();
+    if (!std::isfinite(at.x + at.y + heading + pose.height))
+        return tell_("the pose of " + robot + " must be numbers");
+    if (state_->rooms() != nullptr) return placeInRoom(robot, pose);
     if (!pose.frame.empty() && pose.frame != kRosWorld)
         return tell_("the pose of " + robot + " is wanted in the frame map");
-    if (!std::isfinite(at.x + at.y + heading))
-        return tell_("the pose of " + robot + " must be numbers");
     if (!mayRequest()) return tell_("too many poses at once");
     const auto answer = [this](bool is_done, std::string_view text) {
         if (!is_done) tell_(std::string(text));
     };
     request("SET " + robot + ".at=" + formatDouble(at.x) + "," + formatDouble(at.y), answer);
     request("SET " + robot + ".heading=" + formatDouble(heading), answer);
+}
+
+/// Puts a robot on the storey whose frame the pose names or, in the frame map, on the one with its
+/// floor nearest to the pose's height; of several there, on that which has the point indoors.
+void RosOrders::placeInRoom(const std::string& robot, const RosPose& pose) {
+    const JoinedWorlds& worlds = *state_->rooms()->worlds;
+    const auto rooms = worlds.rooms();
+    const bool is_in_map = pose.frame.empty() || pose.frame == kRosWorld;
+    struct Found {
+        std::string room;
+        Pose2 pose;
+        double off = 0;  // of the floor
+        bool is_indoor = false;
+    };
+    std::optional<Found> best;
+    for (std::size_t i = 0; i < rooms.size(); ++i) {
+        const RoomFrame frame = worlds.frameOf(i);
+        if (!frame.is_storey || (!is_in_map && rosName(rooms[i].id) != pose.frame)) continue;
+        Found found{.room = rooms[i].id, .pose = pose.pose};
+        if (is_in_map) {
+            const Pose2 place{frame.pose.position.onFloor(), frame.pose.heading};
+            found.pose = relativePose(place, pose.pose);
+            found.off = std::fabs(frame.pose.position.z - pose.height);
+        }
+        const Environment& environment = rooms[i].simulation->world().scene().environment;
+        found.is_indoor = environment.indoorIndex().locate(found.pose.position) == Side::Inside;
+        const bool is_better = !best || found.off < best->off ||
+                               (found.off == best->off && found.is_indoor && !best->is_indoor);
+        if (is_better) best = std::move(found);
+    }
+    if (!best)
+        return tell_("the pose of " + robot + " is wanted in the frame map or in that of a storey");
+    if (!mayRequest()) return tell_("too many poses at once");
+    const auto answer = [this](bool is_done, std::string_view text) {
+        if (!is_done) tell_(std::string(text));
+    };
+    const Point2 at = best->pose.position;
+    request(
+        "SET " + robot + ".at=" + best->room + '/' + formatDouble(at.x) + ',' + formatDouble(at.y),
+        answer);
+    request("SET " + robot + ".heading=" + formatDouble(best->pose.heading.degrees()), answer);
 }
 
 /// Stops robots that get no more orders.

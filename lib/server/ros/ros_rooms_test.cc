@@ -14,8 +14,10 @@
 
 #include "server/ros/ros_feed.h"
 #include "server/ros/ros_orders.h"
+#include "server/ros/ros_text.h"
 #include "sim/joined_worlds.h"
 #include "support/test_layout.h"
+#include "support/test_source.h"
 
 namespace ispace {
 namespace {
@@ -46,6 +48,9 @@ class ThreeRooms final : public JoinedWorlds {
     double cabin = 0;  ///< height
     std::string busy;  ///< reason of endTrip()
     std::vector<Outcome> ends;
+    std::optional<RoomPoint> placed;  ///< of place()
+    std::optional<Angle> turned;
+    int restarts = 0;
 
     [[nodiscard]] std::span<const JoinedRoom> rooms() const override { return rooms_; }
     [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view mover) const override {
@@ -67,6 +72,13 @@ class ThreeRooms final : public JoinedWorlds {
         return busy;
     }
     void abandonTrip(const std::string& /*mover*/) override { ends.push_back(Outcome::Stopped); }
+    std::string place(const std::string& /*mover*/, const std::optional<RoomPoint>& at,
+                      std::optional<Angle> heading) override {
+        if (at) placed = at;
+        if (heading) turned = heading;
+        return busy;
+    }
+    void restart() override { ++restarts; }
     std::string call(std::string_view /*lift*/, std::string_view /*storey*/) override { return ""; }
     [[nodiscard]] std::vector<LiftState> lifts() const override { return {}; }
     [[nodiscard]] std::span<const TripEnd> tripEnds() const override { return {}; }
@@ -91,8 +103,8 @@ class ThreeRooms final : public JoinedWorlds {
 };
 
 struct Served {
-    Served() {
-        for (std::size_t i = 0; i < 3; ++i) states.emplace_back(worlds.simulation(i));
+    explicit Served(const ServerLimits& limits = {}) {
+        for (std::size_t i = 0; i < 3; ++i) states.emplace_back(worlds.simulation(i), limits);
         for (ServerState& state : states) served.states.push_back(&state);
         served.worlds = &worlds;
         for (ServerState& state : states) state.joinRooms(served);
@@ -214,6 +226,57 @@ TEST(RosRooms, OrdersFindTheRobotWhereverItIs) {
     served.states[1].release("ground/r1", 2);
     drive();
     EXPECT_EQ(told.back(), "ground/r1: it is in the lift l1");
+}
+
+TEST(RosRooms, InitialPosesFindTheirStorey) {
+    ServerLimits limits;
+    limits.source = std::make_shared<testing::TextSource>(std::map<std::string, std::string>{});
+    Served served(limits);
+    std::vector<std::string> told;
+    RosOrders orders(served.states.front(), [&](const std::string& text) { told.push_back(text); });
+    const auto place = [&](const std::string& frame, Point3 at, double degrees) {
+        served.worlds.placed.reset();
+        served.worlds.turned.reset();
+        const double half = Angle::degrees(degrees / 2).radians();
+        json pose = {{"position", {{"x", at.x}, {"y", at.y}, {"z", at.z}}},
+                     {"orientation", {{"z", std::sin(half)}, {"w", std::cos(half)}}}};
+        orders.obey(served.entry("/ground_r1/initialpose").channel,
+                    rosMessage(RosType::PoseWithCovarianceStamped,
+                               {{"header", {{"frame_id", frame}}}, {"pose", {{"pose", pose}}}}));
+        while (orders.waiting()) orders.proceed();
+        orders.proceed();
+    };
+    place("map", {1, -2, 0}, 30);
+    EXPECT_EQ(told, std::vector<std::string>());
+    ASSERT_TRUE(served.worlds.placed);
+    ASSERT_TRUE(served.worlds.turned);
+    EXPECT_EQ(served.worlds.placed->room, 0U);
+    EXPECT_EQ(served.worlds.placed->at, Point2(1, -2));
+    EXPECT_NEAR(served.worlds.turned->degrees(), 30, 1e-9);
+    // The upper storey stands at 10,0,3, turned by a quarter.
+    place("", {9, 3, 2.5}, 30);
+    ASSERT_TRUE(served.worlds.placed && served.worlds.turned);
+    EXPECT_EQ(served.worlds.placed->room, 1U);
+    EXPECT_NEAR(distance(served.worlds.placed->at, {3, 1}), 0, 1e-9);
+    EXPECT_NEAR(served.worlds.turned->degrees(), -60, 1e-9);
+    place("upper", {2, 1, 0}, 0);
+    ASSERT_TRUE(served.worlds.placed);
+    EXPECT_EQ(served.worlds.placed->room, 1U);
+    EXPECT_EQ(served.worlds.placed->at, Point2(2, 1));
+    EXPECT_EQ(told, std::vector<std::string>());
+    place("l1", {0, 0, 0}, 0);
+    EXPECT_FALSE(served.worlds.placed);
+    EXPECT_EQ(told.back(),
+              "the pose of ground/r1 is wanted in the frame map or in that of a storey");
+    served.worlds.busy = "it is in the lift l1";
+    place("map", {1, -2, 0}, 0);
+    EXPECT_EQ(told.back(), "it is in the lift l1");
+    bool is_done = false;
+    orders.request("RESET", [&](bool done, std::string_view /*text*/) { is_done = done; });
+    while (orders.waiting()) orders.proceed();
+    orders.proceed();
+    EXPECT_TRUE(is_done);
+    EXPECT_EQ(served.worlds.restarts, 1);
 }
 
 }  // namespace
