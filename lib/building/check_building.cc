@@ -151,6 +151,22 @@ class BuildingCheck {
             report(passage, "path", "has less than three corners");
         else if (const auto crossing = selfCrossing(outline))
             report(passage, "path", "crosses itself near " + placeText(*crossing));
+        else
+            for (const std::size_t i : passage.storeys)
+                if (!meetsRooms(i, outline))
+                    report(passage, "path", "lies outside of the rooms of " + storey(i).id);
+    }
+
+    /// True if an outline in the building has area in common with the rooms of a storey.
+    [[nodiscard]] bool meetsRooms(std::size_t i, Polygon outline) const {
+        for (Point2& p : outline) p = inStorey(storey(i), p);
+        if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
+        std::vector<Polygon> rooms;
+        for (const Region& part : room(i).indoor().parts) rooms.push_back(part.outline);
+        const Region whole{std::move(outline), {}};
+        double left = 0;
+        for (const Region& part : difference(whole, rooms)) left += part.area();
+        return whole.area() - left > 1e-6 * whole.area();
     }
 
     /// Outlines of the rooms of a storey, in the building.
