@@ -3,11 +3,16 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <utility>
 
+#include "arrange/joined_rooms.h"
 #include "base/number.h"
+#include "building/building_coverage.h"
 #include "building/building_sight.h"
 #include "building/share_out.h"
+#include "building/storey_sight.h"
+#include "coverage/outside_view.h"
 
 namespace ispace {
 
@@ -61,39 +66,158 @@ class StoreySearch {
 
 }  // namespace
 
-BuildingArrangement arrangeBuilding(const BuildingScene& building, const SensorSpec& sensor,
-                                    int count, const ArrangeOptions& options, Progress& progress) {
-    const auto scenes = scenesOfFloors(building);
-    StoreySearch search(sensor, building.devices, options, progress);
-    std::vector<StoreyCurve> curves;
-    double whole = 0;
-    for (const auto& scene : scenes) {
-        curves.push_back(search.curve(*scene, count));
-        whole += scene->environment.indoor().area();
+namespace {
+
+/// Storeys that are searched together: one, or several that see each other.
+struct Part {
+    std::vector<std::size_t> storeys;
+    std::vector<JoinedLayout> layouts = {};  ///< of several, in [n - 1] that of n sensors
+};
+
+StoreyCurve curveOf(const Part& part) {
+    StoreyCurve curve{{0}, {0}};
+    for (const JoinedLayout& layout : part.layouts) {
+        curve.values.push_back(layout.value);
+        curve.bounds.push_back(layout.bound);
     }
-    const SharedSensors shared = shareOut(curves, count);
-    BuildingArrangement result;
-    result.counts = shared.counts;
-    result.bound = whole > 0 ? std::min(1.0, shared.bound / whole) : 0;
-    for (std::size_t i = 0; i < scenes.size(); ++i) {
-        const Scene& scene = *scenes[i];
-        const double area = scene.environment.indoor().area();
-        result.groups.push_back(search.groupFor(scene, std::max(1, shared.counts[i])));
-        result.storeys.emplace_back();
-        if (shared.counts[i] == 0) continue;
-        Arrangement& storey = result.storeys.back();
-        storey = search.layout(scene, shared.counts[i]);
+    return curve;
+}
+
+/// Measures the storeys of a building with the sensors of an arrangement, as `coverage` does.
+void measureTogether(const BuildingScene& building, const ArrangeOptions& options,
+                     BuildingArrangement& result) {
+    BuildingScene placed = building;
+    for (std::size_t i = 0; i < placed.scenes.size(); ++i)
+        placed.scenes[i] = std::make_shared<const Scene>(
+            withPlaced(*building.scenes[i], {result.groups[i]}, result.storeys[i].sensors));
+    CoverageOptions usual;
+    usual.plane = options.plane;
+    usual.exact = false;
+    const BuildingCoverage coverage = measureBuilding(placed, usual);
+    result.coverage = coverage.coverage.grid.value_or(0);
+    result.area = coverage.total_effective_area.grid.value_or(0);
+    for (std::size_t i = 0; i < result.storeys.size(); ++i) {
+        const CoverageReport& report = coverage.storeys[i].report;
+        result.storeys[i].coverage = report.coverage.grid.value_or(0);
+        result.storeys[i].area = report.total_effective_area.grid.value_or(0);
+    }
+}
+
+/// Arranges the sensors of a building, part by part.
+class BuildingSearch {
+  public:
+    BuildingSearch(const BuildingScene& building, const SensorSpec& sensor, int count,
+                   const ArrangeOptions& options, Progress& progress)
+        : building_(building),
+          count_(count),
+          options_(options),
+          progress_(progress),
+          scenes_(scenesOfFloors(building)),
+          alone_(sensor, building.devices, options, progress) {}
+
+    BuildingArrangement run() {
+        findParts();
+        std::vector<StoreyCurve> curves;
+        double whole = 0;
+        for (const Part& part : parts_)
+            curves.push_back(part.layouts.empty()
+                                 ? alone_.curve(*scenes_[part.storeys.front()], count_)
+                                 : curveOf(part));
+        for (const auto& scene : scenes_) whole += scene->environment.indoor().area();
+        const SharedSensors shared = shareOut(curves, count_);
+        BuildingArrangement result;
+        result.counts.resize(scenes_.size());
+        result.storeys.resize(scenes_.size());
+        result.bound = whole > 0 ? std::min(1.0, shared.bound / whole) : 0;
+        for (const auto& scene : scenes_) result.groups.push_back(alone_.groupFor(*scene, 1));
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            if (shared.counts[i] == 0) continue;
+            if (parts_[i].layouts.empty())
+                addStorey(parts_[i].storeys.front(), shared.counts[i], result);
+            else
+                addPart(parts_[i], shared.counts[i], result);
+        }
+        if (whole > 0) {
+            result.coverage /= whole;
+            result.value /= whole;
+            result.rounding /= whole;
+        }
+        if (joined_) measureTogether(building_, options_, result);
+        return result;
+    }
+
+  private:
+    /// Storeys whose candidates see each other are one part, the others one each.
+    void findParts() {
+        const StoreySight sight(building_, options_.plane);
+        const SensorGroup group = alone_.groupFor(*scenes_.front(), 1);
+        if (sight.hasOpenings() && seesOutside({"", group.model, {}})) {
+            std::vector<JoinedRooms::Room> rooms;
+            for (const auto& scene : scenes_)
+                rooms.push_back({scene.get(), {alone_.groupFor(*scene, count_)}});
+            joined_ = std::make_unique<JoinedRooms>(std::move(rooms), options_, sight, progress_);
+            for (auto& storeys : joined_->parts()) parts_.push_back({std::move(storeys)});
+        } else {
+            for (std::size_t i = 0; i < scenes_.size(); ++i) parts_.push_back({{i}});
+        }
+        for (Part& part : parts_) {
+            if (part.storeys.size() == 1) continue;
+            if (options_.is_connected)
+                throw UsageError(
+                    "--connected: the sensors would see other storeys through openings; choose one "
+                    "with --storey (" +
+                    building_.document.storeyList() + ')');
+            part.layouts = joined_->layouts(part.storeys, count_);
+        }
+        if (joined_ && joined_->parts().size() == scenes_.size()) joined_.reset();
+    }
+
+    void addStorey(std::size_t i, int count, BuildingArrangement& result) {
+        const double area = scenes_[i]->environment.indoor().area();
+        result.counts[i] = count;
+        result.groups[i] = alone_.groupFor(*scenes_[i], count);
+        Arrangement& storey = result.storeys[i];
+        storey = alone_.layout(*scenes_[i], count);
         result.coverage += area * storey.coverage;
         result.area += storey.area;
         result.value += area * storey.candidate_value;
         result.candidates += storey.candidates;
         result.is_complete = result.is_complete && storey.is_complete;
     }
-    if (whole > 0) {
-        result.coverage /= whole;
-        result.value /= whole;
+
+    void addPart(const Part& part, int count, BuildingArrangement& result) {
+        const JoinedLayout& layout = part.layouts[static_cast<std::size_t>(count) - 1];
+        std::size_t placed = 0;
+        for (std::size_t k = 0; k < part.storeys.size(); ++k) {
+            const std::size_t i = part.storeys[k];
+            const std::vector<Placement>& sensors = layout.rooms[k];
+            result.counts[i] = static_cast<int>(sensors.size());
+            result.groups[i] = alone_.groupFor(*scenes_[i], std::max(1, result.counts[i]));
+            result.storeys[i].sensors = sensors;
+            placed += sensors.size();
+            result.candidates += joined_->candidates(i);
+        }
+        result.storeys[part.storeys.front()].unplaced = static_cast<std::size_t>(count) - placed;
+        result.value += layout.value;
+        result.rounding += layout.rounding;
+        result.is_complete = result.is_complete && layout.is_complete;
     }
-    return result;
+
+    const BuildingScene& building_;
+    int count_;
+    const ArrangeOptions& options_;
+    Progress& progress_;
+    std::vector<std::shared_ptr<const Scene>> scenes_;
+    StoreySearch alone_;
+    std::vector<Part> parts_;
+    std::unique_ptr<JoinedRooms> joined_;  // if storeys see each other
+};
+
+}  // namespace
+
+BuildingArrangement arrangeBuilding(const BuildingScene& building, const SensorSpec& sensor,
+                                    int count, const ArrangeOptions& options, Progress& progress) {
+    return BuildingSearch(building, sensor, count, options, progress).run();
 }
 
 Document buildingLayout(const LayoutParts& parts, const BuildingScene& building,

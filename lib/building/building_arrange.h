@@ -19,15 +19,17 @@ struct BuildingArrangement {
     double area = 0;                   ///< m2, total effective area by cells
     double value = 0;                  ///< share by the cells of the search
     double bound = 1;                  ///< upper bound of `value` for every split
+    double rounding = 0;               ///< in the bound: a gap up to this is none
     std::size_t candidates = 0;        ///< of all storeys
     bool is_complete = true;
 };
 
 /// Shares `count` sensors out over the storeys, and arranges those of each storey.
 ///
-/// Each storey is searched with 1, 2, ... `count` sensors, and shareOut() chooses the split; no
-/// sensor sees another storey, so the bound over all splits is a bound of the building. A storey
-/// weighs as much as its indoor area. Equal storeys are searched once.
+/// Each storey is searched with 1, 2, ... `count` sensors, and storeys of which candidates see each
+/// other through openings are searched together (JoinedRooms); shareOut() chooses the split. As no
+/// candidate sees a storey of another part, the bound over all splits is a bound of the building. A
+/// storey weighs as much as its indoor area. Equal storeys are searched once.
 /// \pre the scenes hold no sensors; options have neither target nor budget and do not refine
 /// \throws as arrange()
 BuildingArrangement arrangeBuilding(const BuildingScene& building, const SensorSpec& sensor,

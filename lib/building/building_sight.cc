@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "building/opening_bounds.h"
 #include "coverage/shadow_footprint.h"
 #include "env/level.h"
 #include "geom/overlay/overlay.h"
@@ -34,9 +35,7 @@ class StoreyViews {
         : building_(building),
           options_(options),
           openings_(floorOpenings(building)),
-          boxes_(building.scenes.size()) {
-        for (const FloorOpening& opening : openings_)
-            for (const Point2 corner : opening.outline) boxes_[opening.above].add(corner);
+          bounds_(building, openings_) {
         for (const auto& scene : building.scenes) {
             const auto [at, is_new] = sensors_.try_emplace(scene.get());
             if (!is_new) continue;
@@ -48,17 +47,10 @@ class StoreyViews {
 
     std::vector<std::vector<StoreyView>> run() {
         const std::size_t count = building_.scenes.size();
-        const auto above = storeysAbove(count, openings_);
         for (std::size_t from = 0; from < count; ++from)
-            for (std::size_t to = 0; to < count; ++to) {
-                const std::size_t low = std::min(from, to), high = std::max(from, to);
-                if (!above[low][high]) continue;
-                std::vector<std::size_t> between = {low};
-                for (std::size_t i = low + 1; i < high; ++i)
-                    if (above[low][i] && above[i][high]) between.push_back(i);
-                between.push_back(high);
-                search(between, from, to);
-            }
+            for (std::size_t to = 0; to < count; ++to)
+                if (const auto between = bounds_.between(from, to); !between.empty())
+                    search(between, from, to);
         compute();
         std::vector<std::vector<StoreyView>> views(building_.scenes.size());
         for (const Use& use : uses_)
@@ -98,7 +90,9 @@ class StoreyViews {
         if (rise > 0 && !(options_.plane > kRayEpsilon)) return;
         std::optional<std::size_t> kind;
         for (const std::size_t sensor : sensors) {
-            if (!maySee(between, from, to, sensor)) continue;
+            if (!bounds_.maySee(between, from, to, building_.scenes[from]->sensors[sensor],
+                                options_.plane))
+                continue;
             if (!kind) kind = kindOfSurroundings(between);
             const auto place = [&](std::size_t storey) {
                 return std::find(between.begin(), between.end(), storey) - between.begin();
@@ -108,42 +102,6 @@ class StoreyViews {
             if (is_new) jobs_.push_back({between, from, to, sensor});
             uses_.push_back({from, to, at->second});
         }
-    }
-
-    /// False if the range or the bounds of the openings show that the sensor sees no point of the
-    /// plane.
-    [[nodiscard]] bool maySee(std::span<const std::size_t> between, std::size_t from,
-                              std::size_t to, std::size_t index) const {
-        const Sensor& sensor = building_.scenes[from]->sensors[index];
-        const double eye = floorOf(from) + sensor.pose.position.z;
-        const double plane = floorOf(to) + options_.plane;
-        const double range = std::min(maxRange(sensor.model), kSightBetweenStoreys);
-        if (std::fabs(plane - eye) >= range) return false;
-        const bool is_up = floorOf(to) > floorOf(from);
-        const Point2 foot =
-            building_.document.storeys[from].building_from_storey * sensor.pose.position.onFloor();
-        std::map<double, Box2> floors;  // bounds of the openings in the floors that sight passes
-        for (const std::size_t storey : between) {
-            if (floorOf(storey) == std::min(floorOf(from), floorOf(to))) continue;
-            const Box2& own = boxes_[storey];
-            Box2& box = floors[floorOf(storey)];
-            if (own.empty()) continue;
-            box.add(own.low);
-            box.add(own.high);
-        }
-        if (floors.size() > kSightThroughFloors) return false;
-        Box2 seen{{-range, -range}, {range, range}};  // on the plane, about the foot
-        for (const auto& [height, box] : floors) {
-            const double share = (plane - eye) / (height - eye);
-            const bool is_passed = is_up
-                                       ? eye < height - kRayEpsilon && height < plane - kRayEpsilon
-                                       : eye > height + kRayEpsilon && height > plane + kRayEpsilon;
-            if (!is_passed || box.empty()) return false;
-            const Vec2 low = share * (box.low - foot), high = share * (box.high - foot);
-            seen = common(seen, {{low.x, low.y}, {high.x, high.y}});
-            if (seen.empty()) return false;
-        }
-        return true;
     }
 
     /// Returns a number that is the same for storeys with equal rooms, distances and openings.
@@ -252,7 +210,7 @@ class StoreyViews {
     const BuildingScene& building_;
     const CoverageOptions& options_;
     std::vector<FloorOpening> openings_;
-    std::vector<Box2> boxes_;                                   // of the openings in each floor
+    OpeningBounds bounds_;
     std::map<const Scene*, std::vector<std::size_t>> sensors_;  // that see outside
     std::map<const Scene*, std::size_t> rooms_;                 // numbers of rooms
     std::map<SurroundingsKey, std::size_t> kinds_;

@@ -27,8 +27,6 @@ namespace ispace {
 
 namespace {
 
-using Kind = YamlNode::Kind;
-
 /// Metres a pixel of a level without measurements, as the traffic editor takes it.
 constexpr double kDefaultScale = 0.05;
 /// Ends of walls closer than this are joined, metres: they are drawn by hand.
@@ -43,7 +41,7 @@ constexpr const char* kFiducials = "fiducials";
 
 /// Finds the value of a key; null if the node is no map or has no such key.
 const YamlNode* member(const YamlNode& map, std::string_view key) {
-    if (map.kind != Kind::Map) return nullptr;
+    if (map.kind != YamlNode::Kind::Map) return nullptr;
     for (std::size_t i = 0; i + 1 < map.items.size(); i += 2)
         if (map.items[i]->scalar == key) return map.items[i + 1];
     return nullptr;
@@ -93,10 +91,12 @@ class RmfReader {
     }
 
     [[nodiscard]] double number(const YamlNode& node) const {
-        const auto value = node.kind == Kind::Scalar ? parseDouble(node.scalar) : std::nullopt;
+        const auto value =
+            node.kind == YamlNode::Kind::Scalar ? parseDouble(node.scalar) : std::nullopt;
         if (!value || !(std::abs(*value) <= kFarthestPlan))
-            fail(node, (node.kind == Kind::Scalar ? excerpt(node.scalar) : "a list or map") +
-                           " is no coordinate or length");
+            fail(node,
+                 (node.kind == YamlNode::Kind::Scalar ? excerpt(node.scalar) : "a list or map") +
+                     " is no coordinate or length");
         return *value;
     }
     [[nodiscard]] double number(const YamlNode& map, const char* key) const {
@@ -124,7 +124,7 @@ class RmfReader {
         if (!work_.take(each * list->items.size()))
             fail(*list, "`" + std::string(key) + "` of the levels make " + work_.excess());
         for (const YamlNode* const item : list->items) {
-            if (item->kind != Kind::List || item->items.size() < least)
+            if (item->kind != YamlNode::Kind::List || item->items.size() < least)
                 fail(*item, "`" + std::string(key) + "`: wanted lists of " + std::to_string(least) +
                                 " values or more");
             visit(*item);
@@ -168,7 +168,8 @@ class RmfReader {
         forEachItem(node, "measurements", 3, [&](const YamlNode& item) {
             const auto [a, b] = edge(item, level);
             const YamlNode* const stated = member(*item.items[2], "distance");
-            if (stated == nullptr || stated->kind != Kind::List || stated->items.size() < 2)
+            if (stated == nullptr || stated->kind != YamlNode::Kind::List ||
+                stated->items.size() < 2)
                 fail(item, "a measurement without `distance`");
             const double drawn = distance(level.vertices[a], level.vertices[b]);
             if (!(drawn > 0)) fail(item, "a measurement between equal points");
@@ -309,7 +310,7 @@ std::optional<Record> liftOf(const RmfReader& reader, const YamlNode& lift, cons
 
 bool isRmfSite(const YamlNode& top) {
     const YamlNode* const levels = member(top, "levels");
-    if (levels == nullptr || levels->kind != Kind::Map) return false;
+    if (levels == nullptr || levels->kind != YamlNode::Kind::Map) return false;
     for (std::size_t i = 0; i + 1 < levels->items.size(); i += 2)
         if (member(*levels->items[i + 1], "vertices") != nullptr) return true;
     return false;

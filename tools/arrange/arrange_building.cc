@@ -87,7 +87,7 @@ std::string buildingText(const BuildingScene& building, const BuildingArrangemen
     text += "arrange: building: " + countText(sensors) + ", coverage " +
             percentText(found.coverage) + "; value " + percentText(found.value) +
             ", bound for every split " + percentText(found.bound) + " (" +
-            (gap > kProven ? "gap " + percentText(gap) : "proven best") + ')' +
+            (gap > kProven + found.rounding ? "gap " + percentText(gap) : "proven best") + ')' +
             (found.is_complete ? "" : ", cut short") + '\n';
     return text;
 }

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/storey_sight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <variant>
+
+#include "coverage/outside_view.h"
+#include "coverage/plane_cells.h"
+#include "env/level.h"
+#include "geom/visibility/visibility.h"
+#include "scene/sensor/field_of_view.h"
+
+namespace ispace {
+
+StoreySight::StoreySight(const BuildingScene& building, double plane)
+    : building_(building),
+      plane_(plane),
+      openings_(floorOpenings(building)),
+      bounds_(building, openings_) {
+    for (std::size_t to = 0; to < building.scenes.size(); ++to) {
+        auto room = roomWithSurroundings(building, openings_, to, false);
+        rooms_.push_back(room ? std::make_shared<const SurroundedRoom>(*std::move(room)) : nullptr);
+    }
+}
+
+bool StoreySight::maySee(std::size_t from, const Sensor& sensor, std::size_t to) const {
+    const auto& storeys = building_.document.storeys;
+    if (rooms_[to] == nullptr || !seesOutside(sensor)) return false;
+    const double rise = storeys[to].floor - storeys[from].floor;
+    if (std::fabs(rise) > kSightBetweenStoreys || (rise > 0 && !(plane_ > kRayEpsilon)))
+        return false;
+    const std::vector<std::size_t> between = bounds_.between(from, to);
+    return !between.empty() && bounds_.maySee(between, from, to, sensor, plane_);
+}
+
+/// In the frame of the storey that is seen.
+std::vector<StoreySight::Passed> StoreySight::floorsBetween(std::size_t from,
+                                                            std::size_t to) const {
+    const auto& storeys = building_.document.storeys;
+    const std::vector<std::size_t> between = bounds_.between(from, to);
+    const auto is_here = [&](std::size_t storey) {
+        return std::find(between.begin(), between.end(), storey) != between.end();
+    };
+    std::map<double, std::vector<Polygon>> floors;
+    for (const FloorOpening& opening : openings_) {
+        const double floor = storeys[opening.above].floor;
+        if (!is_here(opening.above) || floor <= storeys[between.front()].floor) continue;
+        Polygon outline = opening.outline;
+        for (Point2& p : outline) p = inStorey(storeys[to], p);
+        floors[floor - storeys[to].floor].push_back(std::move(outline));
+    }
+    std::vector<Passed> passed;
+    for (auto& [height, outlines] : floors) passed.push_back({height, std::move(outlines)});
+    return passed;
+}
+
+void StoreySight::look(std::size_t from, std::span<const Sensor> turned, std::size_t to,
+                       const Grid& grid, CellParts& parts) const {
+    const Storey& own = building_.document.storeys[from];
+    const Storey& seen = building_.document.storeys[to];
+    parts.runs.clear();
+    parts.first.assign(turned.size() + 2, 0);
+    const Point3 at = turned.front().pose.position;
+    if (building_.scenes[from]->environment.level(at.z)->isInsideSolid(at.onFloor())) return;
+    const Pose2 seen_from_own{inStorey(seen, own.building_from_storey.position),
+                              own.building_from_storey.heading - seen.building_from_storey.heading};
+    std::vector<FieldOfView> views;
+    for (const Sensor& sensor : turned) {
+        OutsideView view = moved({sensor, {}, {}}, seen_from_own, own.floor - seen.floor);
+        std::visit(
+            [](auto& model) { model.max_range = std::min(model.max_range, kSightBetweenStoreys); },
+            view.sensor.model);
+        views.push_back(*fieldOfView(view.sensor));
+    }
+    cellsByView(grid, rooms_[to]->mesh(), views, plane_, parts);
+    // Only through openings of all floors between, not past the outlines of floors.
+    const Point3 eye = views.front().frame.origin;
+    const std::vector<Passed> floors = floorsBetween(from, to);
+    const auto is_framed = [&](std::size_t cell) {
+        const Point2 place = grid.center(cell);
+        return std::all_of(floors.begin(), floors.end(), [&](const Passed& floor) {
+            const double share = (floor.height - eye.z) / (plane_ - eye.z);
+            const Point2 p = eye.onFloor() + share * (place - eye.onFloor());
+            return std::any_of(
+                floor.outlines.begin(), floor.outlines.end(),
+                [p](const Polygon& outline) { return locate(outline, p) == Side::Inside; });
+        });
+    };
+    CellParts framed;
+    framed.first.push_back(0);
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        for (std::uint32_t r = parts.first[part]; r < parts.first[part + 1]; ++r)
+            for (std::uint32_t cell = parts.runs[r].first; cell < parts.runs[r].end; ++cell) {
+                if (!is_framed(cell)) continue;
+                if (framed.runs.size() > framed.first.back() && framed.runs.back().end == cell)
+                    ++framed.runs.back().end;
+                else
+                    framed.runs.push_back({cell, cell + 1});
+            }
+        framed.first.push_back(static_cast<std::uint32_t>(framed.runs.size()));
+    }
+    parts = std::move(framed);
+}
+
+}  // namespace ispace

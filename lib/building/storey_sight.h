@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "arrange/joined_rooms.h"
+#include "building/building_sight.h"
+#include "building/opening_bounds.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+/// The sight of sensors that may stand anywhere on a storey into other storeys, by cells; rooms of
+/// JoinedRooms are storeys. Cells of a plane agree with the regions of viewsBetweenStoreys(), but
+/// for centres within 0.3 mm of a boundary. Stores the building's reference.
+class StoreySight final : public SightBetweenRooms {
+  public:
+    /// \param plane see CoverageOptions
+    StoreySight(const BuildingScene& building, double plane);
+
+    /// Returns true if there are openings between storeys.
+    [[nodiscard]] bool hasOpenings() const { return !openings_.empty(); }
+    [[nodiscard]] bool maySee(std::size_t from, const Sensor& sensor,
+                              std::size_t to) const override;
+    void look(std::size_t from, std::span<const Sensor> turned, std::size_t to, const Grid& grid,
+              CellParts& parts) const override;
+
+  private:
+    /// A floor between an eye and a plane, with the outlines of its openings.
+    struct Passed {
+        double height = 0;
+        std::vector<Polygon> outlines;
+    };
+    [[nodiscard]] std::vector<Passed> floorsBetween(std::size_t from, std::size_t to) const;
+
+    const BuildingScene& building_;
+    double plane_;
+    std::vector<FloorOpening> openings_;
+    OpeningBounds bounds_;
+    std::vector<std::shared_ptr<const SurroundedRoom>> rooms_;  // by storey that is seen
+};
+
+}  // namespace ispace
