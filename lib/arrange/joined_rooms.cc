@@ -43,7 +43,7 @@ struct JoinedRooms::Data {
         std::vector<std::vector<CellsBeyond>> beyond;  ///< by site
     };
 
-    void build(const SightBetweenRooms& sight, Progress& progress);
+    void build(const SightBetweenRooms& sight, Progress& watch);
     void look(const SightBetweenRooms& sight, std::size_t from, std::size_t site);
     [[nodiscard]] const CandidateSet& setOf(std::size_t room) const {
         return *rooms[room].model->problem().kinds.front().candidates;
@@ -135,6 +135,7 @@ std::vector<std::vector<std::size_t>> JoinedRooms::parts() const {
     std::map<std::size_t, std::vector<std::size_t>> by_first;
     for (std::size_t i = 0; i < of.size(); ++i) by_first[of[i]].push_back(i);
     std::vector<std::vector<std::size_t>> parts;
+    parts.reserve(by_first.size());
     for (auto& [first, part] : by_first) parts.push_back(std::move(part));
     return parts;
 }

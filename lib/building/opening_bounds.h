@@ -20,9 +20,9 @@ class OpeningBounds {
     /// if it does not.
     [[nodiscard]] std::vector<std::size_t> between(std::size_t from, std::size_t to) const;
     /// False if the range or the bounds show that a sensor, whatever its heading, sees no point of
-    /// a plane of another storey. \param between as above \param plane above its floor
+    /// a plane of another storey. \param between as above \param above_floor height of the plane
     [[nodiscard]] bool maySee(std::span<const std::size_t> between, std::size_t from,
-                              std::size_t to, const Sensor& sensor, double plane) const;
+                              std::size_t to, const Sensor& sensor, double above_floor) const;
 
   private:
     [[nodiscard]] double floorOf(std::size_t storey) const {

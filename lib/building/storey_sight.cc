@@ -53,6 +53,7 @@ std::vector<StoreySight::Passed> StoreySight::floorsBetween(std::size_t from,
         floors[floor - storeys[to].floor].push_back(std::move(outline));
     }
     std::vector<Passed> passed;
+    passed.reserve(floors.size());
     for (auto& [height, outlines] : floors) passed.push_back({height, std::move(outlines)});
     return passed;
 }
