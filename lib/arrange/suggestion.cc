@@ -24,6 +24,7 @@ constexpr std::size_t kMaxTypes = 3;    ///< of sensors to add
 constexpr std::size_t kMaxChanges = 8;  ///< of Together
 constexpr double kWorthwhile = 1e-3;    ///< share of the indoor floor
 constexpr double kNearWall = 0.1;       ///< of a sensor on a wall, metres
+constexpr double kMaxLattice = 10'000;  ///< sites in the limits: farther apart in large rooms
 constexpr double kShifts[] = {0.1, 0.25, 0.5, 1};
 constexpr int kDirections = 8;
 constexpr int kTurnStep = 15;  ///< degrees; then single degrees about the best
@@ -154,6 +155,11 @@ ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Scene& home,
     options.plane = options_.measure.plane;
     options.pixel_density = options_.measure.density;
     options.seed = 0;
+    const Box2& limits = home.environment.limits();
+    CandidateDensity& density = options.density;
+    density.lattice_step =
+        std::max(density.lattice_step, std::sqrt(limits.width() * limits.depth() / kMaxLattice));
+    density.wall_step = std::max(density.wall_step, density.lattice_step);
     const double z = like.pose.position.z;
     SiteRules rules;
     rules.height = z;

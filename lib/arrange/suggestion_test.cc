@@ -106,6 +106,14 @@ TEST(Suggestions, TellOneAdditionThatMeetsAllOnce) {
         EXPECT_NE(advised.suggestions[i].text, advised.suggestions.front().text);
 }
 
+TEST(Suggestions, AddALaserToARoomWithOverAMillionCandidatesAtTheUsualStep) {
+    const Advised advised = adviseOn("#env 1\nispace id=field size=300,300,3\n",
+                                     "laser id=l at=100,100 fov=360 range=30\n");
+    const Suggestion* add = advised.find(Suggestion::Kind::Add);
+    ASSERT_NE(add, nullptr);
+    EXPECT_NEAR(add->gained, std::acos(-1) * 900, 5);
+}
+
 TEST(Suggestions, AreNoneForASceneThatSeesAll) {
     const Advised advised = adviseOn(kHall, "laser id=l at=0,0 fov=360 range=20\n");
     EXPECT_TRUE(advised.suggestions.empty());
