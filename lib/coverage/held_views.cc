@@ -23,6 +23,7 @@ struct Margin {
 /// A level rectangle as a view sees it.
 struct SeenRectangle {
     const FieldOfView& view;
+    const DistortedPicture* picture;  ///< of a pinhole
     Vec2 half;
     double distance = 0, radius = 0;
     Vec3 center;  ///< in the frame of the view
@@ -63,9 +64,32 @@ struct SeenRectangle {
                 return Margin::around(center.x - view.across * distance,
                                       (1 + std::fabs(view.across)) * radius);
             case FieldOfView::Shape::Picture:
+                if (picture != nullptr) return distorted();
                 break;
         }
         return {-HUGE_VAL, HUGE_VAL};
+    }
+    /// Bounds the rectangle in the plane at depth 1 by its corners, and the picture of that box.
+    [[nodiscard]] Margin distorted() const {
+        const Frame3& frame = view.frame;
+        const Vec3 along_x = half.x * Vec3{frame.forward.x, frame.left.x, frame.up.x};
+        const Vec3 along_y = half.y * Vec3{frame.forward.y, frame.left.y, frame.up.y};
+        const Point3 middle{center.x, center.y, center.z};
+        Interval depth{HUGE_VAL, -HUGE_VAL}, x = depth, y = depth;
+        const auto widen = [](Interval& all, double one) {
+            all = {std::min(all.low, one), std::max(all.high, one)};
+        };
+        for (const double i : {-1.0, 1.0})
+            for (const double k : {-1.0, 1.0}) {
+                const Point3 corner = middle + i * along_x + k * along_y;
+                widen(depth, corner.x);
+                widen(x, -corner.y / corner.x);
+                widen(y, -corner.z / corner.x);
+            }
+        if (!(depth.high > 0)) return {-HUGE_VAL, -HUGE_VAL};
+        if (!(depth.low > 0)) return {-HUGE_VAL, HUGE_VAL};
+        const Interval inside = picture->margin(x, y);
+        return {depth.low * inside.low, depth.low * inside.high};
     }
 };
 
@@ -73,7 +97,10 @@ struct SeenRectangle {
 
 HeldViews::HeldViews(std::span<const FieldOfView> views) : views_(views) {
     const FieldOfView& first = views.front();
-    if (first.shape == FieldOfView::Shape::Picture && first.camera->lens != Lens::Pinhole)
+    if (first.shape != FieldOfView::Shape::Picture) return;
+    if (first.camera->lens == Lens::Pinhole)
+        picture_.emplace(*first.camera);
+    else
         table_.emplace(*first.camera);
 }
 
@@ -106,7 +133,8 @@ HeldViews::Verdict HeldViews::decide(Point3 center, Vec2 half, std::uint64_t amo
     Verdict verdict;
     for (std::uint64_t bits = among; bits != 0; bits &= bits - 1) {
         const FieldOfView& view = views_[static_cast<std::size_t>(std::countr_zero(bits))];
-        const SeenRectangle seen{view, half, distance, radius, view.frame.toLocal(center)};
+        const SeenRectangle seen{view,   picture_ ? &*picture_ : nullptr, half, distance,
+                                 radius, view.frame.toLocal(center)};
         Margin margin = seen.range();
         if (!table_)
             margin = both(margin, seen.shape());

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "coverage/distorted_picture.h"
 #include "coverage/picture_table.h"
 #include "scene/sensor/field_of_view.h"
 
@@ -30,14 +31,14 @@ class HeldViews {
         std::uint64_t held = 0, unsure = 0;
     };
     /// Tests the points of a level rectangle at once, `half` being half its sides along x and y.
-    /// Views that distort other than by the angle to the axis alone are always unsure.
     [[nodiscard]] Verdict decide(Point3 center, Vec2 half, std::uint64_t among) const;
 
   private:
     [[nodiscard]] bool isHeld(const FieldOfView& view, Point3 place) const;
 
     std::span<const FieldOfView> views_;
-    std::optional<PictureTable> table_;  // of a fisheye or a mirror
+    std::optional<PictureTable> table_;        // of a fisheye or a mirror
+    std::optional<DistortedPicture> picture_;  // of a pinhole
 };
 
 }  // namespace ispace

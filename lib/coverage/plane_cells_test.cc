@@ -106,6 +106,9 @@ TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
     for (const char* const lens :
          {"fov=75", "fov=110,62 range=3.1", "fx=400 cx=610 cy=50 range=6",
           "fov=90 coefficients=-0.3,0.05 range=8",
+          "fov=90 coefficients=-0.3,0.1,0.02,-0.03 range=8",
+          "fov=85 coefficients=0.4,-0.1,0,0.01,0.05",
+          "fx=300 cx=500 cy=90 coefficients=-0.35,0,0.004,0 range=9",
           "projection=fisheye fov=106,59 pixels=1920,1080 range=100",
           "projection=fisheye fov=150 coefficients=0.02,-0.01,0.003,-0.0005 range=7",
           "projection=fisheye fx=150 cx=120 cy=-40 range=6", "projection=fisheye fov=12 range=50",

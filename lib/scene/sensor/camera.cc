@@ -9,6 +9,7 @@
 
 #include "base/number.h"
 #include "scene/sensor/lens_resolution.h"
+#include "scene/sensor/plumb_bob.h"
 
 namespace ispace {
 
@@ -88,9 +89,8 @@ std::optional<double> angleOf(const Camera& camera, double radius) {
 
 /// Applies `plumb_bob` to a point of the plane x = 1.
 Vec2 bent(const std::array<double, 5>& d, Vec2 p) {
-    const double s = p.x * p.x + p.y * p.y, radial = 1 + s * (d[0] + s * (d[1] + s * d[4]));
-    return {p.x * radial + 2 * d[2] * p.x * p.y + d[3] * (s + 2 * p.x * p.x),
-            p.y * radial + d[2] * (s + 2 * p.y * p.y) + 2 * d[3] * p.x * p.y};
+    const auto [x, y] = plumbBob(d, p.x, p.y);
+    return {x, y};
 }
 
 /// Inverts bent() by Newton's method; empty if it does not converge.
@@ -102,14 +102,11 @@ std::optional<Vec2> unbent(const std::array<double, 5>& d, Vec2 to, double most)
         const Vec2 off = bent(d, p) - to;
         if (std::hypot(off.x, off.y) < 1e-14 * (1 + radius))
             return std::hypot(p.x, p.y) <= most * (1 + 1e-9) ? std::optional(p) : std::nullopt;
-        constexpr double kSmall = 1e-7;
-        const Vec2 a =
-            (0.5 / kSmall) * (bent(d, {p.x + kSmall, p.y}) - bent(d, {p.x - kSmall, p.y}));
-        const Vec2 b =
-            (0.5 / kSmall) * (bent(d, {p.x, p.y + kSmall}) - bent(d, {p.x, p.y - kSmall}));
-        const double det = a.x * b.y - a.y * b.x;
+        const PlumbBobSlope slope(d, p);
+        const double det = slope.xx * slope.yy - slope.xy * slope.xy;
         if (!(std::fabs(det) > 1e-12)) return std::nullopt;
-        Vec2 step = {(off.x * b.y - off.y * b.x) / det, (a.x * off.y - a.y * off.x) / det};
+        Vec2 step = {(off.x * slope.yy - off.y * slope.xy) / det,
+                     (slope.xx * off.y - slope.xy * off.x) / det};
         const double size = std::hypot(step.x, step.y), bound = 0.5 * (1 + std::hypot(p.x, p.y));
         if (size > bound) step = (bound / size) * step;
         p = p - step;
@@ -155,16 +152,33 @@ std::optional<Vec3> Camera::ray(PixelPoint place) const {
     return Vec3{std::cos(*angle), -s * p.x, -s * p.y};
 }
 
+namespace {
+
+/// Returns true for directions at most `widest` off the axis of a pinhole, without their angle.
+bool isWithinPinhole(Angle widest, Vec3 direction) {
+    if (!(direction.x > 0)) return false;
+    constexpr Angle kDiagonal = Angle::degrees(45);
+    const double across = direction.y * direction.y + direction.z * direction.z;
+    const double along = direction.x * direction.x;
+    if (across <= along && widest >= kDiagonal) return true;
+    const double steepest = tan(widest);
+    return across <= steepest * steepest * along;
+}
+
+}  // namespace
+
 std::optional<PixelPoint> Camera::project(Vec3 direction) const {
-    const double across = std::hypot(direction.y, direction.z);
-    const double angle = std::atan2(across, direction.x);
-    if (angle > widest.radians()) return std::nullopt;
-    if (across == 0) return PixelPoint{cx, cy};
+    if (direction.y == 0 && direction.z == 0)
+        return direction.x >= 0 ? std::optional(PixelPoint{cx, cy}) : std::nullopt;
     Vec2 p;
     if (lens == Lens::Pinhole) {
+        if (!isWithinPinhole(widest, direction)) return std::nullopt;
         p = {-direction.y / direction.x, -direction.z / direction.x};
         if (isDistorted()) p = bent(distortion, p);
     } else {
+        const double across = std::hypot(direction.y, direction.z);
+        const double angle = std::atan2(across, direction.x);
+        if (angle > widest.radians()) return std::nullopt;
         const double s = radiusOf(*this, angle) / across;
         p = {-s * direction.y, -s * direction.z};
     }

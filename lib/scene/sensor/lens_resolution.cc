@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "scene/sensor/plumb_bob.h"
+
 namespace ispace {
 
 namespace {
@@ -37,14 +39,9 @@ bool LensResolution::isEven(const Camera& camera) {
 /// `plumb_bob`. A radian along the bearing moves the point by 1 + t^2, one across it by the square
 /// root of that.
 double LensResolution::unitPinhole(double tangent, double u, double v) const {
-    const auto& d = distortion_;
-    const double p = tangent * u, q = tangent * v, s = tangent * tangent;
-    const double radial = 1 + s * (d[0] + s * (d[1] + s * d[4]));
-    const double slope = 2 * (d[0] + s * (2 * d[1] + s * 3 * d[4]));  // 2 d radial / d s
-    const Vec2 across_row{radial + slope * p * p + 2 * d[2] * q + 6 * d[3] * p,
-                          slope * p * q + 2 * d[2] * p + 2 * d[3] * q};
-    const Vec2 upright_row{slope * p * q + 2 * d[2] * p + 2 * d[3] * q,
-                           radial + slope * q * q + 6 * d[2] * q + 2 * d[3] * p};
+    const PlumbBobSlope slope(distortion_, {tangent * u, tangent * v});
+    const Vec2 across_row{slope.xx, slope.xy}, upright_row{slope.xy, slope.yy};
+    const double s = tangent * tangent;
     const double far = 1 + s, near = std::sqrt(far);
     const auto turned = [&](Vec2 row) {
         return Vec2{far * (row.x * u + row.y * v), near * (row.y * u - row.x * v)};

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "scene/sensor/camera.h"
+#include "scene/sensor/plumb_bob.h"
+
+namespace ispace {
+
+/// The picture of a pinhole with distortion, in its plane at depth 1.
+class DistortedPicture {
+  public:
+    explicit DistortedPicture(const Camera& camera)
+        : distortion_(camera.distortion),
+          low_{(-0.5 - camera.cx) / camera.fx, (-0.5 - camera.cy) / camera.fy},
+          high_{(camera.columns - 0.5 - camera.cx) / camera.fx,
+                (camera.rows - 0.5 - camera.cy) / camera.fy},
+          steepest_(squareOf(tan(camera.widest))) {}
+
+    /// Bounds a function that is at least 0 at points inside and negative outside, over a box.
+    [[nodiscard]] Interval margin(Interval x, Interval y) const {
+        const auto [u, v] = plumbBob(distortion_, x, y);
+        const Interval s = squareOf(x) + squareOf(y);
+        return {std::min({u.low - low_.x, high_.x - u.high, v.low - low_.y, high_.y - v.high,
+                          steepest_ - s.high}),
+                std::min({u.high - low_.x, high_.x - u.low, v.high - low_.y, high_.y - v.low,
+                          steepest_ - s.low})};
+    }
+
+  private:
+    std::array<double, 5> distortion_;
+    Vec2 low_, high_;  // the picture's bounds, in focal lengths from its centre
+    double steepest_;  // squared tangent at which the lens ends
+};
+
+}  // namespace ispace

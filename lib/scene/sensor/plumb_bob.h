@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "geom/point.h"
+
+namespace ispace {
+
+/// An interval of numbers, for bounds of formulas over boxes. Rounding is not directed outwards.
+struct Interval {
+    double low = 0, high = 0;
+
+    friend Interval operator+(Interval a, Interval b) { return {a.low + b.low, a.high + b.high}; }
+    friend Interval operator+(double a, Interval b) { return {a + b.low, a + b.high}; }
+    friend Interval operator*(Interval a, Interval b) {
+        const auto [low, high] =
+            std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+        return {low, high};
+    }
+    friend Interval operator*(double a, Interval b) {
+        return a < 0 ? Interval{a * b.high, a * b.low} : Interval{a * b.low, a * b.high};
+    }
+};
+
+inline double squareOf(double a) { return a * a; }
+inline Interval squareOf(Interval a) {
+    const double low = a.low * a.low, high = a.high * a.high;
+    if (a.low <= 0 && a.high >= 0) return {0, std::max(low, high)};
+    return {std::min(low, high), std::max(low, high)};
+}
+
+/// Distorts the point (x, y) of the plane at depth 1 by `plumb_bob` of OpenCV and ROS, with the
+/// coefficients k1 k2 p1 p2 k3; of intervals, returns bounds over the box.
+template <typename Number>
+std::array<Number, 2> plumbBob(const std::array<double, 5>& d, Number x, Number y) {
+    const Number xx = squareOf(x), yy = squareOf(y), s = xx + yy;
+    const Number radial = 1 + s * (d[0] + s * (d[1] + d[4] * s)), xy = x * y;
+    return {x * radial + 2 * d[2] * xy + d[3] * (s + 2 * xx),
+            y * radial + d[2] * (s + 2 * yy) + 2 * d[3] * xy};
+}
+
+/// The derivatives of plumbBob(); the matrix is symmetric.
+struct PlumbBobSlope {
+    double xx = 1, xy = 0, yy = 1;
+
+    PlumbBobSlope(const std::array<double, 5>& d, Vec2 p) {
+        const double s = dot(p, p), radial = 1 + s * (d[0] + s * (d[1] + s * d[4]));
+        const double slope = 2 * (d[0] + s * (2 * d[1] + s * 3 * d[4]));  // 2 d radial / d s
+        xx = radial + slope * p.x * p.x + 2 * d[2] * p.y + 6 * d[3] * p.x;
+        xy = slope * p.x * p.y + 2 * d[2] * p.x + 2 * d[3] * p.y;
+        yy = radial + slope * p.y * p.y + 6 * d[2] * p.y + 2 * d[3] * p.x;
+    }
+};
+
+}  // namespace ispace
