@@ -217,8 +217,9 @@ class PdfWriter {
     static double leastHeight(const PageText& /*text*/) { return 2 * kLine * kBody; }
     static double leastHeight(const PageCode& /*code*/) { return 2 * kLine * kLeast; }
     static double leastHeight(const PageFigure& figure) {
-        return figure.is_for_screen ? 0
-                                    : scaleOf(figure) * figure.picture.height() + belowOf(figure);
+        if (figure.is_for_screen) return 0;
+        const double share = canShrink(figure) ? kLeastShare : 1;
+        return share * scaleOf(figure) * figure.picture.height() + belowOf(figure);
     }
     static double leastHeight(const PageMap& map) { return leastHeight(map.paper); }
 
@@ -236,6 +237,13 @@ class PdfWriter {
                                       (Sheets::maxHeight() - belowOf(figure)) / picture.height());
         return picture.unit() == PageUnit::Millimetre ? std::min(1.0, scale) : scale;
     }
+
+    /// Returns true for figures without a scale of their own that fill the column: they shrink to
+    /// kLeastShare to fit the rest of a sheet.
+    static bool canShrink(const PageFigure& figure) {
+        return figure.width == 1 && figure.picture.unit() != PageUnit::Millimetre;
+    }
+    static constexpr double kLeastShare = 0.7;
 
     void add(const PageText& text) {
         const bool is_small = text.tone == Tone::Small;
@@ -319,9 +327,14 @@ class PdfWriter {
         if (figure.is_for_screen) return;
         const double width = figure.width * kColumn;
         const Picture& picture = figure.picture;
-        const double scale = scaleOf(figure), height = leastHeight(figure);
-        if (row_.right + width > kColumn || sheets_.y() + height > kHeight - kMargin) endRow();
-        if (row_.height == 0) sheets_.need(height);
+        const double least = leastHeight(figure);
+        if (row_.right + width > kColumn || sheets_.y() + least > kHeight - kMargin) endRow();
+        if (row_.height == 0) sheets_.need(least);
+        double scale = scaleOf(figure);
+        if (canShrink(figure))
+            scale = std::min(
+                scale, (kHeight - kMargin - sheets_.y() - belowOf(figure)) / picture.height());
+        const double height = scale * picture.height() + belowOf(figure);
         const Point2 corner{kMargin + row_.right, sheets_.y()};
         sheets_.sheet().inset(picture, corner, scale);
         double base = corner.y + scale * picture.height() + 1 + kSmall;

@@ -89,6 +89,19 @@ TEST(Page, PdfFillsSheets) {
     EXPECT_EQ(pagesOf(pdfOf(page)), 6U);
 }
 
+TEST(Page, PdfShrinksAFigureWithoutScaleToTheRestOfASheet) {
+    const auto with = [](int height, PageUnit unit) {
+        ReportPage page{"map", "", {}};
+        page.sections.push_back({"sums", "Sums", std::vector<PageBlock>(11, PageText{"a line"})});
+        page.sections.push_back({"map", "Map", {PageFigure{"", pictureOf(180, height, unit)}}});
+        return pagesOf(pdfOf(page));
+    };
+    EXPECT_EQ(with(150, PageUnit::Pixel), 1U);
+    EXPECT_EQ(with(220, PageUnit::Pixel), 1U);
+    EXPECT_EQ(with(220, PageUnit::Millimetre), 2U);
+    EXPECT_EQ(with(400, PageUnit::Pixel), 2U);
+}
+
 TEST(Page, PdfSplitsTablesThatAreTooWide) {
     const auto with = [](std::vector<PageBlock> blocks) {
         ReportPage page{"wide", "", {}};
