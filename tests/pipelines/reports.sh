@@ -169,6 +169,10 @@ grep -q 'Ways of robots and people' run.html || fail "no ways"
 coverage -q tracking.env walkers.3dm --run run --json >measured.json
 simrun -q tracking.env walkers.3dm --clock fast --until 20 --record run --report run.json >out
 expect_same run.json measured.json "the reports of simrun and coverage --run"
+# A run without robots and people: the page of its scene.
+printf '#3dm 1\nlaser id=l at=0,0\n' >still.3dm
+expect_status 0 simrun tracking.env still.3dm --clock fast --until 1 --record still --report still.html --suggest
+has 'id="installation"' <still.html || fail "no page of a run without movers"
 expect_error 2 simrun simrun tracking.env walkers.3dm --until 1 --report run.html
 for page in room.html run.html found.html; do
     if command -v xmllint >/dev/null; then xmllint --noout "$page" || fail "$page is not well-formed"; fi

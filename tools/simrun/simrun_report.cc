@@ -23,23 +23,33 @@
 
 namespace ispace {
 
+namespace {
+
+/// Measures the sight of robots and people in the record; empty if it has none.
+std::optional<RunCoverage> recordedRun(const SimrunOptions& options, const Scene& scene) {
+    if (!RunReader(options.record).next()) return std::nullopt;
+    RunReader reader(options.record);
+    RunChanges changes = changesOfRun(options.record, scene, options.rules.max_work);
+    return measureRun(scene, reader, {}, &changes);
+}
+
+}  // namespace
+
 std::string reportFile(const SimrunOptions& options, const SceneInput& input,
                        const ExpectationJudge& judge, const std::string& command) {
     for (const std::string& file : Recorder::filesIn(options.record)) completeOutput(file);
     const Scene& scene = input.scene;
     Worlds worlds(scene.environment);
     const Coverage coverage = measureCoverage(scene, worlds, {});
-    RunReader reader(options.record);
-    RunChanges changes = changesOfRun(options.record, scene, options.rules.max_work);
-    RunCoverage run = measureRun(scene, reader, {}, &changes);
-    run.name = baseName(options.record);
+    std::optional<RunCoverage> run = recordedRun(options, scene);
+    if (run) run->name = baseName(options.record);
     CoveragePageInput page{scene, coverage, "", command};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     for (const RunVerdict& verdict : judge.verdicts())
         page.requirements.push_back({verdict.expectation, verdict.is_met, verdict.reason});
-    page.parts.run = &run;
+    page.parts.run = run ? &*run : nullptr;
     const std::string suffix = suffixOf(options.report);
-    if (suffix == "json") return coverageJson(coverage.report, {.run = &run});
+    if (suffix == "json") return coverageJson(coverage.report, {.run = page.parts.run});
     const ReportPage pages = coveragePage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }
@@ -49,11 +59,9 @@ namespace {
 /// Returns the share of the time of all movers for which a sensor saw them; empty if none was
 /// there.
 std::optional<double> seenShare(const SimrunOptions& options, const Scene& scene) {
-    RunReader reader(options.record);
-    RunChanges changes = changesOfRun(options.record, scene, options.rules.max_work);
-    const RunCoverage run = measureRun(scene, reader, {}, &changes);
-    if (run.all.time_shares.empty()) return std::nullopt;
-    return 1 - run.all.time_shares.front();
+    const std::optional<RunCoverage> run = recordedRun(options, scene);
+    if (!run || run->all.time_shares.empty()) return std::nullopt;
+    return 1 - run->all.time_shares.front();
 }
 
 /// Returns the additions, turns and shifts of suggestChanges() that raise the share.
