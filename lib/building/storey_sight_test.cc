@@ -102,8 +102,10 @@ TEST(StoreySight, TheProofHoldsForAllLayoutsOfTheBuilding) {
     double best = 0, best_apart = 0;
     for (std::size_t i = 0; i < places.size(); ++i)
         for (std::size_t k = i + 1; k < places.size(); ++k) {
-            const BuildingScene building = placed(
-                text, camera + " id=" + places[i] + '\n' + camera + " id=" + places[k] + '\n');
+            std::string layout;
+            for (const std::size_t of : {i, k})
+                layout.append(camera).append(" id=").append(places[of]).append("\n");
+            const BuildingScene building = placed(text, layout);
             const BuildingCoverage both = measureBuilding(building, coarseFloor());
             best = std::max(best, both.coverage.grid.value_or(0));
             double apart = 0;
