@@ -41,8 +41,10 @@ double BoxPairs::unionOf(BoxId first, BoxId second) const {
     const Known a{{first}, 1, boxes_[first].most}, b{{second}, 1, boxes_[second].most};
     const Known both[] = {a, b};
     const BoxId ids[] = {first, second};
-    return std::min({boxes_.unionOf(both, {}), boxes_.unionOf({}, ids),
-                     boxes_.unionOf({&a, 1}, {&second, 1}), boxes_.unionOf({&b, 1}, {&first, 1})});
+    const Grain grain = boxes_.areWithinCells(Grain::Folded, ids) ? Grain::Fine : Grain::Folded;
+    return std::min({boxes_.unionOf(both, {}, grain), boxes_.unionOf({}, ids, grain),
+                     boxes_.unionOf({&a, 1}, {&second, 1}, grain),
+                     boxes_.unionOf({&b, 1}, {&first, 1}, grain)});
 }
 
 void BoxPairs::lower(std::uint32_t id) {

@@ -26,11 +26,17 @@ using poses::Sector;
 
 using Boxes = std::array<std::uint32_t, kMostPosed>;
 
+/// A floor in fine cells, and in large ones, which suffice for most tuples.
+struct Floors {
+    const BoxViews& fine;
+    const BoxViews& large;
+};
+
 class CertificateChecker {
   public:
-    CertificateChecker(const BoxViews& views, const Sector& sector, int sensors, int times,
+    CertificateChecker(const Floors& floors, const Sector& sector, int sensors, int times,
                        const PoseCertificate& certificate, const std::string& name)
-        : views_(views),
+        : floors_(floors),
           sector_(sector),
           count_(static_cast<std::size_t>(sensors)),
           times_(static_cast<std::size_t>(times)),
@@ -47,8 +53,8 @@ class CertificateChecker {
         std::uint32_t end = 0;     // of its subtree
         double most = 0;           // bounds the area that a single pose of it sees
         bool is_used = false;      // by a pair or a tuple
-        BoxView view = {};
-        BoxCore core = {};
+        BoxView view = {}, large_view = {};
+        BoxCore core = {}, large_core = {};
     };
     /// Boxes of several sensors, in the order of the tree of boxes.
     struct Group {
@@ -70,14 +76,15 @@ class CertificateChecker {
     void boundPairs();
     [[nodiscard]] double mostOf(std::uint32_t first, std::uint32_t second) const;
     [[nodiscard]] double boundOf(const Boxes& boxes) const;
-    [[nodiscard]] double sharedBy(const Boxes& boxes) const;
+    [[nodiscard]] double boundIn(bool is_large, const Boxes& boxes) const;
+    [[nodiscard]] double sharedBy(bool is_large, const Boxes& boxes) const;
     /// Bounds the area that poses of boxes see together: those of `known` by their areas, `pair` by
     /// its own (0: none), and the others by their views.
-    [[nodiscard]] double unionOf(const Boxes& boxes, std::size_t size, unsigned known,
-                                 unsigned pair = 0, double paired = 0) const;
-    [[nodiscard]] double pairOf(const Boxes& pair) const;
+    [[nodiscard]] double unionOf(bool is_large, const Boxes& boxes, std::size_t size,
+                                 unsigned known, unsigned pair = 0, double paired = 0) const;
+    [[nodiscard]] double pairOf(bool is_large, const Boxes& pair) const;
 
-    const BoxViews& views_;
+    Floors floors_;
     const Sector& sector_;
     std::size_t count_, times_;
     const PoseCertificate& certificate_;
@@ -158,14 +165,17 @@ void CertificateChecker::computeViews() {
     tbb::parallel_for(std::size_t{0}, boxes_.size(), [this, &parts](std::size_t i) {
         Box& box = boxes_[i];
         if (box.second != 0 && !box.is_used) return;
-        box.view = views_.viewOf(box.box);
+        box.view = floors_.fine.viewOf(box.box);
         box.most = box.view.area;
         if (!box.is_used) {
             box.view = {};
             return;
         }
-        box.core = views_.coreOf(box.box);
-        parts += box.view.parts.size() + box.core.parts.size();
+        box.core = floors_.fine.coreOf(box.box);
+        box.large_view = floors_.large.viewOf(box.box);
+        box.large_core = floors_.large.coreOf(box.box);
+        parts += box.view.parts.size() + box.core.parts.size() + box.large_view.parts.size() +
+                 box.large_core.parts.size();
         if (parts * sizeof(std::uint16_t) > kMostBytes)
             refuse("the views of its boxes need more than 8 GiB");
     });
@@ -180,35 +190,38 @@ void CertificateChecker::computeViews() {
     }
 }
 
-double CertificateChecker::unionOf(const Boxes& boxes, std::size_t size, unsigned known,
-                                   unsigned pair, double paired) const {
+double CertificateChecker::unionOf(bool is_large, const Boxes& boxes, std::size_t size,
+                                   unsigned known, unsigned pair, double paired) const {
     std::array<BoxViews::Known, kMostPosed> areas{};
     std::array<const BoxView*, kMostPosed> views{};
     std::size_t areas_size = pair == 0 ? 0 : 1, views_size = 0, in_pair = 0;
     areas[0].area = paired;
     for (std::size_t i = 0; i < size; ++i) {
         const Box& box = boxes_[boxes[i]];
+        const BoxCore& core = is_large ? box.large_core : box.core;
         if ((pair >> i & 1U) != 0)
-            areas[0].cores[in_pair++] = &box.core;
+            areas[0].cores[in_pair++] = &core;
         else if ((known >> i & 1U) != 0)
-            areas[areas_size++] = {box.most, {&box.core, nullptr}};
+            areas[areas_size++] = {box.most, {&core, nullptr}};
         else
-            views[views_size++] = &box.view;
+            views[views_size++] = is_large ? &box.large_view : &box.view;
     }
-    return views_.unionOf({areas.data(), areas_size}, {views.data(), views_size});
+    return (is_large ? floors_.large : floors_.fine)
+        .unionOf({areas.data(), areas_size}, {views.data(), views_size});
 }
 
 /// Bounds the area that two poses see together by their own boxes.
-double CertificateChecker::pairOf(const Boxes& pair) const {
+double CertificateChecker::pairOf(bool is_large, const Boxes& pair) const {
     double most = boxes_[pair[0]].most + boxes_[pair[1]].most;
-    for (unsigned known = 0; known < 4; ++known) most = std::min(most, unionOf(pair, 2, known));
+    for (unsigned known = 0; known < 4; ++known)
+        most = std::min(most, unionOf(is_large, pair, 2, known));
     return most;
 }
 
 void CertificateChecker::boundPairs() {
     tbb::parallel_for(std::size_t{0}, pairs_.size(), [this](std::size_t i) {
         Group& pair = pairs_[i];
-        if (pair.is_whole) pair.most = pairOf(pair.boxes);
+        if (pair.is_whole) pair.most = pairOf(false, pair.boxes);
     });
     for (std::size_t i = pairs_.size(); i-- > 0;)
         for (std::uint32_t half = static_cast<std::uint32_t>(i) + 1; half < pairs_[i].end;
@@ -243,42 +256,49 @@ double CertificateChecker::mostOf(std::uint32_t first, std::uint32_t second) con
 
 /// A sensor adds no more than the largest single view in its box, less its overlap with others, and
 /// floor that one of n sensors sees is in n - 1 of the pairs of them.
-double CertificateChecker::boundOf(const Boxes& boxes) const {
-    if (times_ > 1) return sharedBy(boxes);
+double CertificateChecker::boundIn(bool is_large, const Boxes& boxes) const {
+    if (times_ > 1) return sharedBy(is_large, boxes);
     const unsigned everyone = (1U << count_) - 1;
     double all = 0;
     for (std::size_t i = 0; i < count_; ++i) all += boxes_[boxes[i]].most;
     double bound = all, sum = 0;
     const auto is_open = [&] { return bound > certificate_.bound; };
     for (unsigned known = everyone + 1; known-- > 0 && is_open();)
-        bound = std::min(bound, unionOf(boxes, count_, known));
+        bound = std::min(bound, unionOf(is_large, boxes, count_, known));
     for (std::size_t i = 0; i < count_ && is_open(); ++i)
         for (std::size_t k = i + 1; k < count_ && is_open(); ++k) {
             const unsigned both = 1U << i | 1U << k;
-            double pair = pairOf({boxes[i], boxes[k]});
+            double pair = pairOf(is_large, {boxes[i], boxes[k]});
             if (!pairs_.empty()) pair = std::min(pair, mostOf(boxes[i], boxes[k]));
             sum += pair;
             bound = std::min(bound, all - boxes_[boxes[i]].most - boxes_[boxes[k]].most + pair);
             if (i + 2 == count_) bound = std::min(bound, sum / static_cast<double>(count_ - 1));
             for (unsigned known = everyone + 1; known-- > 0 && is_open();)
                 if ((known & both) == 0)
-                    bound = std::min(bound, unionOf(boxes, count_, known, both, pair));
+                    bound = std::min(bound, unionOf(is_large, boxes, count_, known, both, pair));
         }
     return bound;
 }
 
+double CertificateChecker::boundOf(const Boxes& boxes) const {
+    const double bound = boundIn(true, boxes);
+    return bound > certificate_.bound ? std::min(bound, boundIn(false, boxes)) : bound;
+}
+
 /// Bounds the area that several of the sensors see.
-double CertificateChecker::sharedBy(const Boxes& boxes) const {
+double CertificateChecker::sharedBy(bool is_large, const Boxes& boxes) const {
     std::array<BoxViews::Placed, kMostPosed> placed{};
     for (std::size_t i = 0; i < count_; ++i) {
         const Box& box = boxes_[boxes[i]];
-        placed[i] = {box.most, &box.view, &box.core};
+        placed[i] = is_large ? BoxViews::Placed{box.most, &box.large_view, &box.large_core}
+                             : BoxViews::Placed{box.most, &box.view, &box.core};
     }
-    return views_.sharedBy({placed.data(), count_}, times_, certificate_.bound);
+    return (is_large ? floors_.large : floors_.fine)
+        .sharedBy({placed.data(), count_}, times_, certificate_.bound);
 }
 
 CertificateCheck CertificateChecker::check() {
-    readBox({views_.box(), 0, sector_.isRound() ? 0 : 2 * std::numbers::pi}, 0);
+    readBox({floors_.fine.box(), 0, sector_.isRound() ? 0 : 2 * std::numbers::pi}, 0);
     if (at_ != certificate_.boxes.size()) refuse("more than one tree of boxes");
     std::size_t at = 0;
     if (!certificate_.pairs.empty()) readGroup(certificate_.pairs, at, "pairs", {}, 2, pairs_);
@@ -293,7 +313,7 @@ CertificateCheck CertificateChecker::check() {
         if (tuples_[i].is_whole) bounds[i] = boundOf(tuples_[i].boxes);
     });
     return {*std::max_element(bounds.begin(), bounds.end()), boxes_.size(), pairs_.size(),
-            tuples_.size(), views_.floorArea()};
+            tuples_.size(), floors_.fine.floorArea()};
 }
 
 }  // namespace
@@ -301,8 +321,11 @@ CertificateCheck CertificateChecker::check() {
 CertificateCheck checkCertificate(std::span<const Region> floor, std::size_t most,
                                   const Sector& sector, int sensors, const PoseGoal& goal,
                                   const PoseCertificate& certificate, const std::string& name) {
-    const BoxViews views(floor, most, sector, goal.weights);
-    return CertificateChecker(views, sector, sensors, goal.times, certificate, name).check();
+    constexpr std::size_t kFold = 16;  // cells of the search's folded ones
+    const BoxViews fine(floor, most, sector, goal.weights);
+    const BoxViews large(floor, std::max(most / kFold, std::size_t{1}), sector, goal.weights);
+    return CertificateChecker({fine, large}, sector, sensors, goal.times, certificate, name)
+        .check();
 }
 
 }  // namespace ispace

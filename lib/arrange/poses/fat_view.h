@@ -52,6 +52,9 @@ struct FloorWeighting {
     std::vector<Piece> pieces = {};  ///< may reach beyond the floor
 };
 
+/// Sizes of cells: folded ones hold 4 x 4 of the fine ones, and take a fifteenth of the time.
+enum class Grain { Fine, Folded };
+
 /// A floor as triangles, and as square cells of known area.
 ///
 /// With weights each cell is divided by them: a layer of cells has floor of one weight.
@@ -75,18 +78,31 @@ class PoseFloor {
     [[nodiscard]] double weigh(const Outline& polygon) const;
     [[nodiscard]] double mostWeight() const { return most_weight_; }
 
+    /// Side of a cell, m.
+    [[nodiscard]] double side(Grain grain = Grain::Fine) const {
+        return grain == Grain::Folded ? side_ * kFold : side_;
+    }
     /// Area of one part of a cell, m2.
-    [[nodiscard]] double partArea() const { return side_ * side_ / kParts; }
+    [[nodiscard]] double partArea(Grain grain = Grain::Fine) const {
+        return side(grain) * side(grain) / kParts;
+    }
     /// Parts of each cell that are floor, rounded up; cells row by row, layer by layer.
-    [[nodiscard]] const std::vector<std::uint8_t>& parts() const { return parts_; }
+    [[nodiscard]] const std::vector<std::uint8_t>& parts(Grain grain = Grain::Fine) const {
+        return grain == Grain::Folded ? folded_parts_ : parts_;
+    }
+    /// Converts parts of fine cells, or none, to parts of folded ones.
+    [[nodiscard]] std::vector<std::uint8_t> fold(const std::vector<std::uint8_t>& parts,
+                                                 bool rounds_up) const;
     /// Computes the area times weight of parts of all cells.
     /// \param sum (first, count) returns the number of parts in these cells
     template <typename Sum>
-    [[nodiscard]] double weightOf(Sum sum) const {
+    [[nodiscard]] double weightOf(Sum sum, Grain grain = Grain::Fine) const {
+        const bool is_folded = grain == Grain::Folded;
+        const std::size_t columns = is_folded ? foldedColumns() : columns_;
         double weight = 0;
-        for (const Layer& layer : layers_)
-            weight += layer.weight * static_cast<double>(sum(layer.begin, layer.rows * columns_));
-        return weight * partArea();
+        for (const Layer& layer : is_folded ? folded_layers_ : layers_)
+            weight += layer.weight * static_cast<double>(sum(layer.begin, layer.rows * columns));
+        return weight * partArea(grain);
     }
     [[nodiscard]] std::size_t columns() const { return columns_; }
     [[nodiscard]] std::size_t rows() const { return rows_; }
@@ -129,7 +145,10 @@ class PoseFloor {
         double weight = 1;
         std::size_t layer = kNone;  // none: its floor does not count
     };
+    static constexpr std::size_t kFold = 4;
+    [[nodiscard]] std::size_t foldedColumns() const { return (columns_ + kFold - 1) / kFold; }
     void addLayers(const FloorWeighting& weighting);
+    void foldLayers();
     /// Clips a polygon to a piece; returns false if they share no area.
     static bool clipTo(const Piece& piece, const Outline& polygon, Outline& clipped,
                        Outline& spare);
@@ -140,9 +159,9 @@ class PoseFloor {
     double side_ = 1, area_ = 0, elsewhere_ = 1, most_weight_ = 1;
     std::size_t columns_ = 1, rows_ = 1;
     std::vector<Piece> pieces_;
-    std::vector<Layer> layers_;
+    std::vector<Layer> layers_, folded_layers_;
     std::size_t rest_ = 0;  // layer of the floor outside of all pieces, or kNone
-    std::vector<std::uint8_t> parts_;
+    std::vector<std::uint8_t> parts_, folded_parts_;
 };
 
 /// Bounds of the floor that single poses of a box see.

@@ -100,9 +100,9 @@ double MultipleBound::ofSingles(std::span<const BoxId> boxes) const {
     return bound;
 }
 
-double MultipleBound::boundFor(const Prices& prices, std::span<const BoxId> boxes,
+double MultipleBound::boundFor(const Prices& prices, std::span<const BoxId> boxes, Grain grain,
                                Dense& views) const {
-    const std::vector<std::uint8_t>& most = floor_.parts();
+    const std::vector<std::uint8_t>& most = floor_.parts(grain);
     const std::size_t cells = most.size();
     std::array<const std::uint8_t*, kMostBoxes> fat{}, core{};
     double area = 0;
@@ -123,25 +123,35 @@ double MultipleBound::boundFor(const Prices& prices, std::span<const BoxId> boxe
         lowerTo(views.least.data(), view, factors, cells);
     }
     // Cores are rounded down but for kNoShare of a cell.
-    area += 2.0 * kUnit * kMostBoxes * kNoShare * kParts * floor_.partArea() * floor_.mostWeight() *
-            static_cast<double>(cells);
-    return (area + floor_.weightOf([&views](std::size_t first, std::size_t count) {
-               return sumOfLeast(&views.least[first], count);
-           })) /
+    area += 2.0 * kUnit * kMostBoxes * kNoShare * kParts * floor_.partArea(grain) *
+            floor_.mostWeight() * static_cast<double>(cells);
+    return (area + floor_.weightOf(
+                       [&views](std::size_t first, std::size_t count) {
+                           return sumOfLeast(&views.least[first], count);
+                       },
+                       grain)) /
            kUnit;
 }
 
 double MultipleBound::of(std::span<const BoxId> boxes, double enough) const {
-    thread_local Dense views;  // memory is reused
     double bound = ofSingles(boxes);
     if (bound <= enough) return bound;
-    const std::size_t cells = floor_.parts().size();
+    bound = std::min(bound, boundIn(Grain::Folded, boxes, enough));
+    return boxes_.isWorthFine(bound, enough, boxes)
+               ? std::min(bound, boundIn(Grain::Fine, boxes, enough))
+               : bound;
+}
+
+double MultipleBound::boundIn(Grain grain, std::span<const BoxId> boxes, double enough) const {
+    thread_local Dense views;  // memory is reused
+    const std::size_t cells = floor_.parts(grain).size();
     for (std::size_t i = 0; i < kMostBoxes; ++i) {
-        spread(i < sensors_ ? boxes_[boxes[i]].parts : CellParts(), cells, views.fat[i]);
-        spread(i < sensors_ ? boxes_[boxes[i]].core : CellParts(), cells, views.core[i]);
+        spread(i < sensors_ ? boxes_[boxes[i]].fatIn(grain) : CellParts(), cells, views.fat[i]);
+        spread(i < sensors_ ? boxes_[boxes[i]].coreIn(grain) : CellParts(), cells, views.core[i]);
     }
+    double bound = std::numeric_limits<double>::infinity();
     for (const Prices& prices : prices_) {
-        bound = std::min(bound, boundFor(prices, boxes, views));
+        bound = std::min(bound, boundFor(prices, boxes, grain, views));
         if (bound <= enough) break;
     }
     return bound;
@@ -149,7 +159,7 @@ double MultipleBound::of(std::span<const BoxId> boxes, double enough) const {
 
 double MultipleBound::ofCentres(std::span<const BoxId> boxes) const {
     thread_local Dense views;  // memory is reused
-    const std::size_t cells = floor_.parts().size();
+    const std::size_t cells = floor_.parts(Grain::Folded).size();
     // The largest values so far, in order: the view seen `times` times is the last of them.
     for (std::size_t rank = 0; rank < times_; ++rank) views.fat[rank].assign(cells, 0);
     std::vector<std::uint8_t>& view = views.core[0];
@@ -158,11 +168,13 @@ double MultipleBound::ofCentres(std::span<const BoxId> boxes) const {
         for (std::size_t rank = 0; rank < times_; ++rank)
             sortInto(views.fat[rank].data(), view.data(), cells);
     }
-    return floor_.weightOf([&](std::size_t first, std::size_t count) {
-        std::uint64_t sum = 0;
-        for (std::size_t i = first; i < first + count; ++i) sum += views.fat[times_ - 1][i];
-        return sum;
-    });
+    return floor_.weightOf(
+        [&](std::size_t first, std::size_t count) {
+            std::uint64_t sum = 0;
+            for (std::size_t i = first; i < first + count; ++i) sum += views.fat[times_ - 1][i];
+            return sum;
+        },
+        Grain::Folded);
 }
 
 }  // namespace ispace::poses

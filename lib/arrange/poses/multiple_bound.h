@@ -50,8 +50,9 @@ class MultipleBound {
     static constexpr std::int16_t kUnit = 12;
 
     struct Dense;  // views of boxes in all cells
-    [[nodiscard]] double boundFor(const Prices& prices, std::span<const BoxId> boxes,
+    [[nodiscard]] double boundFor(const Prices& prices, std::span<const BoxId> boxes, Grain grain,
                                   Dense& views) const;
+    [[nodiscard]] double boundIn(Grain grain, std::span<const BoxId> boxes, double enough) const;
 
     const PoseFloor& floor_;
     const PoseBoxes& boxes_;

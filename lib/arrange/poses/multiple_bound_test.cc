@@ -126,7 +126,7 @@ std::vector<BoxId> dividedBoxes(PoseBoxes& boxes, SeveralPoses& poses, int halvi
 }
 
 /// The least bound of what boxes see together, over all subsets that are known by their areas.
-double leastUnion(const PoseBoxes& boxes, const std::vector<BoxId>& ids) {
+double leastUnion(const PoseBoxes& boxes, const std::vector<BoxId>& ids, Grain grain) {
     double least = 0;
     for (const BoxId id : ids) least += boxes[id].most;
     for (unsigned chosen = 0; chosen < 1U << ids.size(); ++chosen) {
@@ -138,9 +138,24 @@ double leastUnion(const PoseBoxes& boxes, const std::vector<BoxId>& ids) {
             else
                 others.push_back(ids[i]);
         }
-        least = std::min(least, boxes.unionOf(known, others));
+        least = std::min(least, boxes.unionOf(known, others, grain));
     }
     return least;
+}
+
+/// Sensors that count once see what their boxes see together, in the cells that suffice.
+void expectUnion(const PoseFloor& floor, const PoseBoxes& boxes, const std::vector<BoxId>& ids) {
+    constexpr double kRounding = 1e-6;  // allowances
+    const MultipleBound bound(floor, boxes, ids.size(), 1);
+    const double fine = leastUnion(boxes, ids, Grain::Fine);
+    const double folded = leastUnion(boxes, ids, Grain::Folded);
+    EXPECT_LE(fine, folded + kRounding);
+    EXPECT_NEAR(bound.of(ids, 0), boxes.areWithinCells(Grain::Fine, ids) ? fine : folded,
+                kRounding);
+    if (!(folded > bound.ofSingles(ids) * 0.5) || folded >= bound.ofSingles(ids)) return;
+    const double close = bound.of(ids, folded / 1.001);
+    EXPECT_GE(close, fine - kRounding);
+    EXPECT_LE(close, std::max(fine, folded / 1.001) + kRounding);
 }
 
 TEST(MultipleBound, PosesInTheBoxesSeeNoMore) {
@@ -163,8 +178,7 @@ TEST(MultipleBound, PosesInTheBoxesSeeNoMore) {
                                         poses.draw(0, static_cast<double>(whole.size()) - 1e-9))]);
                 own.push_back(boxes[ids.back()].box);
             }
-            EXPECT_NEAR(MultipleBound(floor, boxes, sensors, 1).of(ids, 0), leastUnion(boxes, ids),
-                        1e-6);  // allowances for rounding
+            expectUnion(floor, boxes, ids);
             for (std::size_t times = 1; times <= sensors; ++times) {
                 const MultipleBound bound(floor, boxes, sensors, times);
                 const double most = bound.of(ids, 0);

@@ -83,15 +83,21 @@ void PoseBoxes::addViews(BoxNode& node) const {
     const FatView view = fatViewOf(floor_, sector_, box);
     node.parts = CellParts(view.parts);
     node.most = std::min(node.most, view.area);
-    node.core = CellParts(coreViewOf(floor_, sector_, box));
+    node.folded_parts = CellParts(floor_.fold(view.parts, true));
+    const std::vector<std::uint8_t> core = coreViewOf(floor_, sector_, box);
+    node.core = CellParts(core);
+    node.folded_core = CellParts(floor_.fold(core, false));
     const Point2 middle = box.at.center();
-    node.centre =
-        CellParts(fatViewOf(floor_, sector_, {{middle, middle}, box.from + box.span / 2, 0}).parts);
+    const PoseBox centre{{middle, middle}, box.from + box.span / 2, 0};
+    node.centre = CellParts(floor_.fold(fatViewOf(floor_, sector_, centre).parts, true));
+}
+
+double PoseBoxes::rim() const {
+    return sector_.range * (2 + std::min(sector_.field, 2 * std::numbers::pi)) / 2;
 }
 
 double PoseBoxes::slackOf(const PoseBox& box) const {
-    const double rim = sector_.range * (2 + std::min(sector_.field, 2 * std::numbers::pi)) / 2;
-    return (box.at.width() + box.at.depth()) / 2 * rim + turnOf(box);
+    return (box.at.width() + box.at.depth()) / 2 * rim() + turnOf(box);
 }
 
 double PoseBoxes::turnOf(const PoseBox& box) const {
@@ -179,7 +185,9 @@ void PoseBoxes::splitWithViews(const std::vector<BoxId>& ids) {
                       [&](std::size_t i) { addViews(boxes_[halves[i]]); });
     for (const BoxId half : halves) {
         const BoxNode& node = boxes_[half];
-        bytes_ += node.parts.parts.size() + node.core.parts.size() + node.centre.parts.size();
+        for (const CellParts* view :
+             {&node.parts, &node.core, &node.folded_parts, &node.folded_core, &node.centre})
+            bytes_ += view->parts.size();
         lowerMost(node.parent);
     }
     for (int round = 0; round < kCloser; ++round) {
@@ -195,49 +203,71 @@ void PoseBoxes::splitWithViews(const std::vector<BoxId>& ids) {
 
 double PoseBoxes::unionOfCentres(std::span<const BoxId> boxes) const {
     thread_local std::vector<std::uint8_t> sums;  // memory is reused
-    const std::vector<std::uint8_t>& most = floor_.parts();
+    const std::vector<std::uint8_t>& most = floor_.parts(Grain::Folded);
     sums.assign(most.size(), 0);
     for (const BoxId id : boxes) {
         const CellParts& view = boxes_[id].centre;
         addParts(&sums[view.first], view.parts.data(), &most[view.first], view.parts.size());
     }
     return floor_.weightOf(
-        [](std::size_t first, std::size_t count) { return sumOf(&sums[first], count); });
+        [](std::size_t first, std::size_t count) { return sumOf(&sums[first], count); },
+        Grain::Folded);
 }
 
-double PoseBoxes::unionOf(std::span<const Known> known, std::span<const BoxId> others) const {
+bool PoseBoxes::areWithinCells(Grain grain, std::span<const BoxId> boxes) const {
+    const double most = floor_.side(grain) * rim();
+    return std::none_of(boxes.begin(), boxes.end(),
+                        [&](BoxId id) { return slackOf(boxes_[id].box) > most; });
+}
+
+bool PoseBoxes::isWorthFine(double folded, double enough, std::span<const BoxId> boxes) const {
+    constexpr double kNear = 0.003;
+    return folded > enough &&
+           (folded <= enough * (1 + kNear) || areWithinCells(Grain::Fine, boxes));
+}
+
+double PoseBoxes::unionFor(double enough, std::span<const BoxId> boxes,
+                           std::span<const Known> known, std::span<const BoxId> others) const {
+    const double folded = unionOf(known, others, Grain::Folded);
+    return isWorthFine(folded, enough, boxes) ? std::min(folded, unionOf(known, others)) : folded;
+}
+
+double PoseBoxes::unionOf(std::span<const Known> known, std::span<const BoxId> others,
+                          Grain grain) const {
     thread_local std::vector<std::int16_t> free;  // memory is reused
     thread_local std::vector<std::uint8_t> own, fat;
-    const std::vector<std::uint8_t>& most = floor_.parts();
+    const std::vector<std::uint8_t>& most = floor_.parts(grain);
     double area = 0;
     free.resize(most.size());
     widen(free.data(), most.data(), most.size());
     fat.assign(most.size(), 0);
     for (const Known& part : known) {
         area += part.most;
-        const CellParts& core = boxes_[part.boxes[0]].core;
+        const CellParts& core = boxes_[part.boxes[0]].coreIn(grain);
         if (part.count == 1) {
             takeCore(&free[core.first], core.parts.data(), core.parts.size());
             continue;
         }
         own.assign(most.size(), 0);
         for (const BoxId id : part.boxes) {
-            const CellParts& one = boxes_[id].core;
+            const CellParts& one = boxes_[id].coreIn(grain);
             raise(&own[one.first], one.parts.data(), one.parts.size());
         }
         takeCore(free.data(), own.data(), own.size());
     }
     for (const BoxId id : others) {
-        const CellParts& view = boxes_[id].parts;
+        const CellParts& view = boxes_[id].fatIn(grain);
         addParts(&fat[view.first], view.parts.data(), &most[view.first], view.parts.size());
     }
     // Cores are rounded down but for kNoShare of a cell.
     if (!known.empty())
-        area += 8 * kNoShare * kParts * floor_.partArea() * floor_.mostWeight() *
+        area += 8 * kNoShare * kParts * floor_.partArea(grain) * floor_.mostWeight() *
                 static_cast<double>(most.size());
-    return area + floor_.weightOf([](std::size_t first, std::size_t count) {
-        return sumWithin(&fat[first], &free[first], count);
-    });
+    return area + floor_.weightOf(
+                      [](std::size_t first, std::size_t count) {
+                          return sumWithin(&fat[first], &free[first], count);
+                      },
+                      grain);
 }
 
 std::size_t PoseBoxes::widestOf(std::span<const BoxId> boxes) const {

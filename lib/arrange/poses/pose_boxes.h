@@ -31,12 +31,18 @@ struct BoxNode {
     double most = 0;                  // bounds the area that any single pose of the box sees
     std::uint64_t low = 0, high = 0;  // half-open range of its poses in the order of the tree
     bool has_views = false, is_bare = false;  // bare: from a state, without the views
-    CellParts parts;                          // of the fat view
-    CellParts core;                           // that all poses of the box see
-    CellParts centre;                         // of the view from the middle of the box
+    CellParts parts, folded_parts;            // of the fat view
+    CellParts core, folded_core;              // that all poses of the box see
+    CellParts centre;                         // folded: of the view from the middle of the box
 
     /// True if no pose of the box sees any floor.
     [[nodiscard]] bool isBlind() const { return most == 0; }
+    [[nodiscard]] const CellParts& fatIn(Grain grain) const {
+        return grain == Grain::Folded ? folded_parts : parts;
+    }
+    [[nodiscard]] const CellParts& coreIn(Grain grain) const {
+        return grain == Grain::Folded ? folded_core : core;
+    }
 };
 
 /// The tree of boxes. Box 0 holds all poses.
@@ -84,7 +90,19 @@ class PoseBoxes {
     /// cell the lesser of the fat views of the others and the floor less all cores of the known
     /// parts. Outside of the cell these add no more than their areas less their cores in it. So a
     /// core that lies in another one lowers the sum.
-    [[nodiscard]] double unionOf(std::span<const Known> known, std::span<const BoxId> others) const;
+    [[nodiscard]] double unionOf(std::span<const Known> known, std::span<const BoxId> others,
+                                 Grain grain = Grain::Fine) const;
+    /// Bounds it for poses of `boxes` in folded cells, and in fine ones if these may lower it to
+    /// `enough`.
+    [[nodiscard]] double unionFor(double enough, std::span<const BoxId> boxes,
+                                  std::span<const Known> known,
+                                  std::span<const BoxId> others) const;
+    /// Returns true if a bound in folded cells exceeds one that suffices by so little that the
+    /// bound in fine cells may not, or if the boxes are no larger than these.
+    [[nodiscard]] bool isWorthFine(double folded, double enough,
+                                   std::span<const BoxId> boxes) const;
+    /// Returns true if views of the boxes grow by no more than if moved by a cell.
+    [[nodiscard]] bool areWithinCells(Grain grain, std::span<const BoxId> boxes) const;
 
   private:
     /// Returns halves without bounds.
@@ -97,6 +115,8 @@ class PoseBoxes {
     void write(BoxId id, std::string& text) const;
     /// Growth of a fat view with the size of its box, m2.
     [[nodiscard]] double slackOf(const PoseBox& box) const;
+    /// Growth of a fat view for each metre, m.
+    [[nodiscard]] double rim() const;
     [[nodiscard]] double turnOf(const PoseBox& box) const;
 
     const PoseFloor& floor_;

@@ -41,7 +41,7 @@ double PoseSearcher::unionBoundOf(const Tuple& tuple, double enough) const {
             else
                 others.push_back(tuple.boxes[i]);
         }
-        bound = std::min(bound, boxes_.unionOf(known, others));
+        bound = std::min(bound, boxes_.unionFor(enough, boxesOf(tuple), known, others));
         return bound;
     };
     const unsigned everyone = (1U << count_) - 1;

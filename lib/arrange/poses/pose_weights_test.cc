@@ -84,6 +84,48 @@ TEST(PoseWeights, LayersHoldTheFloorOfTheirWeights) {
     EXPECT_EQ(floor.mostWeight(), 3);
 }
 
+TEST(PoseWeights, FoldedCellsHoldTheSumsOfTheirCells) {
+    const Region region = roomsWithPillar();
+    const PoseFloor floor({&region, 1}, kCells, weighting());
+    const auto folded = [&](const std::vector<std::uint8_t>& parts) {
+        return floor.weightOf(
+            [&](std::size_t first, std::size_t count) {
+                return std::accumulate(&parts[first], &parts[first] + count, std::uint64_t{0});
+            },
+            Grain::Folded);
+    };
+    const std::size_t cells = floor.parts(Grain::Folded).size();
+    const double rounding =
+        floor.partArea(Grain::Folded) * floor.mostWeight() * static_cast<double>(cells);
+    std::mt19937 random(3);
+    for (int i = 0; i < 50; ++i) {
+        // Any parts of the floor, in runs of cells.
+        std::vector<std::uint8_t> parts(floor.parts().size());
+        const std::size_t run = 1 + random() % 40;
+        for (std::size_t k = 0; k < parts.size(); ++k)
+            if (k / run % 2 == 0)
+                parts[k] = static_cast<std::uint8_t>(random() % (floor.parts()[k] + 1U));
+        const std::vector<std::uint8_t> up = floor.fold(parts, true);
+        const std::vector<std::uint8_t> down = floor.fold(parts, false);
+        ASSERT_EQ(up.size(), cells);
+        const double exact = weightedParts(floor, parts);
+        EXPECT_GE(folded(up), exact - 1e-9);
+        EXPECT_LE(folded(down), exact + 1e-9);
+        EXPECT_LE(folded(up) - folded(down), rounding);
+        for (std::size_t k = 0; k < cells; ++k) EXPECT_LE(up[k], floor.parts(Grain::Folded)[k]);
+    }
+    // A cell with a single part is in a folded cell that has some, and that is no core.
+    for (std::size_t k = 0; k < floor.parts().size(); ++k) {
+        std::vector<std::uint8_t> parts(floor.parts().size());
+        parts[k] = 1;
+        const std::vector<std::uint8_t> up = floor.fold(parts, true);
+        EXPECT_EQ(std::accumulate(up.begin(), up.end(), 0), 1);
+        const std::vector<std::uint8_t> down = floor.fold(parts, false);
+        EXPECT_EQ(std::accumulate(down.begin(), down.end(), 0), 0);
+    }
+    EXPECT_TRUE(floor.fold({}, true).empty());
+}
+
 TEST(PoseWeights, ASectorThatFitsInAZoneHasItsClosedForm) {
     const Region region = {rectangleOf(0, 0, 9, 7), {}};
     const Sector sector{1, 2 * kPi / 3, 0};
