@@ -13,7 +13,7 @@ namespace ispace {
 namespace {
 
 /// Samples along each side of a box of many densities, and of one.
-constexpr int kSamples = 64, kSamplesAlone = 48;
+constexpr int kSamples = 128, kSamplesAlone = 48;
 
 /// Puts the edges that close a level set well beyond a box.
 Box2 enlarged(const Box2& box) {
@@ -25,8 +25,8 @@ Box2 enlarged(const Box2& box) {
 }  // namespace
 
 DenseFloor::DenseFloor(const LensResolution& lens, const Frame3& frame, double drop,
-                       const Box2& box, double most)
-    : lens_(lens), frame_(frame), drop_(drop), most_(most) {
+                       const Box2& box)
+    : lens_(lens), frame_(frame), drop_(drop) {
     if (!box.empty()) box_ = enlarged(box);
 }
 
@@ -54,7 +54,8 @@ std::vector<Curve> DenseFloor::traced(double pixels_per_metre) const {
 
 std::vector<Curve> DenseFloor::least(double pixels_per_metre) {
     if (box_.empty()) return {};
-    const double far = most_ / pixels_per_metre;
+    if (!most_) most_ = lens_.most();
+    const double far = *most_ / pixels_per_metre;
     if (!(std::fabs(drop_) < far)) return {};
     const double reach = std::sqrt(far * far - drop_ * drop_);
     const Box2 wanted = common(box_, enlarged({{-reach, -reach}, {reach, reach}}));
@@ -69,7 +70,7 @@ std::vector<Curve> DenseFloor::least(double pixels_per_metre) {
 
 std::vector<Curve> DenseFloor::alone(const LensResolution& lens, const Frame3& frame, double drop,
                                      const Box2& box, double pixels_per_metre) {
-    DenseFloor floor(lens, frame, drop, box, 0);
+    DenseFloor floor(lens, frame, drop, box);
     if (floor.box_.empty()) return {};
     floor.sampleIn(floor.box_, kSamplesAlone);
     return floor.traced(pixels_per_metre);

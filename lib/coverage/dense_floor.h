@@ -2,6 +2,7 @@
 // Private to lib/coverage: the floor on which a lens that is not even has enough pixels a metre.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "geom/curve.h"
@@ -17,9 +18,7 @@ namespace ispace {
 class DenseFloor {
   public:
     /// \param box bounds of the plane that counts, for instance of that in view
-    /// \param most upper bound of the pixels a radian
-    DenseFloor(const LensResolution& lens, const Frame3& frame, double drop, const Box2& box,
-               double most);
+    DenseFloor(const LensResolution& lens, const Frame3& frame, double drop, const Box2& box);
 
     /// Returns the part with this density: exact in the box, beyond it closing edges are arbitrary.
     /// Takes least time if densities rise from call to call.
@@ -46,9 +45,9 @@ class DenseFloor {
     const LensResolution& lens_;
     const Frame3& frame_;
     double drop_;
-    Box2 box_;      ///< with a margin
-    double most_;   ///< pixels a radian of the lens
-    Box2 sampled_;  ///< the box of the samples
+    Box2 box_;                    ///< with a margin
+    std::optional<double> most_;  ///< pixels a radian of the lens, once known
+    Box2 sampled_;                ///< the box of the samples
     std::vector<Sample> samples_;
 };
 

@@ -55,19 +55,10 @@ class LevelTracer {
         constexpr double kShare = 0.25;  // of a cell
         const Vec2 inset{kShare * box.width() / (side - 1), kShare * box.depth() / (side - 1)};
         inner_ = {box.low + inset, box.high - inset};
-        // A sample's distance from the border is the less of those of its row and its column.
-        std::vector<double> in_column, in_row;
-        for (int k = 0; k < side_; ++k) {
-            const Point2 p = place(k, k);
-            in_column.push_back(std::min(p.x - inner_.low.x, inner_.high.x - p.x));
-            in_row.push_back(std::min(p.y - inner_.low.y, inner_.high.y - p.y));
-        }
-        auto at = samples_.begin();
-        for (const double row : in_row)
-            for (const double column : in_column) {
-                *at = std::min(*at, std::min(column, row));
-                ++at;
-            }
+        std::size_t i = 0;
+        for (int row = 0; row < side_; ++row)
+            for (int column = 0; column < side_; ++column, ++i)
+                samples_[i] = std::min(samples_[i], within(place(column, row)));
     }
 
     std::vector<Curve> run() {
@@ -130,10 +121,6 @@ class LevelTracer {
     /// Adds the pieces of the boundary in a cell, each with the area on its left: counter-clockwise
     /// around the cell, a piece ends where the border enters the area and begins where it leaves.
     void crossCell(int column, int row) {
-        const bool is_in = sample(column, row) >= 0;
-        if (is_in == (sample(column + 1, row) >= 0) && is_in == (sample(column, row + 1) >= 0) &&
-            is_in == (sample(column + 1, row + 1) >= 0))
-            return;
         constexpr std::array<std::pair<int, int>, 5> kCorners = {
             {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}}};
         std::array<std::optional<bool>, 4> leaves;  // at each side; empty: not crossed
@@ -150,6 +137,7 @@ class LevelTracer {
             const Point2 p = place(column + ax, row + ay), q = place(column + bx, row + by);
             roots_.emplace(key, a >= 0 ? root(p, a, q, b) : root(q, b, p, a));
         }
+        if (crossed == 0) return;
         const Point2 low = place(column, row), high = place(column + 1, row + 1);
         const bool joins = crossed == 4 && valueAt(low + 0.5 * (high - low)) >= 0;
         for (int side = 0; side < 4; ++side) {

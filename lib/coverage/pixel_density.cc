@@ -3,6 +3,8 @@
 #include "coverage/pixel_density.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -50,13 +52,13 @@ std::vector<Curve> movedTo(Point2 foot, std::vector<Curve> curves) {
 
 }  // namespace
 
-DenseFloor FloorDensity::denseFloor(const Box2& box, double most) const {
+DenseFloor FloorDensity::denseFloor(const Box2& box) const {
     const Vec2 way = Point2{} - foot_;
-    return {*lens_, frame_, drop_, Box2{box.low + way, box.high + way}, most};
+    return {*lens_, frame_, drop_, Box2{box.low + way, box.high + way}};
 }
 
 std::vector<Curve> FloorDensity::least(double pixels_per_metre, const Box2& box) const {
-    if (lens_) return movedTo(foot_, denseFloor(box, lensBounds().most).least(pixels_per_metre));
+    if (lens_) return movedTo(foot_, denseFloor(box).least(pixels_per_metre));
     const double far = focal_ / pixels_per_metre;
     if (!is_by_depth_) {
         if (!(std::fabs(drop_) < far)) return {};
@@ -67,6 +69,96 @@ std::vector<Curve> FloorDensity::least(double pixels_per_metre, const Box2& box)
     const Polygon half = halfOf(polygon, Vec2{-axis_.x, -axis_.y}, offset);
     if (half.empty()) return {};
     return {curveOf(half)};
+}
+
+namespace {
+
+/// Mean of ln(t) for t from a to b, both positive.
+double meanLog(double a, double b) {
+    const double step = b - a, middle = a + step / 2;
+    if (std::fabs(step) < 1e-2 * middle) {
+        const double share = step / middle, squared = share * share;
+        return std::log(middle) - squared / 24 - squared * squared / 320;
+    }
+    return (b * std::log(b) - a * std::log(a)) / step - 1;
+}
+
+}  // namespace
+
+/// Computes the contribution of an edge to the integral of focal / depth, by Green's theorem: depth
+/// grows along one direction of the plane, and edges are weighted by their extent across it.
+double FloorDensity::alongAxis(Point2 a, Point2 b) const {
+    constexpr double kNearest = 1e-12;
+    const Vec2 uphill{axis_.x / slope_, axis_.y / slope_};
+    const auto depth = [&](Point2 p) {
+        return std::max(kNearest, slope_ * dot(uphill, p - foot_) + axis_.z * drop_);
+    };
+    return focal_ / slope_ * cross(uphill, b - a) * meanLog(depth(a), depth(b));
+}
+
+/// Likewise of focal / distance, weighted by the angle that an edge spans about the foot.
+double FloorDensity::around(Point2 a, Point2 b) const {
+    constexpr std::array<double, 4> kPlaces = {-0.861136311594052575, -0.339981043584856265,
+                                               0.339981043584856265, 0.861136311594052575};
+    constexpr std::array<double, 4> kWeights = {0.347854845137453857, 0.652145154862546143,
+                                                0.652145154862546143, 0.347854845137453857};
+    const Vec2 from = a - foot_, way = b - a;
+    const double high = std::fabs(drop_), scale = high + distance(foot_, Segment2{a, b});
+    constexpr double kMaxPieces = 4096;
+    const double pieces = std::clamp(std::ceil(2 * length(way) / scale), 1.0, kMaxPieces);
+    double sum = 0;
+    for (double i = 0; i < pieces; ++i)
+        for (std::size_t k = 0; k < kPlaces.size(); ++k) {
+            const Vec2 p = from + (i + (1 + kPlaces[k]) / 2) / pieces * way;
+            sum += kWeights[k] / 2 / (std::hypot(p.x, p.y, high) + high);
+        }
+    return focal_ * cross(from, way) * sum / pieces;
+}
+
+/// Likewise of the density of a lens, by its integral along the ray from the foot.
+double FloorDensity::byLens(Point2 a, Point2 b) const {
+    constexpr std::array<double, 4> kPlaces = {-0.861136311594052575, -0.339981043584856265,
+                                               0.339981043584856265, 0.861136311594052575};
+    constexpr std::array<double, 4> kWeights = {0.347854845137453857, 0.652145154862546143,
+                                                0.652145154862546143, 0.347854845137453857};
+    const auto along_ray = [&](Vec2 to) {  // the mean of t density(t to), t from 0 to 1
+        constexpr int kPieces = 8;
+        double sum = 0;
+        for (int i = 0; i < kPieces; ++i)
+            for (std::size_t k = 0; k < kPlaces.size(); ++k) {
+                const double t = (i + (1 + kPlaces[k]) / 2) / kPieces;
+                sum += kWeights[k] / 2 / kPieces * t * lens_->densityAt(localOf(t * to));
+            }
+        return sum;
+    };
+    const Vec2 from = a - foot_, way = b - a;
+    const double scale = std::fabs(drop_) + distance(foot_, Segment2{a, b});
+    constexpr double kMaxPieces = 64;
+    constexpr double kShort = 0.25, kTwo = 0.577350269189625765;  // two places do for short edges
+    if (length(way) < kShort * scale)
+        return cross(from, way) / 2 *
+               (along_ray(from + (1 - kTwo) / 2 * way) + along_ray(from + (1 + kTwo) / 2 * way));
+    const double pieces = std::clamp(std::ceil(2 * length(way) / scale), 1.0, kMaxPieces);
+    double sum = 0;
+    for (double i = 0; i < pieces; ++i)
+        for (std::size_t k = 0; k < kPlaces.size(); ++k)
+            sum += kWeights[k] / 2 * along_ray(from + (i + (1 + kPlaces[k]) / 2) / pieces * way);
+    return cross(from, way) * sum / pieces;
+}
+
+double FloorDensity::integral(std::span<const Curve> curves) const {
+    constexpr double kLevel = 1e-9;
+    if (!lens_ && is_by_depth_ && slope_ < kLevel)
+        return focal_ / std::fabs(axis_.z * drop_) * signedArea(curves);
+    constexpr double kLensError = 10 * kConicError;  // of a sum that takes a hundred times longer
+    double sum = 0;
+    for (const Curve& curve : curves)
+        forEachEdge(chords(curve, lens_ ? kLensError : kConicError), [&](const Segment2& edge) {
+            sum += lens_          ? byLens(edge.a, edge.b)
+                   : is_by_depth_ ? alongAxis(edge.a, edge.b)
+                                  : around(edge.a, edge.b);
+        });
+    return sum;
 }
 
 namespace {
@@ -91,18 +183,6 @@ DensityRange densityRange(const FloorDensity& density, const std::vector<Curve>&
     return range;
 }
 
-/// Likewise of a lens, by its resolution and the distances of a box around the view.
-DensityRange densityRange(const FloorDensity& density, const LensResolution::Bounds& lens,
-                          const Box2& box) {
-    constexpr double kMargin = 1.01;
-    const Point2 foot = density.foot();
-    const Vec2 low = box.low - foot, high = box.high - foot;
-    const double near_x = std::max({0.0, low.x, -high.x}), far_x = std::max(-low.x, high.x);
-    const double near_y = std::max({0.0, low.y, -high.y}), far_y = std::max(-low.y, high.y);
-    return {lens.least / std::hypot(far_x, far_y, density.drop()) / kMargin,
-            lens.most / std::hypot(near_x, near_y, density.drop()) * kMargin};
-}
-
 }  // namespace
 
 std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
@@ -119,14 +199,12 @@ std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
     for (CoveredSet& set : sets) set.region.emplace();
     Box2 box = boundsOfAll(*view.region);
     if (box.empty()) return sets;
-    LensResolution::Bounds lens;
-    if (!density.isEven()) lens = density.lensBounds();
-    const DensityRange range = density.isEven()
-                                   ? densityRange(density, *view.region, density.foot())
-                                   : densityRange(density, lens, box);
     constexpr double kAround = 1;
     box = {{box.low.x - kAround, box.low.y - kAround},
            {box.high.x + kAround, box.high.y + kAround}};
+    // The density of other lenses has no bounds at the vertices.
+    DensityRange range{0, std::numeric_limits<double>::infinity()};
+    if (density.isEven()) range = densityRange(density, *view.region, density.foot());
     std::vector<Layer> layers = {{.curves = *view.region}};
     std::vector<std::size_t> cut;  // classes whose bound may cross the view, rising
     std::optional<DenseFloor> floor;
@@ -137,7 +215,7 @@ std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
             sets[i].region = *view.region;
             continue;
         }
-        if (!density.isEven() && !floor) floor.emplace(density.denseFloor(box, lens.most));
+        if (!density.isEven() && !floor) floor.emplace(density.denseFloor(box));
         std::vector<Curve> dense =
             floor ? movedTo(density.foot(), floor->least(wanted)) : density.least(wanted, box);
         cut.push_back(i);

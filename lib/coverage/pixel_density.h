@@ -26,14 +26,10 @@ class FloorDensity {
     /// plane, of an equidistant fisheye a disc about the foot, of other lenses a DenseFloor.
     /// Empty curves if it is lower everywhere.
     [[nodiscard]] std::vector<Curve> least(double pixels_per_metre, const Box2& box) const;
-    /// Returns the parts of `box`, for many densities. \pre !isEven() \param most as lensBounds()
-    [[nodiscard]] DenseFloor denseFloor(const Box2& box, double most) const;
-    /// Returns bounds of the pixels a radian of the lens. \pre !isEven()
-    [[nodiscard]] LensResolution::Bounds lensBounds() const { return lens_->bounds(); }
+    /// Returns the parts of `box`, for many densities. \pre !isEven()
+    [[nodiscard]] DenseFloor denseFloor(const Box2& box) const;
     /// Returns the point of the plane below or above the camera.
     [[nodiscard]] Point2 foot() const { return foot_; }
-    /// Returns the height of the plane above the camera.
-    [[nodiscard]] double drop() const { return drop_; }
     /// Returns true if the density falls with depth or distance alone.
     [[nodiscard]] bool isEven() const { return !lens_; }
     /// Integrates the density over the area of curves, in pixels times metres. Chords replace arcs.

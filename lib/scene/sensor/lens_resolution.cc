@@ -83,39 +83,37 @@ double LensResolution::densityAt(Vec3 local) const {
 
 namespace {
 
-/// Bounds a smooth function of the directions up to `widest` off the axis, with a margin for those
-/// between the samples.
+/// Largest value of a smooth function of the directions up to `widest` off the axis, with a margin
+/// for those between the samples.
 template <typename Function>
-LensResolution::Bounds boundsOver(double widest, int rings, int bearings, Function function) {
+double largestOver(double widest, bool is_lopsided, Function function) {
+    constexpr int kRings = 256, kBearings = 64;
     constexpr double kMargin = 1.001;
-    LensResolution::Bounds bounds{std::numeric_limits<double>::infinity(), 0};
-    for (int i = 0; i <= rings; ++i) {
-        const double angle = widest * i / rings;
+    const int bearings = is_lopsided ? kBearings : 1;
+    double largest = 0;
+    for (int i = 0; i <= kRings; ++i) {
+        const double angle = widest * i / kRings;
         for (int k = 0; k < bearings; ++k) {
             const double bearing = 2 * std::numbers::pi * k / bearings;
             const double sine = std::sin(angle);
-            const double value = function(
-                Vec3{std::cos(angle), -sine * std::cos(bearing), -sine * std::sin(bearing)});
-            bounds = {std::min(bounds.least, value), std::max(bounds.most, value)};
+            largest = std::max(largest, function(Vec3{std::cos(angle), -sine * std::cos(bearing),
+                                                      -sine * std::sin(bearing)}));
         }
     }
-    return {bounds.least / kMargin, kMargin * bounds.most};
+    return kMargin * largest;
 }
 
 }  // namespace
 
 double LensResolution::farthest(double pixels_per_metre) const {
-    constexpr int kRings = 256, kBearings = 64;
-    const auto bounds = boundsOver(widest_, kRings, is_lopsided_ ? kBearings : 1, [this](Vec3 way) {
-        return at(way) * (lens_ == Lens::Pinhole ? way.x : 1);
-    });
-    return bounds.most / pixels_per_metre;
+    return largestOver(
+               widest_, is_lopsided_,
+               [this](Vec3 way) { return at(way) * (lens_ == Lens::Pinhole ? way.x : 1); }) /
+           pixels_per_metre;
 }
 
-LensResolution::Bounds LensResolution::bounds() const {
-    constexpr int kRings = 128, kBearings = 32;
-    return boundsOver(widest_, kRings, is_lopsided_ ? kBearings : 1,
-                      [this](Vec3 way) { return at(way); });
+double LensResolution::most() const {
+    return largestOver(widest_, is_lopsided_, [this](Vec3 way) { return at(way); });
 }
 
 }  // namespace ispace

@@ -32,11 +32,8 @@ class LensResolution {
     /// Returns an upper bound of the distance, of a pinhole of the depth, at which the picture has
     /// this many pixels a metre.
     [[nodiscard]] double farthest(double pixels_per_metre) const;
-    struct Bounds {
-        double least = 0, most = 0;
-    };
-    /// Returns bounds of at() in the picture.
-    [[nodiscard]] Bounds bounds() const;
+    /// Returns an upper bound of at().
+    [[nodiscard]] double most() const;
 
   private:
     /// Returns at() for a focal length of 1: `along` and `across` are the cosine and sine of the
