@@ -20,11 +20,11 @@ namespace ispace {
 
 namespace {
 
-constexpr std::size_t kMaxTypes = 3;    ///< of sensors to add
-constexpr std::size_t kMaxChanges = 8;  ///< of Together
-constexpr double kWorthwhile = 1e-3;    ///< share of the indoor floor
-constexpr double kNearWall = 0.1;       ///< of a sensor on a wall, metres
-constexpr double kMaxLattice = 10'000;  ///< sites in the limits: farther apart in large rooms
+constexpr std::size_t kMaxTypes = 3;     ///< of sensors to add
+constexpr std::size_t kMaxChanges = 8;   ///< of Together
+constexpr double kWorthwhile = 1e-3;     ///< share of the indoor floor
+constexpr double kNearWall = 0.1;        ///< of a sensor on a wall, metres
+constexpr double kMaxLattice = 100'000;  ///< sites in the limits: farther apart in large rooms
 constexpr double kShifts[] = {0.1, 0.25, 0.5, 1};
 constexpr int kDirections = 8;
 constexpr int kTurnStep = 15;  ///< degrees; then single degrees about the best

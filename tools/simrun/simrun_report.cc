@@ -90,10 +90,10 @@ std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options, const Sce
 
 std::string suggestionsText(const SimrunOptions& options, const SceneInput& input) {
     for (const std::string& file : Recorder::filesIn(options.record)) completeOutput(file);
-    std::vector<RunSuggestion> found;
     const std::optional<double> before = seenShare(options, input.scene);
-    if (before) found = suggestForRun(options, input.scene, *before);
-    return suggestionsText(options, input.named, std::move(found), before.value_or(0));
+    if (!before) return "the run has no robots or people to see\n";
+    return suggestionsText(options, input.named, suggestForRun(options, input.scene, *before),
+                           *before);
 }
 
 std::string suggestionsText(const SimrunOptions& options, const std::vector<std::string>& named,

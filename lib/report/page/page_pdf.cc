@@ -243,7 +243,7 @@ class PdfWriter {
     static bool canShrink(const PageFigure& figure) {
         return figure.width == 1 && figure.picture.unit() != PageUnit::Millimetre;
     }
-    static constexpr double kLeastShare = 0.7;
+    static constexpr double kLeastShare = 0.9;
 
     void add(const PageText& text) {
         const bool is_small = text.tone == Tone::Small;
