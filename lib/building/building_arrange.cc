@@ -92,6 +92,7 @@ void measureTogether(const BuildingScene& building, const ArrangeOptions& option
             withPlaced(*building.scenes[i], {result.groups[i]}, result.storeys[i].sensors));
     CoverageOptions usual;
     usual.plane = options.plane;
+    usual.density = options.pixel_density;
     usual.exact = false;
     const BuildingCoverage coverage = measureBuilding(placed, usual);
     result.coverage = coverage.coverage.grid.value_or(0);

@@ -140,5 +140,51 @@ TEST(StoreySight, TheProofHoldsForAllLayoutsOfTheBuilding) {
     EXPECT_NEAR(measureBuilding(again, {}).coverage.grid.value_or(0), found.coverage, 1e-12);
 }
 
+/// Two storeys around an atrium.
+constexpr const char* kAtrium =
+    "- storey: {id: ground, height: 2.8, records: [{fence: {path: [[0, 0], [8, 0], [8, 6], [0, "
+    "6]], closed: yes, height: 2.8}}]}\n"
+    "- storey: {id: gallery, z: 3, height: 2.8, records: [{fence: {path: [[0, 0], [8, 0], [8, 6], "
+    "[0, 6]], closed: yes, height: 2.8}}]}\n"
+    "- shaft: {storeys: 'ground,gallery', path: [[2, 1.5], [6, 1.5], [6, 4.5], [2, 4.5]]}\n";
+
+/// A tilted camera to place.
+Record cameraToPlace(double fov, double tilt) {
+    Record record(*sceneSchemas().find("camera"));
+    record.set("fov", Tuple{fov});
+    record.set("tilt", tilt);
+    record.set("range", Tuple{8});
+    return record;
+}
+
+/// Returns a building with the sensors of an arrangement, as read from its file.
+BuildingScene written(const BuildingScene& building, const BuildingArrangement& found) {
+    const Document layout = buildingLayout(
+        {{}, "house.yaml", building.document.digest(), "grid", "swap"}, building, found);
+    return makeBuildingScene(building.document, layoutsOf(layout, building.document),
+                             building.devices);
+}
+
+TEST(StoreySight, TheCoverageOfALayoutIsAtTheDensityOfTheSearch) {
+    const BuildingScene building = placed(kAtrium, "");
+    ArrangeOptions options;
+    options.density = {1, 1, 4};
+    options.cells = CellSize{0.25};
+    options.mount.on = MountOn::Wall;
+    options.plane = 0.5;
+    options.pixel_density = 60;
+    SilentProgress progress;
+    const BuildingArrangement found =
+        arrangeBuilding(building, {cameraToPlace(90, -50), 2}, 2, options, progress);
+    const BuildingScene again = written(building, found);
+    CoverageOptions measure;
+    measure.plane = options.plane;
+    const double any = measureBuilding(again, measure).coverage.grid.value_or(0);
+    measure.density = options.pixel_density;
+    const double dense = measureBuilding(again, measure).coverage.grid.value_or(0);
+    EXPECT_LT(dense, any - 0.01) << "the density matters";
+    EXPECT_NEAR(found.coverage, dense, 1e-12);
+}
+
 }  // namespace
 }  // namespace ispace
