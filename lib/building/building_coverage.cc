@@ -11,6 +11,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "building/building_sight.h"
+#include "building/storey_sight.h"
 #include "coverage/outside_view.h"
 #include "report/coverage_report.h"
 #include "report/map/map.h"
@@ -109,12 +110,26 @@ TextRow tableRow(const std::string& name, std::size_t sensors, double indoor,
             shareText(free_coverage.exact)};
 }
 
+/// Returns a view into a storey with the cells that `arrange` counts. \param sight kept by
+/// reference
+std::shared_ptr<const OutsideView> withCells(const StoreySight& sight,
+                                             const BuildingScene& building, const StoreyView& one,
+                                             std::size_t storey) {
+    OutsideView view = *one.view;
+    const Sensor& sensor = building.scenes[one.storey]->sensors[one.sensor];
+    view.cells = [&sight, &sensor, from = one.storey, storey](const Grid& grid, double density) {
+        return sight.cells(from, sensor, storey, grid, density);
+    };
+    return std::make_shared<const OutsideView>(std::move(view));
+}
+
 }  // namespace
 
 BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options) {
     BuildingCoverage measured;
     measured.floors = scenesOfFloors(building);
     const std::vector<std::vector<StoreyView>> outside = viewsBetweenStoreys(building, options);
+    const StoreySight sight(building, options.plane);
     using Views = std::vector<std::shared_ptr<const OutsideView>>;
     std::map<std::pair<const Scene*, Views>, std::size_t> known;
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
@@ -123,6 +138,8 @@ BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOp
         for (const StoreyView& one : outside[i]) views.push_back(one.view);
         const auto [first, is_new] = known.try_emplace({&scene, views}, i);
         if (is_new) {
+            for (std::size_t k = 0; k < views.size(); ++k)
+                views[k] = withCells(sight, building, outside[i][k], i);
             Worlds worlds(scene.environment);
             measured.storeys.push_back(measureWithOutside(scene, worlds, options, views));
         } else {

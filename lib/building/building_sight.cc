@@ -54,7 +54,8 @@ class StoreyViews {
         compute();
         std::vector<std::vector<StoreyView>> views(building_.scenes.size());
         for (const Use& use : uses_)
-            if (const auto& view = jobs_[use.job].view) views[use.to].push_back({use.from, view});
+            if (const Job& job = jobs_[use.job]; job.view != nullptr)
+                views[use.to].push_back({use.from, job.sensor, job.view});
         for (auto& of_storey : views)
             std::stable_sort(
                 of_storey.begin(), of_storey.end(),

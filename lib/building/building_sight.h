@@ -109,6 +109,7 @@ std::optional<Environment> roomWithOpenings(const BuildingScene& building,
 /// The view of a sensor into another storey.
 struct StoreyView {
     std::size_t storey = 0;  ///< of the sensor
+    std::size_t sensor = 0;  ///< in the sensors of its scene
     std::shared_ptr<const OutsideView> view;
 };
 

@@ -10,25 +10,37 @@
 #include "coverage/outside_view.h"
 #include "coverage/plane_cells.h"
 #include "env/level.h"
+#include "geom/predicates.h"
 #include "geom/visibility/visibility.h"
 #include "scene/sensor/field_of_view.h"
 
 namespace ispace {
 
+namespace {
+
+/// Points closer to the rim of an opening lie on it, metres: poses are rounded in files.
+constexpr double kRim = 1e-6;
+
+bool isWellInside(const Polygon& outline, Point2 p) {
+    if (locate(outline, p) != Side::Inside) return false;
+    for (std::size_t i = 0; i < outline.size(); ++i)
+        if (distance(p, Segment2{outline[i], outline[(i + 1) % outline.size()]}) < kRim)
+            return false;
+    return true;
+}
+
+}  // namespace
+
 StoreySight::StoreySight(const BuildingScene& building, double plane)
     : building_(building),
       plane_(plane),
       openings_(floorOpenings(building)),
-      bounds_(building, openings_) {
-    for (std::size_t to = 0; to < building.scenes.size(); ++to) {
-        auto room = roomWithSurroundings(building, openings_, to, false);
-        rooms_.push_back(room ? std::make_shared<const SurroundedRoom>(*std::move(room)) : nullptr);
-    }
-}
+      bounds_(building, openings_),
+      rooms_(building.scenes.size()) {}
 
 bool StoreySight::maySee(std::size_t from, const Sensor& sensor, std::size_t to) const {
     const auto& storeys = building_.document.storeys;
-    if (rooms_[to] == nullptr || !seesOutside(sensor)) return false;
+    if (!seesOutside(sensor)) return false;
     const double rise = storeys[to].floor - storeys[from].floor;
     if (std::fabs(rise) > kSightBetweenStoreys || (rise > 0 && !(plane_ > kRayEpsilon)))
         return false;
@@ -76,7 +88,11 @@ void StoreySight::look(std::size_t from, std::span<const Sensor> turned, std::si
             view.sensor.model);
         views.push_back(*fieldOfView(view.sensor));
     }
-    cellsByView(grid, rooms_[to]->mesh(), views, plane_, parts);
+    const auto& room = rooms_[to].get([&] {
+        return std::make_shared<const SurroundedRoom>(
+            roomWithSurroundings(building_, openings_, to, false).value());
+    });
+    cellsByView(grid, room->mesh(), views, plane_, parts);
     // Only through openings of all floors between, not past the outlines of floors.
     const Point3 eye = views.front().frame.origin;
     const std::vector<Passed> floors = floorsBetween(from, to);
@@ -85,9 +101,8 @@ void StoreySight::look(std::size_t from, std::span<const Sensor> turned, std::si
         return std::all_of(floors.begin(), floors.end(), [&](const Passed& floor) {
             const double share = (floor.height - eye.z) / (plane_ - eye.z);
             const Point2 p = eye.onFloor() + share * (place - eye.onFloor());
-            return std::any_of(
-                floor.outlines.begin(), floor.outlines.end(),
-                [p](const Polygon& outline) { return locate(outline, p) == Side::Inside; });
+            return std::any_of(floor.outlines.begin(), floor.outlines.end(),
+                               [p](const Polygon& outline) { return isWellInside(outline, p); });
         });
     };
     CellParts framed;
@@ -104,6 +119,18 @@ void StoreySight::look(std::size_t from, std::span<const Sensor> turned, std::si
         framed.first.push_back(static_cast<std::uint32_t>(framed.runs.size()));
     }
     parts = std::move(framed);
+}
+
+CellSet StoreySight::cells(std::size_t from, Sensor sensor, std::size_t to, const Grid& grid,
+                           double density) const {
+    sensor.mount.reset();
+    sensor.person.reset();
+    if (Camera* const camera = std::get_if<Camera>(&sensor.model); camera != nullptr && density > 0)
+        *camera = withDensity(*camera, density);
+    if (!maySee(from, sensor, to)) return CellSet(grid.size());
+    CellParts parts;
+    look(from, {&sensor, 1}, to, grid, parts);
+    return parts.runs.empty() ? CellSet(grid.size()) : cellsOf(parts, 0, grid.size());
 }
 
 }  // namespace ispace

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "arrange/joined_rooms.h"
+#include "base/cell_set.h"
+#include "base/parallel.h"
 #include "building/building_sight.h"
 #include "building/opening_bounds.h"
 #include "trace/ray_world.h"
@@ -14,8 +16,9 @@
 namespace ispace {
 
 /// The sight of sensors that may stand anywhere on a storey into other storeys, by cells; rooms of
-/// JoinedRooms are storeys. Cells of a plane agree with the regions of viewsBetweenStoreys(), but
-/// for centres within 0.3 mm of a boundary. Stores the building's reference.
+/// JoinedRooms are storeys. measureBuilding() counts these cells, too. They agree with the regions
+/// of viewsBetweenStoreys(), but for centres within 0.3 mm of a boundary: those on the rim of an
+/// opening are not seen. Stores the building's reference. Thread-safe.
 class StoreySight final : public SightBetweenRooms {
   public:
     /// \param plane see CoverageOptions
@@ -27,6 +30,9 @@ class StoreySight final : public SightBetweenRooms {
                               std::size_t to) const override;
     void look(std::size_t from, std::span<const Sensor> turned, std::size_t to, const Grid& grid,
               CellParts& parts) const override;
+    /// Returns the cells that one sensor sees. \param density see CoverageOptions
+    [[nodiscard]] CellSet cells(std::size_t from, Sensor sensor, std::size_t to, const Grid& grid,
+                                double density) const;
 
   private:
     /// A floor between an eye and a plane, with the outlines of its openings.
@@ -40,7 +46,7 @@ class StoreySight final : public SightBetweenRooms {
     double plane_;
     std::vector<FloorOpening> openings_;
     OpeningBounds bounds_;
-    std::vector<std::shared_ptr<const SurroundedRoom>> rooms_;  // by storey that is seen
+    std::vector<Lazy<std::shared_ptr<const SurroundedRoom>>> rooms_;  // by storey that is seen
 };
 
 }  // namespace ispace

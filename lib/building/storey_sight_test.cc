@@ -186,5 +186,35 @@ TEST(StoreySight, TheCoverageOfALayoutIsAtTheDensityOfTheSearch) {
     EXPECT_NEAR(found.coverage, dense, 1e-12);
 }
 
+TEST(StoreySight, TheValueOfALayoutIsItsCoverageByCells) {
+    // Rims of openings run through centres of cells, as seen from these heights.
+    for (const char* text : {kAtrium, kTurned})
+        for (const double plane : {0.0, 0.6})
+            for (const double density : {0.0, 45.0}) {
+                const BuildingScene building = placed(text, "");
+                ArrangeOptions options;
+                options.density = {1, 1, 4};
+                options.cells = CellSize{0.1};
+                options.mount.on = MountOn::Wall;
+                options.mount.heights = {2.4};
+                options.plane = plane;
+                options.pixel_density = density;
+                SilentProgress progress;
+                const BuildingArrangement found =
+                    arrangeBuilding(building, {cameraToPlace(90, -50), 1}, 1, options, progress);
+                CoverageOptions measure;
+                measure.cells = CellSize{0.1};
+                measure.plane = plane;
+                measure.density = density;
+                for (const bool is_exact : {false, true}) {
+                    measure.exact = is_exact;
+                    const double covered = measureBuilding(written(building, found), measure)
+                                               .coverage.grid.value_or(0);
+                    EXPECT_NEAR(found.value, covered, 1e-9) << text << plane << ' ' << density;
+                    EXPECT_GE(found.bound, covered - 1e-9);
+                }
+            }
+}
+
 }  // namespace
 }  // namespace ispace

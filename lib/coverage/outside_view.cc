@@ -74,10 +74,13 @@ SensorView sensorViewOf(const OutsideView& view, std::size_t index, const Grid& 
                    .model = deviceName(sensor.model),
                    .pose = sensor.pose,
                    .max_range = maxRange(sensor.model)};
-    out.cells = cellsInside(view.region, grid);
+    const auto cells = [&](const std::vector<Curve>& region, double density) {
+        return view.cells ? view.cells(grid, density) : cellsInside(region, grid);
+    };
+    out.cells = cells(view.region, options.density);
     if (options.exact) out.region = view.region;
     if (const Camera* const camera = sensor.tryAs<Camera>()) {
-        CoveredSet whole{options.density > 0 ? cellsInside(view.whole, grid) : out.cells, {}};
+        CoveredSet whole{options.density > 0 ? cells(view.whole, 0) : out.cells, {}};
         if (options.exact) whole.region = view.whole;
         out.classes = classesOf(FloorDensity(*camera, sensor.pose, options.plane), grid, whole);
     }

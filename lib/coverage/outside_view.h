@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,6 +19,9 @@ struct OutsideView {
     Sensor sensor;              ///< in the frame of the room that it sees
     std::vector<Curve> region;  ///< on the plane, at the requested density
     std::vector<Curve> whole;   ///< at any density
+    /// Returns the cells that it sees at a density; without it those with their centre in the
+    /// region.
+    std::function<CellSet(const Grid& grid, double density)> cells = {};
 };
 
 /// Returns true for a sensor whose view into other rooms is known: one that sees by itself, in a
