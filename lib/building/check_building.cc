@@ -160,13 +160,10 @@ class BuildingCheck {
     /// True if an outline in the building has area in common with the rooms of a storey.
     [[nodiscard]] bool meetsRooms(std::size_t i, Polygon outline) const {
         for (Point2& p : outline) p = inStorey(storey(i), p);
-        if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
-        std::vector<Polygon> rooms;
-        for (const Region& part : room(i).indoor().parts) rooms.push_back(part.outline);
-        const Region whole{std::move(outline), {}};
+        const Regions& rooms = room(i).indoor();
         double left = 0;
-        for (const Region& part : difference(whole, rooms)) left += part.area();
-        return whole.area() - left > 1e-6 * whole.area();
+        for (const Region& part : difference(rooms, {&outline, 1})) left += part.area();
+        return rooms.area() - left > 1e-6 * std::fabs(signedArea(outline));
     }
 
     /// Outlines of the rooms of a storey, in the building.
