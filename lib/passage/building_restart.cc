@@ -17,17 +17,14 @@
 
 namespace ispace {
 
-/// Ends the command and the trip of a mover, as stopped.
-void BuildingRun::Data::endCommands(const Traveller& who) {
+void BuildingRun::Data::endCommands(const Traveller& who, int running) {
     World& world = worldOf(who);
-    const std::size_t index = world.moverNamed(who.id).value();
-    const int running = world.running(index);
     const auto trip = trips.find(who.id);
     const bool is_of_trip = trip != trips.end() && trip->second.running == running;
     // Its world forgets the end of a command if it leaves.
     if (running != 0 && !is_of_trip)
         new_ends.push_back({who.id, running, Outcome::Stopped, world.time()});
-    world.command(index, {Verb::Stop, 0});
+    world.command(world.moverNamed(who.id).value(), {Verb::Stop, 0});
     finish(who.id, Outcome::Stopped);
     ends.insert(ends.end(), new_ends.begin(), new_ends.end());
     new_ends.clear();
@@ -35,30 +32,27 @@ void BuildingRun::Data::endCommands(const Traveller& who) {
 
 /// \pre it is on a storey, to which `room` belongs
 std::string BuildingRun::Data::place(Traveller& who, std::size_t room, const Pose2& pose) {
-    if (!isFree(room, pose.position, who))
-        return who.id + " has no room at " + rooms[room].id + '/' + formatDouble(pose.position.x) +
-               ',' + formatDouble(pose.position.y);
-    endCommands(who);
-    if (room != who.room)
-        return move(who, room, pose) ? ""
-                                     : rooms[room].id + " has a record with the id of " + who.id +
-                                           " or of a sensor on it";
+    if (room != who.room) return move(who, room, pose, true);
+    if (!isFree(room, pose.position, who)) return noRoomText(room, pose.position, who);
     const World& world = worldOf(who);
-    std::vector<Record> records = world.scene().records;
+    const int running = world.running(world.moverNamed(who.id).value());
     const std::vector<std::string>& ids = world.scene().ids;
     const auto own = std::find(ids.begin(), ids.end(), who.id) - ids.begin();
+    std::vector<Record> records = world.scene().records;
     Record& record = records[static_cast<std::size_t>(own)];
-    record.set("at", Tuple{pose.position.x, pose.position.y});
-    record.set("heading", wrapped(pose.heading).degrees());
+    const double heading = wrapped(pose.heading).degrees();
     try {
-        change(room, std::move(records),
+        record.set("at", Tuple{pose.position.x, pose.position.y});
+        record.set("heading", heading);
+        change(room, sceneOf(room, std::move(records)),
                {"SET " + who.id + ".at=" + formatDouble(pose.position.x) + ',' +
                     formatDouble(pose.position.y),
-                "SET " + who.id + ".heading=" + formatDouble(wrapped(pose.heading).degrees())},
+                "SET " + who.id + ".heading=" + formatDouble(heading)},
                {&who.id, 1});
     } catch (const FormatError& error) {
         return error.diagnostics().front().message;
     }
+    endCommands(who, running);
     return "";
 }
 
@@ -83,9 +77,10 @@ void BuildingRun::Data::restart() {
     std::map<std::string, Before> before;
     wanderers.clear();  // they begin anew
     for (const auto& [id, who] : travellers) {
-        endCommands(who);
         const World& world = worldOf(who);
-        before.emplace(id, Before{who.room, world.carried(world.moverNamed(id).value())});
+        const std::size_t index = world.moverNamed(id).value();
+        endCommands(who, world.running(index));
+        before.emplace(id, Before{who.room, world.carried(index)});
     }
     for (Room& room : rooms) {
         room.world->restart(Scene(*room.world->sharedStart()));

@@ -95,6 +95,42 @@ TEST(BuildingPlace, RefusesOccupiedFloorLiftsAndStairs) {
     EXPECT_EQ(run.roomOf("ground/r1"), 1U);
 }
 
+TEST(BuildingPlace, RefusesValuesOutOfRange) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    BuildingRun run(building, optionsOf());
+    for (const std::size_t storey : {0U, 1U}) {
+        EXPECT_NE(run.place("ground/r1", RoomPoint{storey, {2e6, 4}}, std::nullopt)
+                      .find("2000000 is above 1000000"),
+                  std::string::npos);
+        EXPECT_EQ(run.roomOf("ground/r1"), 0U);
+        EXPECT_EQ(poseOf(run, "ground/r1").position, (Point2{6, 4}));
+    }
+    EXPECT_EQ(run.place("ground/r1", RoomPoint{1, {6, 4}}, std::nullopt), "") << "as before";
+}
+
+TEST(BuildingPlace, LeavesAllAsItIsIfRefused) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    BuildingRun run(building, optionsOf());
+    for (const std::size_t storey : {0U, 1U}) {
+        World& world = run.rooms()[storey].simulation->world();
+        std::vector<Record> records = world.scene().records;
+        for (const Record& record :
+             testing::layoutDocument("cube id=box at=8,2 size=1,1,1\n").records)
+            records.push_back(record);
+        world.change(makeScene(std::move(records), world.scene(), building.devices));
+    }
+    const TripAnswer trip = run.travel("ground/r1", {{{1, {9, 6}}}});
+    runUntil(run, 1);
+    const Pose2 before = poseOf(run, "ground/r1");
+    for (const std::size_t storey : {0U, 1U})
+        EXPECT_EQ(run.place("ground/r1", RoomPoint{storey, {8, 2}}, std::nullopt),
+                  "robot ground/r1 stands in box (its radius is 0.3 m)");
+    EXPECT_EQ(poseOf(run, "ground/r1"), before);
+    EXPECT_EQ(endOf(run, "ground/r1", trip.id), std::nullopt);
+    EXPECT_EQ(run.place("ground/r1", RoomPoint{0, {6, 4}}, std::nullopt), "");
+    EXPECT_EQ(endOf(run, "ground/r1", trip.id), Outcome::Stopped);
+}
+
 /// Poses of all movers, and the lifts.
 std::string stateText(const BuildingRun& run) {
     std::string text;

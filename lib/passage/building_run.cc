@@ -165,54 +165,67 @@ bool BuildingRun::Data::isFree(std::size_t room, Point2 at, const Traveller& who
     return !storey || !waysOf(who).obstacles(*storey).overlap(at, who.size.radius);
 }
 
-void BuildingRun::Data::change(std::size_t room, std::vector<Record> records,
+std::string BuildingRun::Data::noRoomText(std::size_t room, Point2 at, const Traveller& who) const {
+    return who.id + " has no room at " + rooms[room].id + '/' + formatDouble(at.x) + ',' +
+           formatDouble(at.y);
+}
+
+NextScene BuildingRun::Data::sceneOf(std::size_t room, std::vector<Record> records) const {
+    const World& world = *rooms[room].world;
+    return world.preparer()(makeScene(std::move(records), world.scene(), building.devices));
+}
+
+void BuildingRun::Data::change(std::size_t room, const NextScene& next,
                                std::vector<std::string> requests,
                                std::span<const std::string> placed) {
-    World& world = *rooms[room].world;
-    world.change(makeScene(std::move(records), world.scene(), building.devices), placed);
+    rooms[room].world->change(next, placed);
     for (std::string& request : requests)
         rooms[room].simulation->tellChange(std::move(request), "");
 }
 
-bool BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose2& pose) {
-    if (!isFree(room, pose.position, who)) return false;
+std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose2& pose,
+                                    bool is_put) {
+    if (!isFree(room, pose.position, who)) return noRoomText(room, pose.position, who);
     const std::size_t from = who.room;
     World& left = *rooms[from].world;
     World& entered = *rooms[room].world;
-    const auto state = left.carried(left.moverNamed(who.id).value());
-    Record& own = who.records.front();
-    own.set("at", Tuple{pose.position.x, pose.position.y});
-    own.set("heading", wrapped(pose.heading).degrees());
-    // The way of its record is one of its first storey.
-    for (const char* key : {"path", "trip", "loop", "pause", "walk"}) own.erase(key);
-    std::vector<Record> added = entered.scene().records;
+    std::vector<Record> moved = who.records, added = entered.scene().records, rest;
     std::vector<std::string> requests;
-    for (const Record& record : who.records) {
-        added.push_back(record);
-        requests.push_back("ADD " + formatRecord(record));
-    }
-    try {
-        change(room, std::move(added), std::move(requests));
-    } catch (const FormatError&) {
-        return false;  // a record that a client added has an id of the traveller's
-    }
-    entered.resume(entered.moverNamed(who.id).value(), *state);
-    std::vector<Record> rest;
     std::string deleted = "DELETE";
-    const Scene& scene = left.scene();
-    for (std::size_t i = 0; i < scene.records.size(); ++i) {
-        const bool goes =
-            std::any_of(who.records.begin(), who.records.end(),
-                        [&](const Record& record) { return record.writtenId() == scene.ids[i]; });
+    for (std::size_t i = 0; i < left.scene().records.size(); ++i) {
+        const std::string& id = left.scene().ids[i];
+        const bool goes = std::any_of(moved.begin(), moved.end(), [&](const Record& record) {
+            return record.writtenId() == id;
+        });
         if (goes)
-            deleted += ' ' + scene.ids[i];
+            deleted += ' ' + id;
         else
-            rest.push_back(scene.records[i]);
+            rest.push_back(left.scene().records[i]);
     }
-    change(from, std::move(rest), {deleted});
+    NextScene without;
+    try {
+        Record& own = moved.front();
+        own.set("at", Tuple{pose.position.x, pose.position.y});
+        own.set("heading", wrapped(pose.heading).degrees());
+        // The way of its record is one of its first storey.
+        for (const char* key : {"path", "trip", "loop", "pause", "walk"}) own.erase(key);
+        for (const Record& record : moved) {
+            added.push_back(record);
+            requests.push_back("ADD " + formatRecord(record));
+        }
+        without = sceneOf(from, std::move(rest));
+        change(room, sceneOf(room, std::move(added)), std::move(requests));
+    } catch (const FormatError& error) {
+        return error.diagnostics().front().message;
+    }
+    if (is_put) endCommands(who, left.running(left.moverNamed(who.id).value()));
+    const auto state = left.carried(left.moverNamed(who.id).value());
+    who.records = std::move(moved);
+    entered.resume(entered.moverNamed(who.id).value(), *state);
+    change(from, without, {deleted});
     who.room = room;
     for (const Observer& observer : observers) observer(who.id, from, room);
-    return true;
+    return "";
 }
 
 BuildingRun::BuildingRun(const BuildingScene& building, const BuildingRunOptions& options)

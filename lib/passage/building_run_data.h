@@ -167,12 +167,18 @@ struct BuildingRun::Data {
     void goOn(Traveller& who, BuildingTrip& trip);
     /// Returns how the command ended; empty while it is under way.
     std::optional<Outcome> ended(const Traveller& who, BuildingTrip& trip) const;
-    /// Moves a mover to another room. \returns false if it is not free there
-    bool move(Traveller& who, std::size_t room, const Pose2& pose);
+    /// Moves a mover to another room; `is_put` ends its command and its trip as stopped. \returns
+    /// the reason why that is impossible, or ""; all is then as before
+    std::string move(Traveller& who, std::size_t room, const Pose2& pose, bool is_put = false);
     [[nodiscard]] bool isFree(std::size_t room, Point2 at, const Traveller& who) const;
-    void change(std::size_t room, std::vector<Record> records, std::vector<std::string> requests,
+    /// Returns the next scene of a room, of these records. \throws FormatError as makeScene()
+    [[nodiscard]] NextScene sceneOf(std::size_t room, std::vector<Record> records) const;
+    /// \throws FormatError if a mover has no room where it is put; all is then as before
+    void change(std::size_t room, const NextScene& next, std::vector<std::string> requests,
                 std::span<const std::string> placed = {});
-    void endCommands(const Traveller& who);
+    [[nodiscard]] std::string noRoomText(std::size_t room, Point2 at, const Traveller& who) const;
+    /// Ends the trip of a mover and its command `running`, if not 0, as stopped.
+    void endCommands(const Traveller& who, int running);
     std::string place(Traveller& who, std::size_t room, const Pose2& pose);
     void restart();
 

@@ -179,7 +179,7 @@ void BuildingRun::Data::enterCabin(Traveller& who, BuildingTrip& trip) {
     const Storey& storey = building.document.storeys[landing.storey];
     const Pose2 pose = placedIn(storey.building_from_storey, statusOf(who).pose);
     if (!slot || !lifts[leg.passage].isOpenAt(leg.from) ||
-        !move(who, first_room[leg.passage], pose)) {
+        !move(who, first_room[leg.passage], pose).empty()) {
         // Back to where movers wait; it holds its turn until it has left the landing to others.
         trip.state = TripState::Setting;
         return;
@@ -199,7 +199,7 @@ void BuildingRun::Data::enterFlight(Traveller& who, BuildingTrip& trip) {
     const Pose2 begin{{is_up ? 0 : passage.length, laneOf(who, passage, is_up)},
                       Angle::degrees(is_up ? 0 : 180)};
     const Pose2 pose = placedIn(passage.frame, begin);
-    if (!mayPass(who, passage, room, is_up) || !move(who, room, pose)) {
+    if (!mayPass(who, passage, room, is_up) || !move(who, room, pose).empty()) {
         trip.state = TripState::Setting;
         return;
     }
@@ -257,7 +257,7 @@ void BuildingRun::Data::arrive(Traveller& who, BuildingTrip& trip) {
     } else {
         pose.heading = pose.heading + Angle::degrees(180);
     }
-    if (!move(who, landing.storey, pose)) return;
+    if (!move(who, landing.storey, pose).empty()) return;
     stop.holder = who.id;
     std::erase_if(riders[leg.passage], [&](const Rider& rider) { return rider.id == who.id; });
     trip.blocked.reset();

@@ -208,6 +208,19 @@ std::optional<PlaceRequest> placeRequest(const JoinedWorlds& worlds,
     return is_pose ? std::optional(std::move(request)) : std::nullopt;
 }
 
+/// Returns the reason why the record of a mover takes no such value, or "".
+std::string faultOf(const Scene& scene, const std::string& mover, std::string_view key,
+                    Value value) {
+    const auto own = std::find(scene.ids.begin(), scene.ids.end(), mover) - scene.ids.begin();
+    try {
+        Record record = scene.records[static_cast<std::size_t>(own)];
+        record.set(key, std::move(value));
+    } catch (const FormatError& error) {
+        return error.diagnostics().front().message;
+    }
+    return "";
+}
+
 }  // namespace
 
 /// Puts a robot or a person elsewhere. \returns false for other requests
@@ -221,17 +234,26 @@ bool Session::placeMover(Words words) {
     };
     std::optional<RoomPoint> at;
     std::optional<Angle> heading;
+    const std::size_t from = *worlds.roomOf(request->mover);
+    Value value;
     if (request->is_point) {
         const std::array<std::string_view, 2> point = {"PATH", request->value};
-        const ParsedTrip parsed = parseTrip(point, worlds.rooms(), *worlds.roomOf(request->mover));
+        const ParsedTrip parsed = parseTrip(point, worlds.rooms(), from);
         if (!parsed.fault.empty()) return fail(400, parsed.fault);
         if (parsed.plan.points.size() > 1) return fail(400, "at wants one point, as upper/1,2");
         at = parsed.plan.points.front();
+        value = Tuple{at->at.x, at->at.y};
     } else {
         const auto degrees = parseDouble(request->value);
         if (!degrees) return fail(400, "heading wants degrees, not " + excerpt(request->value));
         heading = Angle::degrees(*degrees);
+        value = *degrees;
     }
+    const Scene& scene = worlds.rooms()[from].simulation->world().scene();
+    if (const std::string fault = faultOf(scene, request->mover, at ? "at" : "heading", value);
+        !fault.empty())
+        return fail(400,
+                    "SET " + std::string(words[1]) + ": " + excerpt(request->mover) + ": " + fault);
     if (!mayChange()) {
         hold(words, &Session::mayChange);
         return true;
