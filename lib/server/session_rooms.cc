@@ -165,7 +165,10 @@ RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_
                                      rooms.front().id + "/desk1");
             for (const JoinedRoom& other : rooms) {
                 const World& world = other.simulation->world();
-                if (world.moverNamed(whole))
+                const bool is_mover = world.moverNamed(whole).has_value();
+                if (is_mover && verb == "SET" && words.size() > 2)
+                    return fail(400, "a request sets one key of " + whole + ", at or heading");
+                if (is_mover)
                     return fail(403, verb == "SET" ? "of " + whole + " at and heading can be set"
                                                    : whole + " stays in the building");
                 if (verb == "ADD" && world.sensorNamed(whole))

@@ -97,8 +97,8 @@ TEST(Page, PdfShrinksAFigureWithoutScaleToTheRestOfASheet) {
         return pagesOf(pdfOf(page));
     };
     EXPECT_EQ(with(150, PageUnit::Pixel), 1U);
-    EXPECT_EQ(with(220, PageUnit::Pixel), 1U);
-    EXPECT_EQ(with(220, PageUnit::Millimetre), 2U);
+    EXPECT_EQ(with(170, PageUnit::Pixel), 1U);
+    EXPECT_EQ(with(170, PageUnit::Millimetre), 2U);
     EXPECT_EQ(with(400, PageUnit::Pixel), 2U);
 }
 

@@ -183,6 +183,12 @@ TEST(Foxglove, InitialPosesMoveRobots) {
     talk.settle();
     EXPECT_EQ(talk.room.world.status(0).pose.position, Point2(-1, 1));
     EXPECT_NEAR(std::abs(talk.room.world.status(0).pose.heading.degrees()), 180, 1e-9);
+    talk.publish(5, R"({"pose":{"pose":{"position":{"x":2000000,"y":1},"orientation":{"w":1}}}})");
+    EXPECT_NE(talk.ask("status")["message"].get<std::string>().find("above 1000000"),
+              std::string::npos);
+    talk.settle();
+    EXPECT_NEAR(std::abs(talk.room.world.status(0).pose.heading.degrees()), 180, 1e-9)
+        << "a refused pose does not turn it";
     talk.publish(5, R"({"header":{"frame_id":"l1"}})");
     EXPECT_NE(talk.ask("status")["message"].get<std::string>().find("frame map"),
               std::string::npos);

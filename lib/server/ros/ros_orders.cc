@@ -152,12 +152,22 @@ void RosOrders::place(const std::string& robot, const RosPose& pose) {
     if (state_->rooms() != nullptr) return placeInRoom(robot, pose);
     if (!pose.frame.empty() && pose.frame != kRosWorld)
         return tell_("the pose of " + robot + " is wanted in the frame map");
+    set(robot, formatDouble(at.x) + ',' + formatDouble(at.y), heading);
+}
+
+/// Puts a robot to `at` and then, if it may be there, to a heading in degrees.
+void RosOrders::set(const std::string& robot, const std::string& at, double heading) {
     if (!mayRequest()) return tell_("too many poses at once");
-    const auto answer = [this](bool is_done, std::string_view text) {
+    const auto tell = [this](bool is_done, std::string_view text) {
         if (!is_done) tell_(std::string(text));
     };
-    request("SET " + robot + ".at=" + formatDouble(at.x) + "," + formatDouble(at.y), answer);
-    request("SET " + robot + ".heading=" + formatDouble(heading), answer);
+    request("SET " + robot + ".at=" + at,
+            [this, tell, line = "SET " + robot + ".heading=" + formatDouble(heading)](
+                bool is_done, std::string_view text) {
+                tell(is_done, text);
+                // The next request, before those that wait.
+                if (is_done) requests_.emplace_front(line, tell);
+            });
 }
 
 /// Puts a robot on the storey whose frame the pose names or, in the frame map, on the one with its
@@ -190,15 +200,9 @@ void RosOrders::placeInRoom(const std::string& robot, const RosPose& pose) {
     }
     if (!best)
         return tell_("the pose of " + robot + " is wanted in the frame map or in that of a storey");
-    if (!mayRequest()) return tell_("too many poses at once");
-    const auto answer = [this](bool is_done, std::string_view text) {
-        if (!is_done) tell_(std::string(text));
-    };
     const Point2 at = best->pose.position;
-    request(
-        "SET " + robot + ".at=" + best->room + '/' + formatDouble(at.x) + ',' + formatDouble(at.y),
-        answer);
-    request("SET " + robot + ".heading=" + formatDouble(best->pose.heading.degrees()), answer);
+    set(robot, best->room + '/' + formatDouble(at.x) + ',' + formatDouble(at.y),
+        best->pose.heading.degrees());
 }
 
 /// Stops robots that get no more orders.

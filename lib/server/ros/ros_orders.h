@@ -76,6 +76,7 @@ class RosOrders {
     void drive(const std::string& robot, const RosTwist& twist);
     void release(const std::string& robot, std::int64_t hold);
     void place(const std::string& robot, const RosPose& pose);
+    void set(const std::string& robot, const std::string& at, double heading);
     void placeInRoom(const std::string& robot, const RosPose& pose);
     void watch();
 

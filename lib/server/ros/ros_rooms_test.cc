@@ -271,6 +271,13 @@ TEST(RosRooms, InitialPosesFindTheirStorey) {
     served.worlds.busy = "it is in the lift l1";
     place("map", {1, -2, 0}, 0);
     EXPECT_EQ(told.back(), "it is in the lift l1");
+    EXPECT_FALSE(served.worlds.turned) << "nor does it turn where it is";
+    const std::size_t count = told.size();
+    served.worlds.busy.clear();
+    place("map", {2e6, -2, 0}, 0);
+    ASSERT_EQ(told.size(), count + 1) << "one reason for one pose";
+    EXPECT_NE(told.back().find("2000000 is above 1000000"), std::string::npos) << told.back();
+    EXPECT_FALSE(served.worlds.placed || served.worlds.turned);
     bool is_done = false;
     orders.request("RESET", [&](bool done, std::string_view /*text*/) { is_done = done; });
     while (orders.waiting()) orders.proceed();
