@@ -64,10 +64,6 @@ class StoreySearch {
     std::map<std::pair<const Scene*, int>, Arrangement> done_;
 };
 
-}  // namespace
-
-namespace {
-
 /// Storeys that are searched together: one, or several that see each other.
 struct Part {
     std::vector<std::size_t> storeys;
