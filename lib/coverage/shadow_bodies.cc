@@ -5,13 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "env/mesh.h"
 #include "geom/curve.h"
 #include "geom/polygon.h"
-#include "geom/tolerance.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -236,7 +234,10 @@ Shadows::Shadows(std::span<const ShadowBody* const> bodies, Point3 sensor, doubl
                  const Box2& box)
     : sensor_(sensor), drop_(height - sensor.z), box_(box) {
     for (const ShadowBody* const body : bodies) {
-        if (!mayTouch(*body)) continue;
+        if (!mayTouch(*body)) {
+            addScreen(*body);
+            continue;
+        }
         for (std::size_t i = 0; i < body->triangles.size(); ++i) {
             const std::array<Point3, 3> triangle = cornersOf(*body, i);
             if (distance(sensor_, triangle) > kRayEpsilon) continue;
@@ -253,6 +254,35 @@ bool Shadows::mayTouch(const ShadowBody& body) const {
            sensor_.y >= body.plan.low.y - kRayEpsilon &&
            sensor_.y <= body.plan.high.y + kRayEpsilon && sensor_.z >= body.bottom - kRayEpsilon &&
            sensor_.z <= body.top + kRayEpsilon;
+}
+
+/// Adds the shadow of a body that stands from the plane to the sensor or higher: of the line
+/// between its outermost corners. \pre the sensor is outside of the body's plan
+void Shadows::addScreen(const ShadowBody& body) {
+    constexpr double kMargin = 1e-3;  // more than rounding and contact
+    const auto [low, high] = std::minmax({sensor_.z, sensor_.z + drop_});
+    if (body.kind == ShadowBody::Kind::Loose || body.bottom > low || body.top < high) return;
+    Vec2 right = body.vertices.front().onFloor() - sensor_.onFloor(), left = right;
+    for (const Point3& p : body.vertices) {
+        const Vec2 way = p.onFloor() - sensor_.onFloor();
+        if (cross(right, way) < 0) right = way;
+        if (cross(left, way) > 0) left = way;
+    }
+    const double across = cross(right, left), width = length(left - right);
+    if (!(across > kMargin * width)) return;  // seen edge-on
+    screens_.push_back({{{1 / length(right) * perpendicular(right), kMargin},
+                         {-1 / length(left) * perpendicular(left), kMargin},
+                         {1 / width * perpendicular(right - left), across / width + kMargin}}});
+}
+
+bool Shadows::isHidden(const ShadowBody& body) const {
+    const Vec2 low = body.plan.low - sensor_.onFloor(), high = body.plan.high - sensor_.onFloor();
+    return std::any_of(screens_.begin(), screens_.end(), [&](const auto& screen) {
+        return std::all_of(screen.begin(), screen.end(), [&](const HalfPlane& half) {
+            const Vec2 n = half.normal;
+            return n.x * (n.x > 0 ? low : high).x + n.y * (n.y > 0 ? low : high).y > half.offset;
+        });
+    });
 }
 
 bool Shadows::isPassed(const std::array<Point3, 3>& triangle) const {
@@ -352,7 +382,7 @@ bool Shadows::isOutOfTheWay(const ShadowBody& body) const {
 }
 
 std::vector<Layer> Shadows::of(const ShadowBody& standing) const {
-    if (isOutOfTheWay(standing)) return {};
+    if (isOutOfTheWay(standing) || isHidden(standing)) return {};
     ShadowBody memory;
     // For a body in contact its own triangles decide.
     const ShadowBody& body = mayTouch(standing) ? standing : seenFrom(sensor_, standing, memory);
@@ -383,54 +413,6 @@ std::vector<Layer> Shadows::of(const ShadowBody& standing) const {
     finish(before);
     finish(behind);
     return layers;
-}
-
-namespace {
-
-/// Computes the segment in which a triangle cuts the plane z = 0. The triangle is closed: one that
-/// only touches the plane with a side cuts it there; one in the plane is cut along its edge.
-std::optional<Segment2> cutOf(const std::vector<Vec3>& local,
-                              const std::array<std::uint32_t, 3>& triangle) {
-    std::array<Point2, 3> on;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3& p = local[triangle[i]];
-        if (p.z == 0) on[count++] = {p.x, p.y};
-        // The same end for both triangles of a side.
-        const Vec3& a = local[std::min(triangle[i], triangle[(i + 1) % 3])];
-        const Vec3& b = local[std::max(triangle[i], triangle[(i + 1) % 3])];
-        if (!((a.z > 0 && b.z < 0) || (a.z < 0 && b.z > 0))) continue;
-        const double t = a.z / (a.z - b.z);
-        on[count++] = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
-    }
-    if (count != 2) return std::nullopt;
-    return Segment2{on[0], on[1]};
-}
-
-}  // namespace
-
-std::vector<Segment2> cutsOf(std::span<const ShadowBody* const> bodies, const Frame3& plane,
-                             double max_range) {
-    std::vector<Segment2> cuts;
-    std::vector<Vec3> local;
-    ShadowBody memory;
-    const Vec2 reach{max_range, max_range};
-    const Point2 foot = plane.origin.onFloor();
-    for (const ShadowBody* const standing : bodies) {
-        if (!standing->plan.meets({foot - reach, foot + reach})) continue;
-        const ShadowBody& body = seenFrom(plane.origin, *standing, memory);
-        local.clear();
-        for (const Point3& p : body.vertices) {
-            Vec3 place = plane.toLocal(p);
-            if (std::fabs(place.z) <= kContactTolerance) place.z = 0;
-            local.push_back(place);
-        }
-        for (const auto& [i, j, k] : body.triangles) {
-            const std::optional<Segment2> cut = cutOf(local, {i, j, k});
-            if (cut && cut->a != cut->b) cuts.push_back(*cut);
-        }
-    }
-    return cuts;
 }
 
 }  // namespace ispace

@@ -83,7 +83,8 @@ class Shadows {
             const Box2& box);
 
     /// Returns the shadow of a standing body as layers relative to the sensor's foot. Surfaces in
-    /// contact with the sensor (and those that continue them) or with the plane cast no shadow.
+    /// contact with the sensor (and those that continue them) or with the plane cast no shadow. A
+    /// body well within the shadow of a wall has no layers: most bodies near a sensor indoors.
     [[nodiscard]] std::vector<Layer> of(const ShadowBody& standing) const;
 
   private:
@@ -94,9 +95,16 @@ class Shadows {
         friend auto operator<=>(const Place&, const Place&) = default;
     };
     using Corners = std::array<Place, 3>;
+    /// Points p of the plan with dot(normal, p) > offset.
+    struct HalfPlane {
+        Vec2 normal;  // of unit length
+        double offset;
+    };
 
     [[nodiscard]] Place placeOf(Point3 p) const;
     [[nodiscard]] double sideOf(const Place& p, int plane) const;
+    void addScreen(const ShadowBody& body);
+    [[nodiscard]] bool isHidden(const ShadowBody& body) const;
     [[nodiscard]] bool isOutOfTheWay(const ShadowBody& body) const;
     [[nodiscard]] bool mayTouch(const ShadowBody& body) const;
     [[nodiscard]] bool isPassed(const std::array<Point3, 3>& triangle) const;
@@ -109,6 +117,7 @@ class Shadows {
     double drop_;
     Box2 box_;
     std::vector<Vec3> touched_;  // unit normals of surfaces in contact with the sensor
+    std::vector<std::array<HalfPlane, 3>> screens_;  // shadows of walls, less a margin
 };
 
 /// Returns the segments in which bodies cut a plane, in its axes (forward, left) from its origin.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -113,6 +114,43 @@ TEST(Shadows, LieOnTheLeftOfTheirEdges) {
                 for (const Layer& layer : shadows.of(body))
                     for (const Curve& curve : layer.curves) EXPECT_GT(signedArea(curve), 0);
         }
+}
+
+TEST(Shadows, BodiesBehindWallsAddNone) {
+    std::mt19937_64 random(13);
+    std::uniform_real_distribution<double> place(-6, 6), turn(0, 360), z(-1, 3);
+    std::size_t bodies_with = 0, bodies_alone = 0;
+    for (int trial = 0; trial < 30; ++trial) {
+        std::string lines;
+        const auto add = [&](const char* record) {
+            lines.append(record).append(" at=").append(std::to_string(place(random))).append(",");
+            lines.append(std::to_string(place(random)));
+            lines.append(" heading=").append(std::to_string(turn(random))).append("\n");
+        };
+        for (int i = 0; i < 6; ++i) {
+            add("wall size=5 height=2.5");
+            add(i % 2 == 0 ? "pillar size=0.5,0.3" : "wall size=3 height=2.5 thickness=0.2");
+            add("chair");
+            add("cylinder size=0.6,0.4,1");
+        }
+        const std::vector<ShadowBody> bodies = bodiesOf(lines);
+        const Point3 sensor{place(random), place(random), z(random)};
+        const double height = trial % 3 == 0 ? z(random) : 0;
+        const Shadows shadows(pointersTo(bodies), sensor, height, kBox);
+        std::vector<Layer> some, all;
+        for (const ShadowBody& body : bodies) {
+            const Shadows alone(std::array{&body}, sensor, height, kBox);
+            for (const Layer& layer : shadows.of(body)) some.push_back(layer);
+            for (const Layer& layer : alone.of(body)) all.push_back(layer);
+        }
+        const auto area = [](const std::vector<Layer>& layers) {
+            return Overlay(layers).area([](const LayerLabel& label) { return label.count > 0; });
+        };
+        EXPECT_NEAR(area(some), area(all), 1e-7) << trial;
+        bodies_with += some.size();
+        bodies_alone += all.size();
+    }
+    EXPECT_LT(5 * bodies_with, 4 * bodies_alone);
 }
 
 TEST(Shadows, PrismsThatAreNotConvexAreTakenApart) {

@@ -94,16 +94,17 @@ Day recordedRun(const std::string& folder, int robots, int seconds, double goal)
             verify};
 }
 
-/// A building of 1 840 furnished rooms with ten sensors of this record in its corridors and rooms.
-Words buildingWith(const std::string& folder, const std::string& name, const std::string& record) {
-    constexpr int kColumns = 46, kRows = 40, kSensors = 10, kPitch = 7;
+/// A building of 1 840 furnished rooms with sensors of this record in its corridors and rooms.
+Words buildingWith(const std::string& folder, const std::string& name, const std::string& record,
+                   int sensors = 10) {
+    constexpr int kColumns = 46, kRows = 40, kPitch = 7, kLength = 184;
     const std::string room = folder + "/building.env", layout = folder + '/' + name + ".3dm";
     writeAll(room, bench::officeText(kColumns, kRows));
     std::string text = "#3dm 1\n";
-    for (int i = 0; i < kSensors; ++i) {
+    for (int i = 0; i < sensors; ++i) {
         text.append(record).append(" heading=").append(std::to_string(36 * i)).append(" at=");
-        text.append(formatDouble(17.3 * i + 2)).append(",");
-        text.append(formatDouble(kPitch * (4 * i + 1) + (i % 2 == 0 ? -1 : 2.5)));
+        text.append(formatDouble(std::fmod(17.3 * i + 2, kLength))).append(",");
+        text.append(formatDouble(kPitch * ((4 * i + 1) % kRows) + (i % 2 == 0 ? -1 : 2.5)));
         text.append(i % 2 == 0 ? ",2.4\n" : ",1.9\n");
     }
     writeAll(layout, text);
@@ -118,6 +119,16 @@ Day camerasInBuilding(const std::string& folder) {
             2,
             command(cameras),
             command(lasers),
+            {}};
+}
+
+Day manyCamerasInBuilding(const std::string& folder) {
+    constexpr double kSeconds = 3;
+    return {"500 cameras of 12 m in 1 840 rooms",
+            "3 seconds",
+            1,
+            command(buildingWith(folder, "cameras500", "camera fov=90 range=12 tilt=-35", 500)),
+            [] { return kSeconds; },
             {}};
 }
 
@@ -257,6 +268,7 @@ Day weekAtHome(const std::string& folder) {
 std::vector<Day> allDays(const std::string& folder) {
     return {
         camerasInBuilding(folder),
+        manyCamerasInBuilding(folder),
         editLoop(),
         sweepOfRooms(folder),
         changedRoom(folder),
