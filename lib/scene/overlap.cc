@@ -198,14 +198,16 @@ std::optional<Point2> sharedPlace(const Slice& a, const Slice& b) {
     return std::nullopt;
 }
 
-Parts::Parts(const Environment& environment) {
+Parts::Parts(const Environment& environment, const std::function<bool(const Box2&)>& keep) {
     const std::vector<Element>& elements = environment.elements();
     first_.reserve(elements.size() + 1);
     for (std::size_t i = 0; i < elements.size(); ++i) {
         first_.push_back(parts_.size());
-        for (const Prism& prism : elements[i].body.prisms) add(i, prism);
+        for (const Prism& prism : elements[i].body.prisms)
+            if (!keep || keep(bounds(prism.footprint))) add(i, prism);
         for (const Sheet& sheet : elements[i].body.sheets)
-            parts_.push_back({i, {sheet.line.a, sheet.line.b}, sheet.bottom, sheet.top});
+            if (!keep || keep(bounds(sheet.line)))
+                parts_.push_back({i, {sheet.line.a, sheet.line.b}, sheet.bottom, sheet.top});
     }
     first_.push_back(parts_.size());
     std::vector<Box2> boxes;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -63,7 +64,9 @@ HeightRange sharedHeights(const A& a, const B& b) {
 /// The prisms and sheets of all elements, in a spatial index.
 class Parts {
   public:
-    explicit Parts(const Environment& environment);
+    /// \param keep parts of which the bounds satisfy it; without it all
+    explicit Parts(const Environment& environment,
+                   const std::function<bool(const Box2&)>& keep = {});
 
     [[nodiscard]] std::span<const Part> of(std::size_t element) const;
     /// Calls visit(const Part&) for each part whose bounds meet the window.

@@ -63,7 +63,7 @@ void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>
     // A level laser measures in the plane of its height, where tops and bottoms count as solid.
     const double slack = context.scene.records[record].keyword() == "laser" ? 0 : kCornerTolerance;
     std::map<std::size_t, double> tops;  // of the solids around it, by element
-    context.parts().search({at, at}, [&](const Part& part) {
+    context.partsAbout().search({at, at}, [&](const Part& part) {
         if (part.isSheet() || p.z < part.bottom + slack || p.z > part.top - slack) return;
         if (!containsWithMargin(part.footprint, at, kRayEpsilon)) return;
         tops[part.element] = std::max(tops[part.element], part.top);

@@ -62,6 +62,21 @@ const Parts& CheckContext::parts() {
     return *parts_;
 }
 
+const Parts& CheckContext::partsAbout() {
+    if (parts_about_) return *parts_about_;
+    std::vector<Box2> places;
+    for (const PlacedRecord& placed : scene.placed) {
+        const Point2 at = placed.pose.position.onFloor();
+        places.push_back({at, at});
+    }
+    const BoxTree tree(places);
+    return parts_about_.emplace(scene.environment, [&tree](const Box2& box) {
+        bool is_near = false;
+        tree.search(box, [&is_near](std::size_t) { is_near = true; });
+        return is_near;
+    });
+}
+
 std::map<std::size_t, MeshCuts>& CheckContext::meshes() {
     if (meshes_) return *meshes_;
     meshes_.emplace();

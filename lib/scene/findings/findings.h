@@ -160,6 +160,8 @@ struct CheckContext {
                                   std::string hint) const;
 
     const Parts& parts();
+    /// Returns those above, below or around the origins of placed records.
+    const Parts& partsAbout();
     std::map<std::size_t, MeshCuts>& meshes();  ///< by element
     /// Returns the findings about walls and doors, by element.
     const std::multimap<std::size_t, Finding>& walls();
@@ -172,7 +174,7 @@ struct CheckContext {
     std::vector<const PlacedRecord*> placed_of;          ///< by record, or null
 
   private:
-    std::optional<Parts> parts_;
+    std::optional<Parts> parts_, parts_about_;
     std::optional<std::map<std::size_t, MeshCuts>> meshes_;
     std::optional<std::multimap<std::size_t, Finding>> walls_;
     std::optional<CircleCheck> circles_;
