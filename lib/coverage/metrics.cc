@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -234,9 +235,13 @@ void addPieces(CoverageReport& report, const Overlay& overlay) {
         largest = std::max(largest, area);
     }
     report.largest_piece = shareOf(largest, sum);
-    for (std::size_t i = 0; i < unseen->regions.size(); ++i)
+    std::vector<UncoveredSpot> spots(unseen->regions.size());
+    tbb::parallel_for(std::size_t{0}, spots.size(), [&](std::size_t i) {
         if (unseen->areas[i] >= kMinPiece)
-            report.unseen.push_back({interiorPoint(unseen->regions[i]), unseen->areas[i]});
+            spots[i] = {interiorPoint(unseen->regions[i]), unseen->areas[i]};
+    });
+    for (const UncoveredSpot& spot : spots)
+        if (spot.area >= kMinPiece) report.unseen.push_back(spot);
     std::stable_sort(
         report.unseen.begin(), report.unseen.end(),
         [](const UncoveredSpot& a, const UncoveredSpot& b) { return a.area > b.area; });

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -70,16 +71,24 @@ struct Candidate {
     double room = 0;  ///< from there to an end of the chord
 };
 
-/// Middles of the longest chords of the region at a level, between these crossings of its boundary.
-void addChordMiddles(std::vector<double>& xs, double y, std::vector<Candidate>& middles) {
-    std::sort(xs.begin(), xs.end());
-    std::vector<std::pair<double, Point2>> chords;
-    for (std::size_t i = 1; i < xs.size(); i += 2)
-        chords.push_back({xs[i] - xs[i - 1], {middle(xs[i - 1], xs[i]), y}});
-    std::stable_sort(chords.begin(), chords.end(),
-                     [](const auto& c, const auto& d) { return c.first > d.first; });
-    chords.resize(std::min(chords.size(), kChordsPerLine));
-    for (const auto& [width, p] : chords) middles.push_back({p, width / 2});
+/// Where the region's boundary crosses a level.
+struct Crossing {
+    std::size_t level;
+    double x;
+    friend auto operator<=>(const Crossing&, const Crossing&) = default;
+};
+
+/// Adds the middles of the longest chords of the region at a level, between these crossings; of
+/// chords of one length the first ones.
+void addChordMiddles(std::span<const Crossing> line, double y, std::vector<Candidate>& middles) {
+    const auto first = static_cast<std::ptrdiff_t>(middles.size());
+    for (std::size_t i = 1; i < line.size(); i += 2) {
+        const double a = line[i - 1].x, b = line[i].x, room = (b - a) / 2;
+        auto place = middles.end();
+        while (place - middles.begin() > first && std::prev(place)->room < room) --place;
+        middles.insert(place, {{middle(a, b), y}, room});
+        middles.resize(std::min(middles.size(), static_cast<std::size_t>(first) + kChordsPerLine));
+    }
 }
 
 /// The same at some levels, one after another.
@@ -88,15 +97,22 @@ void addChordMiddles(const std::vector<Segment2>& edges, std::span<const double>
     std::vector<std::pair<double, std::size_t>> by_height;
     for (std::size_t i = 0; i < levels.size(); ++i) by_height.emplace_back(levels[i], i);
     std::sort(by_height.begin(), by_height.end());
-    std::vector<std::vector<double>> xs(levels.size());
+    std::vector<Crossing> crossings;
     for (const auto& [a, b] : edges) {
         const double low = std::min(a.y, b.y), high = std::max(a.y, b.y);
         auto level = std::lower_bound(by_height.begin(), by_height.end(), low,
                                       [](const auto& l, double y) { return l.first < y; });
         for (; level != by_height.end() && level->first < high; ++level)
-            xs[level->second].push_back(a.x + (b.x - a.x) * ((level->first - a.y) / (b.y - a.y)));
+            crossings.push_back(
+                {level->second, a.x + (b.x - a.x) * ((level->first - a.y) / (b.y - a.y))});
     }
-    for (std::size_t i = 0; i < levels.size(); ++i) addChordMiddles(xs[i], levels[i], middles);
+    std::sort(crossings.begin(), crossings.end());
+    for (auto line = crossings.begin(); line != crossings.end();) {
+        const auto end = std::find_if(line, crossings.end(),
+                                      [&](const Crossing& c) { return c.level != line->level; });
+        addChordMiddles({line, end}, levels[line->level], middles);
+        line = end;
+    }
 }
 
 /// Edges by the bands of height that they pass, to look at the near ones first.
