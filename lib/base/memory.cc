@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
 
+#include <cstdint>
+#include <filesystem>
 #include <limits>  // defines __GLIBC__
+#include <system_error>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -9,7 +12,14 @@
 
 namespace ispace {
 
-void keepFreedMemory() {
+void keepFreedMemory(const std::vector<std::string>& inputs) {
+    constexpr std::uintmax_t kLarge = 1 << 18;
+    std::uintmax_t bytes = 0;
+    for (const std::string& input : inputs) {
+        std::error_code error;
+        if (const auto size = std::filesystem::file_size(input, error); !error) bytes += size;
+    }
+    if (bytes < kLarge) return;
 #ifdef __GLIBC__
     mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
     mallopt(M_MMAP_THRESHOLD, 32 << 20);

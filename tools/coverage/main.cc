@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/message.h"
 #include "base/parallel.h"
 #include "base/run_files.h"
@@ -41,6 +42,7 @@ SceneInput readInput(const CoverageToolOptions& options) {
     if (!options.run.empty() && operands.empty())
         if (const std::string scene = sceneOfRecord(options.run); !scene.empty())
             operands.push_back(scene);
+    keepFreedMemory(operands);
     SceneInput input = readScene({operands, options.rules, true});
     addZones(options.zones, input);
     return input;

@@ -5,11 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
-#include <system_error>
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/memory.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
@@ -54,16 +52,6 @@ void writeProduct(const EnvcOptions& options, const Scene& scene, const Document
     else
         writeTogether(std::vector<NamedBytes>{{beside, files.beside},
                                               {options.common.output, files.product}});
-}
-
-void keepMemory(const std::vector<std::string>& inputs) {
-    constexpr std::uintmax_t kLarge = 1 << 18;
-    std::uintmax_t bytes = 0;
-    for (const std::string& input : inputs) {
-        std::error_code error;
-        if (const std::uintmax_t size = fs::file_size(input, error); !error) bytes += size;
-    }
-    if (bytes >= kLarge) keepFreedMemory();
 }
 
 namespace {

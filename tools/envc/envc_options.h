@@ -44,7 +44,4 @@ std::string besideOf(const EnvcOptions& options);
 void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document,
                   const FoundRooms* found);
 
-/// Calls keepFreedMemory() for large inputs.
-void keepMemory(const std::vector<std::string>& inputs);
-
 }  // namespace ispace

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "base/parallel.h"
@@ -196,7 +197,7 @@ void envc(const EnvcOptions& options) {
     claimOutputs(options.common);
     if (format != nullptr) claimOutput(besideOf(options), std::string(format->beside_role));
     claimOutput(options.report, "--report");
-    keepMemory(options.inputs);
+    keepFreedMemory(options.inputs);
     FoundRooms found;
     found.all_storeys = options.list_rooms;
     const bool wants_rooms =
