@@ -3,20 +3,62 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
-
-#include "scene/sensor/plumb_bob.h"
+#include <vector>
 
 namespace ispace {
 
 namespace {
 
-/// The smaller singular value of a matrix with these rows.
-double leastStretch(Vec2 a, Vec2 b) {
-    const double sum = dot(a, a) + dot(b, b), det = a.x * b.y - a.y * b.x;
+/// The smaller singular value of a matrix, row by row.
+double leastStretch(const std::array<double, 4>& m) {
+    const double sum = m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + m[3] * m[3];
+    const double det = m[0] * m[3] - m[1] * m[2];
     const double apart = std::sqrt(std::max(0.0, sum * sum - 4 * det * det));
     return std::fabs(det) / std::sqrt(std::max((sum + apart) / 2, 1e-300));
+}
+
+/// Bounds of it: it changes by no more than the norm of a change of the matrix.
+Interval leastStretch(const std::array<Interval, 4>& m) {
+    std::array<double, 4> middle{};
+    double change = 0;
+    for (std::size_t i = 0; i < m.size(); ++i) {
+        middle[i] = (m[i].low + m[i].high) / 2;
+        change += squareOf((m[i].high - m[i].low) / 2);
+    }
+    const double least = leastStretch(middle);
+    return {std::max(0.0, least - std::sqrt(change)), least + std::sqrt(change)};
+}
+
+Interval absolute(Interval a) {
+    if (a.low <= 0 && a.high >= 0) return {0, std::max(-a.low, a.high)};
+    return {std::min(std::fabs(a.low), std::fabs(a.high)),
+            std::max(std::fabs(a.low), std::fabs(a.high))};
+}
+
+Interval lesserOf(Interval a, Interval b) {
+    return {std::min(a.low, b.low), std::min(a.high, b.high)};
+}
+
+Interval cosineOf(Interval angle) {
+    const double a = std::cos(angle.low), b = std::cos(angle.high);
+    // The multiples of pi inside are the extremes.
+    const double first = std::ceil(angle.low / std::numbers::pi);
+    const double last = std::floor(angle.high / std::numbers::pi);
+    Interval cosine{std::min(a, b), std::max(a, b)};
+    for (double k = first; k <= std::min(last, first + 1); ++k)
+        (std::fmod(k, 2) == 0 ? cosine.high : cosine.low) = std::fmod(k, 2) == 0 ? 1 : -1;
+    return cosine;
+}
+
+/// Polynomials of the squared angle of a fisheye: the picture's radius over the angle, and the
+/// derivative of the radius.
+template <typename Number>
+std::array<Number, 2> fisheyeOf(const std::array<double, 5>& d, Number s) {
+    return {1 + s * (d[0] + s * (d[1] + s * (d[2] + d[3] * s))),
+            1 + s * (3 * d[0] + s * (5 * d[1] + s * (7 * d[2] + 9 * d[3] * s)))};
 }
 
 }  // namespace
@@ -35,32 +77,67 @@ bool LensResolution::isEven(const Camera& camera) {
     return camera.isStraight() || (camera.lens == Lens::Fisheye && !camera.isDistorted());
 }
 
-/// The pixel (u, v) of the point (p, q) = t (u, v) of the plane at depth 1 moves by the Jacobian of
-/// `plumb_bob`. A radian along the bearing moves the point by 1 + t^2, one across it by the square
-/// root of that.
-double LensResolution::unitPinhole(double tangent, double u, double v) const {
-    const PlumbBobSlope slope(distortion_, {tangent * u, tangent * v});
-    const Vec2 across_row{slope.xx, slope.xy}, upright_row{slope.xy, slope.yy};
-    const double s = tangent * tangent;
-    const double far = 1 + s, near = std::sqrt(far);
-    const auto turned = [&](Vec2 row) {
-        return Vec2{far * (row.x * u + row.y * v), near * (row.y * u - row.x * v)};
-    };
-    return leastStretch(turned(across_row), turned(upright_row));
+/// The picture of a point at `tangent` from the axis of the plane at depth 1 is that of
+/// `plumb_bob`; a radian along the bearing moves the point by 1 + tangent^2, one across it by the
+/// square root of that.
+template <typename Number>
+std::array<Number, 4> LensResolution::stretch(Number tangent, Number u, Number v) const {
+    const auto& d = distortion_;
+    const Number s = squareOf(tangent), far = 1 + s, near = rootOf(far);
+    const Number radial = 1 + s * (d[0] + s * (d[1] + d[4] * s));
+    const Number slope = 1 + s * (3 * d[0] + s * (5 * d[1] + 7 * d[4] * s));
+    const Number along = 2 * tangent * (d[3] * u + d[2] * v);
+    const Number across = 2 * tangent * (d[2] * u + -d[3] * v);
+    return {far * (slope + 3 * along), near * across, far * across, near * (radial + along)};
 }
 
 double LensResolution::unitAt(double along, double across, double u, double v) const {
     constexpr double kSmall = 1e-9;
-    if (lens_ == Lens::Pinhole) return unitPinhole(across / along, u, v);
+    if (lens_ == Lens::Pinhole) return leastStretch(stretch(across / along, u, v));
     if (lens_ == Lens::Mirror) {
         const double depth = along + mirror_;
         return std::min(1 / depth, (1 + mirror_ * along) / (depth * depth));
     }
-    const auto& d = distortion_;
-    const double angle = std::atan2(across, along), s = angle * angle;
-    const double radial = 1 + s * (d[0] + s * (d[1] + s * (d[2] + s * d[3])));
-    const double slope = 1 + s * (3 * d[0] + s * (5 * d[1] + s * (7 * d[2] + s * 9 * d[3])));
+    const double angle = std::atan2(across, along);
+    const auto [radial, slope] = fisheyeOf(distortion_, angle * angle);
     return std::min(std::fabs(slope), across > kSmall ? angle * radial / across : radial);
+}
+
+Interval LensResolution::unitIn(const Cell& cell) const {
+    const auto [low, high] = cell.angle;
+    if (lens_ == Lens::Pinhole) {
+        const double turn = std::numbers::pi / 2;
+        return leastStretch(stretch(Interval{std::tan(low), std::tan(high)}, cosineOf(cell.bearing),
+                                    cosineOf({cell.bearing.low - turn, cell.bearing.high - turn})));
+    }
+    if (lens_ == Lens::Mirror) {
+        const Interval depth{std::cos(high) + mirror_, std::cos(low) + mirror_};
+        return lesserOf({1 / depth.high, 1 / depth.low},
+                        {(1 + mirror_ * std::cos(high)) / squareOf(depth.high),
+                         (1 + mirror_ * std::cos(low)) / squareOf(depth.low)});
+    }
+    const auto [radial, slope] = fisheyeOf(distortion_, squareOf(cell.angle));
+    const auto over_sine = [](double angle) { return angle > 0 ? angle / std::sin(angle) : 1; };
+    return lesserOf(absolute(slope), Interval{over_sine(low), over_sine(high)} * radial);
+}
+
+Interval LensResolution::around(Vec3 center, double radius) const {
+    constexpr double kPi = std::numbers::pi;
+    const double across = std::hypot(center.y, center.z), far = std::hypot(center.x, across);
+    Cell cell{{0, widest_}, {-kPi, kPi}};
+    if (radius < far) {
+        const double angle = std::atan2(across, center.x), change = std::asin(radius / far);
+        cell.angle = {std::clamp(angle - change, 0.0, widest_),
+                      std::clamp(angle + change, 0.0, widest_)};
+    }
+    if (!is_lopsided_) {
+        cell.bearing = {0, 0};
+    } else if (radius < across) {
+        const double bearing = std::atan2(-center.z, -center.y);
+        const double change = std::asin(radius / across);
+        cell.bearing = {bearing - change, bearing + change};
+    }
+    return focal_ * unitIn(cell);
 }
 
 double LensResolution::at(Vec3 direction) const {
@@ -81,39 +158,57 @@ double LensResolution::densityAt(Vec3 local) const {
     return far > 0 ? at(local) / far : std::numeric_limits<double>::infinity();
 }
 
-namespace {
-
-/// Largest value of a smooth function of the directions up to `widest` off the axis, with a margin
-/// for those between the samples.
-template <typename Function>
-double largestOver(double widest, bool is_lopsided, Function function) {
-    constexpr int kRings = 256, kBearings = 64;
-    constexpr double kMargin = 1.001;
-    const int bearings = is_lopsided ? kBearings : 1;
+/// Splits the cell with the highest bound, in the direction that lowers it most, until it is near a
+/// value in the picture.
+double LensResolution::largest(bool is_along_axis) const {
+    constexpr double kPi = std::numbers::pi, kEnough = 1.01, kRounding = 1 + 1e-9;
+    constexpr std::size_t kMaxCells = 1 << 11;
+    struct Bounded {
+        Cell cell;
+        double bound = 0;
+        bool operator<(const Bounded& other) const { return bound < other.bound; }
+    };
+    const auto factor = [&](double angle) { return is_along_axis ? std::cos(angle) : 1; };
+    const auto bounded = [&](const Cell& cell) {
+        return Bounded{cell, factor(cell.angle.low) * unitIn(cell).high};
+    };
+    const auto halves = [&](const Cell& cell, Interval Cell::*side) {
+        std::array<Cell, 2> cells = {cell, cell};
+        (cells[0].*side).high = (cells[1].*side).low = ((cell.*side).low + (cell.*side).high) / 2;
+        return std::array<Bounded, 2>{bounded(cells[0]), bounded(cells[1])};
+    };
+    const auto highest = [](const std::array<Bounded, 2>& cells) {
+        return std::max(cells[0].bound, cells[1].bound);
+    };
     double largest = 0;
-    for (int i = 0; i <= kRings; ++i) {
-        const double angle = widest * i / kRings;
-        for (int k = 0; k < bearings; ++k) {
-            const double bearing = 2 * std::numbers::pi * k / bearings;
-            const double sine = std::sin(angle);
-            largest = std::max(largest, function(Vec3{std::cos(angle), -sine * std::cos(bearing),
-                                                      -sine * std::sin(bearing)}));
+    std::vector<Bounded> cells = {
+        bounded({{0, widest_}, is_lopsided_ ? Interval{-kPi, kPi} : Interval{0, 0}})};
+    while (cells.front().bound > kEnough * largest && cells.size() < kMaxCells) {
+        std::pop_heap(cells.begin(), cells.end());
+        const Cell cell = cells.back().cell;
+        cells.pop_back();
+        auto best = halves(cell, &Cell::angle);
+        if (is_lopsided_) {
+            const auto other = halves(cell, &Cell::bearing);
+            if (highest(other) < highest(best)) best = other;
+        }
+        for (const Bounded& half : best) {
+            const auto [angle, bearing] = half.cell;
+            const double turn = (bearing.low + bearing.high) / 2;
+            for (const double a : {(angle.low + angle.high) / 2, angle.high})
+                largest = std::max(largest, factor(a) * unitAt(std::cos(a), std::sin(a),
+                                                               std::cos(turn), std::sin(turn)));
+            cells.push_back(half);
+            std::push_heap(cells.begin(), cells.end());
         }
     }
-    return kMargin * largest;
+    return kRounding * focal_ * cells.front().bound;
 }
-
-}  // namespace
 
 double LensResolution::farthest(double pixels_per_metre) const {
-    return largestOver(
-               widest_, is_lopsided_,
-               [this](Vec3 way) { return at(way) * (lens_ == Lens::Pinhole ? way.x : 1); }) /
-           pixels_per_metre;
+    return largest(lens_ == Lens::Pinhole) / pixels_per_metre;
 }
 
-double LensResolution::most() const {
-    return largestOver(widest_, is_lopsided_, [this](Vec3 way) { return at(way); });
-}
+double LensResolution::most() const { return largest(false); }
 
 }  // namespace ispace

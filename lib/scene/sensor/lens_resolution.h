@@ -6,6 +6,7 @@
 #include "geom/point.h"
 #include "geom/pose.h"
 #include "scene/sensor/camera.h"
+#include "scene/sensor/plumb_bob.h"
 
 namespace ispace {
 
@@ -34,12 +35,26 @@ class LensResolution {
     [[nodiscard]] double farthest(double pixels_per_metre) const;
     /// Returns an upper bound of at().
     [[nodiscard]] double most() const;
+    /// Returns bounds of at() for all points of the camera's frame within `radius` of one.
+    [[nodiscard]] Interval around(Vec3 center, double radius) const;
 
   private:
+    /// Directions of the camera's frame: the cells of the bounds.
+    struct Cell {
+        Interval angle, bearing;  ///< off the axis, and in the picture; radians
+    };
+    /// Returns bounds of at() in a cell, for a focal length of 1.
+    [[nodiscard]] Interval unitIn(const Cell& cell) const;
+    /// Returns an upper bound of at() in the picture, or of its product with the cosine of the
+    /// angle off the axis.
+    [[nodiscard]] double largest(bool is_along_axis) const;
     /// Returns at() for a focal length of 1: `along` and `across` are the cosine and sine of the
     /// angle off the axis, (u, v) the unit vector of its bearing in the picture.
     [[nodiscard]] double unitAt(double along, double across, double u, double v) const;
-    [[nodiscard]] double unitPinhole(double tangent, double u, double v) const;
+    /// Returns the derivatives of a pinhole's picture by the direction, in the frame of the bearing
+    /// (u, v): of its row and column, by a radian along the bearing and one across it.
+    template <typename Number>
+    [[nodiscard]] std::array<Number, 4> stretch(Number tangent, Number u, Number v) const;
 
     Lens lens_;
     double focal_, mirror_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "geom/point.h"
 
@@ -30,6 +31,9 @@ inline Interval squareOf(Interval a) {
     if (a.low <= 0 && a.high >= 0) return {0, std::max(low, high)};
     return {std::min(low, high), std::max(low, high)};
 }
+
+inline double rootOf(double a) { return std::sqrt(a); }
+inline Interval rootOf(Interval a) { return {std::sqrt(a.low), std::sqrt(a.high)}; }
 
 /// Distorts the point (x, y) of the plane at depth 1 by `plumb_bob` of OpenCV and ROS, with the
 /// coefficients k1 k2 p1 p2 k3; of intervals, returns bounds over the box.
