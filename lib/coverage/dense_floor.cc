@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 #include "coverage/level_set.h"
+#include "geom/polygon.h"
 
 namespace ispace {
 
@@ -37,19 +37,97 @@ DenseFloor::Sample DenseFloor::sampleAt(Point2 place) const {
 
 void DenseFloor::sampleIn(const Box2& box, int side) {
     sampled_ = box;
-    samples_.clear();
-    samples_.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
-    for (int row = 0; row < side; ++row)
-        for (int column = 0; column < side; ++column)
-            samples_.push_back(sampleAt(levelPlace(box, side, column, row)));
+    side_ = side;
+    samples_.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), {});
 }
 
-std::vector<Curve> DenseFloor::traced(double pixels_per_metre) const {
-    std::vector<double> values;
-    values.reserve(samples_.size());
-    for (const Sample& sample : samples_) values.push_back(sample.over(pixels_per_metre));
-    return levelSet([&](Point2 p) { return sampleAt(p).over(pixels_per_metre); }, sampled_,
-                    std::move(values));
+DenseFloor::Bounds DenseFloor::boundsIn(const Box2& box) const {
+    constexpr double kRounding = 1e-9;
+    const Vec2 half{box.width() / 2, box.depth() / 2};
+    const Point2 middle = box.low + half;
+    const Vec3 local = frame_.toLocal(frame_.origin + Vec3{middle.x, middle.y, drop_});
+    const double radius = (1 + kRounding) * length(half), distance = std::sqrt(dot(local, local));
+    const Interval pixels = lens_.around(local, radius);
+    return {{(1 - kRounding) * pixels.low, (1 + kRounding) * pixels.high},
+            {(1 - kRounding) * std::max(0.0, distance - radius),
+             (1 + kRounding) * (distance + radius)}};
+}
+
+namespace {
+
+/// Returns true unless a box lies beside all of these polygons.
+bool meets(const std::vector<Polygon>& polygons, const Box2& box) {
+    bool is_inside = false;  // the centre, by parity
+    for (const Polygon& polygon : polygons) {
+        bool is_met = false;
+        forEachEdge(polygon, [&](const Segment2& edge) {
+            if (is_met || !box.meets(bounds(edge))) return;
+            const auto side = [&](double x, double y) {
+                return cross(edge.b - edge.a, Point2{x, y} - edge.a);
+            };
+            const auto [least, most] =
+                std::minmax({side(box.low.x, box.low.y), side(box.high.x, box.low.y),
+                             side(box.low.x, box.high.y), side(box.high.x, box.high.y)});
+            is_met = least <= 0 && most >= 0;
+        });
+        if (is_met) return true;
+        is_inside = is_inside != (locate(polygon, box.center()) == Side::Inside);
+    }
+    return is_inside;
+}
+
+}  // namespace
+
+/// Splits boxes of the part until their bounds are those at its vertices, with a margin that covers
+/// the error of chords, or they are small.
+Interval DenseFloor::densitiesIn(const std::vector<Curve>& part) const {
+    constexpr double kMargin = 1.01, kSlack = 1e-3;  // metres
+    constexpr int kDeepest = 6;
+    Interval range{HUGE_VAL, 0};
+    std::vector<Polygon> polygons;
+    Box2 all;
+    for (const Curve& curve : part)
+        for (const Point2 p : polygons.emplace_back(chords(curve))) {
+            const Sample sample = sampleAt(p);
+            range.low = std::min(range.low, sample.pixels / sample.distance / kMargin);
+            range.high = std::max(range.high, sample.pixels / sample.distance * kMargin);
+            all.add(p);
+        }
+    const auto widen = [&](const auto& self, const Box2& box, int depth) -> void {
+        const auto [pixels, distance] = boundsIn(box);
+        const double low = pixels.low / distance.high, high = pixels.high / distance.low;
+        if (low >= range.low && high <= range.high) return;
+        if (!meets(polygons, box)) return;
+        if (depth == kDeepest) {
+            range = {std::min(range.low, low), std::max(range.high, high)};
+            return;
+        }
+        const Point2 middle = box.center();
+        self(self, {box.low, middle}, depth + 1);
+        self(self, {{middle.x, box.low.y}, {box.high.x, middle.y}}, depth + 1);
+        self(self, {{box.low.x, middle.y}, {middle.x, box.high.y}}, depth + 1);
+        self(self, {middle, box.high}, depth + 1);
+    };
+    const Vec2 slack{kSlack, kSlack};
+    if (!all.empty()) widen(widen, {all.low - slack, all.high + slack}, 0);
+    return range;
+}
+
+std::vector<Curve> DenseFloor::traced(double pixels_per_metre) {
+    LevelFunction function;
+    function.value = [&](Point2 p) { return sampleAt(p).over(pixels_per_metre); };
+    function.sample = [&](int column, int row) {
+        auto& sample = samples_[static_cast<std::size_t>(row) * static_cast<std::size_t>(side_) +
+                                static_cast<std::size_t>(column)];
+        if (!sample) sample = sampleAt(levelPlace(sampled_, side_, column, row));
+        return sample->over(pixels_per_metre);
+    };
+    function.bounds = [&](const Box2& box) {
+        const auto [pixels, distance] = boundsIn(box);
+        return Interval{pixels.low / pixels_per_metre - distance.high,
+                        pixels.high / pixels_per_metre - distance.low};
+    };
+    return levelSet(function, sampled_, side_);
 }
 
 std::vector<Curve> DenseFloor::least(double pixels_per_metre) {

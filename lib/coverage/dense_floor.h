@@ -29,7 +29,14 @@ class DenseFloor {
                                                   double drop, const Box2& box,
                                                   double pixels_per_metre);
 
+    /// Returns bounds of the density in a part of the plane.
+    [[nodiscard]] Interval densitiesIn(const std::vector<Curve>& part) const;
+
   private:
+    /// Bounds of pixels a radian and of the distance in a box.
+    struct Bounds {
+        Interval pixels, distance;
+    };
     /// Pixels a radian and distance at a point.
     struct Sample {
         double pixels = 0, distance = 0;
@@ -39,16 +46,19 @@ class DenseFloor {
         }
     };
     [[nodiscard]] Sample sampleAt(Point2 place) const;
+    /// Prepares samples in a box, which traced() evaluates once.
     void sampleIn(const Box2& box, int side);
-    [[nodiscard]] std::vector<Curve> traced(double pixels_per_metre) const;
+    [[nodiscard]] std::vector<Curve> traced(double pixels_per_metre);
+    [[nodiscard]] Bounds boundsIn(const Box2& box) const;
 
     const LensResolution& lens_;
     const Frame3& frame_;
     double drop_;
-    Box2 box_;                    ///< with a margin
-    std::optional<double> most_;  ///< pixels a radian of the lens, once known
-    Box2 sampled_;                ///< the box of the samples
-    std::vector<Sample> samples_;
+    Box2 box_;                                    ///< with a margin
+    std::optional<double> most_;                  ///< pixels a radian of the lens, once known
+    Box2 sampled_;                                ///< the box of the samples
+    int side_ = 0;                                ///< samples in a row of the box
+    std::vector<std::optional<Sample>> samples_;  ///< those evaluated
 };
 
 }  // namespace ispace

@@ -100,6 +100,48 @@ TEST(Densities, OfLensesEndAtCurves) {
     }
 }
 
+/// Classes of strongly distorted lenses, against the density at points 4 cm apart: those that no
+/// bound of the density cuts, those cut, and those not in view.
+TEST(Densities, OfDistortedLensesMatchPoints) {
+    std::mt19937_64 random(7);
+    const auto uniform = [&random](double low, double high) {
+        return std::to_string(std::uniform_real_distribution<double>(low, high)(random));
+    };
+    std::string lines = "ispace size=12,8,3\n";
+    for (int i = 0; i < 20; ++i) {
+        lines += "camera at=" + uniform(-5, 5) + ',' + uniform(-3, 3) + ',' + uniform(1.5, 2.9);
+        lines += " heading=" + uniform(0, 360) + " tilt=" + uniform(-70, -10);
+        lines += " pixels=1600,1200 fx=" + uniform(400, 1200) + " coefficients=";
+        lines += uniform(-0.3, 0.2) + ',' + uniform(-0.05, 0.1) + ',' + uniform(-0.03, 0.03) + ',' +
+                 uniform(-0.03, 0.03) + '\n';
+    }
+    const Scene scene = sceneOf(lines);
+    int known = 0;
+    for (const SensorView& view : measured(lines).sensors) {
+        const Sensor& sensor = scene.sensors[view.index];
+        const LensResolution lens(sensor.as<Camera>());
+        const Frame3 frame(sensor.pose);
+        if (!view.region) continue;  // a lens that ends in the picture
+        ++known;
+        std::vector<Polygon> polygons;
+        for (const Curve& curve : *view.region) polygons.push_back(chords(curve, 1e-5));
+        constexpr double kStep = 0.04;
+        std::vector<double> areas(kClasses);
+        for (double x = -6 + kStep / 2; x < 6; x += kStep)
+            for (double y = -4 + kStep / 2; y < 4; y += kStep) {
+                bool is_seen = false;
+                for (const Polygon& polygon : polygons)
+                    is_seen = is_seen != (locate(polygon, {x, y}) == Side::Inside);
+                if (!is_seen) continue;
+                const double density = lens.densityAt(frame.toLocal({x, y, 0}));
+                for (std::size_t k = 0; k < kClasses; ++k)
+                    if (density >= densityClasses()[k].pixels_per_metre) areas[k] += kStep * kStep;
+            }
+        for (std::size_t k = 0; k < kClasses; ++k)
+            EXPECT_NEAR(signedArea(*view.classes[k].region), areas[k], 0.05) << view.id << ' ' << k;
+    }
+}
+
 TEST(LevelSets, HaveTheirAreas) {
     const Box2 box{{-5, -5}, {5, 5}};
     const auto area = [&box](auto value) { return signedArea(levelSet(value, box)); };

@@ -15,8 +15,6 @@ namespace ispace {
 
 namespace {
 
-using Value = std::function<double(Point2)>;
-
 /// Finds the root between a point with a value of 0 or more and one with a negative value, by
 /// regula falsi (Illinois).
 template <typename Function>
@@ -50,20 +48,15 @@ Point2 rootBetween(const Function& value, Point2 inside, double at_inside, Point
 /// Traces the boundary through the cells of a grid of samples ("marching squares").
 class LevelTracer {
   public:
-    LevelTracer(const Value& value, const Box2& box, int side, std::vector<double> samples)
-        : value_(value), box_(box), side_(side), samples_(std::move(samples)) {
+    LevelTracer(const LevelFunction& function, const Box2& box, int side)
+        : function_(function), box_(box), side_(side) {
         constexpr double kShare = 0.25;  // of a cell
         const Vec2 inset{kShare * box.width() / (side - 1), kShare * box.depth() / (side - 1)};
         inner_ = {box.low + inset, box.high - inset};
-        std::size_t i = 0;
-        for (int row = 0; row < side_; ++row)
-            for (int column = 0; column < side_; ++column, ++i)
-                samples_[i] = std::min(samples_[i], within(place(column, row)));
     }
 
     std::vector<Curve> run() {
-        for (int row = 0; row + 1 < side_; ++row)
-            for (int column = 0; column + 1 < side_; ++column) crossCell(column, row);
+        crossBlock(0, 0, side_ - 1, side_ - 1);
         std::vector<Curve> curves;
         while (!next_.empty()) {
             Curve curve;
@@ -94,15 +87,14 @@ class LevelTracer {
         return levelPlace(box_, side_, column, row);
     }
     [[nodiscard]] double sample(int column, int row) const {
-        return samples_[static_cast<std::size_t>(row) * static_cast<std::size_t>(side_) +
-                        static_cast<std::size_t>(column)];
+        return std::min(function_.sample(column, row), within(place(column, row)));
     }
     /// Returns the distance from the border, negative outside.
     [[nodiscard]] double within(Point2 p) const {
         return std::min(std::min(p.x - inner_.low.x, inner_.high.x - p.x),
                         std::min(p.y - inner_.low.y, inner_.high.y - p.y));
     }
-    [[nodiscard]] double valueAt(Point2 p) const { return std::min(value_(p), within(p)); }
+    [[nodiscard]] double valueAt(Point2 p) const { return std::min(function_.value(p), within(p)); }
     [[nodiscard]] Point2 root(Point2 inside, double at_inside, Point2 outside,
                               double at_outside) const {
         return rootBetween([this](Point2 p) { return valueAt(p); }, inside, at_inside, outside,
@@ -118,17 +110,46 @@ class LevelTracer {
                (is_upright ? 1 : 0);
     }
 
+    /// Adds the pieces of the boundary in the cells from (column, row) up to (last, top).
+    void crossBlock(int column, int row, int last, int top) {
+        constexpr int kFew = 2;  // cells whose samples take less time than bounds
+        if (last - column > kFew || top - row > kFew) {
+            const Box2 block{place(column, row), place(last, top)};
+            const auto [low, high] = function_.bounds(block);
+            // The distance from the border is least at a corner.
+            const bool is_inside = low >= 0 && std::min(within(block.low), within(block.high)) >= 0;
+            if (is_inside || high < 0) return;
+            const int middle = (column + last) / 2, center = (row + top) / 2;
+            crossBlock(column, row, middle, center);
+            crossBlock(middle, row, last, center);
+            crossBlock(column, center, middle, top);
+            crossBlock(middle, center, last, top);
+            return;
+        }
+        for (int r = row; r < top; ++r)
+            for (int c = column; c < last; ++c) crossCell(c, r);
+    }
+
     /// Adds the pieces of the boundary in a cell, each with the area on its left: counter-clockwise
     /// around the cell, a piece ends where the border enters the area and begins where it leaves.
     void crossCell(int column, int row) {
         constexpr std::array<std::pair<int, int>, 5> kCorners = {
             {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}}};
+        std::array<double, 5> values{};
+        int inside = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const auto [right, up] = kCorners[i];
+            values[i] = sample(column + right, row + up);
+            if (values[i] >= 0) ++inside;
+        }
+        if (inside == 0 || inside == 4) return;
+        values[4] = values[0];
         std::array<std::optional<bool>, 4> leaves;  // at each side; empty: not crossed
         int crossed = 0;
         for (std::size_t side = 0; side < 4; ++side) {
             const auto [ax, ay] = kCorners[side];
             const auto [bx, by] = kCorners[side + 1];
-            const double a = sample(column + ax, row + ay), b = sample(column + bx, row + by);
+            const double a = values[side], b = values[side + 1];
             if ((a >= 0) == (b >= 0)) continue;
             leaves[side] = a >= 0;
             ++crossed;
@@ -137,7 +158,6 @@ class LevelTracer {
             const Point2 p = place(column + ax, row + ay), q = place(column + bx, row + by);
             roots_.emplace(key, a >= 0 ? root(p, a, q, b) : root(q, b, p, a));
         }
-        if (crossed == 0) return;
         const Point2 low = place(column, row), high = place(column + 1, row + 1);
         const bool joins = crossed == 4 && valueAt(low + 0.5 * (high - low)) >= 0;
         for (int side = 0; side < 4; ++side) {
@@ -201,11 +221,10 @@ class LevelTracer {
         join(roots, middle, last, curve);
     }
 
-    const Value& value_;
+    const LevelFunction& function_;
     const Box2& box_;
     int side_;
-    Box2 inner_;  ///< where the area may lie
-    std::vector<double> samples_;
+    Box2 inner_;                               ///< where the area may lie
     std::map<std::size_t, Point2> roots_;      // by side
     std::map<std::size_t, std::size_t> next_;  // from side to side
 };
@@ -217,20 +236,20 @@ Point2 levelPlace(const Box2& box, int side, int column, int row) {
             box.low.y + box.depth() * row / (side - 1)};
 }
 
-std::vector<Curve> levelSet(const std::function<double(Point2)>& value, const Box2& box,
-                            std::vector<double> samples) {
-    if (box.empty() || samples.empty()) return {};
-    const int side = static_cast<int>(std::lround(std::sqrt(samples.size())));
-    return LevelTracer(value, box, side, std::move(samples)).run();
+std::vector<Curve> levelSet(const LevelFunction& function, const Box2& box, int side) {
+    if (box.empty()) return {};
+    return LevelTracer(function, box, side).run();
 }
 
 std::vector<Curve> levelSet(const std::function<double(Point2)>& value, const Box2& box, int side) {
-    std::vector<double> samples;
-    if (box.empty()) return {};
-    for (int row = 0; row < side; ++row)
-        for (int column = 0; column < side; ++column)
-            samples.push_back(value(levelPlace(box, side, column, row)));
-    return levelSet(value, box, std::move(samples));
+    const auto sample = [&](int column, int row) {
+        return value(levelPlace(box, side, column, row));
+    };
+    return levelSet({value, sample,
+                     [](const Box2&) {
+                         return Interval{-HUGE_VAL, HUGE_VAL};
+                     }},
+                    box, side);
 }
 
 }  // namespace ispace

@@ -163,22 +163,16 @@ double FloorDensity::integral(std::span<const Curve> curves) const {
 
 namespace {
 
-/// Bounds of the density in a view.
-struct DensityRange {
-    double least = std::numeric_limits<double>::infinity(), most = 0;
-};
-
-/// Finds bounds at the vertices, where depth and distance are greatest, and at the foot. Chords
-/// replace arcs: a margin covers their error.
-DensityRange densityRange(const FloorDensity& density, const std::vector<Curve>& region,
-                          Point2 foot) {
+/// Bounds the density of an even lens in a view: at the vertices, where depth and distance are
+/// greatest, and at the foot. Chords replace arcs: a margin covers their error.
+Interval densityRange(const FloorDensity& density, const std::vector<Curve>& region) {
     constexpr double kMargin = 1.01;
-    DensityRange range{.most = density.at(foot) * kMargin};
+    Interval range{std::numeric_limits<double>::infinity(), density.at(density.foot()) * kMargin};
     for (const Curve& curve : region)
         for (const Point2 p : chords(curve, kConicError)) {
             const double pixels = density.at(p);
-            range.least = std::min(range.least, pixels / kMargin);
-            range.most = std::max(range.most, pixels * kMargin);
+            range.low = std::min(range.low, pixels / kMargin);
+            range.high = std::max(range.high, pixels * kMargin);
         }
     return range;
 }
@@ -202,20 +196,20 @@ std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
     constexpr double kAround = 1;
     box = {{box.low.x - kAround, box.low.y - kAround},
            {box.high.x + kAround, box.high.y + kAround}};
-    // The density of other lenses has no bounds at the vertices.
-    DensityRange range{0, std::numeric_limits<double>::infinity()};
-    if (density.isEven()) range = densityRange(density, *view.region, density.foot());
+    std::optional<DenseFloor> floor;
+    if (!density.isEven()) floor.emplace(density.denseFloor(box));
+    const Point2 origin = Point2{} + (Point2{} - density.foot());
+    const Interval range = floor ? floor->densitiesIn(movedTo(origin, *view.region))
+                                 : densityRange(density, *view.region);
     std::vector<Layer> layers = {{.curves = *view.region}};
     std::vector<std::size_t> cut;  // classes whose bound may cross the view, rising
-    std::optional<DenseFloor> floor;
     for (const std::size_t i : classesByDensity()) {
         const double wanted = classes[i].pixels_per_metre;
-        if (wanted > range.most) continue;
-        if (wanted <= range.least) {
+        if (wanted > range.high) continue;
+        if (wanted <= range.low) {
             sets[i].region = *view.region;
             continue;
         }
-        if (!density.isEven() && !floor) floor.emplace(density.denseFloor(box));
         std::vector<Curve> dense =
             floor ? movedTo(density.foot(), floor->least(wanted)) : density.least(wanted, box);
         cut.push_back(i);
