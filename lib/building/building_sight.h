@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/parallel.h"
@@ -28,6 +29,7 @@ constexpr std::size_t kSightThroughFloors = 16;
 
 /// An opening in the floor of a storey, to the storey below.
 struct FloorOpening {
+    std::string passage;               ///< its id
     std::size_t below = 0, above = 0;  ///< storeys
     Polygon outline;                   ///< in the building, counter-clockwise
     /// Of stairs: the edge of the lowest step and that of the highest one, each from the right of

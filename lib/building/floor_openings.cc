@@ -47,6 +47,7 @@ std::vector<FloorOpening> floorOpenings(const BuildingScene& building) {
         FloorOpening opening =
             is_shaft ? openingOfShaft(passage.record) : openingOf(passage.record);
         if (opening.outline.size() < 3 || signedArea(opening.outline) == 0) continue;
+        opening.passage = passage.id;
         for (std::size_t k = 0; k + 1 < passage.storeys.size(); ++k) {
             opening.below = passage.storeys[k];
             opening.above = passage.storeys[k + 1];

@@ -33,7 +33,6 @@ void BuildingRun::Data::endCommands(const Traveller& who, int running) {
 /// \pre it is on a storey, to which `room` belongs
 std::string BuildingRun::Data::place(Traveller& who, std::size_t room, const Pose2& pose) {
     if (room != who.room) return move(who, room, pose, true);
-    if (!isFree(room, pose.position, who)) return noRoomText(room, pose.position, who);
     const World& world = worldOf(who);
     const int running = world.running(world.moverNamed(who.id).value());
     const std::vector<std::string>& ids = world.scene().ids;
@@ -63,6 +62,11 @@ std::string BuildingRun::place(const std::string& mover, const std::optional<Roo
     const std::size_t room = at ? at->room : who.room;
     if (!from.storey) return mover + " is in " + from.id + ": it first goes on to a storey";
     if (!data_->rooms[room].storey) return data_->rooms[room].id + " is no storey";
+    if (at) {
+        std::string fault = data_->noFloorText(room, at->at, who);
+        if (fault.empty()) fault = data_->noRoomText(room, at->at, who);
+        if (!fault.empty()) return fault;
+    }
     Pose2 pose = data_->statusOf(who).pose;
     if (at) pose.position = at->at;
     if (heading) pose.heading = *heading;

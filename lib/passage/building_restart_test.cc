@@ -82,9 +82,9 @@ TEST(BuildingPlace, RefusesOccupiedFloorLiftsAndStairs) {
         buildingOf("robot id=ground/r1 at=6,4\nhuman id=upper/h at=9,6\n");
     BuildingRun run(building, optionsOf());
     EXPECT_EQ(run.place("ground/r1", RoomPoint{1, {9, 6.1}}, std::nullopt),
-              "ground/r1 has no room at upper/9,6.1");
+              "ground/r1 has no room at upper/9,6.1: upper/h stands there");
     EXPECT_EQ(run.place("ground/r1", RoomPoint{0, {0, 4}}, std::nullopt),
-              "ground/r1 has no room at ground/0,4");
+              "ground/r1 has no room at ground/0,4: f stands there");
     EXPECT_EQ(run.place("ground/r1", RoomPoint{2, {1, 4}}, std::nullopt), "l1 is no storey");
     EXPECT_EQ(poseOf(run, "ground/r1").position, (Point2{6, 4}));
     ASSERT_EQ(run.travel("ground/r1", {{{1, {6, 4}}}}).refusal, "");
@@ -124,7 +124,8 @@ TEST(BuildingPlace, LeavesAllAsItIsIfRefused) {
     const Pose2 before = poseOf(run, "ground/r1");
     for (const std::size_t storey : {0U, 1U})
         EXPECT_EQ(run.place("ground/r1", RoomPoint{storey, {8, 2}}, std::nullopt),
-                  "robot ground/r1 stands in box (its radius is 0.3 m)");
+                  "ground/r1 has no room at " + std::string(storey == 0 ? "ground" : "upper") +
+                      "/8,2: box stands there");
     EXPECT_EQ(poseOf(run, "ground/r1"), before);
     EXPECT_EQ(endOf(run, "ground/r1", trip.id), std::nullopt);
     EXPECT_EQ(run.place("ground/r1", RoomPoint{0, {6, 4}}, std::nullopt), "");

@@ -18,6 +18,7 @@ BuildingRun::Data::Data(const BuildingScene& the_building, const BuildingRunOpti
     : building(the_building),
       options(the_options),
       passages(passagesOf(building)),
+      openings(openingsByStorey(building, passages)),
       around(std::make_shared<RoomsAround>(building)) {
     addRooms();
     addTravellers();
@@ -152,24 +153,6 @@ std::optional<std::size_t> BuildingRun::Data::liftNamed(std::string_view id) con
     return std::nullopt;
 }
 
-bool BuildingRun::Data::isFree(std::size_t room, Point2 at, const Traveller& who) const {
-    constexpr double kApart = 0.02;
-    const World& world = *rooms[room].world;
-    const auto movers = world.movers();
-    for (std::size_t i = 0; i < movers.size(); ++i) {
-        const double reach = movers[i].model.radius + who.size.radius + kApart;
-        if (movers[i].id != who.id && distance(world.status(i).pose.position, at) < reach)
-            return false;
-    }
-    const auto storey = rooms[room].storey;
-    return !storey || !waysOf(who).obstacles(*storey).overlap(at, who.size.radius);
-}
-
-std::string BuildingRun::Data::noRoomText(std::size_t room, Point2 at, const Traveller& who) const {
-    return who.id + " has no room at " + rooms[room].id + '/' + formatDouble(at.x) + ',' +
-           formatDouble(at.y);
-}
-
 NextScene BuildingRun::Data::sceneOf(std::size_t room, std::vector<Record> records) const {
     const World& world = *rooms[room].world;
     return world.preparer()(makeScene(std::move(records), world.scene(), building.devices));
@@ -185,7 +168,7 @@ void BuildingRun::Data::change(std::size_t room, const NextScene& next,
 
 std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose2& pose,
                                     bool is_put) {
-    if (!isFree(room, pose.position, who)) return noRoomText(room, pose.position, who);
+    if (std::string fault = noRoomText(room, pose.position, who); !fault.empty()) return fault;
     const std::size_t from = who.room;
     World& left = *rooms[from].world;
     World& entered = *rooms[room].world;
@@ -370,8 +353,11 @@ TripAnswer BuildingRun::ride(const std::string& mover, std::string_view lift,
     if (landing == nullptr) return {passage.id + " has no landing at " + excerpt(storey)};
     BuildingTrip trip;
     // It leaves the landing to others.
-    trip.plan.points = {{passage.storeys[stop],
-                         landing->spots.empty() ? landing->at.position : landing->spots.front()}};
+    const auto spot = std::find_if(landing->spots.begin(), landing->spots.end(), [&](Point2 p) {
+        return data_->openingAt(landing->storey, p) == nullptr;
+    });
+    trip.plan.points = {
+        {landing->storey, spot == landing->spots.end() ? landing->at.position : *spot}};
     trip.only = which;
     return data_->begin(mover, std::move(trip));
 }

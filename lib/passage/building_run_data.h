@@ -13,11 +13,14 @@
 #include <vector>
 
 #include "building/building_sight.h"
+#include "env/environment.h"
+#include "geom/polygon.h"
 #include "passage/building_run.h"
 #include "passage/cabin.h"
 #include "passage/lift_record.h"
 #include "passage/storey_ways.h"
 #include "scene/scene.h"
+#include "sim/collision.h"
 
 namespace ispace {
 
@@ -78,6 +81,16 @@ struct Stop {
     std::deque<std::string> queue;
     std::string holder;  ///< the mover that enters or has left; "": none
 };
+
+/// An opening in the floor of a storey, in its frame.
+struct OpenFloor {
+    std::string passage;  ///< its id
+    Polygon outline;
+};
+
+/// Returns the openings of each storey: shafts, straight stairs from below, and lifts.
+std::vector<std::vector<OpenFloor>> openingsByStorey(const BuildingScene& building,
+                                                     const std::vector<StoreyLink>& passages);
 
 struct BuildingRun::Data {
     Data(const BuildingScene& the_building, const BuildingRunOptions& the_options);
@@ -170,13 +183,25 @@ struct BuildingRun::Data {
     /// Moves a mover to another room; `is_put` ends its command and its trip as stopped. \returns
     /// the reason why that is impossible, or ""; all is then as before
     std::string move(Traveller& who, std::size_t room, const Pose2& pose, bool is_put = false);
-    [[nodiscard]] bool isFree(std::size_t room, Point2 at, const Traveller& who) const;
+    /// Returns the text of a refusal: "r1 has no room at upper/1,2: desk1 stands there".
+    [[nodiscard]] std::string refusal(std::size_t room, Point2 at, const Traveller& who,
+                                      const std::string& reason) const;
+    /// Returns the body of a storey, as it is now, in which a mover would stand, or null.
+    [[nodiscard]] const Element* elementAt(std::size_t storey, Point2 at, const Traveller& who);
+    /// Returns the opening in the floor at a point of a storey, or null.
+    [[nodiscard]] const OpenFloor* openingAt(std::size_t storey, Point2 at) const;
+    /// Returns true if it would stand in no body and apart from all movers.
+    [[nodiscard]] bool isFree(std::size_t room, Point2 at, const Traveller& who);
+    /// Returns the reason why it would not, or "".
+    [[nodiscard]] std::string noRoomText(std::size_t room, Point2 at, const Traveller& who);
+    /// Returns the reason why a mover cannot be sent or put to a point of a storey, whatever moves
+    /// there, or "": a body, or a floor that is open.
+    [[nodiscard]] std::string noFloorText(std::size_t storey, Point2 at, const Traveller& who);
     /// Returns the next scene of a room, of these records. \throws FormatError as makeScene()
     [[nodiscard]] NextScene sceneOf(std::size_t room, std::vector<Record> records) const;
     /// \throws FormatError if a mover has no room where it is put; all is then as before
     void change(std::size_t room, const NextScene& next, std::vector<std::string> requests,
                 std::span<const std::string> placed = {});
-    [[nodiscard]] std::string noRoomText(std::size_t room, Point2 at, const Traveller& who) const;
     /// Ends the trip of a mover and its command `running`, if not 0, as stopped.
     void endCommands(const Traveller& who, int running);
     std::string place(Traveller& who, std::size_t room, const Pose2& pose);
@@ -185,8 +210,9 @@ struct BuildingRun::Data {
     BuildingScene building;
     BuildingRunOptions options;
     std::vector<StoreyLink> passages;
-    std::shared_ptr<RoomsAround> around;  // views of other storeys
-    std::vector<Room> rooms;              // storeys, then the cabin or the flights of each passage
+    std::vector<std::vector<OpenFloor>> openings;  // by storey
+    std::shared_ptr<RoomsAround> around;           // views of other storeys
+    std::vector<Room> rooms;  // storeys, then the cabin or the flights of each passage
     std::vector<JoinedRoom> joined;
     std::vector<std::size_t> first_room;             // of each passage
     std::vector<Lift> lifts;                         // by passage; unused for stairs
@@ -194,6 +220,12 @@ struct BuildingRun::Data {
     std::vector<std::vector<Rider>> riders;          // by passage
     std::vector<std::vector<Stop>> stops;            // by passage and stop
     std::map<MoverSize, StoreyWays> ways;
+    /// Obstacles of a storey as of its last change.
+    struct PresentObstacles {
+        std::int64_t changes = 0;  // of the storey's world
+        Obstacles obstacles;
+    };
+    std::map<std::pair<std::size_t, double>, PresentObstacles> present;  // by storey and height
     std::map<std::string, Traveller, std::less<>> travellers;
     std::map<std::string, BuildingTrip, std::less<>> trips;
     std::map<std::string, Wanderer, std::less<>> wanderers;

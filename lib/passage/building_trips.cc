@@ -48,14 +48,8 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
         const std::string& room = rooms[goal.room].id;
         if (!rooms[goal.room].storey)
             return {.refusal = room + " is no storey: RIDE leads by a lift"};
-        const Scene& scene = rooms[goal.room].world->scene();
-        if (const auto element = waysOf(who).obstacles(goal.room).overlap(goal.at, who.size.radius))
-            return {.refusal = std::string(mover)
-                                   .append(" has no room at ")
-                                   .append(text_of(goal))
-                                   .append(": ")
-                                   .append(scene.environment.elements()[*element].id)
-                                   .append(" stands there")};
+        if (std::string fault = noFloorText(goal.room, goal.at, who); !fault.empty())
+            return {.refusal = std::move(fault)};
     }
     const std::vector<RoomPoint>& points = trip.plan.points;
     for (std::size_t i = 0; i < points.size(); ++i) {
