@@ -49,14 +49,8 @@ std::shared_ptr<const Scene> BuildingRun::Data::openReplay(Room& room, const Sce
                                " s, where other rooms of the run have " +
                                formatSimTime(options.step) + " s"});
     auto own = std::make_shared<Scene>(scene);
-    if (room.replay->changedAt())
-        room.replay->makeChanges(
-            {folder, *own, building.devices,
-             [folder](const std::string& file) -> Scene {
-                 throw FormatError(
-                     {folder, 0, 0, "loads " + file + ", as no run of a building does"});
-             },
-             options.max_work});
+    if (room.replay->changedAt() && options.changes)
+        room.replay->makeChanges(options.changes(folder, *own));
     room.replay->placeAtStart(*own);
     return own;
 }
@@ -70,16 +64,16 @@ void BuildingRun::Data::replay() {
         rooms[i].simulation->replay(*rooms[i].replay, false);
     Simulation& leader = *rooms.front().simulation;
     leader.replay(*rooms.front().replay, options.holds);
-    leader.beforeStep(
-        [this] { showLifts(rooms.front().world->time() + rooms.front().world->stepLength()); });
-    leader.onStep([this] {
-        locate();
+    const World& world = *rooms.front().world;
+    leader.beforeStep([this, &world] {
+        showLifts(world.time() + world.stepLength());
         tellLifts();
     });
-    leader.onReplayChange([this] {
+    leader.onStep([this] { locate(); });
+    leader.onReplayChange([this, &world] {
         locate();
-        showLifts(rooms.front().world->time());
-        told_lifts.clear();
+        showLifts(world.time());
+        if (world.time() != told_at + world.stepLength()) told_lifts.clear();
     });
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -86,7 +88,10 @@ class BuildingReplayTest : public ::testing::Test {
         return {.step = kStep,
                 .clock = {Clock::Kind::Step},
                 .replay = folder_.path().string(),
-                .holds = true};
+                .holds = true,
+                .changes = [](const std::string& folder, const Scene& start) {
+                    return RunChanges(folder, start, testing::devices(), nullptr);
+                }};
     }
 
     BuildingScene building_ = tower();
@@ -111,6 +116,27 @@ TEST_F(BuildingReplayTest, ShowsEachMomentOfTheRun) {
     EXPECT_EQ(moves, (std::vector<std::string>{"upper/h1 upper s1", "upper/h1 s1 ground",
                                                "ground/r1 ground l1", "ground/r1 l1 upper",
                                                "ground/r1 upper l1", "ground/r1 l1 ground"}));
+}
+
+TEST_F(BuildingReplayTest, IsRecordedAnew) {
+    const testing::TestFolder again;
+    BuildingRun run(building_, options());
+    std::vector<std::unique_ptr<Recorder>> recorders;
+    for (const JoinedRoom& room : run.rooms()) {
+        recorders.push_back(std::make_unique<Recorder>(again / room.id, room.simulation->world(),
+                                                       RecordOptions(),
+                                                       &room.simulation->events()));
+        room.simulation->recordWith(*recorders.back());
+    }
+    run.recordLifts(again / BuildingRun::kLiftFile);
+    while (!run.simulation().isHeld()) step(run);
+    for (std::size_t i = 0; i < recorders.size(); ++i)
+        recorders[i]->end(run.rooms()[i].simulation->world());
+    for (const char* room : {"ground", "upper", "l1", "s1"})
+        for (const char* file : {"robots.csv", "people.csv", "events.csv", "scans.jsonl"})
+            EXPECT_EQ(readAll(folder_ / room / file), readAll(again / room / file))
+                << room << ' ' << file;
+    EXPECT_EQ(readAll(folder_ / BuildingRun::kLiftFile), readAll(again / BuildingRun::kLiftFile));
 }
 
 TEST_F(BuildingReplayTest, SeeksBackAndForth) {
@@ -192,6 +218,40 @@ TEST_F(LiftReaderTest, NamesWrongRows) {
     EXPECT_EQ(faultOf("nan,l1,open,ground,,\n").substr(0, 12), "lifts.csv:2:");
     EXPECT_EQ(faultOf("0,l1,open,ground\n").substr(0, 12), "lifts.csv:2:");
     EXPECT_EQ(faultOf("0,l1,open,ground,,upper\n1,l1,fly"), "") << "an unfinished line";
+}
+
+TEST_F(LiftReaderTest, KeepsARestartInTheMidstOfAPhase) {
+    const LiftModel model{.floors = {0, 3}};
+    const std::vector<LiftNames> names = {{"l1", {"ground", "upper"}}};
+    const auto at = [](double time) { return std::chrono::milliseconds(std::lround(1000 * time)); };
+    // Rides, and begins to ride anew after 2 s; waits at the ground, and does so anew.
+    const auto record = [&](const std::string& file, const auto& lift_at) {
+        LiftRecorder recorder(file, names);
+        for (int i = 0; i < 100; ++i) recorder.record(at(i * 0.1), {lift_at(i)});
+    };
+    Lift lift(model);
+    record(file_, [&](int i) {
+        if (i == 0 || i == 20) {
+            lift = Lift(model);
+            lift.call(1);
+        }
+        if (i == 30) lift = Lift(model);
+        lift.advance(at(i * 0.1), false);
+        return lift;
+    });
+    EXPECT_EQ(readAll(file_),
+              "t,id,phase,storey,to,calls\n0,l1,riding,ground,upper,upper\n"
+              "2,l1,waiting,ground,,\n2,l1,riding,ground,upper,upper\n3,l1,waiting,ground,,\n");
+    LiftReader reader(file_, names);
+    EXPECT_EQ(reader.at(at(1.9)).front().since, at(0));
+    EXPECT_EQ(reader.at(at(2.1)).front().since, at(2));
+    EXPECT_EQ(reader.at(at(2.1)).front().phase, Lift::Phase::Riding);
+    record(folder_ / "again.csv", [&](int i) {
+        Lift shown(model);
+        shown.show(reader.at(at((i + 1) * 0.1)).front());
+        return shown;
+    });
+    EXPECT_EQ(readAll(folder_ / "again.csv"), readAll(file_));
 }
 
 TEST_F(LiftReaderTest, KeepsTheBeginningOfAPhaseThroughCalls) {

@@ -310,6 +310,7 @@ LiftState BuildingRun::Data::liftState(std::size_t passage) const {
 /// Tells the states of lifts that have changed, as events of their cabins.
 void BuildingRun::Data::tellLifts() {
     told_lifts.resize(passages.size());
+    told_at = rooms.front().world->time();
     for (std::size_t i = 0; i < passages.size(); ++i) {
         if (!passages[i].is_lift) continue;
         std::vector<RoomState> now = statesOf(liftState(i));

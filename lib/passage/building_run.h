@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "building/building_scene.h"
 #include "passage/lift.h"
+#include "scene/run/run_changes.h"
 #include "scene/run/run_reader.h"
 #include "sim/joined_worlds.h"
 #include "sim/replay.h"
@@ -27,9 +28,10 @@ struct BuildingRunOptions {
     RunOptions run = {};
     Clock clock = {};
     std::optional<SimTime> until = {};
-    std::string replay = {};                     ///< folder of a record to be replayed; "": none
-    bool holds = false;                          ///< at its end, see Simulation::replay()
-    std::optional<std::uint64_t> max_work = {};  ///< of the changes in the record, see RunChanges
+    std::string replay = {};  ///< folder of a record to be replayed; "": none
+    bool holds = false;       ///< at its end, see Simulation::replay()
+    /// Reads the changes of a room's record, which begins with that scene; null: they are left out.
+    std::function<RunChanges(const std::string& folder, const Scene& start)> changes = {};
 };
 
 /// Returns the parameters of a recorded run of a building, of the first storey that has them.

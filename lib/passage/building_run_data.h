@@ -217,6 +217,7 @@ struct BuildingRun::Data {
     std::vector<std::size_t> first_room;             // of each passage
     std::vector<Lift> lifts;                         // by passage; unused for stairs
     std::vector<std::vector<RoomState>> told_lifts;  // their states, by passage
+    SimTime told_at{};                               // when they were told
     std::vector<std::vector<Rider>> riders;          // by passage
     std::vector<std::vector<Stop>> stops;            // by passage and stop
     std::map<MoverSize, StoreyWays> ways;

@@ -26,22 +26,31 @@ LiftRecorder::LiftRecorder(std::string file, std::vector<LiftNames> names)
 
 void LiftRecorder::record(SimTime time, const std::vector<Lift>& lifts) {
     for (std::size_t i = 0; i < lifts.size(); ++i) {
-        const Lift::State& state = lifts[i].state();
-        if (names_[i].id.empty() || state == written_[i]) continue;
-        written_[i] = state;
-        const std::vector<std::string>& storeys = names_[i].storeys;
-        std::string& out = file_.pending;
-        out.append(formatSimTime(time)).append(",").append(names_[i].id).append(",");
-        out.append(kPhases[static_cast<std::size_t>(state.phase)]).append(",");
-        out.append(storeys[state.stop]).append(",");
-        if (state.phase == Lift::Phase::Riding) out.append(storeys[state.next]);
-        std::string_view separator = ",";
-        if (state.calls.empty()) out.append(separator);
-        for (const std::size_t stop : state.calls)
-            out.append(std::exchange(separator, ";")).append(storeys[stop]);
-        out += '\n';
+        Lift::State state = lifts[i].state();
+        const Lift::State& before = written_[i];
+        if (state.phase == before.phase && state.phase == Lift::Phase::Waiting)
+            state.since = before.since;
+        if (names_[i].id.empty() || state == before) continue;
+        // After a restart the phase begins anew.
+        if (state.phase == before.phase && state.since != before.since) write(time, i, {});
+        write(time, i, state);
+        written_[i] = std::move(state);
     }
     if (!file_.pending.empty()) file_.flush();
+}
+
+void LiftRecorder::write(SimTime time, std::size_t lift, const Lift::State& state) {
+    const std::vector<std::string>& storeys = names_[lift].storeys;
+    std::string& out = file_.pending;
+    out.append(formatSimTime(time)).append(",").append(names_[lift].id).append(",");
+    out.append(kPhases[static_cast<std::size_t>(state.phase)]).append(",");
+    out.append(storeys[state.stop]).append(",");
+    if (state.phase == Lift::Phase::Riding) out.append(storeys[state.next]);
+    std::string_view separator = ",";
+    if (state.calls.empty()) out.append(separator);
+    for (const std::size_t stop : state.calls)
+        out.append(std::exchange(separator, ";")).append(storeys[stop]);
+    out += '\n';
 }
 
 LiftReader::LiftReader(std::string file, std::vector<LiftNames> names)

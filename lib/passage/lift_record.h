@@ -24,7 +24,8 @@ struct LiftNames {
 
 /// Writes lifts.csv: t,id,phase,storey,to,calls. Each lift begins at its lowest stop, waiting; it
 /// has a row for each later phase, at the time at which that begins, and for each change of its
-/// calls. Calls are storeys, with semicolons; `to` is empty unless it rides.
+/// calls. Calls are storeys, with semicolons; `to` is empty unless it rides. A phase that a restart
+/// interrupts and that begins again at once has a row of waiting before.
 class LiftRecorder {
   public:
     /// \throws as LineFile
@@ -33,6 +34,8 @@ class LiftRecorder {
     void record(SimTime time, const std::vector<Lift>& lifts);
 
   private:
+    void write(SimTime time, std::size_t lift, const Lift::State& state);
+
     LineFile file_;
     std::vector<LiftNames> names_;
     std::vector<Lift::State> written_;

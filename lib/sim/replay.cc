@@ -133,8 +133,10 @@ std::shared_ptr<const void> Replay::adopt(World& world) {
     if (prepared.rewinds) return rewind(world, prepared.next);
     if (!prepared.step) return nullptr;
     try {
-        return prepared.step->restarts ? world.restart(prepared.next)
-                                       : world.change(prepared.next, prepared.step->placed);
+        auto old = prepared.step->restarts ? world.restart(prepared.next)
+                                           : world.change(prepared.next, prepared.step->placed);
+        made_.push_back(prepared.step->change);
+        return old;
     } catch (const FormatError& error) {
         run_changes_->refuse(error.what());
         return nullptr;

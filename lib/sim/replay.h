@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/run/run_changes.h"
@@ -55,6 +56,8 @@ class Replay {
     [[nodiscard]] std::string failure() const {
         return run_changes_ ? run_changes_->failure() : "";
     }
+    /// Returns the changes that succeeded since the last call, in order.
+    std::vector<RunChange> takeMade() { return std::exchange(made_, {}); }
     /// Moves the world to its last step at or before a time, back or forth, or to the end of the
     /// record. Sensors are read as if all steps had been taken one by one. \throws as step()
     void seek(World& world, SimTime time);
@@ -103,6 +106,7 @@ class Replay {
     std::optional<SimTime> changed_;
     std::optional<RunChanges> run_changes_;
     std::optional<Prepared> prepared_;
+    std::vector<RunChange> made_;
     std::vector<RunState> start_;
     bool is_late_ = false;             // it lacks the moment of the start
     bool is_ahead_ = false;            // the reader has read the moment of the next step

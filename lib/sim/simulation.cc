@@ -131,6 +131,15 @@ void Simulation::tellChange(std::string request, const std::string& scene_text) 
     events_.add(EventKind::Change, std::move(request), std::move(scene));
 }
 
+void Simulation::tellReplayed(bool seeks) {
+    for (const RunChange& change : replay_->takeMade()) {
+        if (seeks) continue;
+        const bool needs_scene = !change.scene.empty() && recorder_ != nullptr;
+        const auto write = needs_scene ? recorder_->options().scene_text : nullptr;
+        tellChange(change.text, write ? write(world_->scene()) : "");
+    }
+}
+
 void Simulation::replay(Replay& replay, bool holds) {
     replay_ = &replay;
     holds_ = holds;
@@ -168,14 +177,21 @@ std::function<void()> Simulation::preparation(std::optional<SimTime> to) const {
 }
 
 std::shared_ptr<const void> Simulation::adoptPrepared(std::optional<SimTime> to) {
-    if (followers_.empty()) return replay_->adopt(*world_);
+    if (followers_.empty()) {
+        auto before = replay_->adopt(*world_);
+        tellReplayed(to.has_value());
+        return before;
+    }
     auto old = std::make_shared<std::vector<std::shared_ptr<const void>>>();
     for (auto work = std::function<void()>([] {}); work; work = preparation(to)) {
         work();
         old->clear();  // thousands of changes of a moment would keep as many worlds
         old->push_back(replay_->adopt(*world_));
-        for (Simulation* const other : followers_)
+        tellReplayed(to.has_value());
+        for (Simulation* const other : followers_) {
             old->push_back(other->replay_->adopt(*other->world_));
+            other->tellReplayed(to.has_value());
+        }
     }
     for (const auto& changer : changers_) changer();
     return old;
@@ -218,10 +234,16 @@ bool Simulation::seekSome(SimTime time, WallTime until) {
 
 void Simulation::step() {
     for (const auto& preparer : preparers_) preparer();
-    if (replay_ != nullptr)
+    if (replay_ != nullptr) {
+        while (const auto prepare = replay_->preparation(*world_)) {
+            prepare();
+            replay_->adopt(*world_);
+            tellReplayed(false);
+        }
         replay_->step(*world_);
-    else
+    } else {
         world_->stepDeferred();
+    }
     events_.stepped();
     // Before the next commands: one of motion would clear the stall flag of this step.
     if (recorder_ != nullptr) recorder_->record(*world_);

@@ -182,6 +182,8 @@ class Simulation {
     /// Returns true after the last moment of all records.
     [[nodiscard]] bool isReplayed() const;
     bool seekTogether(SimTime time, WallTime until);
+    /// Tells of the changes that a replay has made since the last call, unless by a seek.
+    void tellReplayed(bool seeks);
     /// Aligns simulated time with wall time from here on.
     void startAt(WallTime now);
     /// Returns the wall time of the next step by the clock Real. \pre it is started

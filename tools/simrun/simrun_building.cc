@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/run_files.h"
 #include "cli/building_operands.h"
+#include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/scene_folder.h"
 #include "passage/building_run.h"
@@ -106,7 +107,10 @@ BuildingRun runOf(const SimrunOptions& options, const BuildingScene& building) {
                                   .until = options.until,
                                   .replay = options.replay,
                                   .holds = options.holds,
-                                  .max_work = options.rules.max_work});
+                                  .changes = [max_work = options.rules.max_work](
+                                                 const std::string& folder, const Scene& start) {
+                                      return changesOfRun(folder, start, max_work);
+                                  }});
 }
 
 /// Moves a replay to the time from which it is served.

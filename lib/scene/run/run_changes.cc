@@ -156,7 +156,9 @@ std::optional<RunChanges::Step> RunChanges::next(double before, const Scene& now
             continue;
         }
         try {
-            return stepOf(change, now, places);
+            Step step = stepOf(change, now, places);
+            step.change = change;
+            return step;
         } catch (const FormatError& error) {
             refuse(error.what());
         } catch (const UsageError& error) {

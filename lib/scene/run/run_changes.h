@@ -131,6 +131,7 @@ class RunChanges {
         Scene scene;                      ///< after it
         bool restarts = false;            ///< RESET and LOAD: all movers restart
         std::vector<std::string> placed;  ///< ids of the movers that take the scene's poses
+        RunChange change = {};            ///< the recorded one
     };
     [[nodiscard]] bool empty() const { return changes_.empty(); }
     /// Returns true if there is a change before a time.
