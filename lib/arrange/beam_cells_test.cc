@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/candidate.h"
+#include "arrange/beam_cells.h"
 
 #include <gtest/gtest.h>
 

@@ -127,16 +127,4 @@ bool addCandidates(PosedCandidates& set, std::span<const StackedViews> stack,
 /// sites that have no heading left.
 std::vector<Site> sitesOutOfSight(const CandidateViews& views, std::span<const Site> sites);
 
-/// Returns the laser as a search scans with it at the thesis' "reso" (section 4.2): one scan of its
-/// whole sweep, with beams `step` apart from its first beam on; 0: the laser's step. A laser that
-/// sees all around gets the nearest step that divides a turn.
-/// \pre 0 <= step <= 90 degrees
-Laser withBeamStep(Laser laser, Angle step);
-
-/// Returns the cells within the contour of a scan: centres strictly inside the polygon of the
-/// sensor's position and the ends of all beams, at the first surface or else at max_range (section
-/// 4.5.2). If the beams close the circle, the polygon has the beam ends only.
-/// \pre the sensor is a laser
-CellSet cellsByBeams(const Grid& grid, const RayWorld& world, const Sensor& sensor);
-
 }  // namespace ispace

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "arrange/beam_cells.h"
 #include "arrange/candidate.h"
 #include "arrange/localise_search.h"
 #include "arrange/objective.h"
