@@ -24,7 +24,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::string_view kMagic = "#part 2\n", kAnyMagic = "#part ", kEnd = "end";
+constexpr std::string_view kEnd = "end";
 /// Bytes of replaced records at which a kept file is rewritten.
 constexpr std::uint64_t kMaxReplacedBytes = std::uint64_t{16} << 20U;
 /// Longest header; long histories of many commands fit.
@@ -43,46 +43,6 @@ std::optional<std::uint64_t> parseHex(std::string_view text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, 16);
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
     return number;
-}
-
-/// Cuts off the text before `separator`.
-std::string_view takeUpTo(std::string_view& text, char separator) {
-    const std::size_t at = std::min(text.find(separator), text.size());
-    const std::string_view word = text.substr(0, at);
-    text.remove_prefix(std::min(at + 1, text.size()));
-    return word;
-}
-
-std::string unitsText(const JobId& job) { return job.units ? std::to_string(*job.units) : "-"; }
-
-bool readField(PartHead& head, std::string_view key, std::string_view value) {
-    JobId& job = head.job;
-    if (key == "tool") {
-        job.tool = takeUpTo(value, ' ');
-        job.version = value;
-    } else if (key == "room") {
-        job.room = value;
-    } else if (key == "inputs") {
-        job.inputs = value;
-    } else if (key == "form") {
-        job.form = value;
-    } else if (key == "seed") {
-        const auto seed = parseInteger(value);
-        if (!seed || *seed < 0) return false;
-        job.seed = static_cast<std::uint64_t>(*seed);
-    } else if (key == "units") {
-        job.units = parseInteger(value);
-        return value == "-" || job.units.value_or(-1) >= 0;
-    } else if (key == "shard") {
-        try {
-            head.shard = parseShard(std::string(value));
-        } catch (const UsageError&) {
-            return false;
-        }
-    } else {
-        return false;
-    }
-    return true;
 }
 
 [[noreturn]] void failOn(const std::string& file) {
@@ -123,39 +83,7 @@ void takeName(int fd, int older, const std::string& name) {
     throw std::system_error(error, std::generic_category(), name);
 }
 
-std::string beside(const std::string& one, const std::string& other) {
-    return " (" + excerpt(one) + ", " + excerpt(other) + ")";
-}
-
 }  // namespace
-
-std::string JobId::differenceFrom(const JobId& other) const {
-    if (tool != other.tool) return "the tool" + beside(tool, other.tool);
-    if (version != other.version) return "the version of ispace" + beside(version, other.version);
-    if (room != other.room) return "the room";
-    const std::string none;
-    if (history != other.history)
-        return "the command" + beside(history.empty() ? none : history.back(),
-                                      other.history.empty() ? none : other.history.back());
-    if (seed != other.seed)
-        return "the seed" + beside(std::to_string(seed), std::to_string(other.seed));
-    if (form != other.form) return "the format" + beside(form, other.form);
-    if (inputs != other.inputs) return "what is in the files that were read";
-    if (units != other.units)
-        return "the number of units" + beside(unitsText(*this), unitsText(other));
-    return "";
-}
-
-std::string partHeadText(const PartHead& head) {
-    std::string text(kMagic);
-    for (const std::string& line : head.job.history) text.append("# ").append(line).append("\n");
-    const JobId& job = head.job;
-    text.append("tool ").append(job.tool).append(" ").append(job.version);
-    text.append("\nroom ").append(job.room).append("\ninputs ").append(job.inputs);
-    text.append("\nseed ").append(std::to_string(job.seed));
-    text.append("\nform ").append(job.form).append("\nshard ").append(head.shard.text());
-    return text.append("\nunits ").append(unitsText(job)).append("\n\n");
-}
 
 std::string partRecordText(std::string_view key, std::string_view bytes) {
     std::string text = "=";
@@ -224,32 +152,16 @@ void JobResults::File::refuse(const std::string& message, int line) const {
 void JobResults::File::readHead() {
     constexpr std::size_t kChunk = 1 << 12;
     std::string text = read(0, kChunk);
-    if (!text.starts_with(kMagic))
-        refuse(text.starts_with(kAnyMagic)
-                   ? "of another version of ispace, whose parts have another form: delete it and "
-                     "run its shard again"
-                   : "not a part of a job, as --shard writes: it does not begin with `#part 2`");
     std::size_t mark = text.find("\n\n");
-    while (mark == std::string::npos && text.size() < kMaxHead) {
+    while (mark == std::string::npos && text.starts_with(kPartMagic) && text.size() < kMaxHead) {
         const std::string more = read(text.size(), text.size());
         if (more.empty()) break;
         text += more;
         mark = text.find("\n\n");
     }
-    if (mark == std::string::npos) refuse("its header has no end");
-    begin = end = mark + 2;
-    std::string_view rest = std::string_view(text).substr(kMagic.size(), mark + 1 - kMagic.size());
-    for (int line = 2; !rest.empty(); ++line) {
-        std::string_view words = takeUpTo(rest, '\n');
-        if (words.starts_with("# ")) {
-            head.job.history.emplace_back(words.substr(2));
-            continue;
-        }
-        const std::string_view key = takeUpTo(words, ' ');
-        if (!readField(head, key, words))
-            refuse("bad line " + excerpt(key) + " in the header of a part", line);
-    }
-    if (head.job.tool.empty()) refuse("its header names no tool");
+    if (mark != std::string::npos) text.resize(mark + 2);
+    head = parsePartHead(text, displayName(name));
+    begin = end = text.size();
 }
 
 void JobResults::addFile(const std::string& name) {

@@ -2,19 +2,9 @@
 // Results of a job by key. A shard (--shard) writes them as a part, --resume stores them beside the
 // output, --merge reads them.
 //
-// A file of results is a text header, then records. The header is
-//     #part 2
-//     # scan room.glb --frames 100        the history of the product, a line each
-//     tool scan 0.1.0                     and its version
-//     room sha256:…                       digest of the environment
-// digest of everything read
-//     seed 0
-// format of the records
-//     shard 3/8
-// of the whole job; - if unknown
-// and a blank line. A record is a line `=KEY BYTES HASH`, BYTES bytes and a newline; HASH is
-// hashOf() the bytes, in hex. A later record replaces an earlier one of its key. The last record of
-// a finished part is `end`.
+// A file of results is a header, see part_head.h, then records. A record is a line `=KEY BYTES
+// HASH`, BYTES bytes and a newline; HASH is hashOf() the bytes, in hex. A later record replaces an
+// earlier one of its key. The last record of a finished part is `end`.
 #pragma once
 
 #include <chrono>
@@ -30,31 +20,10 @@
 #include <vector>
 
 #include "base/file.h"
-#include "base/message.h"
+#include "base/part_head.h"
 #include "base/shard.h"
 
 namespace ispace {
-
-/// Properties that all parts of a job share.
-struct JobId {
-    std::string tool;
-    std::string version = std::string(ispace::version());
-    History history;     ///< of the product, the job's command last: without --shard and the like
-    std::string room;    ///< digest of the environment
-    std::string inputs;  ///< digest of everything read
-    std::uint64_t seed = 0;
-    std::string form;                   ///< format of the records: "jsonl"
-    std::optional<std::int64_t> units;  ///< of the whole job, if they can be counted
-
-    /// Returns the property in which another job differs, for messages: "the room", "the version of
-    /// ispace (0.1.0, 0.2.0)"; "" if the jobs are equal.
-    [[nodiscard]] std::string differenceFrom(const JobId& other) const;
-};
-
-struct PartHead {
-    JobId job;
-    Shard shard;
-};
 
 /// Results of a job by key. They are stored in files and read on request; find() and store() may be
 /// called from any thread.
@@ -182,8 +151,7 @@ bool isPartOf(const std::string& file, const PartHead& head);
 /// Reads the header of a part or of kept results. \throws FormatError, std::system_error
 PartHead partHeadOf(const std::string& file);
 
-/// Formats a header, and a record.
-std::string partHeadText(const PartHead& head);
+/// Formats a record.
 std::string partRecordText(std::string_view key, std::string_view bytes);
 
 }  // namespace ispace
