@@ -33,12 +33,13 @@ void forEachPiece(std::string_view text, std::string_view separator, Visit visit
     }
 }
 
-/// Finds the separator of a tuple's numbers: a comma, or for lengths the multiplication sign of a
-/// size such as "8 × 8" or "8x8x2.5".
+/// Finds the separator of a tuple's numbers: a comma, or for lengths and counts the multiplication
+/// sign of a size such as "8 × 8", "8x8x2.5" or "640x480".
 std::string_view separatorOf(const KeySpec& key, std::string_view text) {
     constexpr std::string_view kTimes[] = {"\xc3\x97", "x", "X", "*"};
     constexpr std::string_view kBeginnings = "0123456789.+-";
-    const bool is_size = key.type == KeyType::Tuple && key.unit == Unit::Length && !text.empty() &&
+    const bool is_size = key.type == KeyType::Tuple && (key.unit == Unit::Length || key.whole) &&
+                         !text.empty() &&
                          kBeginnings.find(text.front()) != std::string_view::npos &&
                          text.find(',') == std::string_view::npos;
     if (is_size)

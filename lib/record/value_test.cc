@@ -302,7 +302,10 @@ TEST(ParseValue, TakesSizesAsTheyAreSpoken) {
               "error: `size`: `8x6` has the unit `x6`, wanted m, km, cm or mm");
     KeySpec pixels = testKey("pixels", KeyType::Tuple);
     pixels.max_count = 2;
-    EXPECT_EQ(refused(pixels, "8 x 6"), "error: `pixels`: `8 x 6` is not a number") << "no length";
+    EXPECT_EQ(refused(pixels, "8 x 6"), "error: `pixels`: `8 x 6` is not a number")
+        << "neither lengths nor counts";
+    pixels.whole = true;
+    EXPECT_EQ(parse(pixels, "640x480"), (Tuple{640, 480}));
     KeySpec path = testKey("path", KeyType::TupleList, Unit::Length);
     path.max_count = 2;
     EXPECT_EQ(findingsOf([&] { (void)parseValue(path, "8x6;1,2"); }).size(), 1U);
