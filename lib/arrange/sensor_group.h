@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/placement_schemas.h"
 #include "scene/scene.h"
 #include "scene/sensor/sensor.h"
+#include "scene/sensor_spec.h"
 
 namespace ispace {
 

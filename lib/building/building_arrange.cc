@@ -13,6 +13,7 @@
 #include "building/share_out.h"
 #include "building/storey_sight.h"
 #include "coverage/outside_view.h"
+#include "scene/placement_schemas.h"
 
 namespace ispace {
 

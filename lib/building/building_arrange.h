@@ -6,7 +6,7 @@
 
 #include "arrange/arrange.h"
 #include "building/building_scene.h"
-#include "scene/placement_schemas.h"
+#include "scene/sensor_spec.h"
 
 namespace ispace {
 

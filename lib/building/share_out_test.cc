@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "building/building_arrange.h"
 #include "building/building_coverage.h"
+#include "scene/placement_schemas.h"
 
 namespace ispace {
 namespace {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/placement_schemas.h"
+#include "scene/sensor_spec.h"
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
 #include "support/test_paths.h"
 
 namespace ispace {

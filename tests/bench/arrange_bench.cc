@@ -19,6 +19,7 @@
 #include "random_plan.h"
 #include "scene/placement_schemas.h"
 #include "scene/sensor/sensor.h"
+#include "scene/sensor_spec.h"
 
 namespace {
 

@@ -14,6 +14,7 @@
 #include "io/importers.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "scene/sensor_spec.h"
 
 namespace ispace::bench {
 

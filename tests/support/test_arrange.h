@@ -12,6 +12,7 @@
 #include "env/environment.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "scene/sensor_spec.h"
 
 namespace ispace {
 

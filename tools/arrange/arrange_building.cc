@@ -17,6 +17,7 @@
 #include "cli/run_tool.h"
 #include "record/text.h"
 #include "report/coverage_report.h"
+#include "scene/placement_schemas.h"
 
 namespace ispace {
 

@@ -18,6 +18,7 @@
 #include "scene/findings/findings.h"
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
+#include "scene/sensor_spec.h"
 #include "sense/ultrasound.h"
 
 namespace ispace {

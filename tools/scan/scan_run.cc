@@ -16,6 +16,7 @@
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
 #include "scene/sensor/sensor.h"
+#include "scene/sensor_spec.h"
 
 namespace ispace {
 
