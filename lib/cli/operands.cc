@@ -197,7 +197,10 @@ class OperandReader {
 
     [[nodiscard]] bool wantsStdin() const {
         if (layout_) return false;
-        if (!environment_ && !request_.layout_from_stdin) throw UsageError("no environment given");
+        if (!environment_ && !request_.layout_from_stdin)
+            throw UsageError(
+                "no environment given: the first operand is a room, such as room.env, or - for "
+                "stdin");
         return request_.layout_from_stdin &&
                !(environment_ && hasPlaced(*environment_, request_.is_meant));
     }
