@@ -332,6 +332,55 @@ class Cut {
     std::vector<Part> parts_;
 };
 
+/// Upper bounds of a region's ranges, by direction.
+class RangeBounds {
+  public:
+    explicit RangeBounds(const VisibleRegion& region) {
+        for (const VisibilityEdge& edge : region.edges) {
+            const Vec2 from = edge.from - region.viewpoint, to = edge.to - region.viewpoint;
+            const bool is_arc = edge.line == VisibilityEdge::kArc;
+            const double square = std::max(dot(from, from), dot(to, to));
+            const double most = is_arc ? region.max_range : std::sqrt(square);
+            const bool is_whole = is_arc && !(cross(from, to) > 0);  // all around, perhaps
+            raise(is_whole ? 0 : sectorOf(from), is_whole ? kSectors - 1 : sectorOf(to), most);
+        }
+    }
+    /// True if a disc lies beyond the region by more than a margin, seen from the viewpoint.
+    [[nodiscard]] bool isHidden(Vec2 middle, double radius) const {
+        constexpr double kMargin = 1e-3;  // more than rounding and contact
+        const double square = dot(middle, middle), touch = square - radius * radius;
+        if (!(touch > 0)) return false;
+        const Vec2 aside = (radius / std::sqrt(touch)) * perpendicular(middle);
+        const std::size_t last = sectorOf(middle + aside) + 1;
+        const double nearest = std::sqrt(square) - radius - kMargin;
+        // With a sector on either side, as directions are rounded.
+        for (std::size_t i = sectorOf(middle - aside) + kSectors - 1; true; ++i) {
+            if (!(nearest > (1 + kMargin) * most_[i % kSectors])) return false;
+            if (i % kSectors == last % kSectors) return true;
+        }
+    }
+
+  private:
+    static constexpr std::size_t kSectors = 64;
+
+    /// By an angle that is 1 for a quarter turn and ascends with that in radians.
+    static std::size_t sectorOf(Vec2 way) {
+        const double sum = std::fabs(way.x) + std::fabs(way.y);
+        const double share = sum > 0 ? way.y / sum : 0;
+        const double turn = way.x < 0 ? 2 - share : (way.y < 0 ? 4 + share : share);
+        return static_cast<std::size_t>(turn * (kSectors / 4.0)) % kSectors;
+    }
+    /// Of the sectors from `first` counter-clockwise to `last`.
+    void raise(std::size_t first, std::size_t last, double most) {
+        for (std::size_t i = first; true; i = (i + 1) % kSectors) {
+            most_[i] = std::max(most_[i], most);
+            if (i == last) return;
+        }
+    }
+
+    std::array<double, kSectors> most_{};
+};
+
 }  // namespace
 
 RoundBodies::RoundBodies(std::span<const Ellipse> rounds, std::uint32_t first_line)
@@ -355,12 +404,14 @@ double RoundBodies::farthest(Point2 p) const {
 
 std::vector<std::uint32_t> RoundBodies::within(const VisibleRegion& region) const {
     const Vec2 reach{region.max_range, region.max_range};
-    const Box2 box{region.viewpoint - reach, region.viewpoint + reach};
+    const RangeBounds bounds(region);
     std::vector<std::pair<double, std::uint32_t>> near;
-    boxes_.search(box, [&](std::size_t i) {
+    boxes_.search({region.viewpoint - reach, region.viewpoint + reach}, [&](std::size_t i) {
         const Ellipse& round = rounds_[i];
-        const double distance =
-            length(round.center - region.viewpoint) - std::max(round.half_length, round.half_width);
+        const Vec2 way = round.center - region.viewpoint;
+        const double radius = std::max(round.half_length, round.half_width);
+        if (bounds.isHidden(way, radius)) return;
+        const double distance = length(way) - radius;
         if (distance <= region.max_range)
             near.emplace_back(distance, static_cast<std::uint32_t>(i));
     });

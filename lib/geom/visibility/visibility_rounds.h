@@ -26,7 +26,7 @@ class RoundBodies {
     void cut(VisibleRegion& region) const;
 
   private:
-    /// Of those within range; the nearest first, so that others are found hidden.
+    /// Of those within range that may be seen; the nearest first, so that others are found hidden.
     [[nodiscard]] std::vector<std::uint32_t> within(const VisibleRegion& region) const;
 
     std::vector<Ellipse> rounds_;

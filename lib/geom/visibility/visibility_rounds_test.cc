@@ -123,6 +123,29 @@ TEST(VisibilityRounds, ManyThatHideAndCutEachOther) {
     }
 }
 
+TEST(VisibilityRounds, BehindWallsAndInTheirGap) {
+    std::mt19937_64 random(23);
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    for (int i = 0; i < 30; ++i) {
+        const double gap = uniform(0, 5);
+        std::vector<Segment2> lines = room(12, 6);
+        lines.push_back({{5, 0}, {uniform(5, 7), gap}});
+        lines.push_back({{uniform(5, 7), gap + 1}, {7, 6}});
+        const Point2 v{uniform(0.1, 4.9), uniform(0.1, 5.9)};
+        std::vector<Ellipse> rounds;
+        while (rounds.size() < 40) {
+            const Ellipse round({uniform(0.5, 11.5), uniform(0.5, 5.5)}, uniform(0.1, 0.9),
+                                uniform(0.1, 0.9), Angle::degrees(uniform(0, 360)));
+            if (round.heightOf(v) > 0.05) rounds.push_back(round);
+        }
+        const VisibleRegion seen = VisibilityMap(lines, rounds).query(v, 9);
+        expectSound(seen);
+        EXPECT_NEAR(area(seen), byRays(lines, rounds, v, 9, 20'000), 0.01) << i;
+    }
+}
+
 TEST(VisibilityRounds, WithinRangeOnly) {
     // A disc that the greatest range just reaches, passes through, and does not reach.
     const Ellipse disc({3, 0}, 2, 2, {});
