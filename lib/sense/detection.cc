@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/per_thread.h"
 #include "env/level.h"
 #include "scene/robot.h"
 #include "scene/sensor/sensor.h"
@@ -43,6 +44,13 @@ Pose3 Watcher::poseAt(const WatchMoment& moment) const {
     const std::size_t index = sensor.mount ? sensor.mount->robot : *sensor.person;
     return index < poses.size() ? mountedPose(poses[index], from_carrier) : sensor.pose;
 }
+
+/// Pose of a sensor at a moment, with the sine and cosine of its heading, which all targets share.
+struct Stance {
+    explicit Stance(const Pose3& at) : pose(at), heading(cosSin(at.heading)) {}
+    Pose3 pose;
+    CosSin heading;
+};
 
 /// Returns the start poses of a scene's people, in order.
 std::vector<Pose2> peopleOf(const Scene& scene) {
@@ -78,8 +86,8 @@ Watcher watcherOf(const Sensor& sensor, const std::vector<Pose2>& people, double
 struct DetectionMonitor::Data {
     Data(const Scene& scene, const WatchOptions& options);
 
-    [[nodiscard]] bool sees(const Watcher& watcher, const Pose3& pose, Point2 place) const;
-    [[nodiscard]] bool scans(const Watcher& watcher, const Pose3& pose, Point2 place) const;
+    [[nodiscard]] bool sees(const Watcher& watcher, const Stance& stance, Point2 place) const;
+    [[nodiscard]] bool scans(const Watcher& watcher, const Stance& stance, Point2 place) const;
     [[nodiscard]] bool scansAslant(const Watcher& watcher, const Pose3& pose, Point2 place) const;
     [[nodiscard]] bool isClear(const Watcher& watcher, Point3 origin, Point3 target) const;
 
@@ -124,16 +132,16 @@ bool DetectionMonitor::Data::isClear(const Watcher& watcher, Point3 origin, Poin
 
 /// True if a level scan sees the point: in its slice, or, if there are too many slices, in the
 /// mesh.
-bool DetectionMonitor::Data::scans(const Watcher& watcher, const Pose3& pose, Point2 place) const {
+bool DetectionMonitor::Data::scans(const Watcher& watcher, const Stance& stance,
+                                   Point2 place) const {
+    const Pose3& pose = stance.pose;
     const Vec2 way = place - pose.position.onFloor();
+    const auto [c, s] = stance.heading;
+    if (!watcher.window->holds({way.x * c + way.y * s, way.y * c - way.x * s, 0})) return false;
     const double distance = std::hypot(way.x, way.y);
-    const Laser& laser = watcher.sensor.as<Laser>();
-    const auto [c, s] = cosSin(pose.heading);
-    if (!withinRange(distance, laser.max_range) ||
-        !watcher.window->holds({way.x * c + way.y * s, way.y * c - way.x * s, 0}))
-        return false;
+    if (!withinRange(distance, watcher.sensor.as<Laser>().max_range)) return false;
     if (distance <= kRayEpsilon) return true;
-    Directions direction;
+    auto& direction = perThread<Directions, struct RayOfSight>();
     direction.resize(1);
     direction.set(0, {way.x / distance, way.y / distance, 0});
     std::array<float, 1> range = {kNoReturn};
@@ -164,13 +172,15 @@ bool DetectionMonitor::Data::scansAslant(const Watcher& watcher, const Pose3& po
            isClear(watcher, pose.position, target);
 }
 
-bool DetectionMonitor::Data::sees(const Watcher& watcher, const Pose3& pose, Point2 place) const {
+bool DetectionMonitor::Data::sees(const Watcher& watcher, const Stance& stance,
+                                  Point2 place) const {
     if (watcher.is_blind) return false;
+    const Pose3& pose = stance.pose;
     const Vec2 way = place - pose.position.onFloor();
     if (dot(way, way) > watcher.reach * watcher.reach) return false;
     if (!watcher.view) {
         const bool is_level = scansSlice(watcher.sensor.as<Laser>(), pose);
-        return is_level ? scans(watcher, pose, place) : scansAslant(watcher, pose, place);
+        return is_level ? scans(watcher, stance, place) : scansAslant(watcher, pose, place);
     }
     const Point3 target{place.x, place.y, plane};
     if (!watcher.rides())
@@ -208,12 +218,12 @@ std::size_t DetectionMonitor::seenBy(const Target& target, const WatchMoment& mo
 std::vector<std::size_t> DetectionMonitor::seenBy(std::span<const Target> targets,
                                                   const WatchMoment& moment) const {
     const std::vector<Watcher>& watchers = data_->watchers;
-    std::vector<Pose3> poses;
+    std::vector<Stance> stances;
     std::vector<Point2> places;
     double reach = 0;
     for (const Watcher& watcher : watchers) {
-        poses.push_back(watcher.poseAt(moment));
-        places.push_back(poses.back().position.onFloor());
+        stances.emplace_back(watcher.poseAt(moment));
+        places.push_back(stances.back().pose.position.onFloor());
         reach = std::max(reach, watcher.reach);
     }
     FloorGrid grid;
@@ -223,7 +233,7 @@ std::vector<std::size_t> DetectionMonitor::seenBy(std::span<const Target> target
         grid.forEachNear({target.place, target.place}, [&](std::size_t k) {
             const Watcher& watcher = watchers[k];
             const bool is_own = watcher.rides() && watcher.carrier == target.owner;
-            if (is_own || !data_->sees(watcher, poses[k], target.place)) return;
+            if (is_own || !data_->sees(watcher, stances[k], target.place)) return;
             ++(watcher.together == 1 ? alone : parts);
             if (watcher.together > 1) together = watcher.together;
         });
