@@ -71,19 +71,12 @@ struct Candidate {
     double room = 0;  ///< from there to an end of the chord
 };
 
-/// Where the region's boundary crosses a level.
-struct Crossing {
-    std::size_t level;
-    double x;
-    friend auto operator<=>(const Crossing&, const Crossing&) = default;
-};
-
 /// Adds the middles of the longest chords of the region at a level, between these crossings; of
 /// chords of one length the first ones.
-void addChordMiddles(std::span<const Crossing> line, double y, std::vector<Candidate>& middles) {
+void addChordMiddles(std::span<const double> xs, double y, std::vector<Candidate>& middles) {
     const auto first = static_cast<std::ptrdiff_t>(middles.size());
-    for (std::size_t i = 1; i < line.size(); i += 2) {
-        const double a = line[i - 1].x, b = line[i].x, room = (b - a) / 2;
+    for (std::size_t i = 1; i < xs.size(); i += 2) {
+        const double a = xs[i - 1], b = xs[i], room = (b - a) / 2;
         auto place = middles.end();
         while (place - middles.begin() > first && std::prev(place)->room < room) --place;
         middles.insert(place, {{middle(a, b), y}, room});
@@ -97,21 +90,25 @@ void addChordMiddles(const std::vector<Segment2>& edges, std::span<const double>
     std::vector<std::pair<double, std::size_t>> by_height;
     for (std::size_t i = 0; i < levels.size(); ++i) by_height.emplace_back(levels[i], i);
     std::sort(by_height.begin(), by_height.end());
-    std::vector<Crossing> crossings;
+    std::vector<std::pair<std::size_t, double>> crossings;  // of a level
+    std::vector<std::size_t> next(levels.size() + 2, 0);
     for (const auto& [a, b] : edges) {
         const double low = std::min(a.y, b.y), high = std::max(a.y, b.y);
         auto level = std::lower_bound(by_height.begin(), by_height.end(), low,
                                       [](const auto& l, double y) { return l.first < y; });
-        for (; level != by_height.end() && level->first < high; ++level)
-            crossings.push_back(
-                {level->second, a.x + (b.x - a.x) * ((level->first - a.y) / (b.y - a.y))});
+        for (; level != by_height.end() && level->first < high; ++level) {
+            crossings.emplace_back(level->second,
+                                   a.x + (b.x - a.x) * ((level->first - a.y) / (b.y - a.y)));
+            ++next[level->second + 2];
+        }
     }
-    std::sort(crossings.begin(), crossings.end());
-    for (auto line = crossings.begin(); line != crossings.end();) {
-        const auto end = std::find_if(line, crossings.end(),
-                                      [&](const Crossing& c) { return c.level != line->level; });
-        addChordMiddles({line, end}, levels[line->level], middles);
-        line = end;
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<double> xs(crossings.size());
+    for (const auto& [level, x] : crossings) xs[next[level + 1]++] = x;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        const auto line = std::span(xs).subspan(next[i], next[i + 1] - next[i]);
+        std::sort(line.begin(), line.end());
+        addChordMiddles(line, levels[i], middles);
     }
 }
 
@@ -187,11 +184,14 @@ class Best {
     void offer(std::span<const Candidate> candidates) {
         std::vector<std::size_t> order(candidates.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) {
+        const auto is_later = [&](std::size_t i, std::size_t k) {
             const double room = roomOf(candidates[i]), other = roomOf(candidates[k]);
-            return room != other ? room > other : i < k;
-        });
-        for (const std::size_t i : order) {
+            return room != other ? room < other : i > k;
+        };
+        std::make_heap(order.begin(), order.end(), is_later);
+        for (; !order.empty(); order.pop_back()) {
+            std::pop_heap(order.begin(), order.end(), is_later);
+            const std::size_t i = order.back();
             // The distance to the ends of its chord decides.
             if (candidates[i].room < (1 - 1e-9) * clearance_ - rounding_) return;
             offer(candidates[i].at, i);
