@@ -13,13 +13,6 @@
 
 namespace ispace {
 
-namespace {
-
-Box2 boxAround(Point2 p, double half_width, double half_height) {
-    return {{p.x - half_width, p.y - half_height}, {p.x + half_width, p.y + half_height}};
-}
-
-/// Returns true if part of a line is in the box.
 bool crosses(const Segment2& line, const Box2& box) {
     double from = 0, to = 1;
     const Vec2 way = line.b - line.a;
@@ -32,6 +25,12 @@ bool crosses(const Segment2& line, const Box2& box) {
     };
     return clip(line.a.x, way.x, box.low.x, box.high.x) &&
            clip(line.a.y, way.y, box.low.y, box.high.y);
+}
+
+namespace {
+
+Box2 boxAround(Point2 p, double half_width, double half_height) {
+    return {{p.x - half_width, p.y - half_height}, {p.x + half_width, p.y + half_height}};
 }
 
 /// Fills the mark's body about the origin, y up.
@@ -154,17 +153,19 @@ void drawMarkLabel(Picture& picture, Point2 mark, Point2 middle, const std::stri
     picture.text({middle.x, middle.y + 0.36 * style.size}, text, style);
 }
 
-bool LabelPlacer::take(const Box2& box, bool over_lines) {
-    if (costOf(box, over_lines) > 0) return false;
+bool LabelPlacer::take(const Box2& box, bool over_lines, std::optional<Segment2> own) {
+    if (costOf(box, over_lines, own) > 0) return false;
     labels_.push_back(box);
     return true;
 }
 
-double LabelPlacer::costOf(const Box2& box, bool over_lines) const {
+double LabelPlacer::costOf(const Box2& box, bool over_lines, std::optional<Segment2> own) const {
     double cost = frame_.contains(box) ? 0 : 100;
     for (const Box2& label : labels_) cost += label.overlaps(box) ? 100 : 0;
     for (const Box2& mark : marks_) cost += mark.overlaps(box) ? 5 : 0;
-    const auto is_crossed = [&box](const Segment2& line) { return crosses(line, box); };
+    const auto is_crossed = [&](const Segment2& line) {
+        return crosses(line, box) && !(own && own->a == line.a && own->b == line.b);
+    };
     if (!over_lines && std::any_of(lines_.begin(), lines_.end(), is_crossed)) cost += 2;
     return cost;
 }

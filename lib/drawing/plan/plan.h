@@ -66,6 +66,9 @@ void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, doubl
 void drawMarkLabel(Picture& picture, Point2 mark, Point2 middle, const std::string& text,
                    const TextStyle& style);
 
+/// Returns true if part of a line is inside the box.
+bool crosses(const Segment2& line, const Box2& box);
+
 /// Finds positions of signs and labels where they cover little, in page units.
 class LabelPlacer {
   public:
@@ -84,10 +87,12 @@ class LabelPlacer {
     std::optional<Point2> placeLabel(Point2 page, Angle heading, double width, double size,
                                      bool crowd);
     /// Reserves a box and returns true if it is free. \param over_lines lines do not count
-    bool take(const Box2& box, bool over_lines = false);
+    /// \param own a line added before, which does not count either
+    bool take(const Box2& box, bool over_lines = false, std::optional<Segment2> own = {});
 
   private:
-    [[nodiscard]] double costOf(const Box2& box, bool over_lines = false) const;
+    [[nodiscard]] double costOf(const Box2& box, bool over_lines = false,
+                                std::optional<Segment2> own = {}) const;
 
     Box2 frame_;
     double em_;

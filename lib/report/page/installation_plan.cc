@@ -67,22 +67,30 @@ Vec2 offWall(const Installation& one, const Pose3& pose, const PageView& view) {
     return {};
 }
 
-/// Draws a line with ticks at its ends, and its length beside or in it where that hides no mark and
-/// no other text.
-void drawDimension(Picture& picture, Point2 from, Point2 to, const std::string& text,
-                   LabelPlacer& labels) {
+/// A line of the plan with the distance that it shows, on the page.
+struct Dimension {
+    Segment2 line;
+    std::string text;
+
+    [[nodiscard]] Vec2 along() const { return (1 / distance(line.a, line.b)) * (line.b - line.a); }
+};
+
+/// Draws a line with ticks at its ends.
+void drawDimensionLine(Picture& picture, const Dimension& one) {
+    const Stroke pen{palette::kInk, 0.18};
+    const Vec2 tick = 0.5 * (one.along() + perpendicular(one.along()));
+    for (const Point2 end : {one.line.a, one.line.b}) picture.line(end - tick, end + tick, pen);
+    picture.line(one.line.a, one.line.b, pen);
+}
+
+/// Writes the distance beside or in its line where that hides no mark, no other text and, as far as
+/// there is space, no other line.
+void drawDimensionText(Picture& picture, const Dimension& one, LabelPlacer& labels) {
     const TextStyle style{kSheetEm, false, Align::Center, palette::kInk,
                           palette::kWhite.faded(0.85)};
-    const Stroke pen{palette::kInk, 0.18};
-    const double way = distance(from, to);
-    if (way <= 0) return;
-    const Vec2 along = (1 / way) * (to - from), across = perpendicular(along);
-    for (const Point2 end : {from, to}) {
-        const Vec2 tick = 0.5 * (along + across);
-        picture.line(end - tick, end + tick, pen);
-    }
-    picture.line(from, to, pen);
-    const double wide = textWidth(text, style) / 2, high = style.size / 2;
+    const Vec2 along = one.along(), across = perpendicular(along);
+    const double way = distance(one.line.a, one.line.b);
+    const double wide = textWidth(one.text, style) / 2, high = style.size / 2;
     // In the line if it is long enough, with a gap; else beside it.
     const double gap = std::min(std::abs(along.x) > 0 ? wide / std::abs(along.x) : way,
                                 std::abs(along.y) > 0 ? high / std::abs(along.y) : way);
@@ -91,15 +99,36 @@ void drawDimension(Picture& picture, Point2 from, Point2 to, const std::string& 
         for (const double off : {0.0, aside, -aside, 2 * aside, -2 * aside}) {
             if (off == 0 && way < 2.6 * gap) continue;
             for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8}) {
-                const Point2 middle = from + share * way * along + off * across;
-                if (!labels.take(
-                        {{middle.x - wide, middle.y - high}, {middle.x + wide, middle.y + high}},
-                        over_lines))
-                    continue;
-                picture.text({middle.x, middle.y + 0.36 * style.size}, text, style);
+                const Point2 middle = one.line.a + share * way * along + off * across;
+                const Box2 box{{middle.x - wide, middle.y - high},
+                               {middle.x + wide, middle.y + high}};
+                if (!labels.take(box, over_lines, one.line)) continue;
+                picture.text({middle.x, middle.y + 0.36 * style.size}, one.text, style);
                 return;
             }
         }
+}
+
+/// Draws the lines of all distances, then their texts.
+void drawDimensions(Picture& picture, const Scene& scene,
+                    const std::vector<Installation>& installations, const PageView& view,
+                    LabelPlacer& labels) {
+    std::vector<Dimension> dimensions;
+    for (const Installation& one : installations) {
+        const Point2 at = view * scene.sensors[one.sensor].pose.position.onFloor();
+        const Vec2 aside = offWall(one, scene.sensors[one.sensor].pose, view);
+        for (const WallDistance& wall : one.walls) {
+            const Point2 from = wall.end ? view * (wall.foot - wall.distance * wall.along()) : at;
+            const Point2 foot = view * wall.foot;
+            if (distance(from, foot) > kLeastLine)
+                dimensions.push_back({{from + aside, foot + aside}, formatFixed(wall.distance, 2)});
+        }
+    }
+    for (const Dimension& one : dimensions) {
+        drawDimensionLine(picture, one);
+        labels.addLine(one.line);
+    }
+    for (const Dimension& one : dimensions) drawDimensionText(picture, one, labels);
 }
 
 }  // namespace
@@ -136,17 +165,7 @@ PageFigure installationPlan(const Scene& scene, const Coverage& coverage,
     for (const Element& element : scene.environment.elements())
         if (element.record.keyword() == "panel") drawPanel(picture, view, element, labels);
     picture.pushLayer("distances");
-    for (const Installation& one : installations) {
-        const Point2 at = view * scene.sensors[one.sensor].pose.position.onFloor();
-        const Vec2 aside = offWall(one, scene.sensors[one.sensor].pose, view);
-        for (const WallDistance& wall : one.walls) {
-            const Point2 from = wall.end ? view * (wall.foot - wall.distance * wall.along()) : at;
-            const Point2 foot = view * wall.foot;
-            if (distance(from, foot) > kLeastLine)
-                drawDimension(picture, from + aside, foot + aside, formatFixed(wall.distance, 2),
-                              labels);
-        }
-    }
+    drawDimensions(picture, scene, installations, view, labels);
     picture.pop();
     picture.pushLayer("sensors");
     for (const Installation& one : installations) {

@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 
+#include "drawing/plan/plan.h"
 #include "report/map/sensor_colors.h"
 #include "report/page/indoor_floor.h"
 #include "support/test_scenes.h"
@@ -269,6 +270,38 @@ TEST(SensorColors, NeighboursDifferBeyondSeven) {
                          coverage.sensors[k].pose.position.onFloor()) < 1.5) {
                 EXPECT_NE(hues[i], hues[k]) << i << ' ' << k;
             }
+}
+
+/// Distances of the plan, by the horizontal and upright lines that their texts cover.
+TEST(InstallationPlan, DistancesAreWrittenInTheirOwnLines) {
+    // The upright line of b passes the middle of the horizontal one of a.
+    const Scene scene = sceneOf(
+        "ispace size=10,8\nlaser id=a at=1,-2,1 heading=90\nlaser id=b at=3,-1,1 heading=90\n");
+    const Picture plan =
+        installationPlan(scene, coverageFor(scene), installationsOf(scene)).picture;
+    const DisplayList& list = plan.list();
+    std::vector<Segment2> lines;
+    for (const DisplayList::Shape& shape : list.shapes)
+        for (std::uint32_t i = shape.first;
+             shape.kind == DisplayList::Kind::Lines && i < shape.last; ++i)
+            if (const auto curve = list.curve(i); curve.size() == 2)
+                lines.push_back({curve.front(), curve.back()});
+    constexpr double kPerMetre = 10;  // millimetres at 1:100
+    int found = 0;
+    for (const DisplayList::Text& text : list.texts) {
+        const double wide = textWidth(text.text, text.style) / 2;
+        const Point2 middle = text.anchor - Vec2{0, 0.36 * text.style.size};
+        const Box2 box{middle - Vec2{wide, text.style.size / 2},
+                       middle + Vec2{wide, text.style.size / 2}};
+        if (text.text.size() != 4 || text.text[1] != '.') continue;
+        ++found;
+        for (const Segment2& line : lines) {
+            if (!crosses(line, box)) continue;
+            EXPECT_NEAR(distance(line.a, line.b), kPerMetre * std::stod(text.text), 0.2)
+                << text.text;
+        }
+    }
+    EXPECT_EQ(found, 4);
 }
 
 }  // namespace
