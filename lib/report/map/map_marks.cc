@@ -139,25 +139,51 @@ void drawIds(Picture& picture, const MapPicture& map, const Box2& frame, LabelPl
     }
 }
 
-/// Writes names of zones in their first free corner; the legend lists names without a free corner.
+/// Returns the boxes of this size that lie in a corner of an outline, those at the corners of its
+/// bounds first, and one about the mean of its corners.
+std::vector<Box2> labelBoxes(const Polygon& outline, double inset, Vec2 size) {
+    const Box2 all = bounds(outline);
+    std::vector<Point2> corners = {
+        {all.low.x, all.high.y}, all.low, all.high, {all.high.x, all.low.y}};
+    corners.insert(corners.end(), outline.begin(), outline.end());
+    std::vector<Box2> boxes;
+    const auto add = [&](const Box2& box) {
+        bool is_crossed = false;
+        forEachEdge(outline,
+                    [&](const Segment2& edge) { is_crossed = is_crossed || crosses(edge, box); });
+        if (!is_crossed && locate(outline, box.center()) == Side::Inside) boxes.push_back(box);
+    };
+    for (const Point2 corner : corners)
+        for (const double right : {1.0, -1.0})
+            for (const double down : {-1.0, 1.0}) {
+                const Point2 near{corner.x + right * inset, corner.y + down * inset};
+                Box2 box;
+                box.add(near);
+                box.add({near.x + right * size.x, near.y + down * size.y});
+                add(box);
+            }
+    Vec2 sum{};
+    for (const Point2 corner : outline) sum = sum + (corner - Point2{});
+    const Point2 mean = Point2{} + (1.0 / static_cast<double>(outline.size())) * sum;
+    add({mean - 0.5 * size, mean + 0.5 * size});
+    return boxes;
+}
+
+/// Writes names of zones in their first free corner; the legend lists names without one.
 void drawZoneNames(Picture& picture, const MapPicture& map, LabelPlacer& places) {
     const double size = std::max(10.0, 0.85 * map.em), inset = 0.4 * map.em;
     const TextStyle style{size, false, Align::Left, palette::kZone, palette::kWhite.faded(0.8)};
     for (const Element& element : map.scene.environment.elements()) {
         if (element.record.keyword() != "zone") continue;
-        const Box2 zone = bounds(zoneOutline(element.record));
-        const Point2 low = map.view * Point2{zone.low.x, zone.high.y};  // y points down on the page
-        const Point2 high = map.view * Point2{zone.high.x, zone.low.y};
-        const double room = high.x - low.x - 2 * inset;
+        Polygon outline = zoneOutline(element.record);
+        for (Point2& p : outline) p = map.view * p;
+        const double room = bounds(outline).width() - 2 * inset;
         const std::string name = fitText(element.id, room, style);
         const double width = textWidth(name, style);
         if (width > room || (room < 5 * size && name != printable(element.id))) continue;
-        for (const Point2 corner :
-             {Point2{low.x + inset, high.y - inset - size}, Point2{low.x + inset, low.y + inset},
-              Point2{high.x - inset - width, high.y - inset - size},
-              Point2{high.x - inset - width, low.y + inset}}) {
-            if (!places.take({corner, {corner.x + width, corner.y + size}})) continue;
-            picture.text({corner.x, corner.y + 0.86 * size}, name, style);
+        for (const Box2& box : labelBoxes(outline, inset, {width, size})) {
+            if (!places.take(box)) continue;
+            picture.text({box.low.x, box.low.y + 0.86 * size}, name, style);
             break;
         }
     }

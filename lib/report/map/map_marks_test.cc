@@ -140,6 +140,29 @@ TEST(MapMarks, ZonesAreNamedWhereThereIsRoom) {
     EXPECT_EQ(placesOf(svg, "much-too-narrow").size(), 1U);  // legend
 }
 
+TEST(MapMarks, ZonesAreNamedInside) {
+    // Names of rectangles begin at the lower left; of an L without that corner elsewhere.
+    const std::string svg = mapOf(
+        "ispace size=8,8\nzone id=low at=-3,-3 size=1,1\nzone id=high at=3,3 size=1,1\n"
+        "zone id=ell path=0,-3;2,-3;2,2;-2,2;-2,1;0,1\n"
+        "zone id=tip path=-3,-1;-0.2,-2.4;-0.2,0.4\n",
+        {PictureFormat::Svg, 1200, ""});
+    const auto first = [&svg](const std::string& name) { return placesOf(svg, name).at(0); };
+    const Point2 low = first("low"), high = first("high");
+    const double scale = (high.x - low.x) / 6;
+    const auto begins = [&](const std::string& name) {
+        const Point2 at = first(name);
+        return Point2{-3.5 + (at.x - low.x) / scale, -3.5 - (at.y - low.y) / scale};
+    };
+    EXPECT_NEAR(scale, (low.y - high.y) / 6, 1e-2);
+    EXPECT_NEAR(begins("ell").x, -2, 0.1);
+    EXPECT_NEAR(begins("ell").y, 1.6, 0.3);
+    // No corner of a triangle is wide enough.
+    ASSERT_EQ(placesOf(svg, "tip").size(), 2U) << "plan and legend";
+    EXPECT_NEAR(begins("tip").x, -1.5, 0.4);
+    EXPECT_NEAR(begins("tip").y, -1.1, 0.3);
+}
+
 TEST(MapViews, BeamsAreThinnedWhereTheyEndTooNearEachOther) {
     // 0.05 degrees are 0.7 px at the wall: the picture shows lines, not a solid sector.
     const std::string laser = "ispace size=8,8\nlaser at=0,-3.9 heading=90 fov=60 range=20 step=";
