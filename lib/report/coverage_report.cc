@@ -317,16 +317,17 @@ std::string piecesText(const CoverageReport& report) {
                 " pieces, the largest has " + percent(report.largest_piece) + " of it\n";
     }
     if (report.unseen.empty()) return text;
-    text += "largest spots of free floor that no sensor sees:\n";
+    constexpr double kLeastArea = 0.005;  // square metres: below it 0.00 is printed
     std::vector<TextRow> rows;
-    for (std::size_t i = 0; i < std::min(kSpotsListed, report.unseen.size()); ++i) {
-        const UncoveredSpot& spot = report.unseen[i];
+    for (const UncoveredSpot& spot : report.unseen) {
+        if (rows.size() == kSpotsListed || spot.area < kLeastArea) break;
         rows.push_back({" ", area(spot.area), "around",
                         "(" + metres(spot.place.x) + ", " + metres(spot.place.y) + ")"});
     }
-    text += aligned(rows, "lrl");
-    if (report.unseen.size() > kSpotsListed)
-        text += "   and " + std::to_string(report.unseen.size() - kSpotsListed) + " smaller\n";
+    if (rows.empty()) return text + "no spot of free floor of 0.01 m2 or more is unseen\n";
+    text += "largest spots of free floor that no sensor sees:\n" + aligned(rows, "lrl");
+    if (report.unseen.size() > rows.size())
+        text += "   and " + std::to_string(report.unseen.size() - rows.size()) + " smaller\n";
     return text;
 }
 

@@ -108,6 +108,34 @@ largest spots of free floor that no sensor sees:
 )");
 }
 
+TEST(CoverageText, SpotsOfNoSizeAreNotListed) {
+    CoverageReport report = sampleReport();
+    report.unseen = {{{1, 2}, 0.012}, {{0.5, 0.25}, 0.004}, {{2, 2}, 0.001}};
+    EXPECT_NE(
+        coverageText(report).find("sees:\n   0.01 m2  around  (1.00, 2.00)\n   and 2 smaller\n"),
+        std::string::npos)
+        << coverageText(report);
+    report.unseen = {{{1, 2}, 0.004}};
+    EXPECT_NE(coverageText(report).find("\nno spot of free floor of 0.01 m2 or more is unseen\n"),
+              std::string::npos)
+        << coverageText(report);
+}
+
+TEST(CoverageText, ACrowdOfOneMomentHasNoQuantiles) {
+    Robustness robustness;
+    robustness.crowd_of = Robustness::CrowdOf::Scene;
+    robustness.requirements = {parseRequirement("90%")};
+    robustness.crowd = SampledFigures{1, {{{}, "coverage", 0.95, true, {0.8}}}, {0}};
+    EXPECT_EQ(spreadRows(*robustness.crowd),
+              (std::vector<std::vector<std::string>>{{"", "planned", "measured"},
+                                                     {"coverage", "95.00%", "80.00%"}}));
+    EXPECT_EQ(robustRequirements(robustness),
+              std::vector<std::string>{"90% is not met with the people of the scene"});
+    robustness.crowd->met = {1};
+    EXPECT_EQ(robustRequirements(robustness),
+              std::vector<std::string>{"90% is met with the people of the scene"});
+}
+
 TEST(CoverageText, SaysWhyExactMetricsAreMissing) {
     CoverageReport report = sampleReport();
     report.exact_missing = "what t sees is not known";

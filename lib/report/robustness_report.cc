@@ -152,6 +152,13 @@ std::string failuresText(int count) {
 
 std::vector<TextRow> spreadRows(const SampledFigures& sampled, bool has_error) {
     std::vector<TextRow> rows = {{"", "planned"}};
+    if (sampled.samples == 1) {
+        rows.front().emplace_back("measured");
+        for (const FigureSpread& figure : sampled.figures)
+            rows.push_back({figureName(figure.name, figure.is_exact), percentText(figure.planned),
+                            percentText(figure.mean())});
+        return rows;
+    }
     for (const NamedQuantile& one : kQuantiles) rows.front().emplace_back(one.head);
     rows.front().emplace_back("mean");
     if (has_error) rows.front().emplace_back("error");
@@ -182,10 +189,12 @@ std::vector<std::string> robustRequirements(const Robustness& robustness) {
         if (const auto& spread = robustness.mounting)
             sentences.push_back(text + " is met by " + std::to_string(spread->met[i]) + " of " +
                                 std::to_string(spread->samples) + " mountings");
-        if (const auto& crowd = robustness.crowd)
+        if (const auto& crowd = robustness.crowd; crowd && crowd->samples == 1)
+            sentences.push_back(text + (crowd->met[i] == 1 ? " is met " : " is not met ") +
+                                crowdText(robustness));
+        else if (crowd)
             sentences.push_back(text + " is met by " + std::to_string(crowd->met[i]) + " of " +
-                                std::to_string(crowd->samples) +
-                                (crowd->samples == 1 ? " crowd" : " crowds"));
+                                std::to_string(crowd->samples) + " crowds");
         if (robustness.failures == 0) continue;
         const FigureLoss* const loss = lossOf(robustness, requirement);
         if (loss == nullptr)

@@ -35,8 +35,8 @@ std::string mountingText(const Robustness& robustness);
 std::string crowdText(const Robustness& robustness);
 /// "any 2 sensors fail"
 std::string failuresText(int count);
-/// Returns heads and rows of the tables, for text and pages. \param has_error adds the standard
-/// error of the mean
+/// Returns heads and rows of the tables, for text and pages; a single sample has no quantiles.
+/// \param has_error adds the standard error of the mean
 std::vector<std::vector<std::string>> spreadRows(const SampledFigures& sampled,
                                                  bool has_error = false);
 std::vector<std::vector<std::string>> failureRows(const Robustness& robustness);
