@@ -101,11 +101,20 @@ PageSection summaryOf(const CoveragePageInput& input) {
                                    2) +
                        " s."
                  : "sight was never lost.")});
-    if (input.requirements.empty() && input.parts.run == nullptr && input.more.empty())
+    std::vector<JudgedRule> rules;
+    if (input.parts.rules != nullptr) rules = judgedRules(*input.parts.rules);
+    std::erase_if(rules, [](const JudgedRule& rule) { return !rule.is_required; });
+    if (input.requirements.empty() && rules.empty() && input.parts.run == nullptr &&
+        input.more.empty())
         section.blocks.push_back(
             PageText{"No requirement was given; --require 90% checks one.", Tone::Small});
     for (const JudgedRequirement& one : input.requirements)
         section.blocks.push_back(PageText{"Required are " + one.requirement + ": " +
+                                              (one.is_met ? "met; " : "not met; ") + one.finding +
+                                              ".",
+                                          one.is_met ? Tone::Good : Tone::Bad});
+    for (const JudgedRule& one : rules)
+        section.blocks.push_back(PageText{"Required is " + one.rule + ": " +
                                               (one.is_met ? "met; " : "not met; ") + one.finding +
                                               ".",
                                           one.is_met ? Tone::Good : Tone::Bad});
