@@ -309,12 +309,16 @@ std::string cameraTable(const std::vector<SensorMetrics>& sensors) {
 }
 
 std::string piecesText(const CoverageReport& report) {
+    constexpr double kAlmostAll = 0.9999;  // above it 100.00% may be printed
     std::string text;
     if (report.pieces == 1) {
         text += "covered floor is in one piece\n";
     } else if (report.pieces > 1) {
         text += "covered floor is in " + std::to_string(report.pieces) +
-                " pieces, the largest has " + percent(report.largest_piece) + " of it\n";
+                " pieces, the largest has " +
+                (report.largest_piece > kAlmostAll ? "more than " + percent(kAlmostAll)
+                                                   : percent(report.largest_piece)) +
+                " of it\n";
     }
     if (report.unseen.empty()) return text;
     constexpr double kLeastArea = 0.005;  // square metres: below it 0.00 is printed

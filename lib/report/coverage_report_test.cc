@@ -121,6 +121,13 @@ TEST(CoverageText, SpotsOfNoSizeAreNotListed) {
         << coverageText(report);
 }
 
+TEST(CoverageText, ALargestPieceIsNotAllOfTheFloor) {
+    CoverageReport report = sampleReport();
+    report.largest_piece = 0.99998;
+    EXPECT_NE(coverageText(report).find("in 2 pieces, the largest has more than 99.99% of it\n"),
+              std::string::npos);
+}
+
 TEST(CoverageText, ACrowdOfOneMomentHasNoQuantiles) {
     Robustness robustness;
     robustness.crowd_of = Robustness::CrowdOf::Scene;

@@ -36,12 +36,13 @@ NamedFigure named(const LeastSeenWay& way) {
 NamedFigure named(const Localisation& localisation) {
     NamedFigure figure{"localisation", "no cell of the grid lies indoors"};
     if (!localisation.mean) return figure;
-    figure.finding = "mean error " + errorText(localisation.mean) + " (none above " +
-                     formatDouble(localisation.within) + " m), median " +
-                     errorText(localisation.median) + ", 95% within " +
-                     errorText(localisation.most) + "; " + percentText(*localisation.share_within) +
-                     " of the floor within " + formatDouble(localisation.within) + " m, " +
-                     percentText(*localisation.localised) + " with a position";
+    const std::string within = formatDouble(localisation.within) + " m";
+    figure.finding = "mean error " + errorText(localisation.mean) + ", with " + within +
+                     " for larger and unknown ones; ";
+    if (localisation.median) figure.finding += "median " + errorText(localisation.median) + ", ";
+    if (localisation.most) figure.finding += "95% within " + errorText(localisation.most) + ", ";
+    figure.finding += percentText(*localisation.share_within) + " of the floor within " + within +
+                      ", " + percentText(*localisation.localised) + " with a position";
     return figure;
 }
 
