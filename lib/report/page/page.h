@@ -95,5 +95,7 @@ std::string htmlOf(const ReportPage& page);
 /// Writes the page as PDF on upright A4 sheets. Figures in millimetres keep their scale if they
 /// fit. Equal pages give equal bytes.
 std::string pdfOf(const ReportPage& page);
+/// Returns the sheets of that PDF, in millimetres.
+std::vector<Picture> sheetsOf(const ReportPage& page);
 
 }  // namespace ispace

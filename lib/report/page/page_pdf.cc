@@ -176,11 +176,52 @@ std::vector<PageTable> splitTable(const PageTable& table) {
     return parts;
 }
 
+/// A part of a line between two blanks or more, with the columns that it takes.
+struct Word {
+    std::size_t begin = 0, end = 0;
+    std::string text;
+};
+
+std::vector<Word> wordsOf(std::string_view line) {
+    std::vector<Word> words;
+    std::size_t column = 0, last = 0;  // last: behind the last character that is no blank
+    for (const char c : line) {
+        if ((static_cast<unsigned char>(c) & 0xC0U) == 0x80U) {  // of a character of several bytes
+            words.back().text += c;
+            continue;
+        }
+        ++column;
+        if (c == ' ') continue;
+        if (words.empty() || column - last > 2)
+            words.push_back({column - 1, column, ""});
+        else if (column - last == 2)
+            words.back().text += ' ';
+        words.back().text += c;
+        words.back().end = last = column;
+    }
+    return words;
+}
+
+/// Returns true if more words of the table's lines end where a word ends than begin where it
+/// begins.
+bool isRight(const std::vector<std::vector<Word>>& lines, std::size_t line, const Word& word) {
+    int begins = 0, ends = 0;
+    const auto count = [&](const std::vector<Word>& words) {
+        for (const Word& other : words) {
+            begins += other.begin == word.begin ? 1 : 0;
+            ends += other.end == word.end ? 1 : 0;
+        }
+    };
+    for (std::size_t i = line; i > 0 && !lines[i - 1].empty(); --i) count(lines[i - 1]);
+    for (std::size_t i = line; i < lines.size() && !lines[i].empty(); ++i) count(lines[i]);
+    return ends > begins;
+}
+
 class PdfWriter {
   public:
     explicit PdfWriter(const ReportPage& page) : sheets_(page.title), page_(page) {}
 
-    std::string write() {
+    std::vector<Picture> sheets() {
         sheets_.text(page_.title, {kTitle, true, Align::Left, palette::kInk, {}});
         sheets_.text(page_.subtitle, kCaption);
         for (const PageSection& section : page_.sections) {
@@ -203,8 +244,7 @@ class PdfWriter {
                     block);
             endRow();
         }
-        const std::vector<Picture> sheets = sheets_.finish();
-        return writePdf(sheets);
+        return sheets_.finish();
     }
 
   private:
@@ -311,13 +351,38 @@ class PdfWriter {
                              {palette::kObjectEdge.faded(0.5), 0.08});
     }
 
+    /// Lines with columns are set in their columns, as narrow as the widest line requires; others
+    /// are broken.
     void add(const PageCode& code) {
-        const TextStyle style{kLeast, false, Align::Left, palette::kInk, {}};
-        std::string_view text = code.text;
-        while (!text.empty()) {
+        TextStyle style{kLeast, false, Align::Left, palette::kInk, {}};
+        std::vector<std::vector<Word>> lines;
+        std::size_t longest = 1;
+        bool is_table = false;
+        for (std::string_view text = code.text; !text.empty();) {
             const std::size_t end = std::min(text.find('\n'), text.size());
-            sheets_.text(text.substr(0, end), style);
+            lines.push_back(wordsOf(text.substr(0, end)));
             text.remove_prefix(std::min(end + 1, text.size()));
+            if (lines.back().size() < 2) continue;
+            is_table = true;
+            longest = std::max(longest, lines.back().back().end);
+        }
+        const double column = textWidth("0", style);
+        if (is_table) style.size *= std::min(1.0, kColumn / column / static_cast<double>(longest));
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            if (lines[i].size() < 2 && (!is_table || lines[i].empty() || lines[i][0].begin == 0)) {
+                sheets_.text(lines[i].empty() ? "" : lines[i][0].text, style);
+                continue;
+            }
+            sheets_.need(kLine * style.size);
+            for (const Word& word : lines[i]) {
+                style.align = isRight(lines, i, word) ? Align::Right : Align::Left;
+                const std::size_t at = style.align == Align::Right ? word.end : word.begin;
+                sheets_.sheet().text({kMargin + static_cast<double>(at) * textWidth("0", style),
+                                      sheets_.y() + style.size},
+                                     word.text, style);
+            }
+            style.align = Align::Left;
+            sheets_.skip(kLine * style.size);
         }
         sheets_.skip(1.5);
     }
@@ -366,6 +431,8 @@ class PdfWriter {
 
 }  // namespace
 
-std::string pdfOf(const ReportPage& page) { return PdfWriter(page).write(); }
+std::vector<Picture> sheetsOf(const ReportPage& page) { return PdfWriter(page).sheets(); }
+
+std::string pdfOf(const ReportPage& page) { return writePdf(sheetsOf(page)); }
 
 }  // namespace ispace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 namespace ispace {
 namespace {
 
@@ -69,6 +71,31 @@ std::size_t pagesOf(const std::string& pdf) {
          at = pdf.find("/Type /Page %", at + 1))
         ++count;
     return count;
+}
+
+TEST(Page, PdfKeepsTheColumnsOfText) {
+    ReportPage page{"text", "", {}};
+    page.sections.push_back({"s",
+                             "Storey",
+                             {PageCode{"sensor  model     by cells\n"
+                                       "l1      urg-04lx   3.25 m2\n"
+                                       "camera  x         12.00 m2\n\n"
+                                       "one line that is no table\n"}}});
+    const std::vector<Picture> sheets = sheetsOf(page);
+    ASSERT_EQ(sheets.size(), 1U);
+    std::map<std::string, DisplayList::Text> texts;
+    for (const DisplayList::Text& text : sheets[0].list().texts) texts[text.text] = text;
+    for (const char* row : {"l1", "camera"}) {
+        EXPECT_EQ(texts.at(row).style.align, Align::Left);
+        EXPECT_EQ(texts.at(row).anchor.x, texts.at("sensor").anchor.x);
+    }
+    EXPECT_EQ(texts.at("urg-04lx").anchor.x, texts.at("model").anchor.x);
+    EXPECT_EQ(texts.at("x").anchor.x, texts.at("model").anchor.x);
+    for (const char* row : {"3.25 m2", "12.00 m2"}) {
+        EXPECT_EQ(texts.at(row).style.align, Align::Right);
+        EXPECT_EQ(texts.at(row).anchor.x, texts.at("by cells").anchor.x);
+    }
+    EXPECT_EQ(texts.count("one line that is no table"), 1U);
 }
 
 TEST(Page, PdfFillsSheets) {
