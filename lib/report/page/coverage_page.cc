@@ -44,6 +44,7 @@ std::string sensorsText(const Scene& scene) {
     std::map<std::string, std::size_t> counts;
     for (const Sensor& sensor : scene.sensors) ++counts[deviceText(sensor)];
     const std::size_t all = scene.sensors.size();
+    if (all == 0) return "no sensors";
     std::string text = std::to_string(all) + (all == 1 ? " sensor" : " sensors");
     std::string_view separator = ": ";
     for (const auto& [device, count] : counts) {
@@ -73,6 +74,20 @@ std::string identifiedText(const CoverageReport& report) {
     return "";
 }
 
+/// Tells how much of the floor the sensors see.
+PageText sightOf(const CoveragePageInput& input) {
+    const CoverageReport& report = input.coverage.report;
+    std::string seen = "The sensors see " + shareText(report.coverage) + " of the indoor floor";
+    if (const auto twice = seenTwice(report); twice && input.scene.sensors.size() > 1)
+        seen += ", and two or more of them " + percentText(*twice);
+    seen += identifiedText(report) + ".";
+    if (!report.unseen.empty())
+        seen += " The largest spot of free floor that none sees has " +
+                squareMetres(report.unseen.front().area) + " around " +
+                pointText(report.unseen.front().place) + ".";
+    return {std::move(seen)};
+}
+
 PageSection summaryOf(const CoveragePageInput& input) {
     const CoverageReport& report = input.coverage.report;
     PageSection section{"summary", "Summary", {}};
@@ -80,15 +95,7 @@ PageSection summaryOf(const CoveragePageInput& input) {
                                       " of indoor floor, " + squareMetres(report.free_area) +
                                       " of it free at " + formatFixed(report.height, 2) +
                                       " m, and " + sensorsText(input.scene) + "."});
-    std::string seen = "The sensors see " + shareText(report.coverage) + " of the indoor floor";
-    if (const auto twice = seenTwice(report))
-        seen += ", and two or more of them " + percentText(*twice);
-    seen += identifiedText(report) + ".";
-    if (!report.unseen.empty())
-        seen += " The largest spot of free floor that none sees has " +
-                squareMetres(report.unseen.front().area) + " around " +
-                pointText(report.unseen.front().place) + ".";
-    section.blocks.push_back(PageText{std::move(seen)});
+    if (!input.scene.sensors.empty()) section.blocks.push_back(sightOf(input));
     if (input.parts.run != nullptr && !input.parts.run->all.time_shares.empty())
         section.blocks.push_back(PageText{
             "In the run of " + formatFixed(input.parts.run->end - input.parts.run->begin, 2) +
@@ -105,7 +112,7 @@ PageSection summaryOf(const CoveragePageInput& input) {
     if (input.parts.rules != nullptr) rules = judgedRules(*input.parts.rules);
     std::erase_if(rules, [](const JudgedRule& rule) { return !rule.is_required; });
     if (input.requirements.empty() && rules.empty() && input.parts.run == nullptr &&
-        input.more.empty())
+        input.more.empty() && !input.scene.sensors.empty())
         section.blocks.push_back(
             PageText{"No requirement was given; --require 90% checks one.", Tone::Small});
     for (const JudgedRequirement& one : input.requirements)
@@ -244,13 +251,14 @@ PageTable sensorsOfReport(const Scene& scene, const Coverage& coverage) {
 }
 
 void addInstallation(const CoveragePageInput& input, ReportPage& page) {
+    if (input.scene.sensors.empty()) return;
     const std::vector<Installation> installations = installationsOf(input.scene);
     PageSection section{"installation", "Installation", {}};
     const std::vector<Cable> cables = cablesOf(input.scene);
     section.blocks.push_back(installationTable(input.scene, input.coverage, installations, cables));
     section.blocks.push_back(installationPlan(input.scene, input.coverage, installations));
     section.blocks.push_back(wallFacesTable(installations));
-    page.sections.push_back(std::move(section));
+    if (!installations.empty()) page.sections.push_back(std::move(section));
     PageSection pictures{"sensors", "Sensors", {}};
     pictures.blocks.push_back(sensorsOfReport(input.scene, input.coverage));
     for (PageFigure& figure : sensorPictures(input.scene, input.coverage))

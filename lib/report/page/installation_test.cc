@@ -8,9 +8,12 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "drawing/plan/plan.h"
 #include "report/map/sensor_colors.h"
+#include "report/page/coverage_page.h"
 #include "report/page/indoor_floor.h"
 #include "support/test_scenes.h"
 
@@ -302,6 +305,34 @@ TEST(InstallationPlan, DistancesAreWrittenInTheirOwnLines) {
         }
     }
     EXPECT_EQ(found, 4);
+}
+
+/// Returns the ids of a page's sections, and the texts of its summary.
+std::vector<std::string> outlineOf(const std::string& lines) {
+    const Scene scene = sceneOf(lines);
+    const Coverage coverage = coverageFor(scene);
+    std::vector<std::string> outline;
+    const ReportPage page = coveragePage({scene, coverage, "a.env", "coverage a.env"});
+    for (const PageSection& section : page.sections) outline.push_back(section.id);
+    for (const PageBlock& block : page.sections.front().blocks)
+        outline.push_back(std::get<PageText>(block).text);
+    return outline;
+}
+
+TEST(CoveragePage, LeavesOutTheSheetWithoutSensors) {
+    EXPECT_EQ(outlineOf("ispace size=4,4\nrobot id=r at=1,1\n"),
+              (std::vector<std::string>{
+                  "summary", "map", "methods", "records",
+                  "The room has 16.00 m2 of indoor floor, 16.00 m2 of it free at 0.15 m, and no "
+                  "sensors."}));
+    // One that rides on a robot is in no plan, and alone sees no floor twice.
+    EXPECT_EQ(outlineOf("ispace size=4,4\nrobot id=r at=1,1\nlaser on=r range=9 fov=360\n"),
+              (std::vector<std::string>{
+                  "summary", "map", "sensors", "material", "methods", "records",
+                  "The room has 16.00 m2 of indoor floor, 16.00 m2 of it free at 0.15 m, and 1 "
+                  "sensor: 1 × laser.",
+                  "The sensors see 100.00% of the indoor floor.",
+                  "No requirement was given; --require 90% checks one."}));
 }
 
 }  // namespace
