@@ -67,7 +67,8 @@ void JoinedRooms::Data::look(const SightBetweenRooms& sight, std::size_t from, s
     for (std::size_t i = set.firstOf(site); i < set.firstOf(site + 1); ++i)
         turned.push_back({"", model.kinds().front().model, model.poseOf({0, i})});
     for (std::size_t to = 0; to < rooms.size(); ++to) {
-        if (to == from || !sight.maySee(from, turned.front(), to)) continue;
+        if (to == from || rooms[to].model == nullptr || !sight.maySee(from, turned.front(), to))
+            continue;
         CellsBeyond seen{to, {}};
         sight.look(from, turned, to, rooms[to].model->target().grid, seen.parts);
         if (!seen.parts.runs.empty()) rooms[from].beyond[site].push_back(std::move(seen));
@@ -77,6 +78,10 @@ void JoinedRooms::Data::look(const SightBetweenRooms& sight, std::size_t from, s
 void JoinedRooms::Data::build(const SightBetweenRooms& sight, Progress& watch) {
     std::map<const Scene*, std::shared_ptr<const MeasuredScene>> known;
     for (const Room& room : inputs) {
+        if (room.scene == nullptr) {
+            rooms.emplace_back();
+            continue;
+        }
         auto& model = known[room.scene];
         if (model == nullptr)
             model = std::make_shared<const MeasuredScene>(*room.scene, room.groups, options, watch);
@@ -85,7 +90,7 @@ void JoinedRooms::Data::build(const SightBetweenRooms& sight, Progress& watch) {
     }
     std::int64_t sites = 0;
     for (std::size_t i = 0; i < rooms.size(); ++i) {
-        rooms[i].beyond.resize(setOf(i).sites());
+        if (rooms[i].model != nullptr) rooms[i].beyond.resize(setOf(i).sites());
         sites += std::ssize(rooms[i].beyond);
     }
     watch.begin("looking into other rooms", sites);

@@ -44,7 +44,7 @@ class JoinedRooms {
   public:
     /// A room, and the group of its sensors.
     struct Room {
-        const Scene* scene = nullptr;
+        const Scene* scene = nullptr;  ///< null: a room without floor, a part without layouts
         std::vector<SensorGroup> groups;
     };
 

@@ -127,7 +127,10 @@ class BuildingSearch {
         result.counts.resize(scenes_.size());
         result.storeys.resize(scenes_.size());
         result.bound = whole > 0 ? std::min(1.0, shared.bound / whole) : 0;
-        for (const auto& scene : scenes_) result.groups.push_back(alone_.groupFor(*scene, 1));
+        for (const auto& scene : scenes_) {
+            result.groups.push_back(alone_.groupFor(*scene, 1));
+            result.has_floor.push_back(hasFloor(*scene));
+        }
         for (std::size_t i = 0; i < parts_.size(); ++i) {
             if (shared.counts[i] == 0) continue;
             if (parts_[i].layouts.empty())
@@ -152,12 +155,19 @@ class BuildingSearch {
         if (sight.hasOpenings() && seesOutside({"", group.model, {}})) {
             std::vector<JoinedRooms::Room> rooms;
             for (const auto& scene : scenes_)
-                rooms.push_back({scene.get(), {alone_.groupFor(*scene, count_)}});
+                rooms.push_back(
+                    hasFloor(*scene)
+                        ? JoinedRooms::Room{scene.get(), {alone_.groupFor(*scene, count_)}}
+                        : JoinedRooms::Room());
             joined_ = std::make_unique<JoinedRooms>(std::move(rooms), options_, sight, progress_);
             for (auto& storeys : joined_->parts()) parts_.push_back({std::move(storeys)});
         } else {
             for (std::size_t i = 0; i < scenes_.size(); ++i) parts_.push_back({{i}});
         }
+        const auto is_open = [this](const Part& part) {
+            return part.storeys.size() == 1 && !hasFloor(*scenes_[part.storeys.front()]);
+        };
+        if (!std::all_of(parts_.begin(), parts_.end(), is_open)) std::erase_if(parts_, is_open);
         for (Part& part : parts_) {
             if (part.storeys.size() == 1) continue;
             if (options_.is_connected)

@@ -13,6 +13,7 @@ namespace ispace {
 /// Equal sensors shared out over the storeys of a building.
 struct BuildingArrangement {
     std::vector<int> counts;           ///< of sensors, by storey
+    std::vector<bool> has_floor;       ///< by storey; false: all of its floor is open
     std::vector<SensorGroup> groups;   ///< the group of each storey
     std::vector<Arrangement> storeys;  ///< without sensors where the count is 0
     double coverage = 0;               ///< of the indoor floor of all storeys
@@ -29,9 +30,9 @@ struct BuildingArrangement {
 /// Each storey is searched with 1, 2, ... `count` sensors, and storeys of which candidates see each
 /// other through openings are searched together (JoinedRooms); shareOut() chooses the split. As no
 /// candidate sees a storey of another part, the bound over all splits is a bound of the building. A
-/// storey weighs as much as its indoor area. Equal storeys are searched once.
-/// \pre the scenes hold no sensors; options have neither target nor budget and do not refine
-/// \throws as arrange()
+/// storey weighs as much as its indoor area; one without a floor has none and gets no sensors.
+/// Equal storeys are searched once. \pre the scenes hold no sensors; options have neither target
+/// nor budget and do not refine \throws as arrange()
 BuildingArrangement arrangeBuilding(const BuildingScene& building, const SensorSpec& sensor,
                                     int count, const ArrangeOptions& options, Progress& progress);
 

@@ -43,7 +43,6 @@ class AreaSum {
 };
 
 std::optional<double> areaOf(const std::optional<double>& share, double area) {
-    constexpr double kNoFloor = 1e-5;  // m2; see scenesOfFloors()
     if (!(area > kNoFloor)) return 0.0;
     return share ? std::optional(*share * area) : std::nullopt;
 }

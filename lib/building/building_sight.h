@@ -46,6 +46,11 @@ std::vector<FloorOpening> floorOpenings(const BuildingScene& building);
 /// share the result if their openings are equal; storeys without openings keep their scenes.
 std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& building);
 
+/// Square metres of a corner that remains of a floor that is all open, see scenesOfFloors().
+constexpr double kNoFloor = 1e-5;
+/// Returns false for the scene of such a floor.
+bool hasFloor(const Scene& scene);
+
 /// Returns the scene of a storey without the openings in its floor, in its records, too, so that
 /// scenes that are made of them keep the openings.
 std::shared_ptr<const Scene> openedScene(const BuildingScene& building, std::size_t storey);

@@ -59,6 +59,8 @@ std::vector<FloorOpening> floorOpenings(const BuildingScene& building) {
     return openings;
 }
 
+bool hasFloor(const Scene& scene) { return scene.environment.indoor().area() > kNoFloor; }
+
 std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,
                                             std::span<const FloorOpening> openings) {
     std::vector<std::vector<bool>> reached(storeys, std::vector<bool>(storeys));

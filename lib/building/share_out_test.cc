@@ -144,6 +144,48 @@ TEST(BuildingArrange, ProvesTheBestOfEverySplitSolvedApart) {
     EXPECT_GT(found.counts[1], 0);
 }
 
+TEST(BuildingArrange, LeavesOutStoreysThatAreAllOpen) {
+    const auto storeys = [](bool has_middle) {
+        std::string text =
+            "- storey: {id: ground, height: 2, records: [{ispace: {size: 5 x 3}}]}\n";
+        if (has_middle)
+            text += "- storey: {id: middle, z: 3, height: 2, records: [{ispace: {size: 5 x 3}}]}\n";
+        text += "- storey: {id: top, z: 6, height: 2, records: [{ispace: {size: 4 x 2}}]}\n";
+        if (has_middle)
+            text +=
+                "- shaft: {storeys: 'ground,middle', path: [[-3, -2], [3, -2], [3, 2], [-3, "
+                "2]]}\n";
+        return makeBuildingScene(readBuilding(text, "house.yaml", {}), {}, {});
+    };
+    SilentProgress progress;
+    const BuildingScene whole = storeys(true), rest = storeys(false);
+    SensorSpec cameras = lasers(3);
+    cameras.record = Record(*sceneSchemas().find("camera"));
+    cameras.record.set("fov", Tuple{90});
+    cameras.record.set("tilt", -40.0);
+    for (const SensorSpec& sensor : {lasers(3), cameras}) {
+        const BuildingArrangement found = arrangeBuilding(whole, sensor, 3, coarse(), progress);
+        const BuildingArrangement wanted = arrangeBuilding(rest, sensor, 3, coarse(), progress);
+        EXPECT_EQ(found.has_floor, (std::vector<bool>{true, false, true}));
+        EXPECT_EQ(found.counts, (std::vector<int>{wanted.counts[0], 0, wanted.counts[1]}));
+        EXPECT_NEAR(found.value, wanted.value, 1e-6);
+        EXPECT_NEAR(found.bound, wanted.bound, 1e-6);
+        EXPECT_NEAR(found.coverage, wanted.coverage, 1e-6);
+    }
+}
+
+TEST(BuildingArrange, NeedsAFloor) {
+    const std::string text =
+        "- storey: {id: ground, z: 0, height: 2, records: [{ispace: {size: 5 x 3}}]}\n"
+        "- storey: {id: upper, z: 3, height: 2, records: [{ispace: {size: 5 x 3}}]}\n"
+        "- storey: {id: cellar, z: -3, height: 2, records: [{ispace: {size: 5 x 3}}]}\n"
+        "- shaft: {storeys: 'cellar,ground,upper', path: [[-3, -2], [3, -2], [3, 2], [-3, 2]]}\n";
+    SilentProgress progress;
+    const BuildingScene building = makeBuildingScene(readBuilding(text, "house.yaml", {}), {}, {});
+    const BuildingArrangement found = arrangeBuilding(building, lasers(1), 1, coarse(), progress);
+    EXPECT_EQ(found.has_floor, (std::vector<bool>{true, false, false})) << "the lowest has one";
+}
+
 TEST(BuildingArrange, CoversAsMuchAsCoverageSays) {
     const BuildingScene building = twoStoreys();
     SilentProgress progress;

@@ -80,7 +80,9 @@ std::string buildingText(const BuildingScene& building, const BuildingArrangemen
         const Arrangement& storey = found.storeys[i];
         sensors += storey.sensors.size();
         text += "arrange: storey " + building.document.storeys[i].id + ": " +
-                countText(storey.sensors.size()) + ", coverage " + percentText(storey.coverage) +
+                (found.has_floor[i] ? countText(storey.sensors.size()) + ", coverage " +
+                                          percentText(storey.coverage)
+                                    : "left out, all of its floor is open") +
                 '\n';
     }
     const double gap = found.bound > 0 ? std::max(0.0, 1 - found.value / found.bound) : 0;
