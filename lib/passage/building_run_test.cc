@@ -350,5 +350,25 @@ TEST(Cabin, RidersLeaveAWayOutForOthers) {
     EXPECT_FALSE(slotIn(cabin, {}, wide));
 }
 
+/// The foot of the stairs lies in the corner between a wall and a body that stands for the steps.
+TEST(BuildingRun, PeopleReachStairsInACorner) {
+    const std::string text =
+        "- storey: {id: ground, height: 2.7, records: [{fence: {path: [[0, 0], [12, 0], [12, 4], "
+        "[0, 4]], closed: yes}}, {cube: {id: steps, at: [7.64, 2.99], heading: -120, size: [1.7, "
+        "1.28, 2.7]}}]}\n"
+        "- storey: {id: upper, z: 2.7, height: 2.7, records: [{fence: {path: [[0, 0], [12, 0], "
+        "[12, 9], [0, 9]], closed: yes}}]}\n"
+        "- stairs: {id: s1, storeys: 'ground,upper', at: [8.07, 3.73], heading: -120, size: [1.28, "
+        "1.7]}\n";
+    const BuildingScene building = buildingOf("human id=ground/h at=2,2\n", text);
+    BuildingRun run(building, optionsOf(std::chrono::milliseconds(20)));
+    for (const RoomPoint& to : {RoomPoint{1, {3, 5}}, {0, {9, 1}}, {1, {9, 6}}, {0, {2, 2}}}) {
+        ASSERT_EQ(run.travel("ground/h", {{to}}).refusal, "");
+        const auto end = await(run, "ground/h", seconds(run.world(0).time()) + 60);
+        ASSERT_TRUE(end) << to.room;
+        EXPECT_EQ(end->outcome, Outcome::Done) << to.room;
+    }
+}
+
 }  // namespace
 }  // namespace ispace

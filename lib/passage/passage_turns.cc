@@ -136,6 +136,7 @@ void BuildingRun::Data::waitTurn(Traveller& who, BuildingTrip& trip) {
     if (way.empty()) return finish(who.id, Outcome::Unreached);
     stop.holder = who.id;
     trip.state = TripState::Nearing;
+    if (landing.is_tight) return sendStraight(who, trip, {way.begin(), way.end()});
     send(who, trip, way, trip.plan.speed > 0 ? trip.plan.speed : who.ability.speed);
 }
 

@@ -107,27 +107,20 @@ void StoreyWays::addLift(const BuildingScene& building, std::size_t index) {
 
 void StoreyWays::addStairs(const BuildingScene& building, std::size_t index) {
     const StoreyLink& passage = (*passages_)[index];
-    constexpr int kDirections = 16;
     const auto add = [&](std::size_t stop, const Pose2& end) {
         const std::size_t storey = passage.storeys[stop];
         const Pose2 from = inFrameOf(building.document.storeys[storey], end);
-        for (double way = 0; way <= kFarthestLanding; way += kLandingStep)
-            for (int k = 0; k < kDirections; ++k) {
-                // First straight away from the steps, then to the sides.
-                const int aside = (k + 1) / 2;
-                const double turn = 180 + (k % 2 == 0 ? 1 : -1) * aside * 360.0 / kDirections;
-                const Angle heading = from.heading + Angle::degrees(turn);
-                const Point2 p = Pose2{from.position, heading} * Point2{way, 0};
-                if (!finders_[storey].isFree(p)) continue;
-                landings_.push_back({.passage = index,
-                                     .stop = stop,
-                                     .storey = storey,
-                                     .at = {p, from.heading},
-                                     .lane = 0,
-                                     .spots = {},
-                                     .ways = finders_[storey].waysFrom(p)});
-                return;
-            }
+        const auto p = freeBefore(storey, from);
+        if (!p) return;
+        const double room = size_.radius + WayFinder::kMargin + kRoom;
+        landings_.push_back({.passage = index,
+                             .stop = stop,
+                             .storey = storey,
+                             .at = {*p, from.heading},
+                             .lane = 0,
+                             .is_tight = obstacles_[storey].overlap(*p, room).has_value(),
+                             .spots = {},
+                             .ways = finders_[storey].waysFrom(*p)});
     };
     // Inner storeys of stairs have a foot and a top; movers come and go at the foot.
     for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop) {
@@ -135,6 +128,36 @@ void StoreyWays::addStairs(const BuildingScene& building, std::size_t index) {
         const Angle back = passage.frame.heading + Angle::degrees(180);
         add(stop, is_top ? Pose2{passage.top, back} : passage.frame);
     }
+}
+
+/// Finds the free point nearest to an end of a flight that no wall parts from it; if there is none,
+/// the nearest one at all. \param end heads to the steps
+std::optional<Point2> StoreyWays::freeBefore(std::size_t storey, const Pose2& end) const {
+    constexpr double kThin = 0.01;
+    constexpr int kDirections = 16;
+    const Obstacles& bodies = obstacles_[storey];
+    const auto is_before = [&](Point2 p) {
+        // A body that stands for the steps may contain the end.
+        const double length = distance(end.position, p);
+        Point2 from = end.position;
+        for (double way = kLandingStep; way < length && bodies.overlap(from, kThin);
+             way += kLandingStep)
+            from = end.position + way / length * (p - end.position);
+        return !bodies.near({from, p}, kThin);
+    };
+    std::optional<Point2> beyond;
+    for (double way = 0; way <= kFarthestLanding; way += kLandingStep)
+        for (int k = 0; k < kDirections; ++k) {
+            // First straight away from the steps, then to the sides.
+            const int aside = (k + 1) / 2;
+            const double turn = 180 + (k % 2 == 0 ? 1 : -1) * aside * 360.0 / kDirections;
+            const Point2 p =
+                Pose2{end.position, end.heading + Angle::degrees(turn)} * Point2{way, 0};
+            if (!finders_[storey].isFree(p)) continue;
+            if (is_before(p)) return p;
+            if (!beyond) beyond = p;
+        }
+    return beyond;
 }
 
 const Landing* StoreyWays::landing(std::size_t passage, std::size_t stop) const {

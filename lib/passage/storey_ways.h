@@ -48,6 +48,7 @@ struct Landing {
     std::size_t passage = 0, stop = 0, storey = 0;
     Pose2 at;                   ///< of a mover about to enter
     double lane = 0;            ///< of a lift: metres from its door
+    bool is_tight = false;      ///< bodies are so near that steering would avoid it
     std::vector<Point2> spots;  ///< where movers wait, the best first
     WayFinder::Field ways;      ///< from there
 };
@@ -98,6 +99,7 @@ class StoreyWays {
     void addLift(const BuildingScene& building, std::size_t index);
     void addStairs(const BuildingScene& building, std::size_t index);
     void addSpots(Landing& landing) const;
+    [[nodiscard]] std::optional<Point2> freeBefore(std::size_t storey, const Pose2& end) const;
 
     const std::vector<StoreyLink>* passages_;
     MoverSize size_;
