@@ -21,6 +21,7 @@
 #include "report/presence_report.h"
 #include "report/run_report.h"
 #include "report/trace_file.h"
+#include "scene/run/run_reader.h"
 #include "scene/scene.h"
 
 namespace {
@@ -39,9 +40,11 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const Scene
 /// A record holds its own scene.
 SceneInput readInput(const CoverageToolOptions& options) {
     std::vector<std::string> operands = options.operands;
-    if (!options.run.empty() && operands.empty())
+    if (!options.run.empty() && operands.empty()) {
+        static_cast<void>(RunReader(options.run));  // fails before a missing layout does
         if (const std::string scene = sceneOfRecord(options.run); !scene.empty())
             operands.push_back(scene);
+    }
     keepFreedMemory(operands);
     SceneInput input = readScene({operands, options.rules, true});
     addZones(options.zones, input);
