@@ -131,7 +131,9 @@ void BuildingRun::Data::beginRecordedTrips() {
             trip.plan = std::move(parsed.plan);
             fault = begin(id, std::move(trip)).refusal;
         }
-        if (!fault.empty()) findings.add(own.finding("trip", fault.insert(0, id + ": ")));
+        if (fault.empty()) continue;
+        if (fault.find(id) == std::string::npos) fault.insert(0, id + ": ");
+        findings.add(own.finding("trip", fault));
     }
     findings.throwIfAny();
 }

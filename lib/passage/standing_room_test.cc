@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "passage/building_run.h"
 #include "scene/scene.h"
 #include "support/test_building_run.h"
@@ -95,6 +96,18 @@ TEST(StandingRoom, EndsAtOpenings) {
     EXPECT_EQ(placed(run, "ground/r1", 1, {5, 6}), "");
     EXPECT_EQ(placed(run, "ground/h", 0, {7, 5}), "");
     EXPECT_EQ(placed(run, "ground/r1", 0, {6, 1}), "");
+}
+
+TEST(StandingRoom, EndsRecordedTripsAtOpenings) {
+    const BuildingScene building =
+        buildingOf("human id=ground/h at=3,6 trip=upper/5,5\n", kOpenBuilding);
+    try {
+        const BuildingRun run(building, optionsOf());
+        ADD_FAILURE() << "the trip begins";
+    } catch (const FormatError& error) {
+        EXPECT_EQ(error.diagnostics().front().message,
+                  "ground/h has no room at upper/5,5: the floor is open there, for atrium");
+    }
 }
 
 TEST(StandingRoom, IsNoMatterForATurnOnTheSpot) {
