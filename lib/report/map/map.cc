@@ -179,8 +179,10 @@ Picture coverageMap(const Scene& scene, const Coverage& coverage, const MapOptio
     picture.describe(options.title.empty() ? "coverage" : options.title, "");
     drawPlanSeen(picture, map);
     const double rim = page.margin - 0.2 * page.em;
-    const Box2 frame{{page.plan.low.x - rim, page.plan.low.y - rim},
-                     {page.plan.high.x + rim, page.plan.high.y + rim}};
+    Box2 frame{{page.plan.low.x - rim, page.plan.low.y - rim},
+               {page.plan.high.x + rim, page.plan.high.y + rim}};
+    if (!options.title.empty())  // not over the head
+        frame.low.y = std::max(frame.low.y, page.subtitle_base + 0.4 * page.em);
     picture.pushLayer("places tried");
     drawTrace(picture, map, frame);
     picture.pop();

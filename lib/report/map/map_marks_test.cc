@@ -140,6 +140,15 @@ TEST(MapMarks, ZonesAreNamedWhereThereIsRoom) {
     EXPECT_EQ(placesOf(svg, "much-too-narrow").size(), 1U);  // legend
 }
 
+TEST(MapMarks, LabelsKeepOffTheHead) {
+    // Behind the heading a label would lie above the plan.
+    const std::string svg = mapOf("ispace size=8,8\nlaser id=up at=0,3.95 heading=-90\n",
+                                  {PictureFormat::Svg, 1200, "head"});
+    constexpr double kEm = 17;
+    const double subtitle = placesOf(svg, "head").at(0).y + 1.5 * kEm;
+    EXPECT_GT(placesOf(svg, "up").at(0).y - 0.8 * kEm, subtitle + 0.2 * kEm);
+}
+
 TEST(MapMarks, ZonesAreNamedInside) {
     // Names of rectangles begin at the lower left; of an L without that corner elsewhere.
     const std::string svg = mapOf(
