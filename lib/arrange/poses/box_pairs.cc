@@ -41,7 +41,7 @@ double BoxPairs::unionOf(BoxId first, BoxId second) const {
     const Known a{{first}, 1, boxes_[first].most}, b{{second}, 1, boxes_[second].most};
     const Known both[] = {a, b};
     const BoxId ids[] = {first, second};
-    const Grain grain = boxes_.areWithinCells(Grain::Folded, ids) ? Grain::Fine : Grain::Folded;
+    const Grain grain = boxes_.areWithinCells(Grain::Large, ids) ? Grain::Fine : Grain::Large;
     return std::min({boxes_.unionOf(both, {}, grain), boxes_.unionOf({}, ids, grain),
                      boxes_.unionOf({&a, 1}, {&second, 1}, grain),
                      boxes_.unionOf({&b, 1}, {&first, 1}, grain)});

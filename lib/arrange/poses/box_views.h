@@ -74,6 +74,7 @@ class BoxViews {
 
   private:
     friend class BoxSight;
+    friend class BoxSums;
     friend class CommonSight;
     struct Face {
         std::array<Point2, 3> at;                        // counter-clockwise

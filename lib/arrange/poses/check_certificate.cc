@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "arrange/poses/box_views.h"
+#include "arrange/poses/box_sums.h"
 #include "arrange/poses/certificate.h"
 #include "arrange/poses/pose_search.h"
 #include "base/error.h"
@@ -21,6 +21,7 @@ namespace {
 using poses::BoxCore;
 using poses::BoxView;
 using poses::BoxViews;
+using poses::CheckedBox;
 using poses::PoseBox;
 using poses::Sector;
 
@@ -46,16 +47,6 @@ class CertificateChecker {
     CertificateCheck check();
 
   private:
-    /// A box; its second half follows the subtree of the first, which is the next box.
-    struct Box {
-        PoseBox box;
-        std::uint32_t second = 0;  // 0: whole
-        std::uint32_t end = 0;     // of its subtree
-        double most = 0;           // bounds the area that a single pose of it sees
-        bool is_used = false;      // by a pair or a tuple
-        BoxView view = {}, large_view = {};
-        BoxCore core = {}, large_core = {};
-    };
     /// Boxes of several sensors, in the order of the tree of boxes.
     struct Group {
         Boxes boxes{};
@@ -90,7 +81,7 @@ class CertificateChecker {
     const PoseCertificate& certificate_;
     const std::string& name_;
     std::size_t at_ = 0;  // in the tree of boxes
-    std::vector<Box> boxes_;
+    std::vector<CheckedBox> boxes_;
     std::vector<Group> pairs_, tuples_;
     std::vector<std::uint32_t> blind_;  // boxes that were left out: their poses must see no floor
 };
@@ -161,19 +152,27 @@ void CertificateChecker::readGroup(const std::string& tree, std::size_t& at, con
 void CertificateChecker::computeViews() {
     constexpr std::size_t kMostBytes = std::size_t{8} << 30U;
     for (const std::uint32_t id : blind_) boxes_[id].is_used = true;
+    std::uint32_t end = 0;  // of the used boxes so far
+    for (std::uint32_t id = 0; id < boxes_.size(); ++id) {
+        if (boxes_[id].is_used) end = std::max(end, boxes_[id].end);
+        boxes_[id].is_part = id < end;
+    }
     std::atomic<std::size_t> parts = 0;
     tbb::parallel_for(std::size_t{0}, boxes_.size(), [this, &parts](std::size_t i) {
-        Box& box = boxes_[i];
-        if (box.second != 0 && !box.is_used) return;
-        box.view = floors_.fine.viewOf(box.box);
-        box.most = box.view.area;
-        if (!box.is_used) {
-            box.view = {};
+        CheckedBox& box = boxes_[i];
+        if (box.second != 0 && !box.is_part) return;
+        box.large_view = floors_.large.viewOf(box.box);
+        box.most = box.large_view.area;
+        if (!box.is_part) {
+            box.large_view = {};
             return;
         }
-        box.core = floors_.fine.coreOf(box.box);
-        box.large_view = floors_.large.viewOf(box.box);
         box.large_core = floors_.large.coreOf(box.box);
+        if (box.is_used) {
+            box.view = floors_.fine.viewOf(box.box);
+            box.most = std::min(box.most, box.view.area);
+            box.core = floors_.fine.coreOf(box.box);
+        }
         parts += box.view.parts.size() + box.core.parts.size() + box.large_view.parts.size() +
                  box.large_core.parts.size();
         if (parts * sizeof(std::uint16_t) > kMostBytes)
@@ -183,10 +182,10 @@ void CertificateChecker::computeViews() {
     for (const std::uint32_t id : blind_)
         if (!boxes_[id].view.parts.empty()) refuse("a tree leaves out poses that see floor");
     for (std::size_t i = boxes_.size(); i-- > 0;) {
-        Box& box = boxes_[i];
+        CheckedBox& box = boxes_[i];
         if (box.second == 0) continue;
         const double halves = std::max(boxes_[i + 1].most, boxes_[box.second].most);
-        box.most = box.is_used ? std::min(box.most, halves) : halves;
+        box.most = box.is_part ? std::min(box.most, halves) : halves;
     }
 }
 
@@ -197,7 +196,7 @@ double CertificateChecker::unionOf(bool is_large, const Boxes& boxes, std::size_
     std::size_t areas_size = pair == 0 ? 0 : 1, views_size = 0, in_pair = 0;
     areas[0].area = paired;
     for (std::size_t i = 0; i < size; ++i) {
-        const Box& box = boxes_[boxes[i]];
+        const CheckedBox& box = boxes_[boxes[i]];
         const BoxCore& core = is_large ? box.large_core : box.core;
         if ((pair >> i & 1U) != 0)
             areas[0].cores[in_pair++] = &core;
@@ -281,7 +280,12 @@ double CertificateChecker::boundIn(bool is_large, const Boxes& boxes) const {
 }
 
 double CertificateChecker::boundOf(const Boxes& boxes) const {
-    const double bound = boundIn(true, boxes);
+    constexpr int kHalvings = 8;
+    double bound = boundIn(true, boxes);
+    if (bound > certificate_.bound && count_ > 1)
+        bound =
+            std::min(bound, poses::BoxSums(floors_.large, boxes_, times_)
+                                .boundOf({boxes.data(), count_}, certificate_.bound, kHalvings));
     return bound > certificate_.bound ? std::min(bound, boundIn(false, boxes)) : bound;
 }
 
@@ -289,7 +293,7 @@ double CertificateChecker::boundOf(const Boxes& boxes) const {
 double CertificateChecker::sharedBy(bool is_large, const Boxes& boxes) const {
     std::array<BoxViews::Placed, kMostPosed> placed{};
     for (std::size_t i = 0; i < count_; ++i) {
-        const Box& box = boxes_[boxes[i]];
+        const CheckedBox& box = boxes_[boxes[i]];
         placed[i] = is_large ? BoxViews::Placed{box.most, &box.large_view, &box.large_core}
                              : BoxViews::Placed{box.most, &box.view, &box.core};
     }
@@ -321,9 +325,9 @@ CertificateCheck CertificateChecker::check() {
 CertificateCheck checkCertificate(std::span<const Region> floor, std::size_t most,
                                   const Sector& sector, int sensors, const PoseGoal& goal,
                                   const PoseCertificate& certificate, const std::string& name) {
-    constexpr std::size_t kFold = 16;  // cells of the search's folded ones
+    constexpr std::size_t kFine = 16;  // cells in a large one
     const BoxViews fine(floor, most, sector, goal.weights);
-    const BoxViews large(floor, std::max(most / kFold, std::size_t{1}), sector, goal.weights);
+    const BoxViews large(floor, std::max(most / kFine, std::size_t{1}), sector, goal.weights);
     return CertificateChecker({fine, large}, sector, sensors, goal.times, certificate, name)
         .check();
 }

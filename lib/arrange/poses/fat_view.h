@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -52,8 +53,9 @@ struct FloorWeighting {
     std::vector<Piece> pieces = {};  ///< may reach beyond the floor
 };
 
-/// Sizes of cells: folded ones hold 4 x 4 of the fine ones, and take a fifteenth of the time.
-enum class Grain { Fine, Folded };
+/// Sizes of cells: large ones are as large as 4 x 4 of the fine ones, and take a fifteenth of the
+/// time.
+enum class Grain { Fine, Large };
 
 /// A floor as triangles, and as square cells of known area.
 ///
@@ -62,7 +64,7 @@ class PoseFloor {
   public:
     /// \param most number of cells that the box around the floor is divided into, at most
     PoseFloor(std::span<const Region> regions, std::size_t most,
-              const FloorWeighting& weighting = {});
+              const FloorWeighting& weighting = {}, Grain grain = Grain::Fine);
 
     using Corners = std::array<Point2, 3>;
     struct Triangle {
@@ -79,30 +81,28 @@ class PoseFloor {
     [[nodiscard]] double mostWeight() const { return most_weight_; }
 
     /// Side of a cell, m.
-    [[nodiscard]] double side(Grain grain = Grain::Fine) const {
-        return grain == Grain::Folded ? side_ * kFold : side_;
-    }
+    [[nodiscard]] double side() const { return side_; }
     /// Area of one part of a cell, m2.
-    [[nodiscard]] double partArea(Grain grain = Grain::Fine) const {
-        return side(grain) * side(grain) / kParts;
-    }
+    [[nodiscard]] double partArea() const { return side_ * side_ / kParts; }
     /// Parts of each cell that are floor, rounded up; cells row by row, layer by layer.
-    [[nodiscard]] const std::vector<std::uint8_t>& parts(Grain grain = Grain::Fine) const {
-        return grain == Grain::Folded ? folded_parts_ : parts_;
+    [[nodiscard]] const std::vector<std::uint8_t>& parts() const { return parts_; }
+    /// Calls visit(weight, first, count) for the cells of each weight.
+    template <typename Visit>
+    void forEachLayer(Visit visit) const {
+        for (const Layer& layer : layers_) visit(layer.weight, layer.begin, layer.rows * columns_);
     }
-    /// Converts parts of fine cells, or none, to parts of folded ones.
-    [[nodiscard]] std::vector<std::uint8_t> fold(const std::vector<std::uint8_t>& parts,
-                                                 bool rounds_up) const;
     /// Computes the area times weight of parts of all cells.
     /// \param sum (first, count) returns the number of parts in these cells
     template <typename Sum>
-    [[nodiscard]] double weightOf(Sum sum, Grain grain = Grain::Fine) const {
-        const bool is_folded = grain == Grain::Folded;
-        const std::size_t columns = is_folded ? foldedColumns() : columns_;
+    [[nodiscard]] double weightOf(Sum sum) const {
         double weight = 0;
-        for (const Layer& layer : is_folded ? folded_layers_ : layers_)
-            weight += layer.weight * static_cast<double>(sum(layer.begin, layer.rows * columns));
-        return weight * partArea(grain);
+        for (const Layer& layer : layers_)
+            weight += layer.weight * static_cast<double>(sum(layer.begin, layer.rows * columns_));
+        return weight * partArea();
+    }
+    /// The same floor in cells of this size. \pre it is of fine cells
+    [[nodiscard]] const PoseFloor& in(Grain grain) const {
+        return grain == Grain::Large ? *large_ : *this;
     }
     [[nodiscard]] std::size_t columns() const { return columns_; }
     [[nodiscard]] std::size_t rows() const { return rows_; }
@@ -145,10 +145,7 @@ class PoseFloor {
         double weight = 1;
         std::size_t layer = kNone;  // none: its floor does not count
     };
-    static constexpr std::size_t kFold = 4;
-    [[nodiscard]] std::size_t foldedColumns() const { return (columns_ + kFold - 1) / kFold; }
     void addLayers(const FloorWeighting& weighting);
-    void foldLayers();
     /// Clips a polygon to a piece; returns false if they share no area.
     static bool clipTo(const Piece& piece, const Outline& polygon, Outline& clipped,
                        Outline& spare);
@@ -159,9 +156,10 @@ class PoseFloor {
     double side_ = 1, area_ = 0, elsewhere_ = 1, most_weight_ = 1;
     std::size_t columns_ = 1, rows_ = 1;
     std::vector<Piece> pieces_;
-    std::vector<Layer> layers_, folded_layers_;
+    std::vector<Layer> layers_;
     std::size_t rest_ = 0;  // layer of the floor outside of all pieces, or kNone
-    std::vector<std::uint8_t> parts_, folded_parts_;
+    std::vector<std::uint8_t> parts_;
+    std::shared_ptr<const PoseFloor> large_;
 };
 
 /// Bounds of the floor that single poses of a box see.

@@ -102,7 +102,7 @@ double MultipleBound::ofSingles(std::span<const BoxId> boxes) const {
 
 double MultipleBound::boundFor(const Prices& prices, std::span<const BoxId> boxes, Grain grain,
                                Dense& views) const {
-    const std::vector<std::uint8_t>& most = floor_.parts(grain);
+    const std::vector<std::uint8_t>& most = floor_.in(grain).parts();
     const std::size_t cells = most.size();
     std::array<const std::uint8_t*, kMostBoxes> fat{}, core{};
     double area = 0;
@@ -123,20 +123,18 @@ double MultipleBound::boundFor(const Prices& prices, std::span<const BoxId> boxe
         lowerTo(views.least.data(), view, factors, cells);
     }
     // Cores are rounded down but for kNoShare of a cell.
-    area += 2.0 * kUnit * kMostBoxes * kNoShare * kParts * floor_.partArea(grain) *
+    area += 2.0 * kUnit * kMostBoxes * kNoShare * kParts * floor_.in(grain).partArea() *
             floor_.mostWeight() * static_cast<double>(cells);
-    return (area + floor_.weightOf(
-                       [&views](std::size_t first, std::size_t count) {
-                           return sumOfLeast(&views.least[first], count);
-                       },
-                       grain)) /
+    return (area + floor_.in(grain).weightOf([&views](std::size_t first, std::size_t count) {
+               return sumOfLeast(&views.least[first], count);
+           })) /
            kUnit;
 }
 
 double MultipleBound::of(std::span<const BoxId> boxes, double enough) const {
     double bound = ofSingles(boxes);
     if (bound <= enough) return bound;
-    bound = std::min(bound, boundIn(Grain::Folded, boxes, enough));
+    bound = std::min(bound, boundIn(Grain::Large, boxes, enough));
     return boxes_.isWorthFine(bound, enough, boxes)
                ? std::min(bound, boundIn(Grain::Fine, boxes, enough))
                : bound;
@@ -144,7 +142,7 @@ double MultipleBound::of(std::span<const BoxId> boxes, double enough) const {
 
 double MultipleBound::boundIn(Grain grain, std::span<const BoxId> boxes, double enough) const {
     thread_local Dense views;  // memory is reused
-    const std::size_t cells = floor_.parts(grain).size();
+    const std::size_t cells = floor_.in(grain).parts().size();
     for (std::size_t i = 0; i < kMostBoxes; ++i) {
         spread(i < sensors_ ? boxes_[boxes[i]].fatIn(grain) : CellParts(), cells, views.fat[i]);
         spread(i < sensors_ ? boxes_[boxes[i]].coreIn(grain) : CellParts(), cells, views.core[i]);
@@ -159,7 +157,7 @@ double MultipleBound::boundIn(Grain grain, std::span<const BoxId> boxes, double 
 
 double MultipleBound::ofCentres(std::span<const BoxId> boxes) const {
     thread_local Dense views;  // memory is reused
-    const std::size_t cells = floor_.parts(Grain::Folded).size();
+    const std::size_t cells = floor_.in(Grain::Large).parts().size();
     // The largest values so far, in order: the view seen `times` times is the last of them.
     for (std::size_t rank = 0; rank < times_; ++rank) views.fat[rank].assign(cells, 0);
     std::vector<std::uint8_t>& view = views.core[0];
@@ -168,13 +166,11 @@ double MultipleBound::ofCentres(std::span<const BoxId> boxes) const {
         for (std::size_t rank = 0; rank < times_; ++rank)
             sortInto(views.fat[rank].data(), view.data(), cells);
     }
-    return floor_.weightOf(
-        [&](std::size_t first, std::size_t count) {
-            std::uint64_t sum = 0;
-            for (std::size_t i = first; i < first + count; ++i) sum += views.fat[times_ - 1][i];
-            return sum;
-        },
-        Grain::Folded);
+    return floor_.in(Grain::Large).weightOf([&](std::size_t first, std::size_t count) {
+        std::uint64_t sum = 0;
+        for (std::size_t i = first; i < first + count; ++i) sum += views.fat[times_ - 1][i];
+        return sum;
+    });
 }
 
 }  // namespace ispace::poses

@@ -29,7 +29,7 @@ void PoseBoxes::pack(Packer& to) const {
     std::vector<BoxId> parents;  // of pairs of halves, in their order
     for (const BoxNode& node : boxes_) {
         most.push_back(std::bit_cast<std::uint64_t>(node.most));
-        viewed.push_back(node.has_views ? 1 : 0);
+        viewed.push_back(node.has_views ? 2 : node.is_large ? 1 : 0);
     }
     for (std::size_t id = 1; id < boxes_.size(); id += 2) parents.push_back(boxes_[id].parent);
     to.add(bytes_);
@@ -56,7 +56,8 @@ void PoseBoxes::unpack(Unpacker& from) {
     for (std::size_t id = 0; id < boxes_.size(); ++id) {
         boxes_[id].most = areaFrom(most[id]);
         if (id == 0 || viewed[id] == 0) continue;
-        boxes_[id].has_views = boxes_[id].is_bare = true;
+        boxes_[id].is_bare = true;
+        (viewed[id] == 1 ? boxes_[id].is_large : boxes_[id].has_views) = true;
     }
     bytes_ = bytes;
 }

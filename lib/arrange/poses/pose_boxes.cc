@@ -83,13 +83,60 @@ void PoseBoxes::addViews(BoxNode& node) const {
     const FatView view = fatViewOf(floor_, sector_, box);
     node.parts = CellParts(view.parts);
     node.most = std::min(node.most, view.area);
-    node.folded_parts = CellParts(floor_.fold(view.parts, true));
-    const std::vector<std::uint8_t> core = coreViewOf(floor_, sector_, box);
-    node.core = CellParts(core);
-    node.folded_core = CellParts(floor_.fold(core, false));
+    node.core = CellParts(coreViewOf(floor_, sector_, box));
+    const PoseFloor& large = floor_.in(Grain::Large);
+    node.large_parts = CellParts(fatViewOf(large, sector_, box).parts);
+    node.large_core = CellParts(coreViewOf(large, sector_, box));
     const Point2 middle = box.at.center();
     const PoseBox centre{{middle, middle}, box.from + box.span / 2, 0};
-    node.centre = CellParts(floor_.fold(fatViewOf(floor_, sector_, centre).parts, true));
+    node.centre = CellParts(fatViewOf(large, sector_, centre).parts);
+}
+
+void PoseBoxes::addLarge(BoxNode& node) const {
+    node.is_large = true;
+    node.is_bare = false;
+    const PoseFloor& large = floor_.in(Grain::Large);
+    const FatView view = fatViewOf(large, sector_, node.box);
+    node.most = std::min(node.most, view.area);
+    if (node.isBlind()) return;
+    node.large_parts = CellParts(view.parts);
+    node.large_core = CellParts(coreViewOf(large, sector_, node.box));
+}
+
+void PoseBoxes::addLargeViews(std::vector<BoxId> ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    std::vector<BoxId> halves;
+    for (const BoxId id : ids)
+        for (BoxId half = boxes_[id].child; half < boxes_[id].child + 2; ++half)
+            if (!boxes_[half].hasLarge()) halves.push_back(half);
+    std::vector<char> is_new;  // no views of an earlier run, which are in the sum
+    for (const BoxId half : halves) is_new.push_back(boxes_[half].is_bare ? 0 : 1);
+    tbb::parallel_for(std::size_t{0}, halves.size(), [&](std::size_t i) {
+        BoxNode& node = boxes_[halves[i]];
+        node.has_views ? addViews(node) : addLarge(node);
+    });
+    for (std::size_t i = 0; i < halves.size(); ++i) {
+        const BoxNode& node = boxes_[halves[i]];
+        if (is_new[i] != 0) bytes_ += node.large_parts.parts.size() + node.large_core.parts.size();
+    }
+}
+
+void PoseBoxes::splitWithLarge(std::vector<BoxId> ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    for (const BoxId id : ids) {
+        if (boxes_[id].child != 0) continue;
+        std::array<BoxNode, 2> halves = bareHalvesOf(id);
+        boxes_[id].child = static_cast<BoxId>(boxes_.size());
+        for (BoxNode& half : halves) {
+            half.most = boxes_[id].most;
+            bytes_ += sizeof(BoxNode);
+            boxes_.push_back(std::move(half));
+        }
+    }
+    addLargeViews(ids);
+    for (const BoxId id : ids) lowerMost(id);
 }
 
 double PoseBoxes::rim() const {
@@ -175,8 +222,10 @@ void PoseBoxes::splitWithViews(const std::vector<BoxId>& ids) {
     std::vector<BoxId> halves, bare;
     for (const BoxId id : ids)
         for (BoxId half = boxes_[id].child; half < boxes_[id].child + 2; ++half) {
-            if (boxes_[half].is_bare) bare.push_back(half);
-            if (boxes_[half].has_views) continue;
+            if (boxes_[half].has_views) {
+                if (boxes_[half].is_bare) bare.push_back(half);
+                continue;
+            }
             boxes_[half].has_views = true;
             halves.push_back(half);
         }
@@ -186,7 +235,7 @@ void PoseBoxes::splitWithViews(const std::vector<BoxId>& ids) {
     for (const BoxId half : halves) {
         const BoxNode& node = boxes_[half];
         for (const CellParts* view :
-             {&node.parts, &node.core, &node.folded_parts, &node.folded_core, &node.centre})
+             {&node.parts, &node.core, &node.large_parts, &node.large_core, &node.centre})
             bytes_ += view->parts.size();
         lowerMost(node.parent);
     }
@@ -203,40 +252,45 @@ void PoseBoxes::splitWithViews(const std::vector<BoxId>& ids) {
 
 double PoseBoxes::unionOfCentres(std::span<const BoxId> boxes) const {
     thread_local std::vector<std::uint8_t> sums;  // memory is reused
-    const std::vector<std::uint8_t>& most = floor_.parts(Grain::Folded);
+    const std::vector<std::uint8_t>& most = floor_.in(Grain::Large).parts();
     sums.assign(most.size(), 0);
     for (const BoxId id : boxes) {
         const CellParts& view = boxes_[id].centre;
         addParts(&sums[view.first], view.parts.data(), &most[view.first], view.parts.size());
     }
-    return floor_.weightOf(
-        [](std::size_t first, std::size_t count) { return sumOf(&sums[first], count); },
-        Grain::Folded);
+    return floor_.in(Grain::Large).weightOf([](std::size_t first, std::size_t count) {
+        return sumOf(&sums[first], count);
+    });
 }
 
 bool PoseBoxes::areWithinCells(Grain grain, std::span<const BoxId> boxes) const {
-    const double most = floor_.side(grain) * rim();
+    const double most = floor_.in(grain).side() * rim();
     return std::none_of(boxes.begin(), boxes.end(),
                         [&](BoxId id) { return slackOf(boxes_[id].box) > most; });
 }
 
-bool PoseBoxes::isWorthFine(double folded, double enough, std::span<const BoxId> boxes) const {
+bool PoseBoxes::areSmall(std::span<const BoxId> boxes) const {
+    const double most = 1.3 * sector_.area();
+    return std::all_of(boxes.begin(), boxes.end(),
+                       [&](BoxId id) { return slackOf(boxes_[id].box) < most; });
+}
+
+bool PoseBoxes::isWorthFine(double large, double enough, std::span<const BoxId> boxes) const {
     constexpr double kNear = 0.003;
-    return folded > enough &&
-           (folded <= enough * (1 + kNear) || areWithinCells(Grain::Fine, boxes));
+    return large > enough && (large <= enough * (1 + kNear) || areWithinCells(Grain::Fine, boxes));
 }
 
 double PoseBoxes::unionFor(double enough, std::span<const BoxId> boxes,
                            std::span<const Known> known, std::span<const BoxId> others) const {
-    const double folded = unionOf(known, others, Grain::Folded);
-    return isWorthFine(folded, enough, boxes) ? std::min(folded, unionOf(known, others)) : folded;
+    const double large = unionOf(known, others, Grain::Large);
+    return isWorthFine(large, enough, boxes) ? std::min(large, unionOf(known, others)) : large;
 }
 
 double PoseBoxes::unionOf(std::span<const Known> known, std::span<const BoxId> others,
                           Grain grain) const {
     thread_local std::vector<std::int16_t> free;  // memory is reused
     thread_local std::vector<std::uint8_t> own, fat;
-    const std::vector<std::uint8_t>& most = floor_.parts(grain);
+    const std::vector<std::uint8_t>& most = floor_.in(grain).parts();
     double area = 0;
     free.resize(most.size());
     widen(free.data(), most.data(), most.size());
@@ -261,13 +315,11 @@ double PoseBoxes::unionOf(std::span<const Known> known, std::span<const BoxId> o
     }
     // Cores are rounded down but for kNoShare of a cell.
     if (!known.empty())
-        area += 8 * kNoShare * kParts * floor_.partArea(grain) * floor_.mostWeight() *
+        area += 8 * kNoShare * kParts * floor_.in(grain).partArea() * floor_.mostWeight() *
                 static_cast<double>(most.size());
-    return area + floor_.weightOf(
-                      [](std::size_t first, std::size_t count) {
-                          return sumWithin(&fat[first], &free[first], count);
-                      },
-                      grain);
+    return area + floor_.in(grain).weightOf([](std::size_t first, std::size_t count) {
+        return sumWithin(&fat[first], &free[first], count);
+    });
 }
 
 std::size_t PoseBoxes::widestOf(std::span<const BoxId> boxes) const {

@@ -31,17 +31,25 @@ struct BoxNode {
     double most = 0;                  // bounds the area that any single pose of the box sees
     std::uint64_t low = 0, high = 0;  // half-open range of its poses in the order of the tree
     bool has_views = false, is_bare = false;  // bare: from a state, without the views
-    CellParts parts, folded_parts;            // of the fat view
-    CellParts core, folded_core;              // that all poses of the box see
-    CellParts centre;                         // folded: of the view from the middle of the box
+    bool is_large = false;                    // has views in large cells alone
+    CellParts parts, large_parts;             // of the fat view
+    CellParts core, large_core;               // that all poses of the box see
+    CellParts centre;                         // large: of the view from the middle of the box
 
     /// True if no pose of the box sees any floor.
     [[nodiscard]] bool isBlind() const { return most == 0; }
+    [[nodiscard]] bool hasLarge() const { return (is_large || has_views) && !is_bare; }
+    void prefetchLarge() const {
+        constexpr std::size_t kLine = 64;
+        for (const CellParts* view : {&large_parts, &large_core})
+            for (std::size_t i = 0; i < view->parts.size(); i += kLine)
+                __builtin_prefetch(&view->parts[i]);
+    }
     [[nodiscard]] const CellParts& fatIn(Grain grain) const {
-        return grain == Grain::Folded ? folded_parts : parts;
+        return grain == Grain::Large ? large_parts : parts;
     }
     [[nodiscard]] const CellParts& coreIn(Grain grain) const {
-        return grain == Grain::Folded ? folded_core : core;
+        return grain == Grain::Large ? large_core : core;
     }
 };
 
@@ -70,6 +78,12 @@ class PoseBoxes {
     /// Halves boxes, and computes the views of the halves and closer bounds of their single views.
     void splitWithViews(const std::vector<BoxId>& ids);
 
+    /// Halves those boxes that are whole, and computes views in large cells of all halves that have
+    /// none.
+    void splitWithLarge(std::vector<BoxId> ids);
+    /// Computes views in large cells of halves that have none.
+    void addLargeViews(std::vector<BoxId> ids);
+
     /// Returns the index of the box whose fat view may shrink most by a split; the number of boxes
     /// if all are too small.
     [[nodiscard]] std::size_t widestOf(std::span<const BoxId> boxes) const;
@@ -92,16 +106,18 @@ class PoseBoxes {
     /// core that lies in another one lowers the sum.
     [[nodiscard]] double unionOf(std::span<const Known> known, std::span<const BoxId> others,
                                  Grain grain = Grain::Fine) const;
-    /// Bounds it for poses of `boxes` in folded cells, and in fine ones if these may lower it to
+    /// Bounds it for poses of `boxes` in large cells, and in fine ones if these may lower it to
     /// `enough`.
     [[nodiscard]] double unionFor(double enough, std::span<const BoxId> boxes,
                                   std::span<const Known> known,
                                   std::span<const BoxId> others) const;
-    /// Returns true if a bound in folded cells exceeds one that suffices by so little that the
+    /// Returns true if a bound in large cells exceeds one that suffices by so little that the
     /// bound in fine cells may not, or if the boxes are no larger than these.
-    [[nodiscard]] bool isWorthFine(double folded, double enough,
-                                   std::span<const BoxId> boxes) const;
+    [[nodiscard]] bool isWorthFine(double large, double enough, std::span<const BoxId> boxes) const;
     /// Returns true if views of the boxes grow by no more than if moved by a cell.
+    /// Returns true if views of each box grow by no more than 1.3 times its sector: subdivisions
+    /// may then bound each by itself.
+    [[nodiscard]] bool areSmall(std::span<const BoxId> boxes) const;
     [[nodiscard]] bool areWithinCells(Grain grain, std::span<const BoxId> boxes) const;
 
   private:
@@ -112,6 +128,7 @@ class PoseBoxes {
     /// Returns the whole box in a box whose single views are bounded worst.
     [[nodiscard]] BoxId largestIn(BoxId id) const;
     void addViews(BoxNode& node) const;
+    void addLarge(BoxNode& node) const;
     void write(BoxId id, std::string& text) const;
     /// Growth of a fat view with the size of its box, m2.
     [[nodiscard]] double slackOf(const PoseBox& box) const;

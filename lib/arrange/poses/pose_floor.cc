@@ -15,7 +15,7 @@ bool Sector::isRound() const { return field >= 2 * std::numbers::pi - 1e-9; }
 double Sector::area() const { return range * range / 2 * std::min(field, 2 * std::numbers::pi); }
 
 PoseFloor::PoseFloor(std::span<const Region> regions, std::size_t most,
-                     const FloorWeighting& weighting)
+                     const FloorWeighting& weighting, Grain grain)
     : elsewhere_(weighting.elsewhere) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::int32_t, std::size_t>> edges;
     for (const Region& region : regions) {
@@ -56,42 +56,10 @@ PoseFloor::PoseFloor(std::span<const Region> regions, std::size_t most,
     std::vector<std::uint8_t> parts;
     tally.round(parts);
     parts_ = std::move(parts);
-    foldLayers();
-}
-
-/// Folded rows begin at multiples of kFold in each layer, as in a floor of cells of that size.
-void PoseFloor::foldLayers() {
-    std::size_t begin = 0;
-    for (const Layer& layer : layers_) {
-        const std::size_t first = layer.first_row / kFold;
-        const std::size_t end = (layer.first_row + layer.rows + kFold - 1) / kFold;
-        folded_layers_.push_back({layer.weight, first, end - first, begin});
-        begin += (end - first) * foldedColumns();
-    }
-    folded_parts_ = fold(parts_, true);
-}
-
-std::vector<std::uint8_t> PoseFloor::fold(const std::vector<std::uint8_t>& parts,
-                                          bool rounds_up) const {
-    if (parts.empty() || folded_layers_.empty()) return {};
-    constexpr std::size_t kCells = kFold * kFold;
-    const Layer& last = folded_layers_.back();
-    std::vector<std::uint16_t> sums(last.begin + last.rows * foldedColumns());
-    for (std::size_t i = 0; i < layers_.size(); ++i)
-        for (std::size_t row = 0; row < layers_[i].rows; ++row) {
-            const std::size_t to =
-                (layers_[i].first_row + row) / kFold - folded_layers_[i].first_row;
-            std::uint16_t* const sum = &sums[folded_layers_[i].begin + to * foldedColumns()];
-            const std::uint8_t* const from = &parts[layers_[i].begin + row * columns_];
-            for (std::size_t column = 0; column < columns_; ++column)
-                sum[column / kFold] =
-                    static_cast<std::uint16_t>(sum[column / kFold] + from[column]);
-        }
-    std::vector<std::uint8_t> folded(sums.size());
-    const std::size_t rounding = rounds_up ? kCells - 1 : 0;
-    for (std::size_t i = 0; i < sums.size(); ++i)
-        folded[i] = static_cast<std::uint8_t>((sums[i] + rounding) / kCells);
-    return folded;
+    constexpr std::size_t kFine = 16;  // cells in a large one
+    if (grain == Grain::Fine)
+        large_ = std::make_shared<const PoseFloor>(regions, std::max(most / kFine, std::size_t{1}),
+                                                   weighting, Grain::Large);
 }
 
 PoseFloor::Corners PoseFloor::cornersOf(std::size_t triangle) const {

@@ -128,6 +128,17 @@ void PoseSearcher::improve(const Tuple& tuple) {
     if (better.area > found_.area) found_ = std::move(better);
 }
 
+void PoseSearcher::lowerBySums(std::vector<Children>& made) {
+    if (count_ == 1) return;
+    std::vector<SumBound::Bounded> tuples;
+    for (const Children& children : made)
+        for (const Tuple& tuple : children.tuples) tuples.push_back({boxesOf(tuple), tuple.bound});
+    sums_.lower(tuples, cutoff());
+    std::size_t next = 0;
+    for (Children& children : made)
+        for (Tuple& tuple : children.tuples) tuple.bound = tuples[next++].bound;
+}
+
 void PoseSearcher::searchTuples() {
     constexpr std::size_t kBatch = 256;
     constexpr double kBetter = 1e-3, kNear = 0.97;  // of centres, to be worth refining
@@ -135,7 +146,7 @@ void PoseSearcher::searchTuples() {
         Tuple root;
         root.bound = boundOf(root, 0);
         queue_.push(root);
-        tree_.emplace_back();
+        tree_.push_back({.bound = root.bound});
     }
     for (std::size_t round = 1; !queue_.empty() && queue_.top().bound > cutoff(); ++round) {
         if (progress_.stopped() || isFull()) {
@@ -176,6 +187,7 @@ void PoseSearcher::searchTuples() {
         std::vector<Children> made(batch.size());
         tbb::parallel_for(std::size_t{0}, batch.size(),
                           [&](std::size_t i) { made[i] = childrenOf(batch[i], which[i]); });
+        lowerBySums(made);
         for (std::size_t i = 0; i < made.size(); ++i) {
             Children& children = made[i];
             if (options_.certificate != nullptr) addToTree(batch[i], which[i], children.tuples);
@@ -200,17 +212,18 @@ void PoseSearcher::addToTree(const Tuple& parent, std::size_t which, std::vector
         child.node = static_cast<std::uint32_t>(tree_.size());
         const bool is_first = child.boxes[which] == boxes_[parent.boxes[which]].child;
         tree_[parent.node].halves[is_first ? 0 : 1] = child.node;
-        tree_.emplace_back();
+        tree_.push_back({.bound = child.bound});
     }
 }
 
-void PoseSearcher::writeTuples(std::uint32_t id, std::string& text) const {
+void PoseSearcher::writeTuples(std::uint32_t id, double bound, std::string& text) const {
     const TupleNode& node = tree_[id];
-    text += node.which < 0 ? '.' : static_cast<char>('0' + node.which);
-    if (node.which < 0) return;
+    const bool is_leaf = node.which < 0 || node.bound <= bound;
+    text += is_leaf ? '.' : static_cast<char>('0' + node.which);
+    if (is_leaf) return;
     for (const std::uint32_t half : node.halves)
         if (half != 0)
-            writeTuples(half, text);
+            writeTuples(half, bound, text);
         else
             text += '-';
 }
@@ -257,7 +270,7 @@ PoseBound PoseSearcher::run() {
         *certificate = {.bound = bound, .boxes = {}, .pairs = {}, .tuples = {}};
         certificate->boxes = boxes_.text();
         certificate->pairs = pairs_.text();
-        writeTuples(0, certificate->tuples);
+        writeTuples(0, bound, certificate->tuples);
     }
     return {bound, found_, boxes_.size(), tuples_, is_complete_};
 }

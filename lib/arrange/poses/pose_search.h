@@ -73,7 +73,7 @@ constexpr int kMostPosed = 4;
 /// sensors, of their known areas, and in each cell the lesser of the fat views of the others and
 /// the floor less all of their cores. In cells that several views share in part, the union counts
 /// the sum of the parts, up to the floor in the cell. MultipleBound has the bound for several
-/// times.
+/// times, SumBound another one by the parts of each box.
 ///
 /// Deterministic for any number of threads, unless stopped. With a share a stopped search continues
 /// to the result of one that was not. \throws FormatError for a state or a part that is damaged

@@ -15,6 +15,7 @@
 #include "arrange/poses/multiple_bound.h"
 #include "arrange/poses/pose_boxes.h"
 #include "arrange/poses/pose_search.h"
+#include "arrange/poses/sum_bound.h"
 #include "base/packed.h"
 
 namespace ispace::poses {
@@ -28,6 +29,7 @@ struct Tuple {
 struct TupleNode {
     std::array<std::uint32_t, 2> halves{};  // 0: left out
     int which = -1;                         // the box that is halved; -1: none
+    double bound = 0;
 };
 struct IsWorse {
     bool operator()(const Tuple& a, const Tuple& b) const {
@@ -64,6 +66,7 @@ class PoseSearcher {
           found_{options.found, {}},
           boxes_(floor, sector),
           pairs_(boxes_),
+          sums_(floor, boxes_, static_cast<std::size_t>(options.times)),
           multiple_(floor, boxes_, count_, static_cast<std::size_t>(options.times)) {}
 
     PoseBound run();
@@ -92,6 +95,8 @@ class PoseSearcher {
         double best_value = 0;
     };
     [[nodiscard]] Children childrenOf(const Tuple& tuple, std::size_t which) const;
+    /// Lowers bounds of children by SumBound.
+    void lowerBySums(std::vector<Children>& made);
     [[nodiscard]] double cutoff() const { return found_.area / (1 - options_.gap); }
     void improve(const Tuple& tuple);
     [[nodiscard]] bool isFull() const {
@@ -100,7 +105,8 @@ class PoseSearcher {
                options_.max_bytes;
     }
     void addToTree(const Tuple& parent, std::size_t which, std::vector<Tuple>& children);
-    void writeTuples(std::uint32_t id, std::string& text) const;
+    /// Writes a subtree; nodes within the bound prove it without their halves.
+    void writeTuples(std::uint32_t id, double bound, std::string& text) const;
 
     const PoseFloor& floor_;
     const Sector& sector_;
@@ -110,6 +116,7 @@ class PoseSearcher {
     PosedLayout found_;
     PoseBoxes boxes_;
     BoxPairs pairs_;
+    SumBound sums_;
     MultipleBound multiple_;  // for options.times > 1
     std::size_t tuples_ = 0;
     std::vector<TupleNode> tree_;  // with a certificate alone

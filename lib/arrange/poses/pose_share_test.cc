@@ -162,7 +162,7 @@ TEST(PoseShare, NegativeBoundsOfTuplesAreRefused) {
         return number;
     };
     // At the end: the bounds, the boxes and nodes, and a tree of one node, each after its count.
-    constexpr std::size_t kTree = 8 + 3 * 4, kBound = 8, kTuple = (kMostPosed + 1) * 4;
+    constexpr std::size_t kTree = 8 + 5 * 4, kBound = 8, kTuple = (kMostPosed + 1) * 4;
     std::size_t count = 1, end = 0;
     for (;; ++count) {
         ASSERT_LT(kTree + 16 + count * (kBound + kTuple), bytes.size());

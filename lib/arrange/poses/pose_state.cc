@@ -37,9 +37,12 @@ void PoseSearcher::keep() {
         tuples.insert(tuples.end(), tuple.boxes.begin(), tuple.boxes.end());
         tuples.push_back(tuple.node);
     }
-    for (const TupleNode& node : tree_)
+    for (const TupleNode& node : tree_) {
+        const auto bound = std::bit_cast<std::uint64_t>(node.bound);
         tree.insert(tree.end(),
-                    {node.halves[0], node.halves[1], static_cast<std::uint32_t>(node.which + 1)});
+                    {node.halves[0], node.halves[1], static_cast<std::uint32_t>(node.which + 1),
+                     static_cast<std::uint32_t>(bound >> 32U), static_cast<std::uint32_t>(bound)});
+    }
     to.addAll(bounds);
     to.addAll(tuples);
     to.addAll(tree);
@@ -87,9 +90,10 @@ bool PoseSearcher::recall() {
     return true;
 }
 
-/// Reads three numbers for each node: its halves, later nodes, and the box that is halved.
+/// Reads five numbers for each node: its halves, later nodes, the box that is halved, and its
+/// bound.
 void PoseSearcher::readTree(const std::vector<std::uint32_t>& numbers) {
-    constexpr std::size_t kNode = 3, kDeepest = std::size_t{64} * kMostPosed;
+    constexpr std::size_t kNode = 5, kDeepest = std::size_t{64} * kMostPosed;
     if (numbers.size() % kNode != 0) Unpacker::refuse();
     const std::size_t nodes = numbers.size() / kNode;
     std::vector<std::size_t> depths(nodes);
@@ -102,7 +106,9 @@ void PoseSearcher::readTree(const std::vector<std::uint32_t>& numbers) {
                 Unpacker::refuse();
             depths[half] = depths[i] + 1;
         }
-        tree_.push_back({{own[0], own[1]}, static_cast<int>(own[2]) - 1});
+        const double bound = std::bit_cast<double>(std::uint64_t{own[3]} << 32U | own[4]);
+        if (!std::isfinite(bound) || bound < 0) Unpacker::refuse();
+        tree_.push_back({{own[0], own[1]}, static_cast<int>(own[2]) - 1, bound});
     }
 }
 

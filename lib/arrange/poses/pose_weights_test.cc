@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "arrange/poses/core_view.h"
 #include "arrange/poses/multiple_bound.h"
 #include "arrange/poses/pose_search.h"
 #include "geom/overlay/overlay.h"
@@ -84,46 +85,28 @@ TEST(PoseWeights, LayersHoldTheFloorOfTheirWeights) {
     EXPECT_EQ(floor.mostWeight(), 3);
 }
 
-TEST(PoseWeights, FoldedCellsHoldTheSumsOfTheirCells) {
+TEST(PoseWeights, LargeCellsHoldTheSameFloor) {
     const Region region = roomsWithPillar();
-    const PoseFloor floor({&region, 1}, kCells, weighting());
-    const auto folded = [&](const std::vector<std::uint8_t>& parts) {
-        return floor.weightOf(
-            [&](std::size_t first, std::size_t count) {
-                return std::accumulate(&parts[first], &parts[first] + count, std::uint64_t{0});
-            },
-            Grain::Folded);
-    };
-    const std::size_t cells = floor.parts(Grain::Folded).size();
-    const double rounding =
-        floor.partArea(Grain::Folded) * floor.mostWeight() * static_cast<double>(cells);
-    std::mt19937 random(3);
-    for (int i = 0; i < 50; ++i) {
-        // Any parts of the floor, in runs of cells.
-        std::vector<std::uint8_t> parts(floor.parts().size());
-        const std::size_t run = 1 + random() % 40;
-        for (std::size_t k = 0; k < parts.size(); ++k)
-            if (k / run % 2 == 0)
-                parts[k] = static_cast<std::uint8_t>(random() % (floor.parts()[k] + 1U));
-        const std::vector<std::uint8_t> up = floor.fold(parts, true);
-        const std::vector<std::uint8_t> down = floor.fold(parts, false);
-        ASSERT_EQ(up.size(), cells);
-        const double exact = weightedParts(floor, parts);
-        EXPECT_GE(folded(up), exact - 1e-9);
-        EXPECT_LE(folded(down), exact + 1e-9);
-        EXPECT_LE(folded(up) - folded(down), rounding);
-        for (std::size_t k = 0; k < cells; ++k) EXPECT_LE(up[k], floor.parts(Grain::Folded)[k]);
+    const PoseFloor fine({&region, 1}, kCells, weighting());
+    const PoseFloor& large = fine.in(Grain::Large);
+    EXPECT_EQ(&fine.in(Grain::Fine), &fine);
+    EXPECT_NEAR(large.side(), 4 * fine.side(), 0.01);
+    EXPECT_EQ(large.mostWeight(), fine.mostWeight());
+    // Both are rounded up; no large cell lacks floor of its fine ones.
+    const double exact = weightedParts(fine, fine.parts());
+    EXPECT_NEAR(weightedParts(large, large.parts()), exact, 0.02 * exact);
+    const Sector sector{3, 2, -1};
+    for (const double at : {1.0, 1.7, 2.9}) {
+        const PoseBox box{{{at, at}, {at + 0.3, at + 0.2}}, at, 0.3};
+        const double fat = weightedParts(large, fatViewOf(large, sector, box).parts);
+        const double core = weightedParts(large, coreViewOf(large, sector, box));
+        const double fine_fat = weightedParts(fine, fatViewOf(fine, sector, box).parts);
+        const double fine_core = weightedParts(fine, coreViewOf(fine, sector, box));
+        EXPECT_GE(fat, fine_fat * 0.99);
+        EXPECT_LE(fat, fine_fat * 1.1);
+        EXPECT_LE(core, fine_core * 1.01);
+        EXPECT_GE(core, fine_core * 0.8);
     }
-    // A cell with a single part is in a folded cell that has some, and that is no core.
-    for (std::size_t k = 0; k < floor.parts().size(); ++k) {
-        std::vector<std::uint8_t> parts(floor.parts().size());
-        parts[k] = 1;
-        const std::vector<std::uint8_t> up = floor.fold(parts, true);
-        EXPECT_EQ(std::accumulate(up.begin(), up.end(), 0), 1);
-        const std::vector<std::uint8_t> down = floor.fold(parts, false);
-        EXPECT_EQ(std::accumulate(down.begin(), down.end(), 0), 0);
-    }
-    EXPECT_TRUE(floor.fold({}, true).empty());
 }
 
 TEST(PoseWeights, ASectorThatFitsInAZoneHasItsClosedForm) {
