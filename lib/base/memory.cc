@@ -12,6 +12,14 @@
 
 namespace ispace {
 
+void keepFreedMemory() {
+#ifdef __GLIBC__
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TOP_PAD, 64 << 20);
+#endif
+}
+
 void keepFreedMemory(const std::vector<std::string>& inputs) {
     constexpr std::uintmax_t kLarge = 1 << 18;
     std::uintmax_t bytes = 0;
@@ -19,12 +27,7 @@ void keepFreedMemory(const std::vector<std::string>& inputs) {
         std::error_code error;
         if (const auto size = std::filesystem::file_size(input, error); !error) bytes += size;
     }
-    if (bytes < kLarge) return;
-#ifdef __GLIBC__
-    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);
-    mallopt(M_TOP_PAD, 64 << 20);
-#endif
+    if (bytes >= kLarge) keepFreedMemory();
 }
 
 }  // namespace ispace

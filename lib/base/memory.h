@@ -7,7 +7,9 @@
 namespace ispace {
 
 /// Lets the process reuse freed memory instead of returning it to the system, which would have to
-/// clear it anew, if these files are so large that it allocates and frees hundreds of megabytes.
+/// clear it anew. For programs that allocate and free a few hundred megabytes.
+void keepFreedMemory();
+/// The same if these files are so large that their program does.
 void keepFreedMemory(const std::vector<std::string>& inputs);
 
 }  // namespace ispace
