@@ -50,7 +50,7 @@ double floorOf(const std::string& room) {
 void measurePoses(benchmark::State& state, const std::string& room, const PosesCase& test) {
     const bench::Folder folder;
     const std::string output = folder.name + "/layout.3dm";
-    std::vector<std::string> words = {ISPACE_TOOLS "/arrange",
+    std::vector<std::string> words = {std::string(ISPACE_TOOLS) + "/arrange",
                                       room,
                                       "--sensor",
                                       "laser,range=4,fov=240:" + std::to_string(test.lasers),
