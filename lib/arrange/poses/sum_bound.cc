@@ -109,7 +109,7 @@ std::pair<double, BoxId> SumBound::mostSeenBy(BoxId box, const std::vector<std::
             return {part.most, part.box};
         const BoxId child = node.child;
         if (child == 0 || !boxes_[child].hasLarge() || !boxes_[child + 1].hasLarge()) {
-            if (child != 0 && boxes_[child].is_bare)
+            if (child != 0 && (boxes_[child].is_bare || boxes_[child + 1].is_bare))
                 wanted.bare.push_back(part.box);
             else if (child != 0 || boxes_.widestOf({&part.box, 1}) == 0)
                 wanted.whole.push_back(part.box);
