@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "building/building_sight.h"
-#include "env/environment.h"
 #include "geom/polygon.h"
 #include "passage/building_run.h"
 #include "passage/cabin.h"
@@ -186,8 +185,9 @@ struct BuildingRun::Data {
     /// Returns the text of a refusal: "r1 has no room at upper/1,2: desk1 stands there".
     [[nodiscard]] std::string refusal(std::size_t room, Point2 at, const Traveller& who,
                                       const std::string& reason) const;
-    /// Returns the body of a storey, as it is now, in which a mover would stand, or null.
-    [[nodiscard]] const Element* elementAt(std::size_t storey, Point2 at, const Traveller& who);
+    /// Returns the refusal that names the body of a storey, as it is now, in which a mover would
+    /// stand, or "".
+    [[nodiscard]] std::string bodyText(std::size_t storey, Point2 at, const Traveller& who);
     /// Returns the opening in the floor at a point of a storey, or null.
     [[nodiscard]] const OpenFloor* openingAt(std::size_t storey, Point2 at) const;
     /// Returns true if it would stand in no body and apart from all movers.

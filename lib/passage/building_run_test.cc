@@ -195,7 +195,7 @@ TEST(BuildingRun, EndsATripForAnotherCommand) {
     EXPECT_EQ(run.ride("ground/r1", "l2", "upper").refusal, "no lift `l2`");
     EXPECT_EQ(run.ride("ground/r1", "l1", "attic").refusal, "l1 does not stop at `attic`");
     EXPECT_EQ(run.travel("ground/r1", {{{0, {11.9, 4}}}}).refusal,
-              "ground/r1 has no room at ground/11.9,4: f stands there");
+              "ground/r1 has no room at ground/11.9,4: ground/f stands there");
     EXPECT_EQ(run.travel("ground/r1", {{{2, {1, 4}}}}).refusal,
               "l1 is no storey: RIDE leads by a lift");
 }

@@ -47,7 +47,7 @@ TEST(BuildingScript, MarksAnOrderThatIsRefusedInItsTime) {
     ASSERT_EQ(ground.events().next(), 1);
     EXPECT_EQ(ground.events().at(0).other, "ground/r1");
     EXPECT_EQ(ground.events().at(0).text,
-              "script: ground/r1 has no room at ground/11.9,4: f stands there");
+              "script: ground/r1 has no room at ground/11.9,4: ground/f stands there");
 }
 
 }  // namespace

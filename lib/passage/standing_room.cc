@@ -45,7 +45,7 @@ std::string BuildingRun::Data::refusal(std::size_t room, Point2 at, const Travel
            formatDouble(at.y) + ": " + reason;
 }
 
-const Element* BuildingRun::Data::elementAt(std::size_t storey, Point2 at, const Traveller& who) {
+std::string BuildingRun::Data::bodyText(std::size_t storey, Point2 at, const Traveller& who) {
     const World& world = *rooms[storey].world;
     const Environment& now = world.scene().environment;
     const auto key = std::pair(storey, who.size.height);
@@ -57,7 +57,9 @@ const Element* BuildingRun::Data::elementAt(std::size_t storey, Point2 at, const
         known = present.insert_or_assign(key, std::move(next)).first;
     }
     const auto element = known->second.obstacles.overlap(at, who.size.radius);
-    return element ? &now.elements()[*element] : nullptr;
+    if (!element) return "";
+    const std::string id = rooms[storey].id + '/' + now.elements()[*element].id;
+    return refusal(storey, at, who, id + " stands there");
 }
 
 const OpenFloor* BuildingRun::Data::openingAt(std::size_t storey, Point2 at) const {
@@ -79,15 +81,13 @@ std::string BuildingRun::Data::noRoomText(std::size_t room, Point2 at, const Tra
         if (movers[i].id != who.id && distance(world.status(i).pose.position, at) < reach)
             return refusal(room, at, who, movers[i].id + " stands there");
     }
-    const Element* const body = rooms[room].storey ? elementAt(room, at, who) : nullptr;
-    return body == nullptr ? "" : refusal(room, at, who, body->id + " stands there");
+    return rooms[room].storey ? bodyText(room, at, who) : "";
 }
 
 std::string BuildingRun::Data::noFloorText(std::size_t storey, Point2 at, const Traveller& who) {
     if (const OpenFloor* const opening = openingAt(storey, at))
         return refusal(storey, at, who, "the floor is open there, for " + opening->passage);
-    const Element* const body = elementAt(storey, at, who);
-    return body == nullptr ? "" : refusal(storey, at, who, body->id + " stands there");
+    return bodyText(storey, at, who);
 }
 
 }  // namespace ispace

@@ -49,16 +49,16 @@ TEST(StandingRoom, IsThatOfThePresentStorey) {
     BuildingRun run(building, optionsOf());
     for (const char* mover : {"ground/r1", "ground/h"})
         EXPECT_EQ(placed(run, mover, 0, {9, 6}),
-                  std::string(mover) + " has no room at ground/9,6: box stands there");
+                  std::string(mover) + " has no room at ground/9,6: ground/box stands there");
     // It moves, another one comes, and goes.
     replace(run, building, 0, "box", "cube id=box at=10,2 size=1,1,1\n");
     replace(run, building, 1, "", "cube id=crate at=2,3 size=1,1,1\n");
     EXPECT_EQ(placed(run, "ground/r1", 0, {9, 6}), "");
     EXPECT_EQ(placed(run, "ground/r1", 0, {10, 2}),
-              "ground/r1 has no room at ground/10,2: box stands there");
+              "ground/r1 has no room at ground/10,2: ground/box stands there");
     for (const char* mover : {"ground/r1", "ground/h"})
         EXPECT_EQ(placed(run, mover, 1, {2, 3}),
-                  std::string(mover) + " has no room at upper/2,3: crate stands there");
+                  std::string(mover) + " has no room at upper/2,3: upper/crate stands there");
     EXPECT_EQ(poseOf(run, "ground/r1").position, (Point2{9, 6}));
     replace(run, building, 1, "crate", "");
     EXPECT_EQ(placed(run, "ground/h", 1, {2, 3}), "");
@@ -70,12 +70,12 @@ TEST(StandingRoom, ChangesWithBodiesThatTripsKnowFromTheStart) {
     const BuildingScene building = buildingOf("robot id=ground/r1 at=6,2\n", kOpenBuilding);
     BuildingRun run(building, optionsOf());
     const auto go = [&](Point2 at) { return run.travel("ground/r1", {{{0, at}}}).refusal; };
-    EXPECT_EQ(go({9, 6}), "ground/r1 has no room at ground/9,6: box stands there");
+    EXPECT_EQ(go({9, 6}), "ground/r1 has no room at ground/9,6: ground/box stands there");
     replace(run, building, 0, "box", "");
     EXPECT_EQ(go({9, 6}), "no way for ground/r1 to ground/9,6; s1: it does not climb stairs")
         << "ways are those of the start";
     replace(run, building, 0, "", "cube id=crate at=10,2 size=1,1,1\n");
-    EXPECT_EQ(go({10, 2}), "ground/r1 has no room at ground/10,2: crate stands there");
+    EXPECT_EQ(go({10, 2}), "ground/r1 has no room at ground/10,2: ground/crate stands there");
 }
 
 TEST(StandingRoom, EndsAtOpenings) {
