@@ -58,16 +58,14 @@ bool contains(Kinds kinds, std::string_view keyword) {
     return std::find(kinds.begin(), kinds.end(), keyword) != kinds.end();
 }
 
-/// Lists the models with this word in their names, such as their maker's; "" if there are none.
-std::string modelsNamed(const std::string& word, Kinds kinds, const DeviceCatalogue& devices) {
+/// Lists the models of a maker, the first word of their names; "" if there are none.
+std::string modelsBy(const std::string& word, Kinds kinds, const DeviceCatalogue& devices) {
     std::string models;
     for (const Record& device : devices.devices()) {
         if (!contains(kinds, device.keyword()) || !device.has("name")) continue;
-        const std::vector<std::string> words = split(device.text("name"), ' ');
-        const bool is_named = std::any_of(words.begin(), words.end(), [&](const auto& other) {
-            return ::strcasecmp(other.c_str(), word.c_str()) == 0;
-        });
-        if (is_named) models += (models.empty() ? "" : ", ") + device.text("model");
+        const std::string maker = split(device.text("name"), ' ').front();
+        if (::strcasecmp(maker.c_str(), word.c_str()) == 0)
+            models += (models.empty() ? "" : ", ") + device.text("model");
     }
     return models;
 }
@@ -76,8 +74,8 @@ UsageError unknownSensor(const std::string& model, Kinds kinds, const DeviceCata
     if (const Record* const other = devices.find(model))
         return UsageError("`" + model + "` is a device of kind " + other->keyword() +
                           ", which this option does not take");
-    if (const std::string models = modelsNamed(model, kinds, devices); !models.empty())
-        return UsageError("`" + model + "` is in the names of sensors, name one: " + models);
+    if (const std::string models = modelsBy(model, kinds, devices); !models.empty())
+        return UsageError("`" + model + "` makes several sensors, name one of them: " + models);
     return UsageError("unknown sensor `" + model + "`" +
                       didYouMean(model, knownSensors(kinds, devices)) +
                       " (a bare kind of ispace-3dm(5), or a device: scan --list-models names all)");

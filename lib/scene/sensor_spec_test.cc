@@ -59,8 +59,9 @@ TEST(SensorSpec, ErrorsNameWhatIsWrong) {
     EXPECT_EQ(errorOf("robot"),
               "unknown sensor `robot` (a bare kind of ispace-3dm(5), or a device: scan "
               "--list-models names all)");
-    EXPECT_EQ(errorOf("Slamtec"),
-              "`Slamtec` is in the names of sensors, name one: rplidar-a1, rplidar-a2, rplidar-a3");
+    EXPECT_EQ(
+        errorOf("Slamtec"),
+        "`Slamtec` makes several sensors, name one of them: rplidar-a1, rplidar-a2, rplidar-a3");
     EXPECT_EQ(errorOf("pioneer-2dx"),
               "`pioneer-2dx` is a device of kind robot, which this option does not take");
     EXPECT_EQ(errorOf("sr-3000"),
