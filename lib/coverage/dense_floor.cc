@@ -12,8 +12,8 @@ namespace ispace {
 
 namespace {
 
-/// Samples along each side of a box of many densities, and of one.
-constexpr int kSamples = 128, kSamplesAlone = 48;
+/// Samples along each side of a box.
+constexpr int kSamples = 128;
 
 /// Puts the edges that close a level set well beyond a box.
 Box2 enlarged(const Box2& box) {
@@ -150,7 +150,7 @@ std::vector<Curve> DenseFloor::alone(const LensResolution& lens, const Frame3& f
                                      const Box2& box, double pixels_per_metre) {
     DenseFloor floor(lens, frame, drop, box);
     if (floor.box_.empty()) return {};
-    floor.sampleIn(floor.box_, kSamplesAlone);
+    floor.sampleIn(floor.box_, kSamples);
     return floor.traced(pixels_per_metre);
 }
 

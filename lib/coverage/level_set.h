@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "geom/curve.h"
+#include "geom/interval.h"
 #include "geom/point.h"
-#include "scene/sensor/plumb_bob.h"
 
 namespace ispace {
 

@@ -259,7 +259,7 @@ bool Shadows::mayTouch(const ShadowBody& body) const {
 /// Adds the shadow of a body that stands from the plane to the sensor or higher: of the line
 /// between its outermost corners. \pre the sensor is outside of the body's plan
 void Shadows::addScreen(const ShadowBody& body) {
-    constexpr double kMargin = 1e-3;  // more than rounding and contact
+    constexpr double kMargin = 1e-3;  // metres; more than rounding and the depth of contacts
     const auto [low, high] = std::minmax({sensor_.z, sensor_.z + drop_});
     if (body.kind == ShadowBody::Kind::Loose || body.bottom > low || body.top < high) return;
     Vec2 right = body.vertices.front().onFloor() - sensor_.onFloor(), left = right;

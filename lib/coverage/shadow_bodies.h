@@ -84,7 +84,7 @@ class Shadows {
 
     /// Returns the shadow of a standing body as layers relative to the sensor's foot. Surfaces in
     /// contact with the sensor (and those that continue them) or with the plane cast no shadow. A
-    /// body well within the shadow of a wall has no layers: most bodies near a sensor indoors.
+    /// body well within the shadow of a wall has no layers, as most bodies near a sensor indoors.
     [[nodiscard]] std::vector<Layer> of(const ShadowBody& standing) const;
 
   private:

@@ -32,27 +32,6 @@ Interval leastStretch(const std::array<Interval, 4>& m) {
     return {std::max(0.0, least - std::sqrt(change)), least + std::sqrt(change)};
 }
 
-Interval absolute(Interval a) {
-    if (a.low <= 0 && a.high >= 0) return {0, std::max(-a.low, a.high)};
-    return {std::min(std::fabs(a.low), std::fabs(a.high)),
-            std::max(std::fabs(a.low), std::fabs(a.high))};
-}
-
-Interval lesserOf(Interval a, Interval b) {
-    return {std::min(a.low, b.low), std::min(a.high, b.high)};
-}
-
-Interval cosineOf(Interval angle) {
-    const double a = std::cos(angle.low), b = std::cos(angle.high);
-    // The multiples of pi inside are the extremes.
-    const double first = std::ceil(angle.low / std::numbers::pi);
-    const double last = std::floor(angle.high / std::numbers::pi);
-    Interval cosine{std::min(a, b), std::max(a, b)};
-    for (double k = first; k <= std::min(last, first + 1); ++k)
-        (std::fmod(k, 2) == 0 ? cosine.high : cosine.low) = std::fmod(k, 2) == 0 ? 1 : -1;
-    return cosine;
-}
-
 /// Polynomials of the squared angle of a fisheye: the picture's radius over the angle, and the
 /// derivative of the radius.
 template <typename Number>
@@ -159,7 +138,7 @@ double LensResolution::densityAt(Vec3 local) const {
 }
 
 /// Splits the cell with the highest bound, in the direction that lowers it most, until it is near a
-/// value in the picture.
+/// value in the picture. After kMaxCells it may stay twice as high, near 90 degrees off the axis.
 double LensResolution::largest(bool is_along_axis) const {
     constexpr double kPi = std::numbers::pi, kEnough = 1.01, kRounding = 1 + 1e-9;
     constexpr std::size_t kMaxCells = 1 << 11;

@@ -3,10 +3,10 @@
 
 #include <array>
 
+#include "geom/interval.h"
 #include "geom/point.h"
 #include "geom/pose.h"
 #include "scene/sensor/camera.h"
-#include "scene/sensor/plumb_bob.h"
 
 namespace ispace {
 

@@ -1,39 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "geom/interval.h"
 #include "geom/point.h"
 
 namespace ispace {
-
-/// An interval of numbers, for bounds of formulas over boxes. Rounding is not directed outwards.
-struct Interval {
-    double low = 0, high = 0;
-
-    friend Interval operator+(Interval a, Interval b) { return {a.low + b.low, a.high + b.high}; }
-    friend Interval operator+(double a, Interval b) { return {a + b.low, a + b.high}; }
-    friend Interval operator*(Interval a, Interval b) {
-        const auto [low, high] =
-            std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
-        return {low, high};
-    }
-    friend Interval operator*(double a, Interval b) {
-        return a < 0 ? Interval{a * b.high, a * b.low} : Interval{a * b.low, a * b.high};
-    }
-};
-
-inline double squareOf(double a) { return a * a; }
-inline Interval squareOf(Interval a) {
-    const double low = a.low * a.low, high = a.high * a.high;
-    if (a.low <= 0 && a.high >= 0) return {0, std::max(low, high)};
-    return {std::min(low, high), std::max(low, high)};
-}
-
-inline double rootOf(double a) { return std::sqrt(a); }
-inline Interval rootOf(Interval a) { return {std::sqrt(a.low), std::sqrt(a.high)}; }
 
 /// Distorts the point (x, y) of the plane at depth 1 by `plumb_bob` of OpenCV and ROS, with the
 /// coefficients k1 k2 p1 p2 k3; of intervals, returns bounds over the box.
