@@ -35,7 +35,8 @@ class BoxSums {
 
     /// The cells that count as floor are those of the search but for rounding, which may turn out
     /// worse. If the bound is not enough, it is the larger one of two tuples with halves.
-    /// \param enough a bound that need not be lowered \param halvings of tuples, at most
+    /// \param enough a bound that need not be lowered
+    /// \param halvings how deep tuples are halved, at most
     /// \pre the boxes and all parts of them have views
     [[nodiscard]] double boundOf(std::span<const std::uint32_t> boxes, double enough,
                                  int halvings) const;

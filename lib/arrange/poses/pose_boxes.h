@@ -114,10 +114,10 @@ class PoseBoxes {
     /// Returns true if a bound in large cells exceeds one that suffices by so little that the
     /// bound in fine cells may not, or if the boxes are no larger than these.
     [[nodiscard]] bool isWorthFine(double large, double enough, std::span<const BoxId> boxes) const;
-    /// Returns true if views of the boxes grow by no more than if moved by a cell.
     /// Returns true if views of each box grow by no more than 1.3 times its sector: subdivisions
     /// may then bound each by itself.
     [[nodiscard]] bool areSmall(std::span<const BoxId> boxes) const;
+    /// Returns true if views of the boxes grow by no more than if moved by a cell.
     [[nodiscard]] bool areWithinCells(Grain grain, std::span<const BoxId> boxes) const;
 
   private:
