@@ -111,6 +111,7 @@ void PoseBoxes::addLargeViews(std::vector<BoxId> ids) {
         for (BoxId half = boxes_[id].child; half < boxes_[id].child + 2; ++half)
             if (!boxes_[half].hasLarge()) halves.push_back(half);
     std::vector<char> is_new;  // no views of an earlier run, which are in the sum
+    is_new.reserve(halves.size());
     for (const BoxId half : halves) is_new.push_back(boxes_[half].is_bare ? 0 : 1);
     tbb::parallel_for(std::size_t{0}, halves.size(), [&](std::size_t i) {
         BoxNode& node = boxes_[halves[i]];
