@@ -40,6 +40,8 @@ def strangers(run):
     check(" 403 " in line, f"without Host: {line}")
     line = first_line(run.url, f"GET / HTTP/1.1\r\nHost: {host}\r\nHost: evil\r\n\r\n".encode())
     check(" 403 " in line, f"two of Host: {line}")
+    line = first_line(run.url, f"GET / HTTP/1.0\r\nHost: {host}\r\n\r\n".encode())
+    check(line == "HTTP/1.1 200 OK", f"to a client of HTTP/1.0: {line}")
 
 
 def lies(run):

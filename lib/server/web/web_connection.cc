@@ -29,6 +29,9 @@ using asio::ip::tcp;
 using beast::error_code;
 using std::chrono::steady_clock;
 
+/// HTTP/1.1, the version of every response, also to a client of 1.0, whose connection ends with the
+/// response (RFC 9110, 2.5 and RFC 9112, 9.3).
+constexpr unsigned kVersion = 11;
 /// Maximum bytes of a request's header.
 constexpr std::uint32_t kMaxHeader = 8192;
 /// Time limit for a request, a response, the next request.
@@ -171,11 +174,11 @@ void Browser::answer(const Request& request) {
 /// \param body must stay valid
 void Browser::respond(const Request& request, http::status status, std::string_view type,
                       std::string_view body) {
-    Response response(status, request.version());
+    Response response(status, kVersion);
     response.set(http::field::content_type, boost::string_view(type.data(), type.size()));
     if (status == http::status::method_not_allowed) response.set(http::field::allow, "GET, HEAD");
     response.set("Content-Security-Policy", contentPolicy(view(request[http::field::host])));
-    response.keep_alive(request.keep_alive());
+    response.keep_alive(request.version() == kVersion && request.keep_alive());
     response.content_length(body.size());
     if (request.method() != http::verb::head) response.body() = {body.data(), body.size()};
     send(std::move(response));
@@ -183,7 +186,7 @@ void Browser::respond(const Request& request, http::status status, std::string_v
 
 /// Rejects an untrusted request and closes. \param why must stay valid
 void Browser::refuse(http::status status, std::string_view why) {
-    Response response(status, 11);
+    Response response(status, kVersion);
     response.set(http::field::content_type, "text/plain; charset=utf-8");
     response.set("Content-Security-Policy", "default-src 'none'");
     response.keep_alive(false);
