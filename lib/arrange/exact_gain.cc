@@ -12,7 +12,7 @@
 #include "arrange/sensor_group.h"
 #include "base/error.h"
 #include "geom/overlay/overlay.h"
-#include "sense/ultrasound.h"
+#include "scene/sensor/ultrasound.h"
 
 namespace ispace {
 

@@ -22,9 +22,9 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "scene/sensor/field_of_view.h"
+#include "scene/sensor/ultrasound.h"
 #include "sense/motion_sense.h"
 #include "sense/scan.h"
-#include "sense/ultrasound.h"
 
 namespace ispace {
 

@@ -20,8 +20,8 @@
 #include "geom/arrangement.h"
 #include "geom/overlay/overlay.h"
 #include "raster/contour.h"
+#include "scene/sensor/ultrasound.h"
 #include "sense/scan.h"
-#include "sense/ultrasound.h"
 #include "trace/ray_world.h"
 
 namespace ispace {

@@ -9,7 +9,7 @@
 #include "coverage/metrics.h"
 #include "coverage/robustness.h"
 #include "env/level.h"
-#include "sense/ultrasound.h"
+#include "scene/sensor/ultrasound.h"
 
 namespace ispace {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "scene/sensor/field_of_view.h"
+#include "scene/sensor/ultrasound.h"
 #include "sense/scan.h"
-#include "sense/ultrasound.h"
 
 namespace ispace {
 

@@ -11,7 +11,7 @@
 #include "env/level.h"
 #include "geom/arrangement.h"
 #include "raster/morphology.h"
-#include "sense/ultrasound.h"
+#include "scene/sensor/ultrasound.h"
 
 namespace ispace {
 

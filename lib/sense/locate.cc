@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "sense/locate.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -11,7 +13,6 @@
 
 #include "geom/rotation.h"
 #include "sense/dilution.h"
-#include "sense/ultrasound.h"
 
 namespace ispace {
 

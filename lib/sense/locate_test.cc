@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "sense/ultrasound.h"
+#include "sense/locate.h"
 
 namespace ispace {
 namespace {

@@ -24,7 +24,7 @@
 #include "sense/sound_level.h"
 #include "sense/temperature.h"
 #include "sense/trajectory.h"
-#include "sense/ultrasound.h"
+#include "sense/ultrasound_burst.h"
 #include "sense/uwb_ranges.h"
 
 namespace ispace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sense/locate.h"
 #include "sense/moment.h"
-#include "sense/ultrasound.h"
 
 namespace ispace {
 

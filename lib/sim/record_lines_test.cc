@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/file.h"
-#include "sense/ultrasound.h"
+#include "sense/ultrasound_burst.h"
 #include "sim/recorder.h"
 #include "support/test_folder.h"
 #include "support/test_layout.h"

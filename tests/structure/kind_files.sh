@@ -15,9 +15,7 @@ root, most = pathlib.Path(sys.argv[1]), 8
 # Doors and windows are older than their motors and blinds, which are states. RFID readers added the key `tag`, light
 # meters the key `lumens`. SVG has an element <switch>, and rays have contacts.
 pattern_of = {"contact": '"contact"|\\bContactState\\b', "door": '{"door", "', "rfid": '"rfid"|\\btagKey\\b', "lux": '"lux"|"lumens"'}
-unrelated = {("switch", "lib/io/plan/svg.cc"), ("contact", "lib/trace/flat_packet.cc"),
-             ("projector", "lib/report/view/projector.h"),
-             ("projector", "lib/report/view/projector.cc")}
+unrelated = {("switch", "lib/io/plan/svg.cc"), ("contact", "lib/trace/flat_packet.cc")}
 files = {}
 for folder in ("lib", "tools", "share/schemas", "share/sweep"):
     for path in (root / folder).rglob("*"):

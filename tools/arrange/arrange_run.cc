@@ -18,8 +18,8 @@
 #include "scene/findings/findings.h"
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
+#include "scene/sensor/ultrasound.h"
 #include "scene/sensor_spec.h"
-#include "sense/ultrasound.h"
 
 namespace ispace {
 

@@ -101,8 +101,8 @@ std::vector<JunitCase> judgeBuilding(const CoverageToolOptions& options,
 }
 
 /// Reads the record of each storey; nullopt without --run.
-std::optional<BuildingRunCoverage> lookAtRuns(const CoverageToolOptions& options,
-                                              BuildingInput& input) {
+std::optional<BuildingRunCoverage> measureStoreyRuns(const CoverageToolOptions& options,
+                                                     BuildingInput& input) {
     if (options.run.empty()) return std::nullopt;
     for (const Storey& storey : input.building.document.storeys)
         input.files.push_back(RecordedFiles(options.run + '/' + storey.id).robots);
@@ -203,7 +203,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
             warn(options.common, "coverage", std::span<const Diagnostic>(&finding, 1));
         }
     const BuildingCoverage coverage = measureBuilding(input.building, options.measure);
-    const std::optional<BuildingRunCoverage> run = lookAtRuns(options, input);
+    const std::optional<BuildingRunCoverage> run = measureStoreyRuns(options, input);
     if (options.format != nullptr) {
         if (isPattern(options.common.output))
             writeFiles(options, input, coverage, run);

@@ -25,7 +25,7 @@
 #include "report/coverage_report.h"
 #include "scene/findings/findings.h"
 #include "scene/scene.h"
-#include "sense/ultrasound.h"
+#include "scene/sensor/ultrasound.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -68,7 +68,8 @@ Measured measure(const CoverageToolOptions& options, const Scene& scene, const S
     return measured;
 }
 
-std::optional<RunCoverage> lookAtRun(const CoverageToolOptions& options, const Scene& scene) {
+std::optional<RunCoverage> measureRecordedRun(const CoverageToolOptions& options,
+                                              const Scene& scene) {
     if (options.run.empty()) return std::nullopt;
     RunReader reader(options.run);
     RunChanges changes = changesOfRun(options.run, scene, options.rules.max_work);

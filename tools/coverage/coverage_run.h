@@ -33,7 +33,8 @@ struct Measured {
 Measured measure(const CoverageToolOptions& options, const Scene& scene, const Scene* other);
 
 /// Computes the coverage of a recorded run; nullopt without --run.
-std::optional<RunCoverage> lookAtRun(const CoverageToolOptions& options, const Scene& scene);
+std::optional<RunCoverage> measureRecordedRun(const CoverageToolOptions& options,
+                                              const Scene& scene);
 
 /// Measures --presence; empty without it.
 std::optional<Presence> presenceOf(const CoverageToolOptions& options, const Scene& scene);

@@ -122,7 +122,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     const Measured& measured =
         leftToExit(measureScene(options, input, other ? &other->scene : nullptr));
     const CoverageReport& report = measured.coverage.report;
-    const std::optional<RunCoverage> run = lookAtRun(options, input.scene);
+    const std::optional<RunCoverage> run = measureRecordedRun(options, input.scene);
     if (run) options.map.run = &*run;
     if (run) files.push_back(RecordedFiles(options.run).robots);
     if (options.presence && !options.presence->record.empty())

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "env/projector.h"
+#include "env/projector_beam.h"
 #include "geom/pose.h"
 #include "record/record.h"
 #include "record/schema.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "env/mesh.h"
-#include "env/projector.h"
+#include "env/projector_beam.h"
 #include "geom/pose.h"
 #include "scene/scene.h"
 #include "trace/embree_bodies.h"

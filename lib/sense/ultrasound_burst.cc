@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/ultrasound.h"
+#include "sense/ultrasound_burst.h"
 
 #include <algorithm>
 #include <array>

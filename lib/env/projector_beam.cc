@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "env/projector.h"
+#include "env/projector_beam.h"
 
 #include <cmath>
 #include <tuple>
