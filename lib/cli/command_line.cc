@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parses a command line, explains its errors, and prints it for --help, for the history of the
-// product and for reruns.
+// Parses a command line, explains its errors, and lists its options for --help, for the history of
+// the product and for reruns.
 #include "cli/command_line.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -16,6 +14,7 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "cli/command_text.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "record/schema.h"
@@ -415,8 +414,6 @@ void CommandLine::parse(int argc, const char* const* argv) {
 
 namespace {
 
-constexpr std::size_t kHelpWidth = 79, kHelpColumn = 26;
-
 /// "-o, --output FILE"
 std::string signature(const CLI::Option& option, const std::string& value) {
     std::string names;
@@ -425,42 +422,6 @@ std::string signature(const CLI::Option& option, const std::string& value) {
         names += (isCompilerName(name) ? "-" : "--") + name + ", ";
     names.resize(names.size() - 2);
     return value.empty() ? names : names + ' ' + value;
-}
-
-/// Appends `text` wrapped to kHelpWidth, its lines beginning at `column`; the first line already
-/// has `used` characters.
-void appendWrapped(std::string& out, const std::string& text, std::size_t used,
-                   std::size_t column) {
-    std::istringstream words(text);
-    bool fresh = true;
-    for (std::string word; words >> word; fresh = false) {
-        if (!fresh && used + 1 + word.size() > kHelpWidth) {
-            out += '\n' + std::string(column, ' ');
-            used = column;
-            fresh = true;
-        }
-        if (!fresh) out += ' ';
-        out += word;
-        used += word.size() + (fresh ? 0 : 1);
-    }
-    out += '\n';
-}
-
-std::string fileInHistory(const std::string& operand) {
-    const bool is_folder = std::filesystem::is_directory(operand);
-    return isStream(operand) && !is_folder ? "-" : shellQuote(baseName(operand));
-}
-
-std::string filesInHistory(const std::string& list) {
-    const auto colon = list.find(':');
-    if (colon == std::string::npos || list.find('/') < colon) return shellQuote(baseName(list));
-    std::string names = list.substr(0, colon + 1);
-    for (std::size_t at = colon + 1; at <= list.size();) {
-        const std::size_t end = std::min(list.find(',', at), list.size());
-        names += (at == colon + 1 ? "" : ",") + baseName(list.substr(at, end - at));
-        at = end + 1;
-    }
-    return shellQuote(names);
 }
 
 }  // namespace
@@ -495,27 +456,15 @@ std::vector<std::string> CommandLine::resultWords() const {
 }
 
 std::string CommandLine::helpText() const {
-    std::string out = "Usage: " + data_->tool + " [OPTION]... " + data_->synopsis + "\n";
-    appendWrapped(out, data_->summary, 0, 0);
+    HelpPage page{data_->tool, data_->synopsis, data_->summary,
+                  {},          data_->examples, data_->statuses};
     for (std::size_t i = 0; i < data_->entries.size(); ++i) {
         const Data::Entry& entry = data_->entries[i];
-        if (const auto group = data_->groups.find(i); group != data_->groups.end())
-            out += '\n' + group->second + ":\n";
-        const std::string name = "  " + signature(*entry.option, entry.value);
-        out += name;
-        const bool fits = name.size() + 2 <= kHelpColumn;
-        out += fits ? std::string(kHelpColumn - name.size(), ' ')
-                    : '\n' + std::string(kHelpColumn, ' ');
-        appendWrapped(out, entry.help, kHelpColumn, kHelpColumn);
+        const auto group = data_->groups.find(i);
+        page.options.push_back({group == data_->groups.end() ? "" : group->second,
+                                signature(*entry.option, entry.value), entry.help});
     }
-    out += "\nExamples:\n";
-    for (const auto& [command, effect] : data_->examples) {
-        out += "  " + command + "\n      ";
-        appendWrapped(out, effect, 6, 6);
-    }
-    out += "\nExit status: " + data_->statuses + ".\n";
-    out += "Details: man " + data_->tool + "\n";
-    return out;
+    return ispace::helpText(page);
 }
 
 }  // namespace ispace

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/command_text.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <sstream>
+
+#include "base/message.h"
+#include "cli/outputs.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::size_t kHelpWidth = 79, kHelpColumn = 26;
+
+/// Appends `text` wrapped to kHelpWidth, its lines beginning at `column`; the first line already
+/// has `used` characters.
+void appendWrapped(std::string& out, const std::string& text, std::size_t used,
+                   std::size_t column) {
+    std::istringstream words(text);
+    bool fresh = true;
+    for (std::string word; words >> word; fresh = false) {
+        if (!fresh && used + 1 + word.size() > kHelpWidth) {
+            out += '\n' + std::string(column, ' ');
+            used = column;
+            fresh = true;
+        }
+        if (!fresh) out += ' ';
+        out += word;
+        used += word.size() + (fresh ? 0 : 1);
+    }
+    out += '\n';
+}
+
+}  // namespace
+
+std::string helpText(const HelpPage& page) {
+    std::string out = "Usage: " + page.tool + " [OPTION]... " + page.synopsis + "\n";
+    appendWrapped(out, page.summary, 0, 0);
+    for (const HelpPage::Option& option : page.options) {
+        if (!option.heading.empty()) out += '\n' + option.heading + ":\n";
+        const std::string name = "  " + option.signature;
+        out += name;
+        const bool fits = name.size() + 2 <= kHelpColumn;
+        out += fits ? std::string(kHelpColumn - name.size(), ' ')
+                    : '\n' + std::string(kHelpColumn, ' ');
+        appendWrapped(out, option.text, kHelpColumn, kHelpColumn);
+    }
+    out += "\nExamples:\n";
+    for (const auto& [command, effect] : page.examples) {
+        out += "  " + command + "\n      ";
+        appendWrapped(out, effect, 6, 6);
+    }
+    out += "\nExit status: " + page.statuses + ".\n";
+    out += "Details: man " + page.tool + "\n";
+    return out;
+}
+
+std::string fileInHistory(const std::string& operand) {
+    const bool is_folder = std::filesystem::is_directory(operand);
+    return isStream(operand) && !is_folder ? "-" : shellQuote(baseName(operand));
+}
+
+std::string filesInHistory(const std::string& list) {
+    const auto colon = list.find(':');
+    if (colon == std::string::npos || list.find('/') < colon) return shellQuote(baseName(list));
+    std::string names = list.substr(0, colon + 1);
+    for (std::size_t at = colon + 1; at <= list.size();) {
+        const std::size_t end = std::min(list.find(',', at), list.size());
+        names += (at == colon + 1 ? "" : ",") + baseName(list.substr(at, end - at));
+        at = end + 1;
+    }
+    return shellQuote(names);
+}
+
+}  // namespace ispace

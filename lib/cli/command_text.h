@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ispace {
+
+/// The page that --help prints.
+struct HelpPage {
+    struct Option {
+        std::string heading;    ///< of the group that begins with it; "" within a group
+        std::string signature;  ///< "-o, --output FILE"
+        std::string text;
+    };
+    std::string tool, synopsis, summary;
+    std::vector<Option> options;
+    std::vector<std::pair<std::string, std::string>> examples;  ///< commands and their effects
+    std::string statuses;                                       ///< meanings of the exit statuses
+};
+
+/// Formats the page in lines of at most 79 characters where words allow it.
+std::string helpText(const HelpPage& page);
+
+/// Returns the name of an operand as the history of a product has it: without folders, quoted for
+/// the shell, "-" for a stream.
+std::string fileInHistory(const std::string& operand);
+
+/// Does so for `PREFIX:FILE,FILE`, or a single file.
+std::string filesInHistory(const std::string& list);
+
+}  // namespace ispace
