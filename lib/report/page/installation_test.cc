@@ -53,6 +53,31 @@ TEST(Installation, MeasuresToTheWallsThatTheSensorFaces) {
     EXPECT_NEAR(all[1].walls[1].distance, 0.9, 1e-12);
 }
 
+TEST(Installation, FacesEndWhereAPersonSeesTheirCorners) {
+    // Walls and a fence whose bodies overlap at the corners; the room is an L.
+    const Scene scene = sceneOf(
+        "#env 1\n"
+        "fence id=f path=0,0;8,0;8,3;4,3;4,6;0,6 closed=yes height=2.5 thickness=0.4\n"
+        "wall id=w from=6,0 to=6,1.5 height=2.5 thickness=0.3\n"
+        "laser id=low at=5,0.5,1 heading=90\n"       // between the west and the thin wall
+        "laser id=under at=6.9,2.6,1 heading=-90\n"  // under the step, which ends at a convex
+                                                     // corner
+        "laser id=on at=0.2,5.7,1 heading=0\n");     // on a face, near a corner
+    const std::vector<Installation> all = installationsOf(scene);
+    ASSERT_EQ(all.size(), 3U);
+    const auto expectFace = [](const WallDistance& wall, Segment2 face) {
+        const bool turned = distance(wall.face.a, face.a) > distance(wall.face.a, face.b);
+        EXPECT_NEAR(distance(wall.face.a, turned ? face.b : face.a), 0, 1e-9) << wall.wall;
+        EXPECT_NEAR(distance(wall.face.b, turned ? face.a : face.b), 0, 1e-9) << wall.wall;
+    };
+    expectFace(all[0].walls[0], {{0.2, 0.2}, {5.85, 0.2}});
+    expectFace(all[0].walls[1], {{5.85, 0.2}, {5.85, 1.5}});
+    expectFace(all[1].walls[0], {{3.8, 2.8}, {7.8, 2.8}});
+    expectFace(all[1].walls[1], {{7.8, 0.2}, {7.8, 2.8}});
+    expectFace(all[2].walls[0], {{0.2, 0.2}, {0.2, 5.8}});
+    expectFace(all[2].walls[1], {{0.2, 5.8}, {3.8, 5.8}});
+}
+
 /// A line on which the sensor lies: normal * p = offset.
 struct PlaceLine {
     Vec2 normal;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
@@ -18,6 +19,8 @@ namespace {
 
 /// A sensor nearer to a face lies on it, whatever side rounding puts it on: the face hides nothing.
 constexpr double kOnFace = 1e-3;
+/// Ends of faces this near to each other meet.
+constexpr double kJoint = 1e-6;
 
 /// The faces of walls at a height, with the index of each one's element.
 struct WallFaces {
@@ -157,15 +160,56 @@ class NearWalls {
         return nullptr;
     }
     [[nodiscard]] WallDistance measureOf(const NearFace& one) const {
-        return {environment_.elements()[faces_.owners[one.face]].id, faces_.lines[one.face],
+        return {environment_.elements()[faces_.owners[one.face]].id, stretchAbout(one),
                 one.distance, one.foot};
+    }
+    /// Returns the stretch of the face about the foot whose ends a person finds: faces in one line
+    /// are one, and the bodies of walls overlap where they join.
+    [[nodiscard]] Segment2 stretchAbout(const NearFace& one) const {
+        const Segment2& face = faces_.lines[one.face];
+        const Vec2 along = directionAlong(face), across = perpendicular(along);
+        const double from = std::clamp(dot(one.foot - face.a, along), 0.0, length(face.b - face.a));
+        const double side = dot(at_ - face.a, across);
+        double first = -std::numeric_limits<double>::infinity(), last = -first;
+        bool is_corner = false;
+        std::vector<std::pair<double, double>> in_line;
+        for (const Segment2& line : faces_.lines) {
+            const double a = dot(line.a - face.a, across), b = dot(line.b - face.a, across);
+            const double begin = dot(line.a - face.a, along), end = dot(line.b - face.a, along);
+            if (std::max(std::abs(a), std::abs(b)) <= kJoint) {
+                in_line.emplace_back(std::minmax(begin, end));
+                continue;
+            }
+            // How far the line comes towards the sensor; both sides count of one on the face.
+            const double rise = std::abs(side) <= kOnFace ? std::max(std::abs(a), std::abs(b))
+                                : side > 0                ? std::max(a, b)
+                                                          : -std::min(a, b);
+            if (std::min(a, b) > kJoint || std::max(a, b) < -kJoint || rise <= kJoint) continue;
+            const double at = begin + (end - begin) * std::clamp(a / (a - b), 0.0, 1.0);
+            if (at < from - kJoint) first = std::max(first, at);
+            if (at > from + kJoint) last = std::min(last, at);
+            is_corner = is_corner || std::abs(at - from) <= kJoint;
+        }
+        std::sort(in_line.begin(), in_line.end());
+        std::pair<double, double> whole = in_line.front();
+        for (const auto& [begin, end] : in_line) {
+            if (begin > whole.second + kJoint) {
+                if (from <= whole.second) break;
+                whole = {begin, end};
+            }
+            whole.second = std::max(whole.second, end);
+        }
+        first = std::max(whole.first, first);
+        last = std::min(whole.second, last);
+        // Of a sensor on another face, the shorter part lies in that face's wall.
+        if (is_corner) (last - from > from - first ? first : last) = from;
+        return {face.a + first * along, face.a + last * along};
     }
     /// Measures along the face, from the end that is nearer to the foot.
     [[nodiscard]] WallDistance alongOf(const NearFace& one) const {
-        const Segment2& face = faces_.lines[one.face];
-        const bool is_first = distance(face.a, one.foot) <= distance(face.b, one.foot);
         WallDistance measure = measureOf(one);
-        measure.end = is_first ? face.a : face.b;
+        const auto& [a, b] = measure.face;
+        measure.end = distance(a, one.foot) <= distance(b, one.foot) ? a : b;
         measure.distance = distance(*measure.end, one.foot);
         return measure;
     }
@@ -219,7 +263,7 @@ void nameFaces(std::vector<Installation>& installations) {
     const auto number = [&faces](const WallDistance& wall) {
         std::vector<Segment2>& known = faces[wall.wall];
         const auto same = std::find_if(known.begin(), known.end(), [&wall](const Segment2& one) {
-            return one.a == wall.face.a && one.b == wall.face.b;
+            return distance(one.a, wall.face.a) <= kJoint && distance(one.b, wall.face.b) <= kJoint;
         });
         const auto index = static_cast<std::size_t>(same - known.begin());
         if (same == known.end()) known.push_back(wall.face);
