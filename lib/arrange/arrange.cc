@@ -108,7 +108,7 @@ void refineIn(Arrangement& result, MeasuredScene& model, std::uint64_t before, P
 
 void measure(Arrangement& result, MeasuredScene& model) {
     const ArrangeOptions& options = model.options();
-    const bool is_whole_floor = options.target == 1 && options.weights.isUniform() &&
+    const bool is_whole_floor = options.target && options.weights.isUniform() &&
                                 options.redundancy == 1 && options.judges_inside &&
                                 !options.beam_step && !options.ways;
     const CoverageOptions usual{.plane = options.plane, .exact = is_whole_floor};
@@ -117,8 +117,12 @@ void measure(Arrangement& result, MeasuredScene& model) {
     const CoverageReport& report = measured.report;
     result.coverage = report.coverage.grid.value_or(0);
     result.area = report.total_effective_area.grid.value_or(0);
-    if (is_whole_floor) result.exact_share = report.coverage.exact;
-    if (result.exact_share && *result.exact_share < 1 - kMissedShare) result.is_reached = false;
+    if (is_whole_floor) {
+        result.exact_share = report.coverage.exact;
+        result.free_share = report.free_area / report.indoor_area;
+    }
+    if (options.target == 1 && result.exact_share && *result.exact_share < 1 - kMissedShare)
+        result.is_reached = false;
     const std::vector<CountedView> views =
         model.viewsOf(std::span(whole.sensors).subspan(model.scene().sensors.size()));
     if (!options.robust.isAsked() && options.objective.isCoverage() &&

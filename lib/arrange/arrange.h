@@ -216,10 +216,11 @@ struct Arrangement {
     bool is_reached = true;
     std::optional<double> least;
     bool is_exhausted = false;  ///< even all candidates together do not reach the target
-    /// With a target of 100 % of the floor: the exact area covered, as a share of the indoor area;
-    /// empty if no closed form is known. Less than all of it misses the target, though all cells
-    /// are covered.
+    /// With a target of the whole floor: the exact area covered, as a share of the indoor area;
+    /// empty if no closed form is known. Less than 100 % misses that target, though all cells are
+    /// covered; other targets count cells.
     std::optional<double> exact_share;
+    std::optional<double> free_share;  ///< with it: the free floor, as a share of the indoor area
     std::optional<PosesProof> over_poses;   ///< with ArrangeOptions::over_poses and a target
     std::optional<PosesBound> poses_bound;  ///< with ArrangeOptions::over_poses and without one
 

@@ -45,6 +45,7 @@ PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
     without_curve.curve.clear();
     std::string text = reportText(work.how, without_curve);
     if (!arrangement.is_reached) text += shortfallText(work.how, arrangement) + '\n';
+    text += inexactText(work.how, arrangement);
     for (std::size_t begin = 0; begin < text.size();) {
         const std::size_t end = std::min(text.find('\n', begin), text.size());
         std::string_view line = std::string_view(text).substr(begin, end - begin);

@@ -236,8 +236,8 @@ void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work) {
 void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,
                 const Arrangement& arrangement) {
     warnOfNothing(options, work, arrangement);
-    if (const std::string text = doubledText(arrangement); !text.empty())
-        warn(options.common, "arrange", text);
+    for (const std::string& text : {doubledText(arrangement), inexactText(work.how, arrangement)})
+        if (!text.empty()) warn(options.common, "arrange", text);
     if (!arrangement.is_reached) {
         std::string text = shortfallText(work.how, arrangement);
         if (arrangement.candidate_bound <= 0)

@@ -53,6 +53,10 @@ double gapOf(const Arrangement& arrangement);
 /// Returns the reason why a target was not reached, as a sentence without full stop.
 std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement);
 
+/// Tells that a target reached by cells is missed by exact area, as a sentence without full stop; ""
+/// if it is not.
+std::string inexactText(const ArrangeOptions& how, const Arrangement& arrangement);
+
 /// Lists redundant sensors as a sentence without full stop; "" without any.
 std::string idleText(const Arrangement& arrangement);
 /// Lists sensors that share a site, where only one can be mounted; "" without any. The search

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "arrange/arrange_run.h"
+#include "arrange/gallery/gallery.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "coverage/robustness.h"
@@ -236,11 +237,23 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
         text += ", and no layout of these candidates covers more than " +
                 percentText(arrangement.candidate_bound);
     if (!arrangement.is_complete) return text + "; the search was cut short";
+    if (arrangement.free_share.value_or(1) < *how.target)
+        return text + "; only " + percentText(*arrangement.free_share) +
+               " of the indoor area is free floor, the rest is under walls and things";
     if (arrangement.is_exhausted)
         return text +
                "; all candidates together see no more: try denser ones (--candidates), other "
                "places (--mount, --z) or sensors";
     return text + "; allow more sensors (:COUNT), or denser candidates";
+}
+
+std::string inexactText(const ArrangeOptions& how, const Arrangement& arrangement) {
+    if (!arrangement.is_reached || !arrangement.exact_share ||
+        *arrangement.exact_share >= *how.target - kMissedShare)
+        return "";
+    return "the target is reached by cells, but by exact area these sensors cover " +
+           percentText(*arrangement.exact_share) +
+           " (as coverage(1) reports): try a higher --target, or smaller cells (--cell M)";
 }
 
 std::string idleText(const Arrangement& arrangement) {
