@@ -8,10 +8,13 @@
 
 #include <csignal>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
+#include <vector>
 
 namespace ispace {
 
@@ -54,6 +57,16 @@ TEST(LastWordsDeathTest, MemoryIsSaidToBeOutOnce) {
 
 TEST(LastWordsDeathTest, AMistakeInTheProgramStaysAnAbort) {
     EXPECT_EXIT(std::terminate(), testing::KilledBySignal(SIGABRT), "");
+}
+
+TEST(Failure, NamesTheFileOfTheFilesystem) {
+    try {
+        throw std::filesystem::filesystem_error("status", "dark/room.env",
+                                                std::make_error_code(std::errc::permission_denied));
+    } catch (const std::exception&) {
+        EXPECT_EQ(currentFailure().lines(),
+                  std::vector<std::string>{"dark/room.env: error: Permission denied"});
+    }
 }
 
 bool isReadable(int fd) {

@@ -7,6 +7,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <chrono>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -38,6 +39,24 @@ void prepare(tcp::socket& socket) {
     socket.non_blocking(true, ignored);
 }
 
+/// Its text names no file, as that of a plain std::system_error would.
+class ListenError : public std::system_error {
+  public:
+    // Asio's own category knows no std::errc.
+    ListenError(const Endpoint& endpoint, const error_code& error)
+        : std::system_error(error.value(), std::system_category()),
+          text_("cannot listen on " + endpoint.address + ':' + std::to_string(endpoint.port) +
+                " (" + error.message() + ')') {
+        if (error == boost::system::errc::address_in_use)
+            text_ +=
+                ": stop the program that listens there, or take another port, 0 for a free one";
+    }
+    [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
+
+  private:
+    std::string text_;
+};
+
 }  // namespace
 
 Acceptor::Acceptor(asio::io_context& io, const Endpoint& endpoint, Welcome welcome)
@@ -50,10 +69,7 @@ Acceptor::Acceptor(asio::io_context& io, const Endpoint& endpoint, Welcome welco
         acceptor_.listen();
         local_ = acceptor_.local_endpoint();
     } catch (const boost::system::system_error& error) {
-        std::string where = "cannot listen on ";
-        where.append(endpoint.address).append(":").append(std::to_string(endpoint.port));
-        // Asio's own category knows no std::errc.
-        throw std::system_error(error.code().value(), std::system_category(), where);
+        throw ListenError(endpoint, error.code());
     }
     accept();
 }

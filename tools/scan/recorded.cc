@@ -131,6 +131,7 @@ SceneInput sceneOf(const ScanToolOptions& options) {
 
 void writeRecorded(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
+    checkRecordFolder(options.view.run);
     const SceneInput input = sceneOf(options);
     warnOfImport(options.common, "scan", input);
     const Sensors lasers = recordedLasers(options, input.scene);

@@ -32,6 +32,7 @@
 namespace ispace {
 
 SceneInput readInput(const SimrunOptions& options) {
+    if (!options.replay.empty()) checkRecordFolder(options.replay);
     if (const std::string building = recordedBuilding(options.replay); !building.empty())
         throw UsageError(
             "--replay: " + options.replay +

@@ -34,6 +34,14 @@ RecordedFiles::RecordedFiles(const std::string& folder) {
     info = in_folder("info.csv");
 }
 
+void checkRecordFolder(const std::string& folder) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(folder, error);
+    if (!error && !std::filesystem::is_directory(status))
+        error = std::make_error_code(std::errc::not_a_directory);
+    if (error) throw std::system_error(error, folder);
+}
+
 std::string fileOfRecord(const std::string& folder, const std::string& name) {
     std::string file = (std::filesystem::path(folder) / name).string();
     std::error_code error;

@@ -19,6 +19,8 @@ struct RecordedFiles {
     std::string robots, odometry, bumpers, people, events, info;
 };
 
+/// Checks that the folder of a record exists. \throws std::system_error
+void checkRecordFolder(const std::string& folder);
 /// Returns the path of a file that a record names. \param name relative to the folder \throws
 /// std::system_error if it does not exist; FormatError unless it is regular and lies in the folder
 /// or below, links followed
