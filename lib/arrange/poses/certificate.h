@@ -43,9 +43,14 @@ std::string certificateText(const PoseCertificate& certificate,
 PoseCertificate readCertificate(std::string_view text, const std::string& name);
 
 struct CertificateCheck {
-    double bound = 0;  ///< m2: no poses of the sensors see more; valid whatever the trees are
-    std::size_t boxes = 0, pairs = 0, tuples = 0;
-    double floor = 0;  ///< m2, by weight, rounded up
+    /// No poses of the sensors see more, m2; or else the bound of the tuple `refused`.
+    double bound = 0;
+    /// The first tuple of the tree, from 1, that may see more than the certificate states (but for
+    /// rounding); 0: none. Later ones need not be bounded.
+    std::size_t refused = 0;
+    std::size_t bounded = 0;  ///< tuples; with one that is refused, it depends on the threads
+    std::size_t boxes = 0, pairs = 0, tuples = 0;  ///< of the trees
+    double floor = 0;                              ///< m2, by weight, rounded up
 };
 
 /// Computes the bound that the trees of a certificate prove, all views anew by BoxViews: in cells

@@ -74,6 +74,7 @@ class CertificateChecker {
     [[nodiscard]] double unionOf(bool is_large, const Boxes& boxes, std::size_t size,
                                  unsigned known, unsigned pair = 0, double paired = 0) const;
     [[nodiscard]] double pairOf(bool is_large, const Boxes& pair) const;
+    [[nodiscard]] CertificateCheck boundTuples() const;
 
     Floors floors_;
     const Sector& sector_;
@@ -301,6 +302,30 @@ double CertificateChecker::sharedBy(bool is_large, const Boxes& boxes) const {
         .sharedBy({placed.data(), count_}, times_, certificate_.bound);
 }
 
+/// Bounds tuples until one exceeds the certificate; each before the first of these is bounded.
+CertificateCheck CertificateChecker::boundTuples() const {
+    constexpr double kRounding = 1e-9;
+    const double enough = certificate_.bound * (1 + kRounding);
+    std::vector<double> bounds(tuples_.size());
+    std::atomic<std::size_t> first = tuples_.size(), bounded = 0;  // first: that exceeds
+    tbb::parallel_for(std::size_t{0}, tuples_.size(), [&](std::size_t i) {
+        if (!tuples_[i].is_whole || i > first) return;
+        bounds[i] = boundOf(tuples_[i].boxes);
+        ++bounded;
+        if (bounds[i] <= enough) return;
+        for (std::size_t least = first; i < least && !first.compare_exchange_weak(least, i);) {
+        }
+    });
+    const bool is_proven = first == tuples_.size();
+    return {is_proven ? *std::max_element(bounds.begin(), bounds.end()) : bounds[first],
+            is_proven ? 0 : first + 1,
+            bounded,
+            boxes_.size(),
+            pairs_.size(),
+            tuples_.size(),
+            floors_.fine.floorArea()};
+}
+
 CertificateCheck CertificateChecker::check() {
     readBox({floors_.fine.box(), 0, sector_.isRound() ? 0 : 2 * std::numbers::pi}, 0);
     if (at_ != certificate_.boxes.size()) refuse("more than one tree of boxes");
@@ -312,12 +337,7 @@ CertificateCheck CertificateChecker::check() {
     if (at != certificate_.tuples.size()) refuse("more than one tree of tuples");
     computeViews();
     boundPairs();
-    std::vector<double> bounds(tuples_.size());
-    tbb::parallel_for(std::size_t{0}, tuples_.size(), [&](std::size_t i) {
-        if (tuples_[i].is_whole) bounds[i] = boundOf(tuples_[i].boxes);
-    });
-    return {*std::max_element(bounds.begin(), bounds.end()), boxes_.size(), pairs_.size(),
-            tuples_.size(), floors_.fine.floorArea()};
+    return boundTuples();
 }
 
 }  // namespace

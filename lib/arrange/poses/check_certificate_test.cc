@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -232,6 +233,35 @@ TEST(CheckCertificate, ALowerClaimIsNotConfirmed) {
     // Nor does the proof for two sensors hold for three, or for a longer range.
     EXPECT_GT(checked(roomsWithPillar(), sector, 3, made).bound, made.bound);
     EXPECT_GT(checked(roomsWithPillar(), {4, 2, 0}, 2, made).bound, made.bound);
+}
+
+TEST(CheckCertificate, EndsAtTheFirstTupleThatMaySeeMore) {
+    const Region region = roomsWithPillar();
+    const Sector sector{4, 4, 0};
+    PoseCertificate claim;
+    StopWhen soon(afterAsking(32));
+    (void)boundOverPoses(PoseFloor({&region, 1}, kCells), sector,
+                         {.sensors = 2, .singles = 500, .certificate = &claim}, soon);
+    const CertificateCheck whole = checked(region, sector, 2, claim);
+    EXPECT_EQ(whole.refused, 0U);
+    EXPECT_GT(whole.bounded, 100U);
+    claim.bound *= 0.93;
+    std::size_t refused = 0;
+    for (int step = 0; step < 3; ++step) {
+        CertificateCheck checks[2];
+        for (const std::size_t threads : {1U, 2U}) {
+            using Control = tbb::global_control;
+            const Control limit(Control::max_allowed_parallelism, threads);
+            checks[threads - 1] = checked(region, sector, 2, claim);
+            EXPECT_LT(checks[threads - 1].bounded, whole.bounded / 2);
+        }
+        EXPECT_GT(checks[0].refused, refused);  // all up to the last one are within its bound
+        EXPECT_EQ(checks[0].refused, checks[1].refused);
+        EXPECT_GT(checks[0].bound, claim.bound);
+        EXPECT_EQ(checks[0].bound, checks[1].bound);
+        refused = checks[0].refused;
+        claim.bound = checks[0].bound;
+    }
 }
 
 /// Poses of the box see no more than its view, by exact area, and by cell.
