@@ -292,7 +292,7 @@ TEST(OverPoses, ChecksLevelLasersOfOneKindAlone) {
     const auto refusal = [](const std::string& sensors) -> std::string {
         try {
             checkPoses(roomScene("#env 1\nispace size=8,6\n" + sensors), {}, 1,
-                       {.bound = 9, .boxes = ".", .pairs = "", .tuples = "."}, "c");
+                       {.bound = 9, .boxes = ".", .tuples = "."}, "c");
         } catch (const UsageError& error) {
             return error.what();
         }

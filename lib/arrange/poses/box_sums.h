@@ -19,7 +19,7 @@ struct CheckedBox {
     std::uint32_t second = 0;  // 0: whole
     std::uint32_t end = 0;     // of its subtree
     double most = 0;           // bounds the area that a single pose of it sees
-    bool is_used = false;      // by a pair or a tuple
+    bool is_used = false;      // by a tuple
     bool is_part = false;      // of a box that is used
     BoxView view = {}, large_view = {};
     BoxCore core = {}, large_core = {};

@@ -347,25 +347,15 @@ BoxView BoxViews::viewOf(const PoseBox& box) const { return BoxSight(*this, box)
 double BoxViews::unionOf(std::span<const Known> known,
                          std::span<const BoxView* const> views) const {
     thread_local std::vector<std::int32_t> left;  // memory is reused
-    thread_local std::vector<std::uint16_t> own, seen;
+    thread_local std::vector<std::uint16_t> seen;
     const std::size_t cells = most_.size();
     left.assign(most_.begin(), most_.end());
-    for (auto* parts : {&own, &seen}) parts->assign(cells, 0);
+    seen.assign(cells, 0);
     double area = 0;
-    for (const Known& sensors : known) {
-        area += sensors.area;
-        std::size_t begin = cells, end = 0;
-        for (const BoxCore* core : sensors.cores) {
-            if (core == nullptr) continue;
-            for (std::size_t i = 0; i < core->parts.size(); ++i)
-                own[core->first + i] = std::max(own[core->first + i], core->parts[i]);
-            begin = std::min(begin, core->first);
-            end = std::max(end, core->first + core->parts.size());
-        }
-        for (std::size_t i = begin; i < end; ++i) {
-            left[i] -= own[i];
-            own[i] = 0;
-        }
+    for (const auto& [most, core] : known) {
+        area += most;
+        for (std::size_t i = 0; i < core->parts.size(); ++i)
+            left[core->first + i] -= core->parts[i];
     }
     for (const BoxView* view : views)
         for (std::size_t i = 0; i < view->parts.size(); ++i) {

@@ -51,10 +51,10 @@ class BoxViews {
     /// Returns what all poses see from the same faces through the same edges, or less.
     [[nodiscard]] BoxCore coreOf(const PoseBox& box) const;
 
-    /// Sensors that see a known area together at most, in boxes of these cores.
+    /// A sensor that sees a known area at most, in a box of this core.
     struct Known {
         double area = 0;  ///< m2
-        std::array<const BoxCore*, 2> cores{};
+        const BoxCore* core = nullptr;
     };
     /// Bounds what sensors see together: known areas, and in each cell the views of the others, or
     /// the floor less all cores of known ones, which the known areas hold already.

@@ -20,7 +20,6 @@ struct Tree {
     std::string PoseCertificate::*text;
 };
 constexpr Tree kTrees[] = {{"boxes", "xyh.", &PoseCertificate::boxes},
-                           {"pairs", "01.-", &PoseCertificate::pairs},
                            {"tuples", "0123.-", &PoseCertificate::tuples}};
 
 }  // namespace
@@ -44,7 +43,7 @@ PoseCertificate readCertificate(std::string_view text, const std::string& name) 
     const auto bound =
         first.starts_with(kBound) ? parseDouble(first.substr(kBound.size())) : std::nullopt;
     if (!bound || *bound < 0) lines.refuse("wanted `bound AREA` in square metres");
-    PoseCertificate certificate{.bound = *bound, .boxes = {}, .pairs = {}, .tuples = {}};
+    PoseCertificate certificate{.bound = *bound, .boxes = {}, .tuples = {}};
     for (const Tree& tree : kTrees) {
         if (lines.next() != tree.name) lines.refuse("wanted `" + std::string(tree.name) + '`');
         std::string& nodes = certificate.*tree.text;
@@ -60,7 +59,7 @@ PoseCertificate readCertificate(std::string_view text, const std::string& name) 
             nodes += line;
         }
     }
-    if (!lines.atEnd()) lines.refuse("more than three trees");
+    if (!lines.atEnd()) lines.refuse("more than two trees");
     return certificate;
 }
 

@@ -27,11 +27,9 @@ struct PoseCertificate {
     double bound = 0;  ///< m2, by weight
     /// All poses: a box is halved along `x`, along `y` or in its headings (`h`), or whole (`.`).
     std::string boxes;
-    /// Pairs of boxes, which bound two sensors; empty: none. Box `0` or `1` of the pair is halved;
-    /// a pair is bounded as a whole (`.`) or left out (`-`), as its poses are out of the order of
-    /// the tree of boxes or one of them sees no floor.
-    std::string pairs;
-    /// Tuples of boxes, one for each sensor, likewise.
+    /// Tuples of boxes, one for each sensor: box `0` to `3` of the tuple is halved; a tuple is
+    /// bounded as a whole (`.`) or left out (`-`), as its poses are out of the order of the tree of
+    /// boxes or one of them sees no floor.
     std::string tuples;
 };
 
@@ -49,8 +47,8 @@ struct CertificateCheck {
     /// rounding); 0: none. Later ones need not be bounded.
     std::size_t refused = 0;
     std::size_t bounded = 0;  ///< tuples; with one that is refused, it depends on the threads
-    std::size_t boxes = 0, pairs = 0, tuples = 0;  ///< of the trees
-    double floor = 0;                              ///< m2, by weight, rounded up
+    std::size_t boxes = 0, tuples = 0;  ///< of the trees
+    double floor = 0;                   ///< m2, by weight, rounded up
 };
 
 /// Computes the bound that the trees of a certificate prove, all views anew by BoxViews: in cells

@@ -47,33 +47,26 @@ class CertificateChecker {
     CertificateCheck check();
 
   private:
-    /// Boxes of several sensors, in the order of the tree of boxes.
-    struct Group {
+    /// Boxes of the sensors, in the order of the tree of boxes.
+    struct Tuple {
         Boxes boxes{};
-        std::uint32_t end = 0;  // of its subtree; the next group is its first half
-        double most = 0;
         bool is_whole = false;
     };
 
     [[noreturn]] void refuse(const std::string& message) const {
         throw FormatError({name_, 0, 0, message});
     }
-    char nextOf(const std::string& tree, std::size_t& at, const char* name) const;
+    char nextOf(const std::string& tree, const char* name);
     void readBox(const PoseBox& box, int depth);
-    void readGroup(const std::string& tree, std::size_t& at, const char* name, Boxes boxes,
-                   std::size_t size, std::vector<Group>& groups);
-    [[nodiscard]] bool isOutOfOrder(const Boxes& boxes, std::size_t size) const;
+    void readTuple(Boxes boxes);
+    [[nodiscard]] bool isOutOfOrder(const Boxes& boxes) const;
     void computeViews();
-    void boundPairs();
-    [[nodiscard]] double mostOf(std::uint32_t first, std::uint32_t second) const;
     [[nodiscard]] double boundOf(const Boxes& boxes) const;
     [[nodiscard]] double boundIn(bool is_large, const Boxes& boxes) const;
     [[nodiscard]] double sharedBy(bool is_large, const Boxes& boxes) const;
-    /// Bounds the area that poses of boxes see together: those of `known` by their areas, `pair` by
-    /// its own (0: none), and the others by their views.
-    [[nodiscard]] double unionOf(bool is_large, const Boxes& boxes, std::size_t size,
-                                 unsigned known, unsigned pair = 0, double paired = 0) const;
-    [[nodiscard]] double pairOf(bool is_large, const Boxes& pair) const;
+    /// Bounds the area that poses of boxes see together: those of `known` by their areas, and the
+    /// others by their views.
+    [[nodiscard]] double unionOf(bool is_large, const Boxes& boxes, unsigned known) const;
     [[nodiscard]] CertificateCheck boundTuples() const;
 
     Floors floors_;
@@ -81,20 +74,20 @@ class CertificateChecker {
     std::size_t count_, times_;
     const PoseCertificate& certificate_;
     const std::string& name_;
-    std::size_t at_ = 0;  // in the tree of boxes
+    std::size_t at_ = 0;  // in the tree that is read
     std::vector<CheckedBox> boxes_;
-    std::vector<Group> pairs_, tuples_;
+    std::vector<Tuple> tuples_;
     std::vector<std::uint32_t> blind_;  // boxes that were left out: their poses must see no floor
 };
 
-char CertificateChecker::nextOf(const std::string& tree, std::size_t& at, const char* name) const {
-    if (at == tree.size()) refuse(std::string("the tree of ") + name + " ends early");
-    return tree[at++];
+char CertificateChecker::nextOf(const std::string& tree, const char* name) {
+    if (at_ == tree.size()) refuse(std::string("the tree of ") + name + " ends early");
+    return tree[at_++];
 }
 
 void CertificateChecker::readBox(const PoseBox& box, int depth) {
     constexpr int kDeepest = 64;
-    const char node = nextOf(certificate_.boxes, at_, "boxes");
+    const char node = nextOf(certificate_.boxes, "boxes");
     const auto own = static_cast<std::uint32_t>(boxes_.size());
     boxes_.push_back({.box = box});
     if (node != '.') {
@@ -116,38 +109,35 @@ void CertificateChecker::readBox(const PoseBox& box, int depth) {
 }
 
 /// Poses of equal sensors may be assumed in the order of boxes.
-bool CertificateChecker::isOutOfOrder(const Boxes& boxes, std::size_t size) const {
-    for (std::size_t i = 0; i < size; ++i)
-        for (std::size_t k = i + 1; k < size; ++k)
+bool CertificateChecker::isOutOfOrder(const Boxes& boxes) const {
+    for (std::size_t i = 0; i < count_; ++i)
+        for (std::size_t k = i + 1; k < count_; ++k)
             if (boxes_[boxes[k]].end <= boxes[i]) return true;
     return false;
 }
 
-void CertificateChecker::readGroup(const std::string& tree, std::size_t& at, const char* name,
-                                   Boxes boxes, std::size_t size, std::vector<Group>& groups) {
-    const char node = nextOf(tree, at, name);
-    const std::size_t own = groups.size();
-    if (node == '-') refuse(std::string("the tree of ") + name + " leaves out all poses");
-    groups.push_back({.boxes = boxes});
+void CertificateChecker::readTuple(Boxes boxes) {
+    const std::string& tree = certificate_.tuples;
+    const char node = nextOf(tree, "tuples");
+    if (node == '-') refuse("the tree of tuples leaves out all poses");
+    tuples_.push_back({boxes, node == '.'});
     if (node == '.') {
-        groups[own].is_whole = true;
-        for (std::size_t i = 0; i < size; ++i) boxes_[boxes[i]].is_used = true;
-    } else {
-        const auto which = static_cast<std::size_t>(node - '0');
-        if (which >= size) refuse(std::string("no sensor ") + node + " in a tree of " + name);
-        const std::uint32_t halved = boxes[which], second = boxes_[halved].second;
-        if (second == 0) refuse(std::string("the tree of ") + name + " halves a whole box");
-        for (const std::uint32_t half : {halved + 1, second}) {
-            boxes[which] = half;
-            if (at < tree.size() && tree[at] == '-') {
-                ++at;
-                if (!isOutOfOrder(boxes, size)) blind_.push_back(half);
-            } else {
-                readGroup(tree, at, name, boxes, size, groups);
-            }
+        for (std::size_t i = 0; i < count_; ++i) boxes_[boxes[i]].is_used = true;
+        return;
+    }
+    const auto which = static_cast<std::size_t>(node - '0');
+    if (which >= count_) refuse(std::string("no sensor ") + node + " in a tree of tuples");
+    const std::uint32_t halved = boxes[which], second = boxes_[halved].second;
+    if (second == 0) refuse("the tree of tuples halves a whole box");
+    for (const std::uint32_t half : {halved + 1, second}) {
+        boxes[which] = half;
+        if (at_ < tree.size() && tree[at_] == '-') {
+            ++at_;
+            if (!isOutOfOrder(boxes)) blind_.push_back(half);
+        } else {
+            readTuple(boxes);
         }
     }
-    groups[own].end = static_cast<std::uint32_t>(groups.size());
 }
 
 void CertificateChecker::computeViews() {
@@ -190,19 +180,14 @@ void CertificateChecker::computeViews() {
     }
 }
 
-double CertificateChecker::unionOf(bool is_large, const Boxes& boxes, std::size_t size,
-                                   unsigned known, unsigned pair, double paired) const {
+double CertificateChecker::unionOf(bool is_large, const Boxes& boxes, unsigned known) const {
     std::array<BoxViews::Known, kMostPosed> areas{};
     std::array<const BoxView*, kMostPosed> views{};
-    std::size_t areas_size = pair == 0 ? 0 : 1, views_size = 0, in_pair = 0;
-    areas[0].area = paired;
-    for (std::size_t i = 0; i < size; ++i) {
+    std::size_t areas_size = 0, views_size = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
         const CheckedBox& box = boxes_[boxes[i]];
-        const BoxCore& core = is_large ? box.large_core : box.core;
-        if ((pair >> i & 1U) != 0)
-            areas[0].cores[in_pair++] = &core;
-        else if ((known >> i & 1U) != 0)
-            areas[areas_size++] = {box.most, {&core, nullptr}};
+        if ((known >> i & 1U) != 0)
+            areas[areas_size++] = {box.most, is_large ? &box.large_core : &box.core};
         else
             views[views_size++] = is_large ? &box.large_view : &box.view;
     }
@@ -210,73 +195,13 @@ double CertificateChecker::unionOf(bool is_large, const Boxes& boxes, std::size_
         .unionOf({areas.data(), areas_size}, {views.data(), views_size});
 }
 
-/// Bounds the area that two poses see together by their own boxes.
-double CertificateChecker::pairOf(bool is_large, const Boxes& pair) const {
-    double most = boxes_[pair[0]].most + boxes_[pair[1]].most;
-    for (unsigned known = 0; known < 4; ++known)
-        most = std::min(most, unionOf(is_large, pair, 2, known));
-    return most;
-}
-
-void CertificateChecker::boundPairs() {
-    tbb::parallel_for(std::size_t{0}, pairs_.size(), [this](std::size_t i) {
-        Group& pair = pairs_[i];
-        if (pair.is_whole) pair.most = pairOf(false, pair.boxes);
-    });
-    for (std::size_t i = pairs_.size(); i-- > 0;)
-        for (std::uint32_t half = static_cast<std::uint32_t>(i) + 1; half < pairs_[i].end;
-             half = pairs_[half].end)
-            pairs_[i].most = std::max(pairs_[i].most, pairs_[half].most);
-}
-
-/// Bounds the area that poses of two boxes see together, by the pairs that they share poses with.
-double CertificateChecker::mostOf(std::uint32_t first, std::uint32_t second) const {
-    const std::uint32_t ids[] = {first, second};
-    double most = 0;
-    for (std::uint32_t i = 0; i < pairs_.size();) {
-        const Group& pair = pairs_[i];
-        bool is_apart = pair.most <= most, is_within = true;
-        for (std::size_t k = 0; k < 2; ++k) {
-            const std::uint32_t own = pair.boxes[k], own_end = boxes_[own].end;
-            const std::uint32_t other = ids[k], end = boxes_[other].end;
-            is_apart = is_apart || own_end <= other || end <= own;
-            is_within = is_within && other <= own && own_end <= end;
-        }
-        if (is_apart) {
-            i = pair.end;
-        } else if (pair.is_whole || is_within) {
-            most = pair.most;
-            i = pair.end;
-        } else {
-            ++i;
-        }
-    }
-    return most;
-}
-
-/// A sensor adds no more than the largest single view in its box, less its overlap with others, and
-/// floor that one of n sensors sees is in n - 1 of the pairs of them.
+/// A sensor adds no more than the largest single view in its box, less its overlap with others.
 double CertificateChecker::boundIn(bool is_large, const Boxes& boxes) const {
     if (times_ > 1) return sharedBy(is_large, boxes);
-    const unsigned everyone = (1U << count_) - 1;
-    double all = 0;
-    for (std::size_t i = 0; i < count_; ++i) all += boxes_[boxes[i]].most;
-    double bound = all, sum = 0;
-    const auto is_open = [&] { return bound > certificate_.bound; };
-    for (unsigned known = everyone + 1; known-- > 0 && is_open();)
-        bound = std::min(bound, unionOf(is_large, boxes, count_, known));
-    for (std::size_t i = 0; i < count_ && is_open(); ++i)
-        for (std::size_t k = i + 1; k < count_ && is_open(); ++k) {
-            const unsigned both = 1U << i | 1U << k;
-            double pair = pairOf(is_large, {boxes[i], boxes[k]});
-            if (!pairs_.empty()) pair = std::min(pair, mostOf(boxes[i], boxes[k]));
-            sum += pair;
-            bound = std::min(bound, all - boxes_[boxes[i]].most - boxes_[boxes[k]].most + pair);
-            if (i + 2 == count_) bound = std::min(bound, sum / static_cast<double>(count_ - 1));
-            for (unsigned known = everyone + 1; known-- > 0 && is_open();)
-                if ((known & both) == 0)
-                    bound = std::min(bound, unionOf(is_large, boxes, count_, known, both, pair));
-        }
+    double bound = 0;
+    for (std::size_t i = 0; i < count_; ++i) bound += boxes_[boxes[i]].most;
+    for (unsigned known = 1U << count_; known-- > 0 && bound > certificate_.bound;)
+        bound = std::min(bound, unionOf(is_large, boxes, known));
     return bound;
 }
 
@@ -321,7 +246,6 @@ CertificateCheck CertificateChecker::boundTuples() const {
             is_proven ? 0 : first + 1,
             bounded,
             boxes_.size(),
-            pairs_.size(),
             tuples_.size(),
             floors_.fine.floorArea()};
 }
@@ -329,14 +253,10 @@ CertificateCheck CertificateChecker::boundTuples() const {
 CertificateCheck CertificateChecker::check() {
     readBox({floors_.fine.box(), 0, sector_.isRound() ? 0 : 2 * std::numbers::pi}, 0);
     if (at_ != certificate_.boxes.size()) refuse("more than one tree of boxes");
-    std::size_t at = 0;
-    if (!certificate_.pairs.empty()) readGroup(certificate_.pairs, at, "pairs", {}, 2, pairs_);
-    if (at != certificate_.pairs.size()) refuse("more than one tree of pairs");
-    at = 0;
-    readGroup(certificate_.tuples, at, "tuples", {}, count_, tuples_);
-    if (at != certificate_.tuples.size()) refuse("more than one tree of tuples");
+    at_ = 0;
+    readTuple({});
+    if (at_ != certificate_.tuples.size()) refuse("more than one tree of tuples");
     computeViews();
-    boundPairs();
     return boundTuples();
 }
 

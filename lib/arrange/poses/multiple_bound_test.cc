@@ -131,14 +131,9 @@ double leastUnion(const PoseBoxes& boxes, const std::vector<BoxId>& ids, Grain g
     double least = 0;
     for (const BoxId id : ids) least += boxes[id].most;
     for (unsigned chosen = 0; chosen < 1U << ids.size(); ++chosen) {
-        std::vector<PoseBoxes::Known> known;
-        std::vector<BoxId> others;
-        for (std::size_t i = 0; i < ids.size(); ++i) {
-            if ((chosen >> i & 1U) != 0)
-                known.push_back({{ids[i]}, 1, boxes[ids[i]].most});
-            else
-                others.push_back(ids[i]);
-        }
+        std::vector<BoxId> known, others;
+        for (std::size_t i = 0; i < ids.size(); ++i)
+            ((chosen >> i & 1U) != 0 ? known : others).push_back(ids[i]);
         least = std::min(least, boxes.unionOf(known, others, grain));
     }
     return least;

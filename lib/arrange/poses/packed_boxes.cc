@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trees of boxes and of pairs as bytes, for a run that continues.
+// The tree of boxes as bytes, for a run that continues.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "arrange/poses/box_pairs.h"
 #include "arrange/poses/pose_boxes.h"
 
 namespace ispace::poses {
@@ -67,56 +66,6 @@ void PoseBoxes::addMissingViews(std::vector<BoxId> ids) {
     std::sort(ids.begin(), ids.end());
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
     tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) { addViews(boxes_[ids[i]]); });
-}
-
-void BoxPairs::pack(Packer& to) const {
-    std::vector<std::uint64_t> most;
-    std::vector<std::uint32_t> numbers;
-    for (const PairNode& pair : pairs_) {
-        most.push_back(std::bit_cast<std::uint64_t>(pair.most));
-        numbers.insert(numbers.end(), {pair.boxes[0], pair.boxes[1], pair.parent, pair.child,
-                                       pair.children, pair.is_split ? 1U : 0U});
-    }
-    to.addAll(most);
-    to.addAll(numbers);
-}
-
-void BoxPairs::unpack(Unpacker& from) {
-    constexpr std::size_t kNumbers = 6;
-    const auto most = from.all<std::uint64_t>();
-    const auto numbers = from.all<std::uint32_t>();
-    if (numbers.size() != kNumbers * most.size()) Unpacker::refuse();
-    pairs_.clear();
-    std::size_t halves = 1;  // each pair but the first is the half of one pair before it
-    for (std::size_t id = 0; id < most.size(); ++id) {
-        const std::uint32_t* own = &numbers[kNumbers * id];
-        const PairNode pair{{own[0], own[1]}, areaFrom(most[id]), own[2], own[3],
-                            own[4],           own[5] != 0};
-        if (std::max(own[0], own[1]) >= boxes_.size() || own[5] > 1) Unpacker::refuse();
-        if (pair.is_split) {
-            if (pair.child <= id || pair.children > 2 || pair.child > most.size() ||
-                pair.children > most.size() - pair.child)
-                Unpacker::refuse();
-            halves += pair.children;
-        } else if (pair.child != 0 || pair.children != 0) {
-            Unpacker::refuse();
-        }
-        if (id > 0 && (pair.parent >= id || !isHalf(pairs_[pair.parent], pair, id)))
-            Unpacker::refuse();
-        pairs_.push_back(pair);
-    }
-    if (!most.empty() &&
-        (halves != most.size() || pairs_[0].boxes[0] != 0 || pairs_[0].boxes[1] != 0))
-        Unpacker::refuse();
-}
-
-/// True if the pair is a child that halves one box of its parent.
-bool BoxPairs::isHalf(const PairNode& parent, const PairNode& pair, std::size_t id) const {
-    if (!parent.is_split || id < parent.child || id >= parent.child + parent.children) return false;
-    const std::size_t which = boxes_.widestOf(parent.boxes);
-    return which < 2 && pair.boxes[1 - which] == parent.boxes[1 - which] &&
-           boxes_[parent.boxes[which]].child != 0 &&
-           pair.boxes[which] - boxes_[parent.boxes[which]].child < 2;
 }
 
 }  // namespace ispace::poses

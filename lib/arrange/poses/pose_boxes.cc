@@ -33,10 +33,6 @@ ISPACE_SIMD_CLONES void takeCore(std::int16_t* __restrict free, const std::uint8
     for (std::size_t i = 0; i < count; ++i) free[i] = static_cast<std::int16_t>(free[i] - core[i]);
 }
 
-ISPACE_SIMD_CLONES void raise(std::uint8_t* sums, const std::uint8_t* parts, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) sums[i] = parts[i] > sums[i] ? parts[i] : sums[i];
-}
-
 /// Returns the sum of parts, in each cell at most those that are free, which may be negative.
 ISPACE_SIMD_CLONES std::int32_t sumWithin(const std::uint8_t* parts, const std::int16_t* free,
                                           std::size_t count) {
@@ -282,33 +278,24 @@ bool PoseBoxes::isWorthFine(double large, double enough, std::span<const BoxId> 
 }
 
 double PoseBoxes::unionFor(double enough, std::span<const BoxId> boxes,
-                           std::span<const Known> known, std::span<const BoxId> others) const {
+                           std::span<const BoxId> known, std::span<const BoxId> others) const {
     const double large = unionOf(known, others, Grain::Large);
     return isWorthFine(large, enough, boxes) ? std::min(large, unionOf(known, others)) : large;
 }
 
-double PoseBoxes::unionOf(std::span<const Known> known, std::span<const BoxId> others,
+double PoseBoxes::unionOf(std::span<const BoxId> known, std::span<const BoxId> others,
                           Grain grain) const {
     thread_local std::vector<std::int16_t> free;  // memory is reused
-    thread_local std::vector<std::uint8_t> own, fat;
+    thread_local std::vector<std::uint8_t> fat;
     const std::vector<std::uint8_t>& most = floor_.in(grain).parts();
     double area = 0;
     free.resize(most.size());
     widen(free.data(), most.data(), most.size());
     fat.assign(most.size(), 0);
-    for (const Known& part : known) {
-        area += part.most;
-        const CellParts& core = boxes_[part.boxes[0]].coreIn(grain);
-        if (part.count == 1) {
-            takeCore(&free[core.first], core.parts.data(), core.parts.size());
-            continue;
-        }
-        own.assign(most.size(), 0);
-        for (const BoxId id : part.boxes) {
-            const CellParts& one = boxes_[id].coreIn(grain);
-            raise(&own[one.first], one.parts.data(), one.parts.size());
-        }
-        takeCore(free.data(), own.data(), own.size());
+    for (const BoxId id : known) {
+        area += boxes_[id].most;
+        const CellParts& core = boxes_[id].coreIn(grain);
+        takeCore(&free[core.first], core.parts.data(), core.parts.size());
     }
     for (const BoxId id : others) {
         const CellParts& view = boxes_[id].fatIn(grain);

@@ -94,22 +94,16 @@ class PoseBoxes {
     /// Returns the area of the union of the views from centres.
     [[nodiscard]] double unionOfCentres(std::span<const BoxId> boxes) const;
 
-    /// Boxes of which a bound of the area that all see together is known.
-    struct Known {
-        std::array<BoxId, 2> boxes{};
-        std::size_t count = 1;
-        double most = 0;  // m2
-    };
-    /// Bounds the area that the poses of boxes see together: the areas that are known, and in each
-    /// cell the lesser of the fat views of the others and the floor less all cores of the known
-    /// parts. Outside of the cell these add no more than their areas less their cores in it. So a
-    /// core that lies in another one lowers the sum.
-    [[nodiscard]] double unionOf(std::span<const Known> known, std::span<const BoxId> others,
+    /// Bounds the area that the poses of boxes see together: the largest single views of `known`,
+    /// and in each cell the lesser of the fat views of the others and the floor less all cores of
+    /// the known ones. Outside of the cell these add no more than their areas less their cores in
+    /// it. So a core that lies in another one lowers the sum.
+    [[nodiscard]] double unionOf(std::span<const BoxId> known, std::span<const BoxId> others,
                                  Grain grain = Grain::Fine) const;
     /// Bounds it for poses of `boxes` in large cells, and in fine ones if these may lower it to
     /// `enough`.
     [[nodiscard]] double unionFor(double enough, std::span<const BoxId> boxes,
-                                  std::span<const Known> known,
+                                  std::span<const BoxId> known,
                                   std::span<const BoxId> others) const;
     /// Returns true if a bound in large cells exceeds one that suffices by so little that the
     /// bound in fine cells may not, or if the boxes are no larger than these.

@@ -18,55 +18,17 @@ double PoseSearcher::boundOf(const Tuple& tuple, double enough) const {
 }
 
 double PoseSearcher::unionBoundOf(const Tuple& tuple, double enough) const {
-    using Known = PoseBoxes::Known;
     double bound = 0;
-    std::array<Known, kMostPosed> single{};
-    for (std::size_t i = 0; i < count_; ++i) {
-        single[i] = {{tuple.boxes[i]}, 1, boxes_[tuple.boxes[i]].most};
-        bound += single[i].most;
-    }
-    const double all = bound;
-    if (count_ == 1 || bound <= enough) return bound;
-    std::vector<Known> known;
-    std::vector<BoxId> others;
-    // Sensors of `chosen` add known areas, beside a pair; the others their fat views.
-    const auto lower = [&](const Known* pair, unsigned paired, unsigned chosen) {
+    for (const BoxId id : boxesOf(tuple)) bound += boxes_[id].most;
+    if (count_ == 1) return bound;
+    std::vector<BoxId> known, others;
+    for (unsigned chosen = 1U << count_; chosen-- > 0 && bound > enough;) {
         known.clear();
         others.clear();
-        if (pair != nullptr) known.push_back(*pair);
-        for (std::size_t i = 0; i < count_; ++i) {
-            if ((paired >> i & 1U) != 0) continue;
-            if ((chosen >> i & 1U) != 0)
-                known.push_back(single[i]);
-            else
-                others.push_back(tuple.boxes[i]);
-        }
+        for (std::size_t i = 0; i < count_; ++i)
+            ((chosen >> i & 1U) != 0 ? known : others).push_back(tuple.boxes[i]);
         bound = std::min(bound, boxes_.unionFor(enough, boxesOf(tuple), known, others));
-        return bound;
-    };
-    const unsigned everyone = (1U << count_) - 1;
-    if (lower(nullptr, 0, everyone) <= enough) return bound;
-    double sum = 0;  // over pairs: floor that one sensor sees is in count_ - 1 of them
-    for (std::size_t i = 0; i < count_; ++i)
-        for (std::size_t k = i + 1; k < count_; ++k) {
-            Known pair{{tuple.boxes[i], tuple.boxes[k]}, 2, single[i].most + single[k].most};
-            pair.most = std::min(pair.most, pairs_.mostOf(tuple.boxes[i], tuple.boxes[k]));
-            pair.most = std::min(pair.most, pairs_.unionOf(tuple.boxes[i], tuple.boxes[k]));
-            sum += pair.most;
-            bound = std::min(bound, pair.most + (all - single[i].most - single[k].most));
-            if (count_ < 3) continue;
-            const unsigned paired = 1U << i | 1U << k;
-            for (unsigned chosen = everyone;; chosen = (chosen - 1) & everyone) {
-                if ((chosen & paired) != 0) {
-                    if (chosen == 0) break;
-                    continue;
-                }
-                if (lower(&pair, paired, chosen) <= enough) return bound;
-                if (chosen == 0) break;
-            }
-        }
-    bound = std::min(bound, sum / static_cast<double>(count_ - 1));
-    for (unsigned chosen = everyone; chosen-- > 0 && bound > enough;) lower(nullptr, 0, chosen);
+    }
     return bound;
 }
 
@@ -250,26 +212,15 @@ void PoseSearcher::deal() {
 
 PoseBound PoseSearcher::run() {
     if (boxes_[0].isBlind()) return {};
-    if (!recall()) searchSingle();
-    if (!is_paired_ && progress_.stopped()) is_kept_ = false;
-    if (count_ > 2 && options_.times == 1 && !is_paired_)
-        pairs_.search(options_.pairs, [this] {
-            if (progress_.stopped() || isFull()) return true;
-            if (options_.share.results != nullptr && options_.share.results->isDue()) keep();
-            return false;
-        });
-    if (!is_paired_ && progress_.stopped()) {
-        keep();
-        is_kept_ = false;  // the root is bounded by what there is
+    if (!recall()) {
+        searchSingle();
+        if (progress_.stopped()) is_kept_ = false;  // cut short
     }
-    is_paired_ = true;
     searchTuples();
     const double open = queue_.empty() ? 0 : queue_.top().bound;
     const double bound = std::max({closed_, open, found_.area});
     if (PoseCertificate* certificate = options_.certificate; certificate != nullptr) {
-        *certificate = {.bound = bound, .boxes = {}, .pairs = {}, .tuples = {}};
-        certificate->boxes = boxes_.text();
-        certificate->pairs = pairs_.text();
+        *certificate = {.bound = bound, .boxes = boxes_.text(), .tuples = {}};
         writeTuples(0, bound, certificate->tuples);
     }
     return {bound, found_, boxes_.size(), tuples_, is_complete_};

@@ -26,8 +26,8 @@ struct PosedLayout {
 
 /// Divides the search among processes, and continues an earlier run.
 ///
-/// The state holds boxes without views, which are computed anew for those of open tuples, pairs and
-/// tuples; it is stored when that is due and when the search is stopped.
+/// The state holds boxes without views, which are computed anew for those of open tuples; it is
+/// stored when that is due and when the search is stopped.
 ///
 /// All shards search the same tuples until there are enough, deal these out in turn by their
 /// bounds, and each continues with its share. A shard stores its best layout and a bound of its
@@ -46,7 +46,6 @@ struct PoseSearchOptions {
     double gap = 0;    ///< ends once the bound exceeds the layout found by this share of the bound
     std::size_t max_bytes = std::size_t{8} << 30U;  ///< of boxes and tuples
     std::size_t singles = 20'000;  ///< boxes that bound single views before all else, at most
-    std::size_t pairs = 400'000;   ///< that bound two of three and more sensors, at most
     /// Computes a layout near these poses; null: layouts are not improved. Called by one thread.
     std::function<PosedLayout(std::span<const poses::PoseBox>)> improve = {};
     PoseCertificate* certificate = nullptr;  ///< receives the proof; null: it is not wanted
@@ -67,13 +66,12 @@ constexpr int kMostPosed = 4;
 /// the floor, by branch and bound over tuples of boxes of poses, one box for each sensor.
 ///
 /// All that the poses of a tuple see lies in the union of its fat views (fatViewOf()). No sensor
-/// adds more than the largest single view in its box, which its subdivision bounds, and no two more
-/// than the largest view of a pair; what two sensors see in any poses of their boxes, their cores
-/// (coreViewOf()), is counted once. So the bound of a tuple is the least, over all subsets of the
-/// sensors, of their known areas, and in each cell the lesser of the fat views of the others and
-/// the floor less all of their cores. In cells that several views share in part, the union counts
-/// the sum of the parts, up to the floor in the cell. MultipleBound has the bound for several
-/// times, SumBound another one by the parts of each box.
+/// adds more than the largest single view in its box, which its subdivision bounds; what sensors
+/// see in any poses of their boxes, their cores (coreViewOf()), is counted once. So the bound of a
+/// tuple is the least, over all subsets of the sensors, of their known areas, and in each cell the
+/// lesser of the fat views of the others and the floor less all of their cores. In cells that
+/// several views share in part, the union counts the sum of the parts, up to the floor in the cell.
+/// MultipleBound has the bound for several times, SumBound another one by the parts of each box.
 ///
 /// Deterministic for any number of threads, unless stopped. With a share a stopped search continues
 /// to the result of one that was not. \throws FormatError for a state or a part that is damaged

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "arrange/poses/box_pairs.h"
 #include "arrange/poses/multiple_bound.h"
 #include "arrange/poses/pose_boxes.h"
 #include "arrange/poses/pose_search.h"
@@ -65,7 +64,6 @@ class PoseSearcher {
           count_(static_cast<std::size_t>(options.sensors)),
           found_{options.found, {}},
           boxes_(floor, sector),
-          pairs_(boxes_),
           sums_(floor, boxes_, static_cast<std::size_t>(options.times)),
           multiple_(floor, boxes_, count_, static_cast<std::size_t>(options.times)) {}
 
@@ -100,8 +98,7 @@ class PoseSearcher {
     [[nodiscard]] double cutoff() const { return found_.area / (1 - options_.gap); }
     void improve(const Tuple& tuple);
     [[nodiscard]] bool isFull() const {
-        return boxes_.bytes() + pairs_.bytes() + queue_.size() * sizeof(Tuple) +
-                   tree_.size() * sizeof(TupleNode) >
+        return boxes_.bytes() + queue_.size() * sizeof(Tuple) + tree_.size() * sizeof(TupleNode) >
                options_.max_bytes;
     }
     void addToTree(const Tuple& parent, std::size_t which, std::vector<Tuple>& children);
@@ -115,7 +112,6 @@ class PoseSearcher {
     std::size_t count_;
     PosedLayout found_;
     PoseBoxes boxes_;
-    BoxPairs pairs_;
     SumBound sums_;
     MultipleBound multiple_;  // for options.times > 1
     std::size_t tuples_ = 0;
@@ -124,12 +120,10 @@ class PoseSearcher {
     double tried_ = 0;   // best layout of centres of boxes, m2
     double closed_ = 0;  // largest bound of a tuple that was not split further
     bool is_complete_ = true;
-    // Of the state. Pairs are stored by themselves once all are there.
-    std::string name_, pairs_name_;
+    std::string name_;  // of the state
     std::uint64_t mark_ = 0;
-    bool is_paired_ = false, are_pairs_kept_ = false;
     std::uint64_t dealt_ = 0;  // fingerprint of the tuples that were dealt out; 0: none yet
-    bool is_kept_ = false;     // false also once it is cut short in the middle of a step
+    bool is_kept_ = false;     // false also if single views were cut short
 };
 
 }  // namespace ispace::poses

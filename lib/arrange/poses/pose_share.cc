@@ -53,7 +53,7 @@ PosedLayout unpackLayout(Unpacker& from, int sensors) {
 
 std::uint64_t markOf(const PoseFloor& floor, const Sector& sector,
                      const PoseSearchOptions& options) {
-    constexpr std::uint64_t kForm = 3;  // version of the bytes
+    constexpr std::uint64_t kForm = 4;  // version of the bytes
     Packer to;
     to.add(kForm);
     for (std::size_t i = 0; i < floor.triangles().size(); ++i)

@@ -14,18 +14,9 @@ namespace ispace::poses {
 void PoseSearcher::keep() {
     if (!is_kept_) return;
     JobResults& results = *options_.share.results;
-    if (is_paired_ && !are_pairs_kept_) {
-        Packer to;
-        to.add(mark_);
-        pairs_.pack(to);
-        results.store(pairs_name_, to.bytes());
-        are_pairs_kept_ = true;
-    }
     Packer to;
     to.add(mark_);
     boxes_.pack(to);
-    to.add(is_paired_ ? 1 : 0);
-    if (!is_paired_) pairs_.pack(to);
     pack(to, found_);
     for (const double area : {tried_, closed_}) pack(to, area);
     to.add(tuples_);
@@ -54,7 +45,6 @@ bool PoseSearcher::recall() {
     // A run that is stopped already may have another layout to begin with.
     if (results == nullptr || progress_.stopped()) return false;
     name_ = results->keyFor("posestate");
-    pairs_name_ = results->keyFor("posepairs");
     is_kept_ = true;
     Packer marked;
     marked.add(markOf(floor_, sector_, options_));
@@ -67,18 +57,6 @@ bool PoseSearcher::recall() {
     Unpacker from(*bytes);
     if (from.number() != mark_) return false;
     boxes_.unpack(from);
-    is_paired_ = from.number() != 0;
-    if (is_paired_) {
-        const auto pairs = results->find(pairs_name_);
-        if (!pairs) Unpacker::refuse();
-        Unpacker from_pairs(*pairs);
-        if (from_pairs.number() != mark_) Unpacker::refuse();
-        pairs_.unpack(from_pairs);
-        if (!from_pairs.atEnd()) Unpacker::refuse();
-        are_pairs_kept_ = true;
-    } else {
-        pairs_.unpack(from);
-    }
     found_ = unpackLayout(from, options_.sensors);
     if (found_.area < options_.found) Unpacker::refuse();
     tried_ = unpackArea(from);
