@@ -54,6 +54,7 @@ void PoseBoxes::unpack(Unpacker& from) {
     }
     for (std::size_t id = 0; id < boxes_.size(); ++id) {
         boxes_[id].most = areaFrom(most[id]);
+        if (viewed[id] > 2) Unpacker::refuse();
         if (id == 0 || viewed[id] == 0) continue;
         boxes_[id].is_bare = true;
         (viewed[id] == 1 ? boxes_[id].is_large : boxes_[id].has_views) = true;

@@ -146,6 +146,16 @@ TEST(PoseShare, DamagedStatesAreRefused) {
         const std::size_t most = 24 + 4 * parents + 8;
         other.replace(most, 8, 8, '\xff');  // not a number
         EXPECT_TRUE(refused(other));
+        // Views of a box are none, those in large cells, or all.
+        for (const std::size_t id : {std::size_t{0}, std::size_t{1}, 2 * parents}) {
+            other = bytes;
+            char& viewed = other.at(most + 8 * (2 * parents + 1) + 8 + id);
+            ASSERT_LE(viewed, 2);
+            for (const char number : {'\3', '\xff'}) {
+                viewed = number;
+                EXPECT_TRUE(refused(other)) << id;
+            }
+        }
     }
 }
 
