@@ -231,9 +231,10 @@ void PoseBoxes::splitWithViews(const std::vector<BoxId>& ids) {
                       [&](std::size_t i) { addViews(boxes_[halves[i]]); });
     for (const BoxId half : halves) {
         const BoxNode& node = boxes_[half];
-        for (const CellParts* view :
-             {&node.parts, &node.core, &node.large_parts, &node.large_core, &node.centre})
+        for (const CellParts* view : {&node.parts, &node.core, &node.centre})
             bytes_ += view->parts.size();
+        if (!node.is_large)  // else these are in the sum
+            bytes_ += node.large_parts.parts.size() + node.large_core.parts.size();
         lowerMost(node.parent);
     }
     for (int round = 0; round < kCloser; ++round) {

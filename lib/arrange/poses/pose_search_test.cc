@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "arrange/poses/pose_boxes.h"
 #include "geom/arrangement.h"
 #include "geom/visibility/visibility.h"
 #include "support/test_problems.h"
@@ -164,6 +165,33 @@ TEST(PoseSearch, ABetterLayoutRaisesWhatIsFound) {
     EXPECT_EQ(found.area, 5);
     EXPECT_EQ(found.poses.size(), 1U);
     EXPECT_GT(calls, 0);
+}
+
+TEST(PoseSearch, MemoryCountsEachViewOnce) {
+    const Region region = letterL();
+    const PoseFloor floor({&region, 1}, 3000);
+    const Sector sector{2, 2, 0};
+    poses::PoseBoxes boxes(floor, sector);
+    const auto expect_sum = [&boxes] {
+        std::size_t bytes = 0;
+        for (poses::BoxId id = 1; id < boxes.size(); ++id) {
+            const poses::BoxNode& node = boxes[id];
+            bytes += sizeof(poses::BoxNode);
+            for (const poses::CellParts* view :
+                 {&node.parts, &node.core, &node.large_parts, &node.large_core, &node.centre})
+                bytes += view->parts.size();
+        }
+        EXPECT_EQ(boxes.bytes(), bytes);
+    };
+    boxes.splitWithLarge({0});
+    expect_sum();
+    const poses::BoxId child = boxes[0].child;
+    boxes.splitWithLarge({0, child, child + 1});
+    expect_sum();
+    boxes.splitWithViews({0, child});
+    expect_sum();
+    boxes.splitWithLarge({child, boxes[child].child});
+    expect_sum();
 }
 
 TEST(PoseSearch, AFloorWithoutAreaIsSeenByNone) {
