@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/simd.h"
 
@@ -158,18 +159,23 @@ void SumBound::lower(std::vector<Bounded>& tuples, double enough) {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < tuples.size(); ++i)
         if (tuples[i].bound > enough && boxes_.areSmall(tuples[i].boxes)) open.push_back(i);
-    std::vector<Wanted> wanted;
+    std::vector<Wanted> wanted(open.size());
     std::vector<double> bounds(open.size());
     std::vector<BoxId> whole, bare;
-    do {
-        wanted.assign(open.size(), {});
-        tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+    std::vector<std::size_t> again(open.size());  // not bounded yet, or without some views
+    std::iota(again.begin(), again.end(), std::size_t{0});
+    while (!again.empty()) {
+        tbb::parallel_for(std::size_t{0}, again.size(), [&](std::size_t k) {
+            const std::size_t i = again[k];
+            wanted[i] = {};
             bounds[i] = boundOf(tuples[open[i]], enough, wanted[i]);
         });
+        std::erase_if(again, [&](std::size_t i) { return wanted[i].bare.empty(); });
         bare.clear();
-        for (const Wanted& own : wanted) bare.insert(bare.end(), own.bare.begin(), own.bare.end());
+        for (const std::size_t i : again)
+            bare.insert(bare.end(), wanted[i].bare.begin(), wanted[i].bare.end());
         boxes_.addLargeViews(bare);  // these change no bound of a box
-    } while (!bare.empty());
+    }
     for (std::size_t i = 0; i < open.size(); ++i) {
         tuples[open[i]].bound = bounds[i];
         whole.insert(whole.end(), wanted[i].whole.begin(), wanted[i].whole.end());
