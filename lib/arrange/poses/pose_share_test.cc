@@ -27,20 +27,22 @@ struct Case {
     double gap = 0.03;
     FloorWeighting weights = {};
     std::size_t max_bytes = std::size_t{8} << 30U;
+    Sector sector = kSector;
+    double found = 1;
+    Region region = roomsWithPillar();
 
     [[nodiscard]] PoseBound run(PoseShare share, PoseCertificate* certificate,
                                 Progress& progress) const {
-        const Region region = roomsWithPillar();
         const PoseFloor floor({&region, 1}, kCells, weights);
         PoseSearchOptions options{.sensors = sensors,
                                   .times = times,
-                                  .found = 1,
+                                  .found = found,
                                   .gap = gap,
                                   .max_bytes = max_bytes,
                                   .singles = 800,
                                   .certificate = certificate};
         options.share = share;
-        const SeenAreas areas(region, kSector);
+        const SeenAreas areas(region, sector);
         options.improve = [&](std::span<const PoseBox> boxes) {
             PosedLayout layout;
             for (const PoseBox& box : boxes) {
@@ -50,7 +52,7 @@ struct Case {
             layout.area = areas.of(layout.poses, times);
             return layout;
         };
-        return boundOverPoses(floor, kSector, options, progress);
+        return boundOverPoses(floor, sector, options, progress);
     }
 };
 
@@ -93,6 +95,32 @@ TEST(PoseShare, AStoppedSearchContinuesToTheSameResult) {
         EXPECT_EQ(certificate.boxes, whole.boxes);
         EXPECT_EQ(certificate.tuples, whole.tuples);
     }
+}
+
+/// An open tuple computes the missing views of its box, and so of one half of the box around it;
+/// sums over sensors take those of both halves.
+TEST(PoseShare, HalvesContinueOfWhichOneLacksItsViews) {
+    Case own{3, 1, 0.1, {}, 6'000'000, {4, 4, 0}, 83};
+    own.region = {{{0, 0}, {12, 0}, {12, 8}, {0, 8}}, {}};
+    SilentProgress silent;
+    PoseCertificate whole, certificate;
+    const PoseBound single = own.run({}, &whole, silent);
+    TestResults kept;
+    PoseBound last;
+    int runs = 0;
+    for (bool is_stopped = true; is_stopped; ++runs) {
+        ASSERT_LT(runs, 40);
+        TestResults results;
+        results.takeFrom(kept);
+        StopWhen stop(afterAsking(runs == 0 ? 14 : 4));
+        last = own.run({.results = results.get()}, &certificate, stop);
+        kept.takeFrom(results);
+        is_stopped = stop.stopped();
+    }
+    EXPECT_GT(runs, 5);
+    expectSame(last, single);
+    EXPECT_EQ(certificate.boxes, whole.boxes);
+    EXPECT_EQ(certificate.tuples, whole.tuples);
 }
 
 /// The state of a search that was stopped.
