@@ -7,9 +7,11 @@
 #include <random>
 #include <vector>
 
+#include "arrange/poses/box_sums.h"
 #include "arrange/poses/core_view.h"
 #include "arrange/poses/multiple_bound.h"
 #include "arrange/poses/pose_search.h"
+#include "arrange/poses/sum_bound.h"
 #include "geom/overlay/overlay.h"
 #include "support/test_pose_floors.h"
 #include "support/test_problems.h"
@@ -244,6 +246,80 @@ TEST(PoseWeights, PosesInTheBoxesSeeNoMore) {
         }
         EXPECT_GT(compared, 100);
     }
+}
+
+/// Returns the tree of boxes with the views of the check, and their ids in its order.
+std::vector<CheckedBox> checkedBoxes(const PoseBoxes& boxes, const BoxViews& views,
+                                     std::vector<BoxId>& ids) {
+    std::vector<CheckedBox> all;
+    const auto add = [&](const auto& self, BoxId id) -> void {
+        const std::size_t own = all.size();
+        ids.push_back(id);
+        all.push_back({.box = boxes[id].box});
+        all[own].large_view = views.viewOf(all[own].box);
+        all[own].large_core = views.coreOf(all[own].box);
+        all[own].most = all[own].large_view.area;
+        if (boxes[id].child == 0) return;
+        self(self, boxes[id].child);
+        all[own].second = static_cast<std::uint32_t>(all.size());
+        self(self, boxes[id].child + 1);
+    };
+    add(add, 0);
+    return all;
+}
+
+TEST(PoseWeights, SumsOverSensorsHoldWhatTheySee) {
+    const Region region = roomsWithPillar();
+    const WeightedAreas areas(region, weighting());
+    const PoseFloor floor({&region, 1}, kCells, weighting());
+    const Sector sector{3, 4, 0};
+    const BoxViews views({&region, 1}, kCells / 16, sector, weighting());
+    const SeenAreas seen(region, sector);
+    std::mt19937 random(5);
+    const auto draw = [&random](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    PoseBoxes boxes(floor, sector);
+    std::vector<BoxId> whole = weighedBoxes(boxes, random, 400);
+    std::vector<BoxId> ids;
+    const std::vector<CheckedBox> checked = checkedBoxes(boxes, views, ids);
+    std::erase_if(whole, [&boxes](BoxId id) { return !boxes.areSmall({&id, 1}); });
+    int searched = 0, by_check = 0;  // bounds below those of single views
+    for (int i = 0; i < 300; ++i) {
+        const auto sensors = static_cast<std::size_t>(2 + i % 2);
+        std::vector<BoxId> tuple;
+        std::vector<std::uint32_t> rows;
+        std::vector<Polygon> polygons;
+        double singles = 0;
+        while (tuple.size() < sensors) {
+            const BoxId id =
+                !tuple.empty() && random() % 2 == 0 ? tuple.back() : whole[random() % whole.size()];
+            const PoseBox& box = boxes[id].box;
+            const Point2 p{draw(box.at.low.x, box.at.high.x), draw(box.at.low.y, box.at.high.y)};
+            if (region.locate(p) != Side::Inside) continue;
+            tuple.push_back(id);
+            rows.push_back(
+                static_cast<std::uint32_t>(std::find(ids.begin(), ids.end(), id) - ids.begin()));
+            polygons.push_back(
+                seen.viewFrom({p, Angle::radians(draw(box.from, box.from + box.span))}));
+            singles += boxes[id].most;
+        }
+        for (std::size_t times = 1; times <= 2; ++times) {
+            const double area = areas.of(polygons, static_cast<int>(times));
+            std::vector<SumBound::Bounded> bounded = {{tuple, singles}};
+            SumBound sums(floor, boxes, times);
+            for (int round = 0; round < 3; ++round) {
+                sums.lower(bounded, 0);
+                EXPECT_GE(bounded[0].bound + 1e-9, area) << sensors << ' ' << times;
+            }
+            if (bounded[0].bound < singles / static_cast<double>(times) * 0.99) ++searched;
+            const double bound = BoxSums(views, checked, times).boundOf(rows, 0, 2);
+            EXPECT_GE(bound + 1e-9, area) << sensors << ' ' << times;
+            if (bound < singles / static_cast<double>(times) * 0.99) ++by_check;
+        }
+    }
+    EXPECT_GT(searched, 300);
+    EXPECT_GT(by_check, 300);
 }
 
 }  // namespace
