@@ -2,6 +2,7 @@
 // The search behind suggestChanges().
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -20,16 +21,41 @@ namespace ispace {
 /// Share of the indoor floor that a change may lose if it saves a sensor or its cost.
 constexpr double kNegligible = 0.01;
 
+/// Rounds square metres to those that overlays of regions resolve.
+inline double withoutNoise(double area) { return std::round(1e6 * area) / 1e6; }
+
 /// A scene with its coverage.
 struct MeasuredState {
     Scene scene;
     Coverage coverage;
+    double missing = 0;  ///< missingFloor()
 };
 
 inline double coveredShare(const Coverage& coverage) {
     const Metric& metric = coverage.report.coverage;
     return metric.exact.value_or(metric.grid.value_or(0));
 }
+
+/// Tries single cameras of a scene at other poses by the rules of SuggestOptions.
+class RuleTrials {
+  public:
+    RuleTrials(const MeasuredState& now, const SuggestOptions& options);
+
+    /// Returns true if a pose may lower what the rules miss.
+    [[nodiscard]] bool canGain() const { return faces_ + seen_ > 0; }
+    /// Returns by how much less floor the rules miss with the sensor at this pose, m2; 0 for
+    /// sensors that are no cameras.
+    [[nodiscard]] double gain(const Sensor& sensor, const Pose3& pose);
+
+  private:
+    const SuggestOptions& options_;
+    Scene alone_;     // with one camera at a time
+    Coverage views_;  // of all cameras
+    double faces_ = 0, seen_ = 0;
+};
+
+/// Returns the rules of facing that a scene does not meet.
+std::vector<FacingRule> unmetFacing(const MeasuredState& now, const SuggestOptions& options);
 
 /// Searches changes of measured scenes, see suggestChanges().
 class Adviser {
@@ -44,6 +70,7 @@ class Adviser {
     std::vector<Suggestion> moves(const MeasuredState& now) {
         std::vector<Suggestion> found = turnAndShift(now);
         for (Suggestion& suggestion : additions(now)) found.push_back(std::move(suggestion));
+        for (Suggestion& suggestion : withoutIntruders(now)) found.push_back(std::move(suggestion));
         return found;
     }
 
@@ -52,21 +79,14 @@ class Adviser {
     std::optional<Suggestion> removal(const MeasuredState& now);
     std::optional<Suggestion> together(const MeasuredState& now, std::vector<Suggestion> first);
 
-    /// Returns the floor that the requirements still miss, m2.
-    [[nodiscard]] double missing(const Coverage& coverage) const {
-        double sum = 0;
-        for (const Requirement& requirement : options_.requirements)
-            sum += checkRequirement(requirement, coverage).missing;
-        return sum;
-    }
-
   private:
     /// Applies the edits and measures the scene.
     [[nodiscard]] MeasuredState after(const Scene& scene, std::span<const Edit> edits) const {
         Scene changed = makeScene(edited(scene.records, edits, sceneSchemas()), scene, devices_);
         Worlds worlds(changed.environment);
         Coverage coverage = measureCoverage(changed, worlds, options_.measure);
-        return {std::move(changed), std::move(coverage)};
+        const double missing = missingFloor(changed, coverage, options_);
+        return {std::move(changed), std::move(coverage), missing};
     }
     /// Completes a suggestion by measuring it.
     Suggestion measured(const MeasuredState& now, Suggestion::Kind kind, std::string text,
@@ -76,29 +96,41 @@ class Adviser {
         // Furniture changes no indoor area.
         const double gained =
             (share - coveredShare(now.coverage)) * now.coverage.report.indoor_area;
-        rank_ = missing(now.coverage) - missing(then.coverage);
         progress_.advance(1);
-        return {kind, std::move(text), std::move(edits), gained, share};
+        return {.kind = kind,
+                .text = std::move(text),
+                .edits = std::move(edits),
+                .gained = gained,
+                .share = share,
+                .required = withoutNoise(now.missing - then.missing)};
     }
     /// Keeps the better of two suggestions, by requirements, then by floor.
-    void offer(std::optional<Suggestion>& best, double& best_rank, Suggestion suggestion) {
-        if (best && std::pair(best_rank, best->gained) >= std::pair(rank_, suggestion.gained))
+    static void offer(std::optional<Suggestion>& best, Suggestion suggestion) {
+        if (best && std::pair(best->required, best->gained) >=
+                        std::pair(suggestion.required, suggestion.gained))
             return;
-        best_rank = rank_;
         best = std::move(suggestion);
     }
 
     std::vector<Suggestion> turnAndShift(const MeasuredState& now);
+    void leaveOutNeedless(const MeasuredState& now, std::vector<Suggestion>& steps);
     std::vector<Suggestion> additions(const MeasuredState& now);
+    std::optional<Suggestion> addition(const MeasuredState& now,
+                                       const std::vector<SensorGroup>& groups,
+                                       const ArrangeOptions& options);
+    /// Returns the removals of cameras that see private zones.
+    std::vector<Suggestion> withoutIntruders(const MeasuredState& now);
     [[nodiscard]] FloorWeights weightsFor(const MeasuredState& now) const;
     /// Returns the options of a search for one more sensor like one of the scene `home`.
     [[nodiscard]] ArrangeOptions optionsFor(const MeasuredState& now, const Scene& home,
                                             const Sensor& like) const;
+    /// Returns these options for each rule of facing that is not met, or as they are.
+    [[nodiscard]] std::vector<ArrangeOptions> goalsOf(const MeasuredState& now,
+                                                      ArrangeOptions options) const;
 
     const SuggestOptions& options_;
     const DeviceCatalogue& devices_;
     Progress& progress_;
-    double rank_ = 0;  ///< of the suggestion measured last: required floor that it adds
 };
 
 /// Returns the sensors whose pose a person can change: not those of robots and people.

@@ -54,7 +54,6 @@ std::optional<Suggestion> Adviser::furniture(const MeasuredState& now) {
     const FindingFilter filter{.checks = {"objects", "outside", "buried", "collisions"}};
     const std::size_t accepted = checkScene(now.scene, filter).size();
     std::optional<Suggestion> best;
-    double best_rank = 0;
     for (const Piece& piece : pieces)
         for (const Vec2 by : displacements(kPieceShifts)) {
             if (isStopped()) return best;
@@ -62,11 +61,10 @@ std::optional<Suggestion> Adviser::furniture(const MeasuredState& now) {
             Scene moved =
                 makeScene(edited(now.scene.records, edits, sceneSchemas()), now.scene, devices_);
             if (checkScene(moved, filter).size() > accepted) continue;
-            offer(best, best_rank,
-                  measured(now, Suggestion::Kind::Furniture,
-                           "move " + piece.id + " by (" + formatFixed(by.x, 2) + ", " +
-                               formatFixed(by.y, 2) + ") m",
-                           std::move(edits)));
+            offer(best, measured(now, Suggestion::Kind::Furniture,
+                                 "move " + piece.id + " by (" + formatFixed(by.x, 2) + ", " +
+                                     formatFixed(by.y, 2) + ") m",
+                                 std::move(edits)));
         }
     return best;
 }
@@ -96,8 +94,8 @@ std::optional<Suggestion> Adviser::replacement(const MeasuredState& now) {
                      {parseEdit(Edit::Kind::Set, id + ".model=" + cheapest->model),
                       parseEdit(Edit::Kind::Set, id + ".cost=" + formatDouble(cheapest->cost))});
         suggestion.saved = record.number("cost") - cheapest->cost;
-        const bool is_cheap =
-            -suggestion.gained <= kNegligible * now.coverage.report.indoor_area && rank_ >= 0;
+        const bool is_cheap = -suggestion.gained <= kNegligible * now.coverage.report.indoor_area &&
+                              suggestion.required >= 0;
         if (is_cheap && (!best || suggestion.saved > best->saved)) best = std::move(suggestion);
     }
     return best;
@@ -120,7 +118,7 @@ std::optional<Suggestion> Adviser::removal(const MeasuredState& now) {
                                      {parseEdit(Edit::Kind::Delete, least->id)});
     const Record& record = now.scene.records[static_cast<std::size_t>(at - now.scene.ids.begin())];
     if (record.has("cost")) suggestion.saved = record.number("cost");
-    if (rank_ < 0) return std::nullopt;
+    if (suggestion.required < 0) return std::nullopt;
     return suggestion;
 }
 

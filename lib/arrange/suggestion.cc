@@ -72,7 +72,8 @@ struct Trial {
     std::size_t sensor;
     int turn = 0;  ///< degrees
     Vec2 by = {};
-    double gain = 0;  ///< over the present pose, m2 by weight
+    /// Over the present pose: m2 by the rules of cameras, then m2 by weight.
+    std::pair<double, double> gain = {0, 0};
 };
 
 Pose3 poseAfter(Pose3 pose, const Trial& trial) {
@@ -93,14 +94,20 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     });
     const VisibleArea sight(now.scene.environment, options_.measure.plane);
     ExactGain gain(others, sight, sensors, weightsFor(now), 1);
+    RuleTrials rules_of_cameras(now, options_);
     std::optional<Trial> turn, shift;
     const auto attempt = [&](std::vector<Trial> trials, std::optional<Trial>& best) {
         std::vector<Pose3> poses = {sensors[trials.front().sensor].pose};
         for (const Trial& trial : trials) poses.push_back(poseAfter(poses.front(), trial));
         const std::vector<double> gains = gain.gains(poses);
         for (std::size_t i = 0; i < trials.size(); ++i) {
-            trials[i].gain = gains[i + 1] - gains[0];
-            if (trials[i].gain > (best ? best->gain : 0)) best = trials[i];
+            Trial& trial = trials[i];
+            const std::pair<double, double> least = best ? best->gain : std::pair(0.0, 0.0);
+            trial.gain = {0, gains[i + 1] - gains[0]};
+            // Rules that are met can only be lost.
+            if (!rules_of_cameras.canGain() && trial.gain <= least) continue;
+            trial.gain.first = rules_of_cameras.gain(sensors[trial.sensor], poses[i + 1]);
+            if (trial.gain > least) best = trial;
         }
     };
     for (std::size_t i = 0; i < sensors.size() && !isStopped(); ++i) {
@@ -154,6 +161,7 @@ ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Scene& home,
     options.weights = weightsFor(now);
     options.plane = options_.measure.plane;
     options.pixel_density = options_.measure.density;
+    options.privacy = options_.privacy;
     options.seed = 0;
     const Box2& limits = home.environment.limits();
     CandidateDensity& density = options.density;
@@ -171,10 +179,31 @@ ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Scene& home,
     return options;
 }
 
+/// Finds the best pose of one more sensor; empty without a valid site.
+std::optional<Suggestion> Adviser::addition(const MeasuredState& now,
+                                            const std::vector<SensorGroup>& groups,
+                                            const ArrangeOptions& options) {
+    SilentProgress silent;
+    Arrangement found;
+    try {
+        found = arrange(now.scene, groups, options, silent);
+    } catch (const UnmetError&) {
+        return std::nullopt;
+    }
+    if (found.sensors.empty()) return std::nullopt;
+    const Record added = placedRecord(groups[0], found.sensors[0]);
+    const Pose3& pose = found.sensors[0].pose;
+    const std::string device = deviceName(groups[0].model);
+    return measured(now, Suggestion::Kind::Add,
+                    "add a " + (device.empty() ? added.keyword() : device) + " at (" +
+                        formatFixed(pose.position.x, 2) + ", " + formatFixed(pose.position.y, 2) +
+                        "), heading " + formatFixed(pose.heading.degrees(), 0) + " degrees",
+                    {parseEdit(Edit::Kind::Add, formatRecord(added))});
+}
+
 std::vector<Suggestion> Adviser::additions(const MeasuredState& now) {
     std::vector<SensorModel> types;
     std::optional<Suggestion> best;
-    double best_rank = 0;
     std::vector<std::pair<const Scene*, Sensor>> examples;
     for (const Sensor& sensor : standingSensors(now.scene))
         examples.emplace_back(&now.scene, sensor);
@@ -194,58 +223,64 @@ std::vector<Suggestion> Adviser::additions(const MeasuredState& now) {
         for (const char* key : {"id", "at", "heading"})
             if (record.has(key)) record.erase(key);
         const std::vector<SensorGroup> groups = {{record, sensor.model, "", false, 1}};
-        SilentProgress silent;
-        const ArrangeOptions options = optionsFor(now, *home, sensor);
-        Arrangement found;
-        try {
-            found = arrange(now.scene, groups, options, silent);
-        } catch (const UnmetError&) {
-            continue;  // no valid site
-        }
-        if (found.sensors.empty()) continue;
-        const Record added = placedRecord(groups[0], found.sensors[0]);
-        const Pose3& pose = found.sensors[0].pose;
-        const std::string name =
-            deviceName(sensor.model).empty() ? added.keyword() : deviceName(sensor.model);
-        offer(best, best_rank,
-              measured(now, Suggestion::Kind::Add,
-                       "add a " + name + " at (" + formatFixed(pose.position.x, 2) + ", " +
-                           formatFixed(pose.position.y, 2) + "), heading " +
-                           formatFixed(pose.heading.degrees(), 0) + " degrees",
-                       {parseEdit(Edit::Kind::Add, formatRecord(added))}));
+        for (const ArrangeOptions& options : goalsOf(now, optionsFor(now, *home, sensor)))
+            if (auto added = addition(now, groups, options)) offer(best, *std::move(added));
     }
     if (!best) return {};
     return {std::move(*best)};
 }
 
+namespace {
+
+std::vector<Edit> editsOf(const std::vector<Suggestion>& steps) {
+    std::vector<Edit> edits;
+    for (const Suggestion& step : steps)
+        edits.insert(edits.end(), step.edits.begin(), step.edits.end());
+    return edits;
+}
+
+}  // namespace
+
+/// Leaves out each change without which the others still meet all.
+void Adviser::leaveOutNeedless(const MeasuredState& now, std::vector<Suggestion>& steps) {
+    for (std::size_t i = 0; i < steps.size() && steps.size() > 1 && !isStopped();) {
+        std::vector<Suggestion> fewer = steps;
+        fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+        bool is_enough = false;
+        try {
+            is_enough = after(now.scene, editsOf(fewer)).missing == 0;
+        } catch (const UsageError&) {  // a later change is of the sensor that this one adds
+        }
+        if (is_enough)
+            steps = std::move(fewer);
+        else
+            ++i;
+    }
+}
+
 std::optional<Suggestion> Adviser::together(const MeasuredState& now,
                                             std::vector<Suggestion> first) {
     MeasuredState state = now;
-    Suggestion whole;
-    whole.kind = Suggestion::Kind::Together;
-    std::vector<Suggestion> choices = std::move(first);
-    for (std::size_t count = 1; count <= kMaxChanges && !isStopped(); ++count) {
+    std::vector<Suggestion> steps, choices = std::move(first);
+    while (state.missing > 0) {
+        if (steps.size() == kMaxChanges || isStopped()) return std::nullopt;
         std::optional<MeasuredState> best;
         const Suggestion* chosen = nullptr;
         for (const Suggestion& choice : choices) {
             MeasuredState then = after(state.scene, choice.edits);
-            if (best && missing(then.coverage) >= missing(best->coverage)) continue;
+            if (best && then.missing >= best->missing) continue;
             best = std::move(then);
             chosen = &choice;
         }
-        if (!best || missing(best->coverage) >= missing(state.coverage)) return std::nullopt;
-        whole.text += (whole.text.empty() ? "" : ", ") + chosen->text;
-        whole.edits.insert(whole.edits.end(), chosen->edits.begin(), chosen->edits.end());
+        if (!best || best->missing >= state.missing) return std::nullopt;
+        steps.push_back(*chosen);
         state = std::move(*best);
-        if (missing(state.coverage) == 0) {
-            whole.share = coveredShare(state.coverage);
-            whole.gained =
-                (whole.share - coveredShare(now.coverage)) * now.coverage.report.indoor_area;
-            return whole;
-        }
-        choices = moves(state);
+        if (state.missing > 0) choices = moves(state);
     }
-    return std::nullopt;
+    leaveOutNeedless(now, steps);
+    std::string text;
+    for (const Suggestion& step : steps) text += (text.empty() ? "" : ", ") + step.text;
+    return measured(now, Suggestion::Kind::Together, std::move(text), editsOf(steps));
 }
 
 std::string_view nameOf(Suggestion::Kind kind) {
@@ -258,16 +293,21 @@ std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& cover
                                        const SuggestOptions& options,
                                        const DeviceCatalogue& devices, Progress& progress) {
     Adviser adviser(options, devices, progress);
-    const MeasuredState now{scene, coverage};
+    const MeasuredState now{scene, coverage, missingFloor(scene, coverage, options)};
     progress.begin("suggestions", 0);
     std::vector<Suggestion> gains = adviser.moves(now);
     std::optional<Suggestion> whole;
-    if (adviser.missing(coverage) > 0) whole = adviser.together(now, gains);
+    if (now.missing > 0) whole = adviser.together(now, gains);
     if (auto piece = adviser.furniture(now)) gains.push_back(std::move(*piece));
     const double least = kWorthwhile * coverage.report.indoor_area;
-    std::erase_if(gains, [&](const Suggestion& suggestion) { return suggestion.gained < least; });
-    std::stable_sort(gains.begin(), gains.end(),
-                     [](const Suggestion& a, const Suggestion& b) { return a.gained > b.gained; });
+    std::erase_if(gains, [&](const Suggestion& suggestion) {
+        // Removals are for `whole`.
+        return suggestion.kind == Suggestion::Kind::Remove || suggestion.required < 0 ||
+               std::max(suggestion.gained, suggestion.required) < least;
+    });
+    std::stable_sort(gains.begin(), gains.end(), [](const Suggestion& a, const Suggestion& b) {
+        return std::pair(a.required, a.gained) > std::pair(b.required, b.gained);
+    });
     if (whole) {  // told once if it is a single change
         std::erase_if(gains, [&](const Suggestion& one) { return one.text == whole->text; });
         gains.insert(gains.begin(), std::move(*whole));

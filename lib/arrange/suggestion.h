@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "coverage/camera_rules.h"
 #include "coverage/coverage.h"
 #include "coverage/requirement.h"
 #include "record/edit.h"
@@ -33,20 +34,28 @@ struct Suggestion {
     double gained = 0;        ///< covered indoor floor after the change, less that before, m2
     double share = 0;         ///< covered share of the indoor floor after it
     double saved = 0;         ///< cost, of Replace and Remove
+    double required = 0;      ///< missingFloor() before the change, less that after it, m2
 };
 
 /// Returns the word of reports: "add".
 std::string_view nameOf(Suggestion::Kind kind);
 
 struct SuggestOptions {
-    std::size_t most = 5;     ///< number of suggestions
-    CoverageOptions measure;  ///< as the scene was measured
+    std::size_t most = 5;          ///< number of suggestions
+    CoverageOptions measure = {};  ///< as the scene was measured
     /// Requirements to meet: additions, turns and shifts are ranked by the floor that these still
     /// miss, and Together meets all. Empty: by covered floor.
     std::vector<Requirement> requirements = {};
+    /// Rules of cameras to keep, as requirements; those of facing without a share do not count.
+    std::vector<FacingRule> facing = {};
+    std::vector<PrivacyRule> privacy = {};
     /// Scenes whose sensors may be added, too, after those of the scene: other storeys.
     std::vector<const Scene*> others = {};
 };
+
+/// Returns the floor that falls short of the requirements and rules, m2: required floor that is not
+/// covered, faces that are not seen, and for each camera the floor of private zones that it sees.
+double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestOptions& options);
 
 /// Finds changes of a measured scene that would help, at most one of each kind, the one with the
 /// largest gain first; then those that save a sensor or its cost.
@@ -55,9 +64,10 @@ struct SuggestOptions {
 /// known, else by cells. Turns and shifts are found by exact gains (ExactGain) and skipped if a
 /// sensor has no exact region; sensors on robots and people stay. Furniture: the pieces nearest to
 /// sensors, by the floor that they can hide, moved to positions without new findings. Together
-/// repeats the best change, so it is short, not proven shortest. Deterministic.
-/// Measures the scene some dozens of times. Returns the suggestions so far if progress says stop.
-/// \param coverage of the scene, by options.measure
+/// repeats the best change, so it is short, not proven shortest. It may also remove cameras that
+/// see private zones. No change raises missingFloor(). Deterministic. Measures the scene some
+/// dozens of times. Returns the suggestions so far if progress says stop. \param coverage of the
+/// scene, by options.measure
 std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& coverage,
                                        const SuggestOptions& options,
                                        const DeviceCatalogue& devices, Progress& progress);

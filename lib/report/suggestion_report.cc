@@ -12,6 +12,10 @@ std::string gainText(const Suggestion& suggestion) {
     if (text.front() != '-') text.insert(0, 1, '+');
     text += " m2, to " + percentText(suggestion.share);
     if (suggestion.saved > 0) text += "; saves " + formatDouble(suggestion.saved);
+    if (suggestion.kind == Suggestion::Kind::Together)
+        text += "; meets all requirements";
+    else if (suggestion.required > 0)
+        text += "; " + formatFixed(suggestion.required, 2) + " m2 less are missing";
     return text;
 }
 
@@ -30,6 +34,8 @@ void writeSuggestions(JsonWriter& json, const Advice& advice) {
         json.key("gained").value(roundSignificant(suggestion.gained));
         json.key("coverage").value(roundSignificant(suggestion.share));
         if (suggestion.saved > 0) json.key("saved").value(suggestion.saved);
+        if (suggestion.required > 0)
+            json.key("required").value(roundSignificant(suggestion.required));
         json.key("command").value(commandOf(advice.command, suggestion.edits));
         json.endObject();
     }
@@ -37,12 +43,13 @@ void writeSuggestions(JsonWriter& json, const Advice& advice) {
 }
 
 std::string suggestionsText(const Advice& advice) {
-    if (advice.suggestions.empty()) return "\nno change of one sensor or piece helps\n";
-    std::string text = "\nsuggestions:\n";
+    std::string text = advice.suggestions.empty() ? "\nno change of one sensor or piece helps\n"
+                                                  : "\nsuggestions:\n";
     for (const Suggestion& suggestion : advice.suggestions) {
         text += "  " + printable(suggestion.text) + ": " + gainText(suggestion) + '\n';
         text += "    " + commandOf(advice.command, suggestion.edits) + '\n';
     }
+    if (advice.is_short) text.append(kShortAdvice).append("\n");
     return text;
 }
 

@@ -14,13 +14,19 @@ namespace ispace {
 struct Advice {
     std::vector<Suggestion> suggestions;
     std::string command;
+    bool is_short = false;  ///< requirements fail, and no suggestion meets all of them
 };
+
+/// Told with Advice::is_short.
+constexpr const char* kShortAdvice =
+    "no short list of changes was found that meets all requirements";
 
 /// Returns a command of envc with further edits, which writes the changed scene: "envc room.env
 /// layout.3dm --rotate l1:35 -o changed.env".
 std::string commandOf(std::string command, std::span<const Edit> edits);
 
-/// Returns the gain of a change: "+3.20 m2, to 85.71%; saves 120".
+/// Returns the gain of a change: "+3.20 m2, to 85.71%; saves 120", and
+/// for requirements "; 1.20 m2 less are missing" or "; meets all requirements".
 std::string gainText(const Suggestion& suggestion);
 
 /// Writes the member `suggestions` of coverageJson().

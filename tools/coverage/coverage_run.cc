@@ -93,12 +93,19 @@ std::optional<Presence> presenceOf(const CoverageToolOptions& options, const Sce
 std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInput& input,
                               const Coverage& coverage) {
     if (!options.suggestions) return std::nullopt;
-    const SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
-                                .measure = options.measure,
-                                .requirements = options.requirements};
+    SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
+                          .measure = options.measure,
+                          .requirements = options.requirements,
+                          .facing = options.facing,
+                          .privacy = options.privacy};
+    std::erase_if(wanted.facing, [](const FacingRule& rule) { return !rule.required; });
     const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
-    return Advice{suggestChanges(input.scene, coverage, wanted, shippedDevices(), *progress),
+    Advice advice{suggestChanges(input.scene, coverage, wanted, shippedDevices(), *progress),
                   editCommand(input.named, options.rules)};
+    advice.is_short = missingFloor(input.scene, coverage, wanted) > 0 &&
+                      (advice.suggestions.empty() ||
+                       advice.suggestions.front().kind != Suggestion::Kind::Together);
+    return advice;
 }
 
 namespace {

@@ -279,6 +279,11 @@ PageSection adviceSection(const Advice& advice) {
             PageText{printable(suggestion.text) + ": " + gainText(suggestion) + "."});
         section.blocks.push_back(PageCode{commandOf(advice.command, suggestion.edits)});
     }
+    if (advice.is_short) {
+        std::string text = kShortAdvice;
+        text.front() = 'N';
+        section.blocks.push_back(PageText{text + '.'});
+    }
     return section;
 }
 
