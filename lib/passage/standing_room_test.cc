@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -96,6 +98,36 @@ TEST(StandingRoom, EndsAtOpenings) {
     EXPECT_EQ(placed(run, "ground/r1", 1, {5, 6}), "");
     EXPECT_EQ(placed(run, "ground/h", 0, {7, 5}), "");
     EXPECT_EQ(placed(run, "ground/r1", 0, {6, 1}), "");
+}
+
+TEST(StandingRoom, IsKeptOnWaysAroundShafts) {
+    const BuildingScene building = buildingOf("robot id=upper/r1 at=5,2\n", kOpenBuilding);
+    BuildingRun run(building, optionsOf());
+    // The straight way leads over the atrium, of x from 4 to 6 and y from 4 to 6.
+    ASSERT_EQ(run.travel("upper/r1", {{{1, {5, 8}}}}).refusal, "");
+    const double radius = building.scenes[1]->robots.front().model.radius;
+    const auto apart = [](double at) { return std::max({4 - at, at - 6, 0.0}); };
+    for (int i = 0; i < 4000; ++i) {
+        testing::step(run);
+        const Point2 at = poseOf(run, "upper/r1").position;
+        ASSERT_GT(std::hypot(apart(at.x), apart(at.y)), radius) << at.x << ',' << at.y;
+    }
+    EXPECT_LT(distance(poseOf(run, "upper/r1").position, {5, 8}), 0.05);
+    // The ground has floor there.
+    const BuildingScene below = buildingOf("robot id=ground/r1 at=7,2\n", kOpenBuilding);
+    BuildingRun straight(below, optionsOf());
+    EXPECT_EQ(straight.travel("ground/r1", {{{0, {7, 5}}}}).refusal, "");
+}
+
+TEST(StandingRoom, EndsAtAShaftAcrossTheStorey) {
+    std::string text = kOpenBuilding;
+    text.replace(text.find("[[6, 4], [6, 6], [8, 6], [8, 4]]"), 32,
+                 "[[6, 0], [6, 8], [8, 8], [8, 0]]");
+    const BuildingScene building = buildingOf("robot id=upper/r1 at=5,2\n", text.c_str());
+    BuildingRun run(building, optionsOf());
+    EXPECT_EQ(run.travel("upper/r1", {{{1, {5, 8}}}}).refusal.substr(0, 36),
+              "no way for upper/r1 to upper/5,8; s1");
+    EXPECT_EQ(run.travel("upper/r1", {{{1, {5, 3}}}}).refusal, "");
 }
 
 TEST(StandingRoom, EndsRecordedTripsAtOpenings) {

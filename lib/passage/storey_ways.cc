@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "building/building_sight.h"
 #include "env/walls.h"
 #include "sim/collision.h"
 
@@ -67,12 +68,20 @@ std::vector<StoreyLink> passagesOf(const BuildingScene& building) {
 StoreyWays::StoreyWays(const BuildingScene& building, const std::vector<StoreyLink>& passages,
                        const MoverSize& size)
     : passages_(&passages), size_(size) {
+    // Movers climb the steps in the openings of stairs.
+    std::vector<std::vector<Polygon>> holes(building.scenes.size());
+    for (const FloorOpening& opening : floorOpenings(building)) {
+        if (!opening.flight.empty()) continue;
+        Polygon& hole = holes[opening.above].emplace_back(opening.outline);
+        for (Point2& corner : hole)
+            corner = inStorey(building.document.storeys[opening.above], corner);
+    }
     obstacles_.reserve(building.scenes.size());
     finders_.reserve(building.scenes.size());
-    for (const auto& scene : building.scenes) {
-        const Environment& room = scene->environment;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Environment& room = building.scenes[i]->environment;
         const Obstacles& obstacles = obstacles_.emplace_back(room, size.height, nullptr);
-        finders_.emplace_back(obstacles, bounds(room.indoor()), size.radius);
+        finders_.emplace_back(obstacles, bounds(room.indoor()), size.radius, std::move(holes[i]));
     }
     for (std::size_t i = 0; i < passages.size(); ++i)
         if (passages[i].is_lift)

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace ispace {
 
@@ -27,8 +28,10 @@ Grid gridOver(const Box2& box) {
 
 }  // namespace
 
-WayFinder::WayFinder(const Obstacles& obstacles, const Box2& box, double radius)
+WayFinder::WayFinder(const Obstacles& obstacles, const Box2& box, double radius,
+                     std::vector<Polygon> holes)
     : obstacles_(&obstacles),
+      holes_(std::move(holes)),
       reach_(radius + kMargin),
       grid_(gridOver(box)),
       stride_(static_cast<std::size_t>(grid_.columns) + 2),
@@ -58,10 +61,22 @@ void WayFinder::forEachNeighbour(std::size_t cell, Visit visit) const {
     if (to_south && to_east && free_[south + 1] != 0) visit(south + 1, kCorner);
 }
 
-bool WayFinder::isFree(Point2 p) const { return !obstacles_->overlap(p, reach_); }
+bool WayFinder::isFree(Point2 p) const {
+    return !isOverHole({p, p}) && !obstacles_->overlap(p, reach_);
+}
 
 bool WayFinder::isStraight(Point2 from, Point2 to) const {
-    return !obstacles_->near({from, to}, reach_);
+    return !isOverHole({from, to}) && !obstacles_->near({from, to}, reach_);
+}
+
+/// Returns true if the circle with the margin is over a hole somewhere on the way.
+bool WayFinder::isOverHole(const Segment2& way) const {
+    return std::any_of(holes_.begin(), holes_.end(), [&](const Polygon& hole) {
+        if (locate(hole, way.a) == Side::Inside) return true;
+        for (std::size_t i = 0; i < hole.size(); ++i)
+            if (ispace::distance(way, {hole[i], hole[(i + 1) % hole.size()]}) < reach_) return true;
+        return false;
+    });
 }
 
 std::optional<std::size_t> WayFinder::cellNear(Point2 p) const {

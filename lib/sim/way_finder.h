@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geom/point.h"
+#include "geom/polygon.h"
 #include "raster/grid.h"
 #include "sim/collision.h"
 
@@ -17,14 +18,16 @@ namespace ispace {
 ///
 /// A way leads over sides and corners of cells, costs of which are in the ratio 12 to 17, and is
 /// then straightened where the straight way is free. It keeps kMargin from obstacles besides the
-/// radius. Independent of where movers are.
+/// radius, and as far from holes in the floor. Independent of where movers are.
 class WayFinder {
   public:
     static constexpr double kMargin = 0.05, kCell = 0.1;
 
     /// Tests all cells. \param box to which the ways keep; cells are larger than kCell where it has
     /// more than 250 000 \pre the obstacles outlive this object
-    WayFinder(const Obstacles& obstacles, const Box2& box, double radius);
+    /// \param holes without floor
+    WayFinder(const Obstacles& obstacles, const Box2& box, double radius,
+              std::vector<Polygon> holes = {});
 
     /// Ways from one point to all cells.
     struct Field {
@@ -61,7 +64,10 @@ class WayFinder {
     template <typename Visit>
     void forEachNeighbour(std::size_t cell, Visit visit) const;
 
+    [[nodiscard]] bool isOverHole(const Segment2& way) const;
+
     const Obstacles* obstacles_;
+    std::vector<Polygon> holes_;
     double reach_;  // radius and margin
     Grid grid_;
     std::size_t stride_;

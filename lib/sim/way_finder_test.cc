@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "scene/scene.h"
@@ -53,6 +54,31 @@ TEST(WayFinder, GoesThroughTheDoor) {
         at = p;
     }
     EXPECT_LT(lengthOf({1, 1}, way), *finder.length(field, {7, 1}) + 0.1);
+}
+
+TEST(WayFinder, GoesAroundAHoleAsAroundAFence) {
+    const std::string room = "fence id=f path=0,0;8,0;8,4;0,4 closed=yes\n";
+    const Floor open((room + "inside at=1,1\n").c_str());
+    const Floor fenced(
+        (room + "fence id=h path=3,1;5,1;4.5,3;3,2.5 closed=yes\ninside at=1,1\n").c_str());
+    const Polygon hole = {{3, 1}, {5, 1}, {4.5, 3}, {3, 2.5}};
+    const WayFinder finder(open.obstacles, open.box, 0.3, {hole});
+    const WayFinder oracle(fenced.obstacles, fenced.box, 0.3);
+    const auto field = finder.waysFrom({1, 2});
+    for (const Point2 to : {Point2{7, 2}, Point2{7, 0.5}, Point2{4, 3.5}, Point2{5.4, 2}})
+        EXPECT_EQ(finder.way(field, to), oracle.way(oracle.waysFrom({1, 2}), to)) << to.x;
+    EXPECT_FALSE(finder.isFree({4, 2}));
+    EXPECT_FALSE(finder.isStraight({1, 2}, {7, 2}));
+    EXPECT_TRUE(finder.isStraight({1, 0.5}, {7, 0.5}));
+}
+
+TEST(WayFinder, FindsNoneOverAHoleAcrossTheRoom) {
+    const Floor floor("fence id=f path=0,0;8,0;8,4;0,4 closed=yes\ninside at=1,1\n");
+    for (const double end : {4.0, 3.2}) {  // 0.7 m are needed beside it
+        const Polygon hole = {{3, 0}, {5, 0}, {5, end}, {3, end}};
+        const WayFinder finder(floor.obstacles, floor.box, 0.3, {hole});
+        EXPECT_EQ(finder.wayBetween({1, 1}, {7, 1}).empty(), end == 4.0);
+    }
 }
 
 TEST(WayFinder, FindsNoneThroughADoorThatIsTooNarrow) {
