@@ -143,10 +143,12 @@ std::shared_ptr<const void> Replay::adopt(World& world) {
     }
 }
 
-void Replay::prepareAll(World& world, std::optional<SimTime> to) {
+void Replay::prepareAll(World& world, std::optional<SimTime> to,
+                        const std::function<void()>& adopted) {
     while (const auto prepare = preparation(world, to)) {
         prepare();
         adopt(world);
+        if (adopted) adopted();
     }
 }
 

@@ -70,6 +70,9 @@ class Replay {
                                                     std::optional<SimTime> to = {});
     /// \returns the previous state, which any thread may free later
     std::shared_ptr<const void> adopt(World& world);
+    /// Makes all preparations of the next step, or of a seek. \param adopted called after each
+    void prepareAll(World& world, std::optional<SimTime> to,
+                    const std::function<void()>& adopted = {});
     /// seek() in parts: until that wall time, or until a preparation is required.
     /// \returns true if the world is there
     bool seekSome(World& world, SimTime time, std::chrono::steady_clock::time_point until);
@@ -93,7 +96,6 @@ class Replay {
         NextScene next;
     };
     std::shared_ptr<const void> rewind(World& world, const NextScene& beginning);
-    void prepareAll(World& world, std::optional<SimTime> to);
     void find(const World& world);
     void collide(const World& world);
     [[nodiscard]] bool isEmptyAt(SimTime time) const;

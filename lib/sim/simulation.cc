@@ -235,11 +235,7 @@ bool Simulation::seekSome(SimTime time, WallTime until) {
 void Simulation::step() {
     for (const auto& preparer : preparers_) preparer();
     if (replay_ != nullptr) {
-        while (const auto prepare = replay_->preparation(*world_)) {
-            prepare();
-            replay_->adopt(*world_);
-            tellReplayed(false);
-        }
+        replay_->prepareAll(*world_, {}, [this] { tellReplayed(false); });
         replay_->step(*world_);
     } else {
         world_->stepDeferred();
