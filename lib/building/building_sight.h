@@ -76,8 +76,11 @@ std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
 /// Returns true for a sensor that sees other storeys: by light, in more than its own level plane.
 bool looksAround(const Sensor& sensor);
 
+/// Returns true if other fixed sensors of a storey, or in other poses, may see other storeys.
+bool looksOtherwise(const Scene& before, const Scene& now);
+
 /// The storeys around each storey of a running building. It knows the other storeys as they were at
-/// the start, without their robots and people. Thread-safe.
+/// the start, without their robots and people, but for sensors that are set. Thread-safe.
 class RoomsAround {
   public:
     /// \param plane at which sensors of other storeys see robots and people
@@ -88,6 +91,10 @@ class RoomsAround {
     std::shared_ptr<const SurroundedRoom> around(std::size_t storey, const Scene& scene);
     /// Returns the fixed sensors of other storeys that see the plane of a storey, as in coverage.
     OutsideWatch outside(std::size_t storey, const Scene& scene);
+    /// Sets the sensors of a storey to those of its scene after a change.
+    void setSensors(std::size_t storey, const Scene& scene);
+    /// Returns true if there are openings between storeys.
+    [[nodiscard]] bool hasOpenings() const { return !openings_.empty(); }
 
   private:
     /// A room, and the storey that it was built of.
@@ -97,12 +104,15 @@ class RoomsAround {
     };
 
     std::shared_ptr<const SurroundedRoom> room(std::size_t storey, const Scene& scene);
-    [[nodiscard]] std::vector<std::vector<Sensor>> sensorsOutside() const;
+    using SensorsByStorey = std::vector<std::vector<Sensor>>;
+    [[nodiscard]] SensorsByStorey sensorsOutside(const BuildingScene& building) const;
 
     BuildingScene building_;
     double plane_;
     std::vector<FloorOpening> openings_;
-    Lazy<std::vector<std::vector<Sensor>>> outside_;  // by the storey that they see
+    /// By the storey that they see; computed of `watching_`.
+    std::shared_ptr<Lazy<SensorsByStorey>> outside_ = std::make_shared<Lazy<SensorsByStorey>>();
+    std::shared_ptr<const BuildingScene> watching_;  // with the sensors that are set
     std::mutex mutex_;
     std::vector<std::shared_ptr<const Known>> latest_;  // by storey
 };

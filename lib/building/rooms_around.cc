@@ -4,10 +4,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "building/building_sight.h"
+#include "coverage/outside_view.h"
 #include "sense/scan.h"
 
 namespace ispace {
@@ -17,10 +19,33 @@ bool looksAround(const Sensor& sensor) {
            (!sensor.is<Laser>() || !scansSlice(sensor));
 }
 
+namespace {
+
+/// Those on robots and people move with them.
+bool isFixed(const Sensor& sensor) { return !sensor.mount && !sensor.person; }
+
+std::vector<const Sensor*> fixedLookers(const Scene& scene) {
+    std::vector<const Sensor*> sensors;
+    for (const Sensor& sensor : scene.sensors)
+        if (isFixed(sensor) && seesOutside(sensor)) sensors.push_back(&sensor);
+    return sensors;
+}
+
+}  // namespace
+
+bool looksOtherwise(const Scene& before, const Scene& now) {
+    const auto was = fixedLookers(before), is = fixedLookers(now);
+    return !std::equal(was.begin(), was.end(), is.begin(), is.end(),
+                       [](const Sensor* a, const Sensor* b) {
+                           return a->id == b->id && a->pose == b->pose && a->model == b->model;
+                       });
+}
+
 RoomsAround::RoomsAround(const BuildingScene& building, double plane)
     : building_(building),
       plane_(plane),
       openings_(floorOpenings(building)),
+      watching_(std::make_shared<const BuildingScene>(building)),
       latest_(building.scenes.size()) {}
 
 std::shared_ptr<const SurroundedRoom> RoomsAround::room(std::size_t storey, const Scene& scene) {
@@ -49,29 +74,45 @@ std::shared_ptr<const SurroundedRoom> RoomsAround::around(std::size_t storey, co
     return openings_.empty() || !is_seen ? nullptr : room(storey, scene);
 }
 
-std::vector<std::vector<Sensor>> RoomsAround::sensorsOutside() const {
+RoomsAround::SensorsByStorey RoomsAround::sensorsOutside(const BuildingScene& building) const {
     CoverageOptions options;
     options.plane = plane_;
-    std::vector<std::vector<Sensor>> sensors;
-    for (const auto& views : viewsBetweenStoreys(building_, options)) {
+    SensorsByStorey sensors;
+    for (const auto& views : viewsBetweenStoreys(building, options)) {
         std::vector<Sensor>& seeing = sensors.emplace_back();
         for (const StoreyView& one : views) {
-            const Scene& scene = *building_.scenes[one.storey];
+            const Scene& scene = *building.scenes[one.storey];
             const std::string& id = one.view->sensor.id;
-            // Those on robots and people move with them.
-            const bool is_fixed =
-                std::any_of(scene.sensors.begin(), scene.sensors.end(), [&](const Sensor& sensor) {
-                    return sensor.id == id && !sensor.mount && !sensor.person;
-                });
+            const bool is_fixed = std::any_of(
+                scene.sensors.begin(), scene.sensors.end(),
+                [&](const Sensor& sensor) { return sensor.id == id && isFixed(sensor); });
             if (is_fixed) seeing.push_back(one.view->sensor);
         }
     }
     return sensors;
 }
 
+void RoomsAround::setSensors(std::size_t storey, const Scene& scene) {
+    const std::lock_guard lock(mutex_);
+    auto now = std::make_shared<Scene>(*watching_->scenes[storey]);
+    now->sensors = scene.sensors;
+    auto building = std::make_shared<BuildingScene>(*watching_);
+    building->scenes[storey] = std::move(now);
+    watching_ = std::move(building);
+    outside_ = std::make_shared<Lazy<SensorsByStorey>>();
+}
+
 OutsideWatch RoomsAround::outside(std::size_t storey, const Scene& scene) {
     if (openings_.empty()) return {};
-    const std::vector<Sensor>& sensors = outside_.get([this] { return sensorsOutside(); })[storey];
+    std::shared_ptr<Lazy<SensorsByStorey>> known;
+    std::shared_ptr<const BuildingScene> building;
+    {
+        const std::lock_guard lock(mutex_);
+        known = outside_;
+        building = watching_;
+    }
+    const std::vector<Sensor>& sensors =
+        known->get([&] { return sensorsOutside(*building); })[storey];
     if (sensors.empty()) return {};
     auto around = room(storey, scene);
     if (around == nullptr) return {};

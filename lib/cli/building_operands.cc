@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -66,15 +67,57 @@ std::string recordedBuilding(const std::string& folder) {
     return is_one ? fileOfRecord(folder, kRecordedBuilding) : "";
 }
 
+namespace {
+
+/// Fixed sensors of a storey that a run has changed.
+struct SensorChange {
+    double time = 0;  // seconds: of the step after which it was made
+    std::size_t storey = 0;
+    std::shared_ptr<const Scene> scene;  // after it
+};
+
+/// Returns the changes of sensors that may see other storeys, in order of time.
+std::vector<SensorChange> sensorChanges(const BuildingScene& building, const std::string& folder,
+                                        std::optional<std::uint64_t> max_work) {
+    std::vector<SensorChange> found;
+    if (floorOpenings(building).empty()) return found;
+    const auto unknown = [](const std::string&) { return std::optional<Pose2>(); };
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        std::shared_ptr<const Scene> now = sceneWithWholeIds(building, i);
+        RunChanges changes =
+            changesOfRun(folder + '/' + building.document.storeys[i].id, *now, max_work);
+        while (auto step = changes.next(std::numeric_limits<double>::infinity(), *now, unknown)) {
+            auto next = std::make_shared<const Scene>(std::move(step->scene));
+            if (looksOtherwise(*now, *next)) found.push_back({step->change.time, i, next});
+            now = std::move(next);
+        }
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const SensorChange& a, const SensorChange& b) { return a.time < b.time; });
+    return found;
+}
+
+}  // namespace
+
 BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std::string& folder,
                                        const WatchOptions& watch,
                                        std::optional<std::uint64_t> max_work,
                                        std::vector<std::string>& warnings) {
     BuildingRunCoverage run;
-    RoomsAround rooms(building, watch.plane);
+    const std::vector<SensorChange> sensor_changes = sensorChanges(building, folder, max_work);
+    std::optional<RoomsAround> rooms(std::in_place, building, watch.plane);
     WatchOptions own_watch = watch;
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
-        own_watch.outside = [&rooms, i](const Scene& scene) { return rooms.outside(i, scene); };
+        if (!sensor_changes.empty()) rooms.emplace(building, watch.plane);
+        own_watch.outside = [&rooms, i](const Scene& scene) { return rooms->outside(i, scene); };
+        const auto advance = [&, next = sensor_changes.begin()](double time) mutable {
+            bool is_new = false;
+            for (; next != sensor_changes.end() && next->time < time; ++next) {
+                rooms->setSensors(next->storey, *next->scene);
+                is_new |= next->storey != i;
+            }
+            return is_new;
+        };
         const std::string& id = building.document.storeys[i].id;
         std::string own = folder;
         own.append("/").append(id);
@@ -83,7 +126,7 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
             const auto scene = sceneWithWholeIds(building, i);
             RunReader reader(own);
             RunChanges changes = changesOfRun(own, *scene, max_work);
-            storey = measureRun(*scene, reader, own_watch, &changes);
+            storey = measureRun(*scene, reader, own_watch, &changes, advance);
             if (!changes.failure().empty()) warnings.push_back(id + ": " + changes.failure());
             if (reader.isCut())
                 warnings.push_back(id +

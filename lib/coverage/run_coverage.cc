@@ -254,7 +254,7 @@ void flush(const DetectionMonitor& watch, Members& members, std::vector<Sample>&
 }  // namespace
 
 RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
-                       RunChanges* changes) {
+                       RunChanges* changes, const std::function<bool(double)>& advance) {
     if (!reader.next())
         throw FormatError({reader.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
     // The scene after the changes so far.
@@ -272,6 +272,11 @@ RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions
         if (samples.size() == kTogether) flush(*watch, *members, samples, sum);
     };
     const auto make_changes = [&] {
+        if (advance && advance(reader.time())) {
+            flush(*watch, *members, samples, sum);
+            watch.reset();
+            watch.emplace(changed ? *changed : start, options);
+        }
         if (changes == nullptr) return;
         const auto unknown = [](const std::string&) { return std::optional<Pose2>(); };
         const Scene* now = changed ? &*changed : &start;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,7 +65,10 @@ struct RunCoverage {
 /// O(moments x people x sensors); memory for the ways, thinned to 0.02 m. \throws FormatError as
 /// the reader, for a record without a moment, and for a mover at its start that is not in the scene
 /// \param changes of the world during the run, which are replayed; null: the world is static
+/// \param advance moves WatchOptions::outside to a time in seconds, and returns true if its answer
+///        is another one; empty: it has one answer
 RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
-                       RunChanges* changes = nullptr);
+                       RunChanges* changes = nullptr,
+                       const std::function<bool(double time)>& advance = {});
 
 }  // namespace ispace

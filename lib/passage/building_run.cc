@@ -29,6 +29,7 @@ BuildingRun::Data::Data(const BuildingScene& the_building, const BuildingRunOpti
     else
         replay();
     if (options.replay.empty()) beginRecordedTrips();
+    if (around->hasOpenings()) leader.beforeStep([this] { showSensors(); });
     leader.beforeStep([this] {
         if (lift_recorder) lift_recorder->record(rooms.front().world->time(), lifts);
     });
@@ -46,12 +47,35 @@ void BuildingRun::Data::addRoom(Room room, std::shared_ptr<const Scene> scene) {
         };
     }
     room.world = std::make_unique<World>(std::move(scene), options.step, run);
+    if (room.storey) room.known = room.world->sharedScene();
     const bool leads = rooms.empty();
     room.simulation = std::make_unique<Simulation>(*room.world, std::vector<TimedCommand>(),
                                                    leads ? options.clock : Clock{Clock::Kind::Fast},
                                                    leads ? options.until : std::nullopt);
     rooms.push_back(std::move(room));
     joined.push_back({rooms.back().id, rooms.back().simulation.get()});
+}
+
+/// Lets the worlds of other storeys count fixed sensors as they stand now. \pre there are openings
+void BuildingRun::Data::showSensors() {
+    std::vector<std::size_t> changed;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        auto now = rooms[i].world->sharedScene();
+        if (now == rooms[i].known) continue;
+        if (looksOtherwise(*rooms[i].known, *now)) {
+            around->setSensors(i, *now);
+            changed.push_back(i);
+        }
+        rooms[i].known = std::move(now);
+    }
+    if (changed.empty()) return;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        if (changed == std::vector{i}) continue;
+        // The same scene: watches of it are made anew.
+        World& world = *rooms[i].world;
+        world.change(world.preparer()(Scene(world.scene())));
+        rooms[i].known = world.sharedScene();
+    }
 }
 
 void BuildingRun::Data::addRooms() {

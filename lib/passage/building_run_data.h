@@ -101,9 +101,11 @@ struct BuildingRun::Data {
         std::unique_ptr<World> world = {};
         std::unique_ptr<Replay> replay = {};
         std::unique_ptr<Simulation> simulation = {};
+        std::shared_ptr<const Scene> known = {};  // of a storey: of which others know the sensors
     };
 
     void addRooms();
+    void showSensors();
     void addTravellers();
     void addRoom(Room room, std::shared_ptr<const Scene> scene);
     [[nodiscard]] const StoreyWays& waysOf(const Traveller& who) const { return ways.at(who.size); }
