@@ -134,10 +134,11 @@ RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_
     };
     const std::string_view verb = words[0];
     if (verb != "SET" && verb != "ADD" && verb != "DELETE" && verb != "ACT")
-        return fail(403,
-                    "LOAD replaces one room, and a building has storeys, lifts and records of each: "
-                    "RESET begins anew, SET, ADD and DELETE change things, and another building is "
-                    "another run");
+        return fail(
+            403,
+            "LOAD replaces one room, and a building has storeys, lifts and records of each: "
+            "RESET begins anew, SET, ADD and DELETE change things, and another building is "
+            "another run");
     if (verb == "ADD" && (words[1] == "robot" || words[1] == "human"))
         return fail(403, "robots and people come to a building at its start");
     const auto rooms = worlds.rooms();
