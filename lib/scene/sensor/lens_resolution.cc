@@ -20,16 +20,34 @@ double leastStretch(const std::array<double, 4>& m) {
     return std::fabs(det) / std::sqrt(std::max((sum + apart) / 2, 1e-300));
 }
 
-/// Bounds of it: it changes by no more than the norm of a change of the matrix.
+/// Returns an upper bound of it for matrices that differ by at most `change`: the stretch of the
+/// direction that the middle stretches least.
+double mostStretch(const std::array<double, 4>& m, const std::array<double, 4>& change) {
+    const double turn = std::atan2(2 * (m[0] * m[1] + m[2] * m[3]),
+                                   m[0] * m[0] + m[2] * m[2] - m[1] * m[1] - m[3] * m[3]) /
+                        2;
+    const double x = -std::sin(turn), y = std::cos(turn);
+    return std::hypot(m[0] * x + m[1] * y, m[2] * x + m[3] * y) +
+           std::hypot(change[0] * std::fabs(x) + change[1] * y,
+                      change[2] * std::fabs(x) + change[3] * y);
+}
+
+/// Bounds of it: it changes by no more than the norm of a change of the matrix, and is that of the
+/// transposed matrix, too.
 Interval leastStretch(const std::array<Interval, 4>& m) {
-    std::array<double, 4> middle{};
-    double change = 0;
+    std::array<double, 4> middle{}, change{};
+    double norm = 0;
     for (std::size_t i = 0; i < m.size(); ++i) {
         middle[i] = (m[i].low + m[i].high) / 2;
-        change += squareOf((m[i].high - m[i].low) / 2);
+        change[i] = (m[i].high - m[i].low) / 2;
+        norm += squareOf(change[i]);
     }
-    const double least = leastStretch(middle);
-    return {std::max(0.0, least - std::sqrt(change)), least + std::sqrt(change)};
+    const auto transposed = [](const std::array<double, 4>& a) {
+        return std::array<double, 4>{a[0], a[2], a[1], a[3]};
+    };
+    return {
+        std::max(0.0, leastStretch(middle) - std::sqrt(norm)),
+        std::min(mostStretch(middle, change), mostStretch(transposed(middle), transposed(change)))};
 }
 
 /// Polynomials of the squared angle of a fisheye: the picture's radius over the angle, and the
@@ -137,11 +155,11 @@ double LensResolution::densityAt(Vec3 local) const {
     return far > 0 ? at(local) / far : std::numeric_limits<double>::infinity();
 }
 
-/// Splits the cell with the highest bound, in the direction that lowers it most, until it is near a
-/// value in the picture. After kMaxCells it may stay twice as high, near 90 degrees off the axis.
+/// Splits the cell with the highest bound until that is near a value in the picture. After
+/// kMaxCells it may stay half as high again, near 90 degrees off the axis.
 double LensResolution::largest(bool is_along_axis) const {
     constexpr double kPi = std::numbers::pi, kEnough = 1.01, kRounding = 1 + 1e-9;
-    constexpr std::size_t kMaxCells = 1 << 11;
+    constexpr std::size_t kMaxCells = 1 << 12;
     struct Bounded {
         Cell cell;
         double bound = 0;
@@ -156,9 +174,6 @@ double LensResolution::largest(bool is_along_axis) const {
         (cells[0].*side).high = (cells[1].*side).low = ((cell.*side).low + (cell.*side).high) / 2;
         return std::array<Bounded, 2>{bounded(cells[0]), bounded(cells[1])};
     };
-    const auto highest = [](const std::array<Bounded, 2>& cells) {
-        return std::max(cells[0].bound, cells[1].bound);
-    };
     double largest = 0;
     std::vector<Bounded> cells = {
         bounded({{0, widest_}, is_lopsided_ ? Interval{-kPi, kPi} : Interval{0, 0}})};
@@ -166,12 +181,16 @@ double LensResolution::largest(bool is_along_axis) const {
         std::pop_heap(cells.begin(), cells.end());
         const Cell cell = cells.back().cell;
         cells.pop_back();
-        auto best = halves(cell, &Cell::angle);
-        if (is_lopsided_) {
-            const auto other = halves(cell, &Cell::bearing);
-            if (highest(other) < highest(best)) best = other;
+        std::vector<Bounded> parts;
+        for (const Bounded& half : halves(cell, &Cell::angle)) {
+            if (!is_lopsided_) {
+                parts.push_back(half);
+                continue;
+            }
+            for (const Bounded& quarter : halves(half.cell, &Cell::bearing))
+                parts.push_back(quarter);
         }
-        for (const Bounded& half : best) {
+        for (const Bounded& half : parts) {
             const auto [angle, bearing] = half.cell;
             const double turn = (bearing.low + bearing.high) / 2;
             for (const double a : {(angle.low + angle.high) / 2, angle.high})

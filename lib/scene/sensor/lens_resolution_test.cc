@@ -94,6 +94,34 @@ TEST(LensResolution, BoundsAreAboveAllDirections) {
     }
 }
 
+TEST(LensResolution, BoundsOfLopsidedLensesOf89DegreesAreNear) {
+    for (const double tangential : {1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
+        Camera camera;
+        camera.columns = camera.rows = 2000;
+        camera.center();
+        camera.lens = Lens::Pinhole;
+        camera.fx = camera.fy = 18;
+        camera.distortion = {0, 0, tangential, -tangential / 2, 0};
+        camera.widest = camera.turningAngle();
+        const LensResolution resolution(camera);
+        const double widest = camera.widestInPicture().radians();
+        double most = 0, farthest = 0;
+        for (int ring = 0; ring <= 1000; ++ring)
+            for (int k = 0; k < 720; ++k) {
+                const double angle = widest * ring / 1000;
+                const double bearing = 2 * std::numbers::pi * k / 720;
+                const Vec3 way{std::cos(angle), std::sin(angle) * std::cos(bearing),
+                               std::sin(angle) * std::sin(bearing)};
+                most = std::max(most, resolution.at(way));
+                farthest = std::max(farthest, resolution.at(way) * way.x);
+            }
+        EXPECT_GE(resolution.most(), most) << tangential;
+        EXPECT_LE(resolution.most(), 1.1 * most) << tangential;
+        EXPECT_GE(resolution.farthest(1), farthest) << tangential;
+        EXPECT_LE(resolution.farthest(1), 1.5 * farthest) << tangential;
+    }
+}
+
 TEST(LensResolution, BoundsHoldAroundPoints) {
     RandomLenses lenses;
     for (int lens = 0; lens < 40; ++lens) {
