@@ -203,6 +203,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
             warn(options.common, "coverage", std::span<const Diagnostic>(&finding, 1));
         }
     const BuildingCoverage coverage = measureBuilding(input.building, options.measure);
+    const std::vector<JunitCase> verdicts = judgeBuilding(options, input.building, coverage);
     const std::optional<BuildingRunCoverage> run = measureStoreyRuns(options, input);
     if (options.format != nullptr) {
         if (isPattern(options.common.output))
@@ -219,7 +220,6 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     writeAll("-", options.json ? buildingCoverageJson(input.building, coverage, of_run, of_advice)
                                : buildingCoverageText(input.building, coverage, of_run) +
                                      (advice ? suggestionsText(*advice) : ""));
-    const std::vector<JunitCase> verdicts = judgeBuilding(options, input.building, coverage);
     for (const JunitCase& verdict : verdicts)
         if (verdict.outcome == JunitCase::Outcome::Met)
             talk(options.common, "coverage", verdict.message);

@@ -250,6 +250,7 @@ std::int64_t takeFilm(const SimrunOptions& options, RunPicture& picture,
     const DrawingOptions& film = options.drawing;
     int count = 0;
     bool has_moment = false;
+    double last = 0;
     const auto time_of = [&](int frame) {
         return seconds(options.from) + frame * film.speed / film.fps;
     };
@@ -257,7 +258,10 @@ std::int64_t takeFilm(const SimrunOptions& options, RunPicture& picture,
         for (; has_moment && time_of(count) < time - kRounding; ++count)
             write(picture.frame(), count);
         has_moment = true;
+        last = time;
     });
+    if (last < time_of(0) - kRounding)
+        throw UsageError("--from: the record ends at t=" + formatDouble(last));
     write(picture.frame(), count);
     return count + 1;
 }
