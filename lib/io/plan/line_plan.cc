@@ -79,6 +79,7 @@ class LinePlan {
         }
         openings_ = std::move(found.openings);
         unused_symbols_ = found.unused;
+        lost_ = std::move(found.lost);
         keepRooms(options, drawing, budget, out);
     }
 
@@ -256,7 +257,26 @@ class LinePlan {
         }
     }
 
+    /// Warns of symbols that open no wall, once for each layer.
+    void warnOfLost(ImportRecords& out) const {
+        std::map<std::string, std::pair<std::size_t, const LostSymbol*>> by_layer;
+        for (const LostSymbol& symbol : lost_) {
+            auto& [count, first] = by_layer[symbol.layer];
+            if (count++ == 0) first = &symbol;
+        }
+        for (const auto& [layer, lost] : by_layer) {
+            const auto& [count, first] = lost;
+            out.warn(countText(count, "shape") + " on the layer " + layer +
+                         (count == 1 ? " opens no wall, at " : " open no wall, the first at ") +
+                         formatFixed(first->at.x, 2) + ',' + formatFixed(first->at.y, 2) +
+                         ": doors and windows lie on a wall, or across it with sides at most "
+                         "0.6 m apart",
+                     first->drawn_on);
+        }
+    }
+
     void note(ImportRecords& out) const {
+        warnOfLost(out);
         if (drawn_doors_ > 0)
             out.tell("leaves and swings of " + countText(drawn_doors_, "door") +
                      " among the walls close no room");
@@ -278,6 +298,7 @@ class LinePlan {
     std::vector<PlanPath> paths_;
     std::vector<Segment2> pieces_;  // of all walls drawn
     std::vector<PlanOpening> openings_;
+    std::vector<LostSymbol> lost_;
     std::size_t unused_symbols_ = 0, dropped_lines_ = 0, dropped_openings_ = 0;
     std::size_t drawn_doors_ = 0;  // leaves
     PlanRooms rooms_;

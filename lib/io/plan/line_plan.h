@@ -44,10 +44,18 @@ struct PlanOpening {
     int drawn_on = 0;  ///< line of the file
 };
 
+/// A shape on a layer of doors or windows without an opening near it.
+struct LostSymbol {
+    std::string layer;
+    Point2 at;
+    int drawn_on = 0;  ///< line of the file
+};
+
 /// The openings found.
 struct PlanOpenings {
     std::vector<PlanOpening> openings;
-    std::size_t unused = 0;  ///< symbols without an opening
+    std::size_t unused = 0;        ///< lines without an opening
+    std::vector<LostSymbol> lost;  ///< doors first
 };
 
 /// Measures of a line in a drawing besides its course, in metres.
@@ -59,13 +67,14 @@ struct DrawnSize {
 /// Finds the openings that symbols of doors and windows represent, doors first.
 ///
 /// A straight piece is an opening if both of its ends are at walls (within 0.1 m): across a gap, or
-/// along one wall. An arc is the swing of a leaf, hinged at its centre: the opening runs from there
-/// to the end of the arc that is at a wall, and lines to the other end are the leaf; two arcs that
-/// meet off the walls are a double door, from hinge to hinge. Openings are 0.4 m wide or more; each
-/// is found once, and openings on a wall never overlap. Swings that are a guess open only from the
-/// hinge to the closed door; they are skipped if both that and the leaf lie on walls, like the
-/// sides of a shower. If a drawing with such swings marks the ends of three doors by short lines
-/// across their wall, two more of these, 0.4 m to 1.3 m apart, are a doorway.
+/// along one wall. Of a symbol without such a piece, two opposite sides at most 0.6 m apart open
+/// the walls between them. An arc is the swing of a leaf, hinged at its centre: the opening runs
+/// from there to the end of the arc that is at a wall, and lines to the other end are the leaf; two
+/// arcs that meet off the walls are a double door, from hinge to hinge. Openings are 0.4 m wide or
+/// more; each is found once, and openings on a wall never overlap. Swings that are a guess open
+/// only from the hinge to the closed door; they are skipped if both that and the leaf lie on walls,
+/// like the sides of a shower. If a drawing with such swings marks the ends of three doors by short
+/// lines across their wall, two more of these, 0.4 m to 1.3 m apart, are a doorway.
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
                           std::span<const Segment2> walls, Budget& work);
 

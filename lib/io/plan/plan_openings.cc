@@ -18,10 +18,12 @@ namespace ispace {
 
 namespace {
 
-constexpr double kReach = 0.1;      // frames keep leaves and hinges off the walls
-constexpr double kOnWall = 0.02;    // of lines drawn upon a wall
-constexpr double kNearWall = 0.06;  // of swings that end beside the closed door
-constexpr double kMinWidth = 0.4;   // metres; narrower ones are frames and jambs
+constexpr double kReach = 0.1;          // frames keep leaves and hinges off the walls
+constexpr double kOnWall = 0.02;        // of lines drawn upon a wall
+constexpr double kNearWall = 0.06;      // of swings that end beside the closed door
+constexpr double kMinWidth = 0.4;       // metres; narrower ones are frames and jambs
+constexpr double kMaxOff = 0.3;         // of the long sides of a symbol across a wall
+constexpr std::size_t kMostSides = 16;  // of such a symbol
 
 /// Short lines across a wall at the ends of an opening, where a drawing has them.
 constexpr double kMinJamb = 0.03, kMaxJamb = 0.25;  // metres
@@ -70,6 +72,18 @@ class Walls {
             reach = off;
         }
         return nearest;
+    }
+
+    /// Returns the wall pieces along the line, at most `reach` from it at both ends.
+    [[nodiscard]] std::vector<std::size_t> wallsAlong(const Segment2& line, double reach) const {
+        std::vector<std::size_t> along = search_.near(line.a, reach);
+        std::erase_if(along, [&](std::size_t i) {
+            const auto [a, b] = walls_[i];
+            const double turn = std::abs(cross(b - a, line.b - line.a));
+            return distance(line.a, walls_[i]) > reach || distance(line.b, walls_[i]) > reach ||
+                   turn > kReach * distance(a, b);
+        });
+        return along;
     }
 
     [[nodiscard]] bool isOnWall(Point2 p) const {
@@ -122,10 +136,31 @@ class Finder {
             for (const PlanChord& chord : shape.chords)
                 if (chord.center) addSwing({chord, shape.path.line, shape.is_guess});
         joinDoubleDoors();
-        for (const PlanShape& shape : symbols)
+        std::vector<Segment2> closed;
+        for (const PlanShape& shape : symbols) {
+            closed.clear();
             for (const PlanChord& chord : shape.chords)
                 if (!chord.center && !isLeaf(chord.line) && !add(chord.line, shape.path.line))
-                    ++found_.unused;
+                    closed.push_back(chord.line);
+            found_.unused += closed.size() - (addAcross(closed, shape.path.line) ? 2 : 0);
+        }
+    }
+
+    /// Notes the symbols without an opening in reach. To be called last.
+    void noteLost(std::span<const PlanShape> symbols, Budget& work) {
+        std::vector<Segment2> lines;
+        for (const PlanOpening& opening : found_.openings) lines.push_back(opening.line);
+        const NearSegments search(lines, work);
+        for (const PlanShape& shape : symbols) {
+            if (shape.is_guess || shape.path.points.empty()) continue;
+            const Box2 box = bounds(shape.path.points);
+            const Vec2 reach{kReach, kReach};
+            const Box2 around{box.low - reach, box.high + reach};
+            const auto near = search.near(box, kReach);
+            if (std::none_of(near.begin(), near.end(),
+                             [&](std::size_t i) { return bounds(lines[i]).meets(around); }))
+                found_.lost.push_back({shape.layer, box.center(), shape.path.line});
+        }
     }
     PlanOpenings take() { return std::move(found_); }
 
@@ -224,6 +259,33 @@ class Finder {
         const auto found = candidate(line, drawn_on);
         if (found) keep(found->opening);
         return found.has_value();
+    }
+
+    /// Opens the walls between two opposite sides of a symbol.
+    bool addAcross(std::span<const Segment2> sides, int drawn_on) {
+        if (sides.size() > kMostSides) return false;
+        bool found = false;
+        for (std::size_t i = 0; i < sides.size() && !found; ++i)
+            for (std::size_t k = i + 1; k < sides.size() && !found; ++k) {
+                const auto [a, b] = sides[i];
+                const bool is_turned = dot(b - a, sides[k].b - sides[k].a) < 0;
+                const Segment2 other = is_turned ? Segment2{sides[k].b, sides[k].a} : sides[k];
+                const Segment2 middle{a + 0.5 * (other.a - a), b + 0.5 * (other.b - b)};
+                const double off = 0.5 * distance(a, other.a);
+                if (off > kMaxOff || std::abs(off - 0.5 * distance(b, other.b)) > kOnWall ||
+                    distance(middle.a, middle.b) < kMinWidth)
+                    continue;
+                for (const std::size_t wall : walls_.wallsAlong(middle, off)) {
+                    const Segment2& line = walls_[wall];
+                    keep({{wholeMicrometres(nearestPoint(line, middle.a)),
+                           wholeMicrometres(nearestPoint(line, middle.b))},
+                          wall,
+                          are_windows_,
+                          drawn_on});
+                    found = true;
+                }
+            }
+        return found;
     }
 
     void addSwing(const Swing& swing) {
@@ -336,6 +398,8 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
                     [](const PlanShape& door) { return door.is_guess; }))
         finder.findJambs();
     finder.find(windows, true);
+    finder.noteLost(doors, work);
+    finder.noteLost(windows, work);
     return finder.take();
 }
 

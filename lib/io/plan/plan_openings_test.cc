@@ -96,6 +96,42 @@ TEST(PlanOpenings, WhatSpansNothing) {
               1U);
 }
 
+/// A closed rectangle about the wall along x, `off` above and below it.
+PlanShape across(double from, double to, double off) {
+    const Point2 a{from, -off}, b{to, -off}, c{to, off}, d{from, off};
+    return {{{a, b, c, d}, true, 7}, {{{a, b}, {}}, {{b, c}, {}}, {{c, d}, {}}, {{d, a}, {}}}, "D"};
+}
+
+TEST(PlanOpenings, RectanglesAcrossAWall) {
+    for (const double off : {0.005, 0.02, 0.05, 0.1, 0.15, 0.3}) {
+        const auto found =
+            findOpenings({}, std::vector{across(3.5, 4.5, off)}, wallWithGap(), ampleWork());
+        ASSERT_EQ(found.openings.size(), 1U) << off;
+        const Segment2 line = found.openings[0].line;
+        EXPECT_EQ(std::min(line.a.x, line.b.x), 3.5) << off;
+        EXPECT_EQ(std::max(line.a.x, line.b.x), 4.5) << off;
+        EXPECT_EQ(line.a.y, 0) << off;
+        EXPECT_EQ(found.openings[0].wall, 1U);
+        EXPECT_TRUE(found.lost.empty());
+    }
+    // Both lines of a wall.
+    const Lines wall{{{0, 0}, {6, 0}}, {{0, 0.12}, {6, 0.12}}};
+    EXPECT_EQ(findOpenings(std::vector{across(2, 3, 0.2)}, {}, wall, ampleWork()).openings.size(),
+              2U);
+    // A leaf beside a wall, a rectangle too deep, one across the wall's end.
+    PlanShape leaf = across(3.5, 4.5, 0.02);
+    for (Point2& p : leaf.path.points) p.y += 0.15;
+    for (PlanChord& chord : leaf.chords)
+        chord.line = {{chord.line.a.x, chord.line.a.y + 0.15},
+                      {chord.line.b.x, chord.line.b.y + 0.15}};
+    const auto none = findOpenings(std::vector{leaf, across(3.5, 5, 0.35), across(5.5, 6.5, 0.2)},
+                                   {}, wallWithGap(), ampleWork());
+    EXPECT_TRUE(none.openings.empty());
+    ASSERT_EQ(none.lost.size(), 3U);
+    EXPECT_EQ(none.lost[0].drawn_on, 7);
+    EXPECT_NEAR(none.lost[0].at.y, 0.15, 1e-12);
+}
+
 TEST(PlanOpenings, ManySymbolsInOnePlace) {
     std::vector<PlanShape> symbols;
     for (int i = 0; i < 20'000; ++i) {
@@ -143,6 +179,20 @@ TEST(PlanOpenings, OfADrawing) {
         notesOf(document).find("kept the largest region, 18.0 m2 in 2 rooms\n2 doors, 2 windows\n"),
         std::string::npos)
         << notesOf(document);
+}
+
+TEST(PlanOpenings, WarnsOfSymbolsThatOpenNoWall) {
+    const std::string lost =
+        line("DOORS", 2, 1, 2, 2) + line("WINDOWS", 1, 1, 2, 1) + line("DOORS", 5, 1, 5, 1.9);
+    const Document document =
+        readDxf(drawing(flat() + lost, doorBlock(), 6), "flat.dxf", layers(), sceneSchemas());
+    ASSERT_EQ(document.warnings.size(), 2U);
+    EXPECT_EQ(document.warnings[0].message,
+              "2 shapes on the layer DOORS open no wall, the first at 2.00,1.50: doors and windows "
+              "lie on a wall, or across it with sides at most 0.6 m apart");
+    EXPECT_EQ(document.warnings[1].message,
+              "1 shape on the layer WINDOWS opens no wall, at 1.50,1.00: doors and windows lie on "
+              "a wall, or across it with sides at most 0.6 m apart");
 }
 
 TEST(PlanOpenings, DrawingsCompile) {
