@@ -377,10 +377,11 @@ class DxfImporter {
         const double metres = metresPerUnit(*options.width_is, name_, [&](double metres_per_unit) {
             MissingBlocks missing;
             LayerSorter sorter(drawing_.hidden_layers, options);
-            return sorter
-                .sort(Expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter)
-                          .expand(metres_per_unit))
-                .walls;
+            LayerSorter::Sorted sorted = sorter.sort(
+                Expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter)
+                    .expand(metres_per_unit));
+            sorter.mustHaveWalls(sorted, name_, drawing_.left_out);
+            return std::move(sorted.walls);
         });
         out.note(unitText(metres) + ", so that it is " + formatDouble(*options.width_is) +
                  " m wide");

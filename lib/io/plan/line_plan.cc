@@ -355,6 +355,33 @@ void LayerSorter::note(ImportRecords& out) const {
         if (!counts_[use].empty()) out.note(kTitles[use] + listText(counts_[use]));
 }
 
+void LayerSorter::warnOfGlobs(ImportRecords& out) const {
+    const auto warn_of = [&](const char* option, const std::vector<std::string>& globs) {
+        for (const std::string& glob : globs)
+            if (!hasLines(glob))
+                out.warn(std::string("no line on the layers of ") + option + ' ' + glob +
+                         "; layers with lines: " + all());
+    };
+    warn_of("--door-layer", options_.door_layers);
+    warn_of("--window-layer", options_.window_layers);
+}
+
+bool LayerSorter::hasLines(const std::string& glob) const {
+    for (std::size_t use = 0; use < kUses; ++use)
+        for (const auto& [layer, count] : counts_[use])
+            if (use != Hidden && matchesLayer({glob}, layer)) return true;
+    return false;
+}
+
+void LayerSorter::mustHaveWalls(const Sorted& sorted, const std::string& name,
+                                const std::map<std::string, std::size_t>& left_out) const {
+    if (!sorted.walls.empty()) return;
+    failFile(name, (options_.wall_layers.empty() ? "no line to make a wall of"
+                                                 : "no line on the layers of walls") +
+                       std::string("; layers with lines: ") + all() +
+                       (left_out.empty() ? "" : "; left out: " + listText(left_out)));
+}
+
 std::string LayerSorter::all() const {
     std::map<std::string, std::size_t> shown;
     for (std::size_t use = 0; use < kUses; ++use)
@@ -374,13 +401,10 @@ std::map<std::string, std::size_t> LayerSorter::unusedWallNames() const {
 double writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter, const std::string& name,
                      const ImportOptions& options, const DrawingSource* drawing,
                      ImportRecords& out) {
-    if (shapes.walls.empty())
-        failFile(name, (options.wall_layers.empty() ? "no line to make a wall of"
-                                                    : "no line on the layers of walls") +
-                           std::string("; layers with lines: ") + sorter.all() +
-                           (drawing == nullptr || drawing->left_out.empty()
-                                ? ""
-                                : "; left out: " + listText(drawing->left_out)));
+    sorter.mustHaveWalls(
+        shapes, name,
+        drawing == nullptr ? std::map<std::string, std::size_t>() : drawing->left_out);
+    if (drawing != nullptr) sorter.warnOfGlobs(out);
     return withFileName(name, [&] {
         LinePlan plan(std::move(shapes), name, options, drawing, out);
         plan.write(out, options);

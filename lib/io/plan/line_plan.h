@@ -117,8 +117,12 @@ class LayerSorter {
     Sorted sort(std::vector<PlanShape> shapes);
     /// Notes the use of each layer.
     void note(ImportRecords& out) const;
-    /// Returns all layers with lines, for a message, those that are hidden behind the others.
-    [[nodiscard]] std::string all() const;
+    /// Warns of globs of doors and windows without a line.
+    void warnOfGlobs(ImportRecords& out) const;
+    /// \param left_out entities, for the message
+    /// \throws FormatError: no line on the layers of walls
+    void mustHaveWalls(const Sorted& sorted, const std::string& name,
+                       const std::map<std::string, std::size_t>& left_out) const;
     /// Returns names of walls, with their numbers of lines, if lines without a name became walls,
     /// too, because no option says otherwise.
     [[nodiscard]] std::map<std::string, std::size_t> unusedWallNames() const;
@@ -126,6 +130,9 @@ class LayerSorter {
   private:
     enum Use : std::size_t { Walls, Doors, Windows, Others, Hidden, kUses };
     Use useOf(const std::string& layer);
+    [[nodiscard]] bool hasLines(const std::string& glob) const;
+    /// Returns all layers with lines, for a message, those that are hidden behind the others.
+    [[nodiscard]] std::string all() const;
 
     std::set<std::string> hidden_;
     const ImportOptions& options_;

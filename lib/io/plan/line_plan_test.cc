@@ -40,6 +40,14 @@ TEST(LinePlan, CrowdsOfSlantedLinesArePaidFor) {
     EXPECT_NE(refusal(crowd(30), options), "");
 }
 
+TEST(LinePlan, WidthIsWantsLinesOnTheLayersOfWalls) {
+    ImportOptions options;
+    options.width_is = 12;
+    options.wall_layers = {"WALS"};
+    EXPECT_EQ(refusal(drawing(line("WALLS", 0, 0, 4, 0), "", 6), options),
+              "plan.dxf: error: no line on the layers of walls; layers with lines: WALLS (1)");
+}
+
 // Either fits: 180 000 units for copies of a block, 114 000 for crossings of walls.
 TEST(LinePlan, BlocksAndCrossingsShareOneBudget) {
     std::string grid;

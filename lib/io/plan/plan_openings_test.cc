@@ -195,6 +195,30 @@ TEST(PlanOpenings, WarnsOfSymbolsThatOpenNoWall) {
               "a wall, or across it with sides at most 0.6 m apart");
 }
 
+TEST(PlanOpenings, WarnsOfLayersThatNoLineIsOn) {
+    ImportOptions options = layers();
+    options.wall_layers = {"WALL"};
+    options.door_layers = {"DOOR*", "DORS"};
+    options.window_layers = {"GLASS"};
+    const auto warnings_of = [&](const std::string& dxf) {
+        std::string text;
+        for (const Diagnostic& warning : readDxf(dxf, "flat.dxf", options, sceneSchemas()).warnings)
+            text += warning.message + '\n';
+        return text;
+    };
+    const std::string seen = "layers with lines: DOORS (3), WALL (7), WINDOWS (2)\n";
+    EXPECT_EQ(warnings_of(drawing(flat(), doorBlock(), 6)),
+              "no line on the layers of --door-layer DORS; " + seen +
+                  "no line on the layers of --window-layer GLASS; " + seen);
+    options.door_layers.pop_back();
+    options.window_layers = {"W*W*"};
+    EXPECT_EQ(warnings_of(drawing(flat(), doorBlock(), 6)), "");
+    EXPECT_NE(warnings_of(drawing(flat(), doorBlock(), 6, layer("WINDOWS", -7, 0)))
+                  .find("--window-layer W*W*; layers with lines: DOORS (3), WALL (7); off or "
+                        "frozen: WINDOWS (2)\n"),
+              std::string::npos);
+}
+
 TEST(PlanOpenings, DrawingsCompile) {
     const auto area_of = [](const ImportOptions& options) {
         return environmentOf(

@@ -355,7 +355,10 @@ SvgDrawing readDrawing(std::string_view bytes, const std::string& name,
     if (!options.width_is) return SvgReader(bytes, name, options).read();
     const double metres = metresPerUnit(*options.width_is, name, [&](double metres_per_unit) {
         LayerSorter sorter({}, options);
-        return sorter.sort(SvgReader(bytes, name, options, metres_per_unit).read().shapes).walls;
+        SvgDrawing drawing = SvgReader(bytes, name, options, metres_per_unit).read();
+        LayerSorter::Sorted sorted = sorter.sort(std::move(drawing.shapes));
+        sorter.mustHaveWalls(sorted, name, drawing.left_out);
+        return std::move(sorted.walls);
     });
     SvgDrawing drawing = SvgReader(bytes, name, options, metres).read();
     drawing.scale =

@@ -178,6 +178,10 @@ TEST(Svg, WithoutAScale) {
     EXPECT_NEAR(areaOf("<svg width='800'>" + room, options), 8 * 6, 1e-5);
     EXPECT_EQ(errorOf("<svg width='800'><path d='M1 1V9'/></svg>", options),
               "plan.svg: error: the lines of walls have no width: --width-is needs some\n");
+    options.wall_layers = {"Wals"};
+    EXPECT_EQ(errorOf("<svg><g id='Walls'><path d='M1 1H9'/></g></svg>", options),
+              "plan.svg: error: no line on the layers of walls; layers with lines: Walls (1)\n");
+    options.wall_layers.clear();
     // Curves are measured at the scale they come to: a disc 8 m wide.
     EXPECT_NEAR(areaOf("<svg><circle r='2'/></svg>", options), 16 * std::numbers::pi, 0.02);
 }
