@@ -92,8 +92,9 @@ struct DxfWriter::Parts {
         out.tableEnd();
         dxf.writeView(out);
         dxf.writeUcs(out);
-        out.tableAppid(1);
+        out.tableAppid(2);
         dxf.writeAppid(out, "ACAD");
+        dxf.writeAppid(out, kDxfApplication);
         out.tableEnd();
         dxf.writeDimStyle(out, 0.2, 0.1, 0.1, 0.1, 0.2);
         dxf.writeBlockRecord(out);
@@ -137,13 +138,16 @@ void DxfWriter::line(const std::string& layer, const Segment2& segment) {
 }
 
 void DxfWriter::path(const std::string& layer, const std::vector<Point2>& points, bool closed,
-                     double width, DxfExtrusion upright) {
+                     double width, DxfExtrusion upright, double depth) {
     parts_->beginPolyline(layer, points.size(), closed);
     if (width > 0) parts_->out.dxfReal(43, width);
     if (upright.bottom != 0) parts_->out.dxfReal(38, upright.bottom);
     if (upright.height != 0) parts_->out.dxfReal(39, upright.height);
     for (const Point2 p : points) parts_->dxf.writeVertex(parts_->out, DL_VertexData(p.x, p.y));
     parts_->dxf.writePolylineEnd(parts_->out);
+    if (depth == 0) return;
+    parts_->out.dxfString(1001, kDxfApplication);
+    parts_->out.dxfReal(1040, depth);
 }
 
 void DxfWriter::curve(const std::string& layer, const Curve& curve) {

@@ -22,6 +22,10 @@ struct DxfExtrusion {
     double bottom = 0, height = 0;
 };
 
+/// Name under which extended data of entities is ours: a real number, the depth of an opening
+/// through its wall in metres.
+constexpr const char* kDxfApplication = "ISPACE";
+
 /// Writes a drawing in ASCII DXF (AutoCAD 2000) through dxflib: metres ($INSUNITS 6), coordinates
 /// in shortest form. Entities refer to their layer by name. Equal calls give equal bytes.
 class DxfWriter {
@@ -33,8 +37,9 @@ class DxfWriter {
 
     void line(const std::string& layer, const Segment2& segment);
     /// Writes a polyline, `width` metres wide; a closed one does not repeat its first point.
+    /// \param depth of an opening, as extended data; 0: none
     void path(const std::string& layer, const std::vector<Point2>& points, bool closed,
-              double width = 0, DxfExtrusion upright = {});
+              double width = 0, DxfExtrusion upright = {}, double depth = 0);
     /// Writes a closed polyline with true arcs.
     void curve(const std::string& layer, const Curve& curve);
     void circle(const std::string& layer, Point2 center, double radius, DxfExtrusion upright = {});

@@ -182,8 +182,8 @@ bool isDxf(std::string_view bytes);
 /// - Only the largest enclosed region is kept, with rooms joined by doors: the lines that bound it
 /// or lie in it, and an `inside` point. If no region is enclosed, all lines are kept.
 /// - A drawing with the layers of dxfRoomLayers(), if no option names layers, is read back as the
-/// room that writeDxf() drew: all walls with their thickness and height, openings with theirs,
-/// doors with a width shut, solids by addDrawnThings().
+/// room that writeDxf() drew: all walls with their thickness and height, openings with height and
+/// depth, doors with a width shut, solids by addDrawnThings().
 ///
 /// Document::notes counts the skipped elements.
 /// \throws FormatError: damaged, no unit, no line on the layers, coordinates beyond 900 km of the

@@ -62,6 +62,33 @@ for scene in "$scenes"/*.env "$scenes/office.yaml"; do
         [ -z "$(figure "$key" want.json)" ] || same "$key" want.json again.json
     done
 done
+
+# A door as deep as two fences and the space between them joins two rooms; the inside point lies in the smaller one.
+cat >deep.env <<'END'
+#env 1
+fence id=out path=0,0;8,0;8,5;0,5 closed=yes
+fence id=a path=0.3,0.3;3.35,0.3;3.35,4.7;0.3,4.7 closed=yes
+fence id=b path=3.65,0.3;6.7,0.3;6.7,4.7;3.65,4.7 closed=yes
+fence id=c path=7,0.3;7.7,0.3;7.7,4.7;7,4.7 closed=yes
+door id=d from=3.35,2 to=3.35,2.9 size=0.9,0.7 open=yes
+inside at=1,1
+inside at=7.5,1
+END
+# expect_again ROOM: the same room through DXF
+expect_again() {
+    envc "$1" --info --json >want.json
+    envc "$1" -q -o again.dxf
+    envc again.dxf --info --json >again.json
+    for key in indoor_area free_area perimeter inside; do same "$key" want.json again.json; done
+}
+expect_again deep.env
+grep -q '"indoor_area":30.19' want.json || fail "the door does not join the rooms: $(cat want.json)"
+envc again.dxf --to env | has '^door .* size=0.9,0.7 ' || fail "a door lost its depth: $(envc again.dxf --to env)"
+for building in "$data"/ifc/[ch]*.ifc ${ISPACE_TEST_DATA:+"$ISPACE_TEST_DATA"/strangers/ifc/*.ifc}; do
+    envc "$building" -q -o building.glb 2>/dev/null
+    expect_again building.glb
+done
+
 # Layers can be told, as of any drawing.
 envc room.dxf --wall-layer walls --door-layer doors --window-layer windows --info --json >again.json
 ! grep -q cube again.json || fail "layers are not those that are told: $(cat again.json)"

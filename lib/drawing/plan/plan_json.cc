@@ -153,10 +153,16 @@ constexpr double kLeaf = 0.04;
 
 /// The last point of a closed chain repeats the first.
 void addChain(DxfWriter& out, const char* layer, std::vector<Point2> chain, double width,
-              DxfExtrusion upright) {
+              DxfExtrusion upright, double depth = 0) {
     const bool closed = chain.size() > 2 && chain.front() == chain.back();
     if (closed) chain.pop_back();
-    out.path(layer, chain, closed, width, upright);
+    out.path(layer, chain, closed, width, upright, depth);
+}
+
+/// Returns the depth of an opening that states one, else 0.
+double depthOf(const Record& opening) {
+    const Tuple& size = opening.tuple("size");
+    return size.size() > 1 ? size[1] : 0;
 }
 
 /// Writes the outline of each prism and mesh, including hidden ones.
@@ -270,7 +276,8 @@ std::vector<DxfLayer> dxfRoomLayers() {
     return {{"walls", kInk},
             {"doors", kDoor},
             {"windows", kGlass},
-            {"objects", displayColor(Material::WoodDark)}};
+            {"objects", displayColor(Material::WoodDark)},
+            {"inside", kFaintInk}};
 }
 
 std::vector<DxfLayer> dxfPlacedLayers() { return {{"sensors", kSensor}, {"robots", kRobot}}; }
@@ -285,9 +292,14 @@ void addRoomToDxf(DxfWriter& out, const Environment& environment) {
         for (const std::vector<Point2>& chain : lines[i].chains) {
             if (is_door || is_window)
                 addChain(out, is_door ? "doors" : "windows", chain, is_shut ? kLeaf : 0,
-                         {lines[i].bottom, lines[i].top - lines[i].bottom});
+                         {lines[i].bottom, lines[i].top - lines[i].bottom},
+                         depthOf(elements[i].record));
             else
                 addChain(out, "walls", chain, lines[i].thickness, {0, topOf(elements[i].body)});
+        }
+        if (keyword == "inside") {
+            const Tuple& at = elements[i].record.tuple("at");
+            out.circle("inside", {at[0], at[1]}, kDxfMark);
         }
         if (lines[i].chains.empty() && keyword != "floor") addObject(out, elements[i].body);
     }

@@ -23,11 +23,12 @@ namespace ispace {
 /// Equal scenes give equal bytes. O(n log n).
 void writePlan(JsonWriter& json, const Scene& scene);
 
-/// Returns the layers of a room: walls, doors, windows, objects.
+/// Returns the layers of a room: walls, doors, windows, objects, inside.
 std::vector<DxfLayer> dxfRoomLayers();
 /// Draws the room: the mid-lines of walls as polylines as wide as the walls are thick, doors and
-/// windows as lines on them, shut doors 4 cm wide, and the outline of each solid part of a thing;
-/// all with elevation and thickness. readDxf() reads these layers and builds the same room.
+/// windows as lines on them, shut doors 4 cm wide, with their depth through the wall as extended
+/// data, and the outline of each solid part of a thing, all with elevation and thickness; circles
+/// about inside points. readDxf() reads these layers and builds the same room.
 void addRoomToDxf(DxfWriter& out, const Environment& environment);
 
 /// Returns the layers of placed records: sensors, robots.

@@ -330,7 +330,7 @@ class DxfImporter {
         MissingBlocks missing;
         const bool is_ours = options.wall_layers.empty() && options.door_layers.empty() &&
                              options.window_layers.empty() && isDrawnRoom(drawing_);
-        const ImportOptions own = is_ours ? asDrawn(options) : options;
+        const ImportOptions own = is_ours ? asDrawn(options, source.metres_per_unit) : options;
         LayerSorter sorter(drawing_.hidden_layers, own);
         Expander expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter);
         std::vector<PlanShape> expanded = expander.expand(source.metres_per_unit);
@@ -345,9 +345,9 @@ class DxfImporter {
             out.note("a room as envc draws it");
             shapes.sizes.emplace();
             for (const auto& [line, size] : drawing_.sizes)
-                (*shapes.sizes)[line] = {source.metres_per_unit * size.width,
-                                         source.metres_per_unit * size.bottom,
-                                         source.metres_per_unit * size.height};
+                (*shapes.sizes)[line] = {
+                    source.metres_per_unit * size.width, source.metres_per_unit * size.bottom,
+                    source.metres_per_unit * size.height, source.metres_per_unit * size.depth};
         }
         const std::optional<std::map<int, DrawnSize>> sizes = shapes.sizes;
         const double area =
@@ -358,11 +358,14 @@ class DxfImporter {
 
   private:
     /// Returns options for a drawing of writeDxf(): its layers, and lines that already meet.
-    static ImportOptions asDrawn(ImportOptions options) {
+    [[nodiscard]] ImportOptions asDrawn(ImportOptions options, double metres_per_unit) const {
         options.wall_layers = {"walls"};
         options.door_layers = {"doors"};
         options.window_layers = {"windows"};
         if (!options.snap) options.snap = 0;
+        if (options.inside.empty() && options.known_inside.empty() &&
+            options.rooms == RoomChoice::Largest)
+            options.inside = drawnInside(drawing_, metres_per_unit);
         return options;
     }
 

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "drawing/dxf_writer.h"
 #include "geom/tolerance.h"
 #include "io/importers.h"
 #include "io/plan/dxf_text.h"
@@ -66,7 +67,6 @@ constexpr double kMaxDxfNumber = 1e12;  // of any number that counts: drawings e
 /// Flags of LAYER, of POLYLINE, and of VERTEX: a point of the frame that a curve was fitted to.
 constexpr int kFrozen = 1, kClosed = 1, kPolyline3d = 8, kMesh = 16 + 64, kFrameVertex = 16;
 
-bool isText(int code) { return code < 10; }
 bool isInteger(int code) { return code >= 60 && code < 100; }
 
 /// A vertex of a polyline, or a control point.
@@ -82,7 +82,7 @@ struct Kind;
 struct Entity {
     const Kind* kind = nullptr;  // null: no entity, or a skipped one
     int line = 0;
-    std::string_view layer;
+    std::string_view layer, application;  // the latter of extended data
     std::optional<std::string_view> name;
     std::vector<std::pair<int, double>> numbers;  // by code; of two the later counts
     std::vector<Vertex> vertices;
@@ -91,7 +91,7 @@ struct Entity {
     void begin(const Kind* entity_kind, int entity_line) {
         kind = entity_kind;
         line = entity_line;
-        layer = {};
+        layer = application = {};
         name = {};
         numbers.clear();
         vertices.clear();
@@ -286,16 +286,18 @@ class DxfReader {
         const bool is_path = kind.name == "LWPOLYLINE";
         if (code == 8) {
             entity_.layer = text(group);
+        } else if (code == 1001) {
+            entity_.application = group.value;
         } else if ((code == 10 || code == 20 || (code == 42 && !is_spline)) &&
                    (is_spline || is_vertex || is_path)) {
             addVertexGroup(group, is_vertex);
-        } else if (code == 30 || code == 38 || code == 39 || code == 43) {
+        } else if (code == 30 || code == 38 || code == 39 || code == 43 || code == 1040) {
             addSize(group, is_path);
         } else if (is_spline && (code == 40 || code == 41)) {
             (code == 40 ? entity_.knots : entity_.weights).push_back(real(group));
         } else if (contains(kind.required, code) || contains(kind.optional, code) ||
                    contains(kCommon, code)) {
-            if (isText(code))
+            if (code < 10)
                 entity_.name = text(group);
             else
                 entity_.numbers.emplace_back(code, isInteger(code) ? integer(group) : real(group));
@@ -304,15 +306,14 @@ class DxfReader {
 
     /// Numbers that only drawings of writeDxf() need: others may have any text here.
     void addSize(const Group& group, bool is_path) {
-        const bool is_circle = entity_.kind->name == "CIRCLE";
         const auto value = parseDouble(group.value);
         if (!value || *value == 0 || std::abs(*value) > kMaxDxfNumber) return;
-        if ((is_path || is_circle) && group.code == 39)
-            drawing_.sizes[entity_.line].height = *value;
-        else if (is_path && group.code == 43)
-            drawing_.sizes[entity_.line].width = *value;
-        else if ((is_path && group.code == 38) || (is_circle && group.code == 30))
-            drawing_.sizes[entity_.line].bottom = *value;
+        if (!is_path && entity_.kind->name != "CIRCLE") return;
+        DrawnSize& size = drawing_.sizes[entity_.line];
+        if (group.code == 39) size.height = *value;
+        if (group.code == (is_path ? 38 : 30)) size.bottom = *value;
+        if (group.code == 43) size.width = *value;
+        if (group.code == 1040 && entity_.application == kDxfApplication) size.depth = *value;
     }
 
     /// \param single for a VERTEX, which is one

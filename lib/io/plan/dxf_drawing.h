@@ -82,6 +82,9 @@ struct DxfDrawing {
 /// dxfRoomLayers().
 bool isDrawnRoom(const DxfDrawing& drawing);
 
+/// Returns the inside points of such a drawing in metres: the centres of circles on `inside`.
+std::vector<Point2> drawnInside(const DxfDrawing& drawing, double metres_per_unit);
+
 /// Adds the shapes on other layers of such a drawing than those of walls and openings: of `objects`
 /// that have a height rectangles as cubes, circles and ellipses as cylinders, others as cubes
 /// around them, with a note; `zones`, and rectangles of `floors`. \param sizes in metres

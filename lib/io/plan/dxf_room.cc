@@ -17,6 +17,8 @@ namespace ispace {
 
 namespace {
 
+constexpr const char* kInside = "inside";  // a layer that older drawings lack
+
 /// A thing seen from above.
 struct Footprint {
     Point2 center;
@@ -132,8 +134,19 @@ void addFloor(const Footprint& found, int line, ImportRecords& out) {
 
 bool isDrawnRoom(const DxfDrawing& drawing) {
     const std::vector<DxfLayer> layers = dxfRoomLayers();
-    return std::all_of(layers.begin(), layers.end(),
-                       [&](const DxfLayer& layer) { return drawing.layers.contains(layer.name); });
+    return std::all_of(layers.begin(), layers.end(), [&](const DxfLayer& layer) {
+        return layer.name == kInside || drawing.layers.contains(layer.name);
+    });
+}
+
+std::vector<Point2> drawnInside(const DxfDrawing& drawing, double metres_per_unit) {
+    std::vector<Point2> points;
+    for (const DxfEntity& entity : drawing.entities)
+        if (const auto* circle = std::get_if<DxfArc>(&entity.shape);
+            circle != nullptr && entity.layer == kInside)
+            points.push_back(wholeMicrometres(
+                Point2{metres_per_unit * circle->center.x, metres_per_unit * circle->center.y}));
+    return points;
 }
 
 void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& sizes,

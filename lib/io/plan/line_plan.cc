@@ -243,6 +243,9 @@ class LinePlan {
         const DrawnSize* size = sizeOf(opening.drawn_on);
         if (size != nullptr) {
             record.set("height", size->height);
+            if (size->depth > 0)
+                record.set("size", Tuple{wholeMicrometres(distance(opening.line.a, opening.line.b)),
+                                         wholeMicrometres(size->depth)});
             if (opening.is_window)
                 record.set("sill", size->bottom);
             else

@@ -62,6 +62,7 @@ struct PlanOpenings {
 struct DrawnSize {
     double width = 0;               ///< of the line as drawn
     double bottom = 0, height = 0;  ///< elevation and thickness
+    double depth = 0;               ///< of an opening through its wall; 0: as the wall
 };
 
 /// Finds the openings that symbols of doors and windows represent, doors first.
