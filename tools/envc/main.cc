@@ -68,10 +68,24 @@ InputRequest requestOf(const EnvcOptions& options, FoundRooms* found, ImportRepo
     return request;
 }
 
+/// Warns if --resolution is meant for a map that states its own.
+void warnOfResolution(const EnvcOptions& options, const std::vector<RawInput>& raw,
+                      Document& document) {
+    const bool is_of_product = options.format != nullptr && options.format->needs_beside;
+    if (!options.import.resolution || is_of_product) return;
+    for (const RawInput& input : raw)
+        if (isRosMap(input.bytes))
+            document.warnings.push_back(
+                {displayName(input.name), 0, 0,
+                 "--resolution is ignored: the map states the resolution of its picture",
+                 Severity::Warning});
+}
+
 Document readModel(const EnvcOptions& options, const std::vector<RawInput>& raw,
                    const InputRequest& request, ImportReport& report) {
     std::vector<Diagnostic> other_rooms;
     Document document = readInputs(raw, request, other_rooms);
+    warnOfResolution(options, raw, document);
     if (!options.import.storey.empty() && !report.has_storeys)
         throw UsageError("--storey is about buildings, and no input is one");
     warn(options.common, "envc", other_rooms);
