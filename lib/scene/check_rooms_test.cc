@@ -17,16 +17,18 @@ TEST(CheckScene, LooseEndsThatMissAnotherWall) {
     const std::string miss = "wall id=v from=2,0 to=2,5.88\n";
     EXPECT_EQ(
         check(miss),
-        "room.env: warning: 1 loose end of a wall, the narrowest gap 0.12 m near (2.0, 5.88); "
+        "room.env:3:1: warning: 1 loose end of a wall, the narrowest gap 0.12 m near (2.0, 5.88); "
         "make them meet\n");
     // Two ends that miss each other are one gap, and the narrowest of all is told.
-    EXPECT_EQ(check(miss + "wall id=w from=4,0 to=4,2\nwall id=x from=4,2.05 to=4,6\n"),
-              "room.env: warning: 3 loose ends of walls, the narrowest gap 0.05 m near (4.0, 2.0); "
-              "make them meet\n");
+    EXPECT_EQ(
+        check(miss + "wall id=w from=4,0 to=4,2\nwall id=x from=4,2.05 to=4,6\n"),
+        "room.env:4:1: warning: 3 loose ends of walls, the narrowest gap 0.05 m near (4.0, 2.0); "
+        "make them meet\n");
     // An end between two walls is one end.
-    EXPECT_EQ(check("wall id=v from=0.1,0.1 to=4,3\n"),
-              "room.env: warning: 1 loose end of a wall, the narrowest gap 0.1 m near (0.0, 0.1); "
-              "make them meet\n");
+    EXPECT_EQ(
+        check("wall id=v from=0.1,0.1 to=4,3\n"),
+        "room.env:3:1: warning: 1 loose end of a wall, the narrowest gap 0.1 m near (0.0, 0.1); "
+        "make them meet\n");
 }
 
 TEST(CheckScene, EndsThatAreMeantToHang) {

@@ -91,8 +91,9 @@ class StoreyImport {
                 });
         }
         if (open > 0)
-            out_.warn("no walls enclose " + countText(open, "space") + " of " +
-                      std::to_string(spaces_.size()) + ": outlines of spaces are walls there");
+            out_.warn("storey " + storeyWord(building_, storey_) + ": no walls enclose " +
+                      countText(open, "space") + " of " + std::to_string(spaces_.size()) +
+                      ": outlines of spaces are walls there");
     }
 
     [[nodiscard]] bool isHere(const BuildingOpening& opening) const {

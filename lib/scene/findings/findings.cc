@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -28,6 +29,21 @@ WallPlan planOf(const std::vector<Element>& elements, Diagnostics& ignored) {
         if (isWall(elements[i].record))
             for (const WallLine& wall : wallLinesOf(elements[i].record, ignored)) plan.add(wall, i);
     return plan;
+}
+
+/// Returns the first element with the wall end nearest to `p`.
+std::size_t wallWithEnd(const std::vector<Element>& elements, Point2 p) {
+    Diagnostics ignored;
+    const WallPlan plan = planOf(elements, ignored);
+    std::size_t owner = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < plan.lines.size(); ++i) {
+        const double apart = std::min(distance(p, plan.lines[i].a), distance(p, plan.lines[i].b));
+        if (apart >= least) continue;
+        least = apart;
+        owner = plan.owner[i];
+    }
+    return owner;
 }
 
 /// A wall line and its distance.
@@ -156,14 +172,17 @@ void checkLooseEnds(CheckContext& context, std::size_t record, std::vector<Findi
         }
     }
     if (!narrowest) return;
+    const auto [a, b] = narrowest->line;
+    const std::size_t owner =
+        wallWithEnd(scene.environment.elements(), ends.count({a.x, a.y}) != 0 ? a : b);
     findings.push_back(
-        {.at = narrowest->line.a,
+        {.at = a,
          .message = std::to_string(ends.size()) +
                     (ends.size() == 1 ? " loose end of a wall" : " loose ends of walls") +
                     ", the narrowest gap " + lengthText(narrowest->width) + " m near " +
-                    placeText(narrowest->line.a),
+                    placeText(a),
          .hint = "make them meet",
-         .source = context.element(0).record.place().at({})});
+         .source = context.element(owner).record.place()});
 }
 
 Diagnostic Finding::diagnostic() const {
