@@ -44,7 +44,6 @@ PoseBound goOn(JobResults& results, int sensors) {
                            .found = kFound,
                            .max_bytes = std::size_t{1} << 22U,
                            .singles = 20,
-                           .pairs = 40,
                            .share = {.results = &results}},
                           progress);
 }
