@@ -88,6 +88,15 @@ for building in "$data"/ifc/[ch]*.ifc ${ISPACE_TEST_DATA:+"$ISPACE_TEST_DATA"/st
     envc "$building" -q -o building.glb 2>/dev/null
     expect_again building.glb
 done
+cat >stacked.env <<'END'
+#env 1
+ispace id=w size=6,4
+window wall=w from=1,-2 to=2,-2 height=0.8 sill=0.1
+window wall=w from=1,-2 to=2,-2 height=0.7 sill=0.9
+inside at=0,0
+END
+expect_again stacked.env
+envc stacked.env --to dxf | envc - --info | has 'window 2' || fail "a window above another is lost"
 
 # Layers can be told, as of any drawing.
 envc room.dxf --wall-layer walls --door-layer doors --window-layer windows --info --json >again.json

@@ -72,10 +72,11 @@ class LinePlan {
         std::vector<PlanShape> doors = std::move(shapes.doors);
         doors.insert(doors.end(), std::make_move_iterator(drawn.swings.begin()),
                      std::make_move_iterator(drawn.swings.end()));
-        PlanOpenings found = findOpenings(doors, shapes.windows, pieces_, budget);
+        const DrawnSizes* const sizes = sizes_ ? &*sizes_ : nullptr;
+        PlanOpenings found = findOpenings(doors, shapes.windows, pieces_, budget, sizes);
         if (options.simplify.value_or(0) > 0) {
             simplify(*options.simplify, found.openings, budget);
-            found = findOpenings(doors, shapes.windows, pieces_, budget);
+            found = findOpenings(doors, shapes.windows, pieces_, budget, sizes);
         }
         openings_ = std::move(found.openings);
         unused_symbols_ = found.unused;
@@ -242,7 +243,7 @@ class LinePlan {
         ImportRecords::setPoint(record, "to", opening.line.b);
         const DrawnSize* size = sizeOf(opening.drawn_on);
         if (size != nullptr) {
-            record.set("height", size->height);
+            record.set("height", wholeMicrometres(size->height));
             if (size->depth > 0)
                 record.set("size", Tuple{wholeMicrometres(distance(opening.line.a, opening.line.b)),
                                          wholeMicrometres(size->depth)});

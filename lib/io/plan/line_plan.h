@@ -65,6 +65,9 @@ struct DrawnSize {
     double depth = 0;               ///< of an opening through its wall; 0: as the wall
 };
 
+/// Sizes by lines of the file.
+using DrawnSizes = std::map<int, DrawnSize>;
+
 /// Finds the openings that symbols of doors and windows represent, doors first.
 ///
 /// A straight piece is an opening if both of its ends are at walls (within 0.1 m): across a gap, or
@@ -72,12 +75,14 @@ struct DrawnSize {
 /// the walls between them. An arc is the swing of a leaf, hinged at its centre: the opening runs
 /// from there to the end of the arc that is at a wall, and lines to the other end are the leaf; two
 /// arcs that meet off the walls are a double door, from hinge to hinge. Openings are 0.4 m wide or
-/// more; each is found once, and openings on a wall never overlap. Swings that are a guess open
-/// only from the hinge to the closed door; they are skipped if both that and the leaf lie on walls,
-/// like the sides of a shower. If a drawing with such swings marks the ends of three doors by short
-/// lines across their wall, two more of these, 0.4 m to 1.3 m apart, are a doorway.
+/// more; each is found once, and openings on a wall never overlap, unless their `sizes` are above
+/// each other. Swings that are a guess open only from the hinge to the closed door; they are
+/// skipped if both that and the leaf lie on walls, like the sides of a shower. If a drawing with
+/// such swings marks the ends of three doors by short lines across their wall, two more of these,
+/// 0.4 m to 1.3 m apart, are a doorway.
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
-                          std::span<const Segment2> walls, Budget& work);
+                          std::span<const Segment2> walls, Budget& work,
+                          const DrawnSizes* sizes = nullptr);
 
 /// Doors that a drawing shows among its walls.
 struct DrawnDoors {

@@ -126,8 +126,8 @@ struct Swing {
 class Finder {
   public:
     /// \param has_lines whether a symbol has a straight piece, which may be the leaf of a swing
-    Finder(std::span<const Segment2> walls, bool has_lines, Budget& work)
-        : walls_(walls, work), has_lines_(has_lines) {}
+    Finder(std::span<const Segment2> walls, bool has_lines, const DrawnSizes* sizes, Budget& work)
+        : walls_(walls, work), has_lines_(has_lines), sizes_(sizes) {}
 
     void find(std::span<const PlanShape> symbols, bool are_windows) {
         are_windows_ = are_windows;
@@ -227,22 +227,31 @@ class Finder {
     void keep(const PlanOpening& opening) {
         const auto [a, b] = opening.line;
         if (opening.wall) {
-            std::vector<Segment2>& others = on_wall_[*opening.wall];
+            std::vector<PlanOpening>& others = on_wall_[*opening.wall];
             const Segment2& wall = walls_[*opening.wall];
             const auto extent = [&](const Segment2& s) {
                 return std::minmax(
                     {dot(s.a - wall.a, wall.b - wall.a), dot(s.b - wall.a, wall.b - wall.a)});
             };
-            const auto overlaps = [&, mine = extent(opening.line)](const Segment2& other) {
-                const auto [low, high] = extent(other);
-                return std::max(low, mine.first) < std::min(high, mine.second);
+            const auto overlaps = [&, mine = extent(opening.line)](const PlanOpening& other) {
+                const auto [low, high] = extent(other.line);
+                return !isAbove(opening, other) && !isAbove(other, opening) &&
+                       std::max(low, mine.first) < std::min(high, mine.second);
             };
             if (std::any_of(others.begin(), others.end(), overlaps)) return;
-            others.push_back(opening.line);
+            others.push_back(opening);
         } else if (!(lexLess(a, b) ? isNewGap(a, b) : isNewGap(b, a))) {
             return;
         }
         found_.openings.push_back(opening);
+    }
+
+    [[nodiscard]] bool isAbove(const PlanOpening& upper, const PlanOpening& lower) const {
+        if (sizes_ == nullptr) return false;
+        const auto a = sizes_->find(upper.drawn_on), b = sizes_->find(lower.drawn_on);
+        return a != sizes_->end() && b != sizes_->end() &&
+               wholeMicrometres(a->second.bottom) >=
+                   wholeMicrometres(b->second.bottom + b->second.height);
     }
 
     /// Returns true for the first opening across a gap with these ends.
@@ -372,11 +381,12 @@ class Finder {
 
     Walls walls_;
     bool has_lines_;
+    const DrawnSizes* sizes_;  // null: unknown
     PlanOpenings found_;
     bool are_windows_ = false;
     std::vector<Gap> gaps_;
     PointMap<std::uint32_t> latest_gap_;  // numbers by the lower end
-    std::map<std::size_t, std::vector<Segment2>> on_wall_;
+    std::map<std::size_t, std::vector<PlanOpening>> on_wall_;
     std::map<Cell, std::vector<Segment2>> leaves_;  // by hinge: from there to where it is drawn
     std::vector<Swing> open_swings_;
 };
@@ -384,7 +394,7 @@ class Finder {
 }  // namespace
 
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
-                          std::span<const Segment2> walls, Budget& work) {
+                          std::span<const Segment2> walls, Budget& work, const DrawnSizes* sizes) {
     if (doors.empty() && windows.empty()) return {};
     const auto has_lines = [](std::span<const PlanShape> symbols) {
         return std::any_of(symbols.begin(), symbols.end(), [](const PlanShape& shape) {
@@ -392,7 +402,7 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
                                [](const PlanChord& chord) { return !chord.center; });
         });
     };
-    Finder finder(walls, has_lines(doors) || has_lines(windows), work);
+    Finder finder(walls, has_lines(doors) || has_lines(windows), sizes, work);
     finder.find(doors, false);
     if (std::any_of(doors.begin(), doors.end(),
                     [](const PlanShape& door) { return door.is_guess; }))
