@@ -109,8 +109,8 @@ void refineIn(Arrangement& result, MeasuredScene& model, std::uint64_t before, P
 void measure(Arrangement& result, MeasuredScene& model) {
     const ArrangeOptions& options = model.options();
     const bool is_whole_floor = options.target && options.weights.isUniform() &&
-                                options.redundancy == 1 && options.judges_inside &&
-                                !options.beam_step && !options.ways;
+                                !options.robust.isAsked() && options.redundancy == 1 &&
+                                options.judges_inside && !options.beam_step && !options.ways;
     const CoverageOptions usual{.plane = options.plane, .exact = is_whole_floor};
     const Scene whole = withPlaced(model.scene(), model.groups(), result.sensors);
     const Coverage measured = measureCoverage(whole, model.worlds(), usual);

@@ -61,8 +61,9 @@ Document layoutOfStorey(const Document& layout, const StoreyedDocument& building
 }
 
 std::string recordedBuilding(const std::string& folder) {
-    const bool is_one = !folder.empty() &&
-                        std::filesystem::exists(folder + '/' + kRecordedBuilding) &&
+    if (folder.empty()) return "";
+    checkRecordFolder(folder);
+    const bool is_one = std::filesystem::exists(folder + '/' + kRecordedBuilding) &&
                         !std::filesystem::exists(RecordedFiles(folder).robots);
     return is_one ? fileOfRecord(folder, kRecordedBuilding) : "";
 }

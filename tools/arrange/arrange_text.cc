@@ -237,8 +237,11 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
         text += ", and no layout of these candidates covers more than " +
                 percentText(arrangement.candidate_bound);
     if (!arrangement.is_complete) return text + "; the search was cut short";
-    if (arrangement.free_share.value_or(1) < *how.target)
-        return text + "; only " + percentText(*arrangement.free_share) +
+    // Sensors of higher planes see floor under things, and so may others by cells.
+    const double free_share = arrangement.free_share.value_or(1);
+    if (arrangement.is_exhausted && free_share < *how.target &&
+        arrangement.coverage <= free_share + 1.0 / 50)
+        return text + "; only " + percentText(free_share) +
                " of the indoor area is free floor, the rest is under walls and things";
     if (arrangement.is_exhausted)
         return text +
@@ -251,8 +254,11 @@ std::string inexactText(const ArrangeOptions& how, const Arrangement& arrangemen
     if (!arrangement.is_reached || !arrangement.exact_share ||
         *arrangement.exact_share >= *how.target - kMissedShare)
         return "";
+    const double share = *arrangement.exact_share;
+    const std::string rounded = percentText(share);
     return "the target is reached by cells, but by exact area these sensors cover " +
-           percentText(*arrangement.exact_share) +
+           (rounded == percentText(*how.target) ? formatPercent(roundSignificant(share))
+                                                : rounded) +
            " (as coverage(1) reports): try a higher --target, or smaller cells (--cell M)";
 }
 

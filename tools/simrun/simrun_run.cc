@@ -32,7 +32,6 @@
 namespace ispace {
 
 SceneInput readInput(const SimrunOptions& options) {
-    if (!options.replay.empty()) checkRecordFolder(options.replay);
     if (const std::string building = recordedBuilding(options.replay); !building.empty())
         throw UsageError(
             "--replay: " + options.replay +
@@ -290,9 +289,9 @@ std::int64_t writeGif(const SimrunOptions& options, RunPicture& picture) {
 std::int64_t writePictures(const SimrunOptions& options, const OutputSet& files,
                            RunPicture& picture) {
     const std::string name = "run";
-    files.prepare({name}, true, {".png"});
     EncodeAhead pictures(encodePng, writeAll);
     const std::int64_t count = takeFilm(options, picture, [&](const Image& image, int frame) {
+        if (frame == 0) files.prepare({name}, true, {".png"});
         pictures.add(files.fileOf(name, frame, ".png"), image);
     });
     pictures.finish();
