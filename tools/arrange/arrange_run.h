@@ -53,8 +53,8 @@ double gapOf(const Arrangement& arrangement);
 /// Returns the reason why a target was not reached, as a sentence without full stop.
 std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement);
 
-/// Tells that a target reached by cells is missed by exact area, as a sentence without full stop; ""
-/// if it is not.
+/// Tells that a target reached by cells is missed by exact area, as a sentence without full stop;
+/// "" if it is not.
 std::string inexactText(const ArrangeOptions& how, const Arrangement& arrangement);
 
 /// Lists redundant sensors as a sentence without full stop; "" without any.
