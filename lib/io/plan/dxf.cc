@@ -330,11 +330,14 @@ class DxfImporter {
         MissingBlocks missing;
         const bool is_ours = options.wall_layers.empty() && options.door_layers.empty() &&
                              options.window_layers.empty() && isDrawnRoom(drawing_);
-        const ImportOptions own = is_ours ? asDrawn(options, source.metres_per_unit) : options;
+        ImportOptions own = is_ours ? asDrawn(options) : options;
         LayerSorter sorter(drawing_.hidden_layers, own);
         Expander expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter);
         std::vector<PlanShape> expanded = expander.expand(source.metres_per_unit);
-        if (const auto moved = expander.moveHome(expanded)) out.tell(surveyText(*moved, "drawing"));
+        const auto moved = expander.moveHome(expanded);
+        if (moved) out.tell(surveyText(*moved, "drawing"));
+        const double metres = source.metres_per_unit;
+        const Affine frame{{metres, 0}, {0, metres}, -1 * moved.value_or(Vec2())};
         LayerSorter::Sorted shapes = sorter.sort(std::move(expanded));
         sorter.note(out);
         if (!drawing_.left_out.empty())
@@ -343,29 +346,27 @@ class DxfImporter {
             out.note("inserts of blocks that the file lacks: " + listText(missing));
         if (is_ours) {
             out.note("a room as envc draws it");
+            if (own.inside.empty() && own.known_inside.empty() && own.rooms == RoomChoice::Largest)
+                own.inside = drawnInside(drawing_, frame);
             shapes.sizes.emplace();
             for (const auto& [line, size] : drawing_.sizes)
-                (*shapes.sizes)[line] = {
-                    source.metres_per_unit * size.width, source.metres_per_unit * size.bottom,
-                    source.metres_per_unit * size.height, source.metres_per_unit * size.depth};
+                (*shapes.sizes)[line] = {metres * size.width, metres * size.bottom,
+                                         metres * size.height, metres * size.depth};
         }
         const std::optional<std::map<int, DrawnSize>> sizes = shapes.sizes;
         const double area =
             writeLinePlan(std::move(shapes), sorter, name_, own, is_ours ? nullptr : &source, out);
-        if (sizes) addDrawnThings(drawing_, *sizes, source.metres_per_unit, out);
+        if (sizes) addDrawnThings(drawing_, *sizes, frame, out);
         return {out.take(), area};
     }
 
   private:
     /// Returns options for a drawing of writeDxf(): its layers, and lines that already meet.
-    [[nodiscard]] ImportOptions asDrawn(ImportOptions options, double metres_per_unit) const {
+    static ImportOptions asDrawn(ImportOptions options) {
         options.wall_layers = {"walls"};
         options.door_layers = {"doors"};
         options.window_layers = {"windows"};
         if (!options.snap) options.snap = 0;
-        if (options.inside.empty() && options.known_inside.empty() &&
-            options.rooms == RoomChoice::Largest)
-            options.inside = drawnInside(drawing_, metres_per_unit);
         return options;
     }
 

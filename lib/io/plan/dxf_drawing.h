@@ -82,14 +82,16 @@ struct DxfDrawing {
 /// dxfRoomLayers().
 bool isDrawnRoom(const DxfDrawing& drawing);
 
-/// Returns the inside points of such a drawing in metres: the centres of circles on `inside`.
-std::vector<Point2> drawnInside(const DxfDrawing& drawing, double metres_per_unit);
+/// Returns the inside points of such a drawing in the plan's frame: centres of circles on `inside`.
+/// \param frame from the drawing to the plan, in metres
+std::vector<Point2> drawnInside(const DxfDrawing& drawing, const Affine& frame);
 
 /// Adds the shapes on other layers of such a drawing than those of walls and openings: of `objects`
 /// that have a height rectangles as cubes, circles and ellipses as cylinders, others as cubes
 /// around them, with a note; `zones`, and rectangles of `floors`. \param sizes in metres
+/// \param frame as above, without a turn
 void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& sizes,
-                    double metres_per_unit, ImportRecords& out);
+                    const Affine& frame, ImportRecords& out);
 
 /// Reads ASCII DXF. Ignores counts in the file, and parses only the numbers it needs.
 /// \throws FormatError with its line: no group code, a malformed number, a missing coordinate, an

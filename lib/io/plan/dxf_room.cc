@@ -83,20 +83,20 @@ bool findEllipse(const Polygon& polygon, Footprint& out) {
 }
 
 /// The corners of a closed polyline, in metres; empty for other entities.
-Polygon outlineOf(const DxfEntity& entity, double metres) {
+Polygon outlineOf(const DxfEntity& entity, const Affine& frame) {
     Polygon polygon;
     const auto* polyline = std::get_if<DxfPolyline>(&entity.shape);
     if (polyline == nullptr || !polyline->closed || polyline->vertices.size() < 3) return polygon;
     for (const DxfPolyline::Vertex& vertex : polyline->vertices)
-        polygon.push_back({metres * vertex.at.x, metres * vertex.at.y});
+        polygon.push_back(frame * vertex.at);
     return polygon;
 }
 
-bool findFootprint(const DxfEntity& entity, double metres, Footprint& out) {
+bool findFootprint(const DxfEntity& entity, const Affine& frame, Footprint& out) {
     if (const auto* circle = std::get_if<DxfArc>(&entity.shape)) {
-        const double width = 2 * metres * circle->radius;
-        out = {{metres * circle->center.x, metres * circle->center.y}, {}, width, width, true};
-    } else if (const Polygon polygon = outlineOf(entity, metres);
+        const double width = 2 * frame.x.x * circle->radius;
+        out = {frame * circle->center, {}, width, width, true};
+    } else if (const Polygon polygon = outlineOf(entity, frame);
                !polygon.empty() && !findEllipse(polygon, out)) {
         out = boxAround(polygon);
     }
@@ -139,28 +139,26 @@ bool isDrawnRoom(const DxfDrawing& drawing) {
     });
 }
 
-std::vector<Point2> drawnInside(const DxfDrawing& drawing, double metres_per_unit) {
+std::vector<Point2> drawnInside(const DxfDrawing& drawing, const Affine& frame) {
     std::vector<Point2> points;
     for (const DxfEntity& entity : drawing.entities)
         if (const auto* circle = std::get_if<DxfArc>(&entity.shape);
             circle != nullptr && entity.layer == kInside)
-            points.push_back(wholeMicrometres(
-                Point2{metres_per_unit * circle->center.x, metres_per_unit * circle->center.y}));
+            points.push_back(wholeMicrometres(frame * circle->center));
     return points;
 }
 
 void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& sizes,
-                    double metres_per_unit, ImportRecords& out) {
+                    const Affine& frame, ImportRecords& out) {
     std::size_t solids = 0, boxed = 0;
     for (const DxfEntity& entity : drawing.entities) {
         Footprint found;
         if (entity.layer == "zones") {
-            const Polygon outline = outlineOf(entity, metres_per_unit);
+            const Polygon outline = outlineOf(entity, frame);
             if (!outline.empty()) addZone(outline, entity.line, out);
         }
         const bool is_floor = entity.layer == "floors";
-        if ((!is_floor && entity.layer != "objects") ||
-            !findFootprint(entity, metres_per_unit, found))
+        if ((!is_floor && entity.layer != "objects") || !findFootprint(entity, frame, found))
             continue;
         const auto size = sizes.find(entity.line);
         if (is_floor) {
