@@ -38,5 +38,38 @@ TEST(DxfRoom, MovesWholeFromSurveyorsCoordinates) {
     EXPECT_EQ(writeRecordText(readOurs(roomsAt(399'991, 500'000))), home);
 }
 
+/// A room with windows in one wall, each a metre wide, above one another.
+std::string stackedWindows(int count, double height) {
+    std::string entities = rectangle("walls", 0, 0, 8, 5);
+    for (int i = 0; i < count; ++i)
+        entities += polyline("windows", false, {{1, 0}, {2, 0}}) + group(38, 0.5 + i * height) +
+                    group(39, height);
+    return entities;
+}
+
+TEST(DxfRoom, WindowsAboveOneAnother) {
+    const auto windows_of = [](const std::string& entities) {
+        return countOf(readOurs(entities), "window");
+    };
+    EXPECT_EQ(windows_of(stackedWindows(3, 0.5)), 3U);
+    EXPECT_EQ(windows_of(stackedWindows(3, 0.5) + stackedWindows(3, 0.5)), 3U);
+    EXPECT_EQ(windows_of(stackedWindows(3, 0)), 1U);  // of unknown height
+    EXPECT_EQ(windows_of(stackedWindows(3, 0.5) + polyline("windows", false, {{1.9, 0}, {2.9, 0}}) +
+                         group(38, 1.9) + group(39, 1)),
+              3U);
+}
+
+TEST(DxfRoom, WindowsInOneWallCostWork) {
+    EXPECT_EQ(errorsOf([] { readOurs(stackedWindows(10'000, 1e-4)); }).find("room.dxf: error: "),
+              0U);
+    ImportOptions options;
+    options.max_work.max = 100'000;
+    const std::string dxf = ours(stackedWindows(3000, 1e-4));
+    EXPECT_NE(errorsOf([&] {
+                  readDxf(dxf, "room.dxf", options, sceneSchemas());
+              }).find("openings on one wall make more than 100000 units of work"),
+              std::string::npos);
+}
+
 }  // namespace
 }  // namespace ispace

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <utility>
 
+#include "base/error.h"
 #include "geom/arrangement.h"
 #include "geom/planar_map.h"
 #include "geom/point_map.h"
@@ -12,7 +14,6 @@
 #include "geom/predicates.h"
 #include "io/plan/line_plan.h"
 #include "io/plan/plan_lines.h"
-#include "io/plan/plan_rooms.h"
 
 namespace ispace {
 
@@ -33,6 +34,9 @@ constexpr std::size_t kMinMarkedDoors = 3;
 
 /// Every pair is compared: more are not doors.
 constexpr std::size_t kMaxOpenSwings = 4000;
+
+/// Openings on a wall that are compared for a unit of work.
+constexpr std::size_t kComparedPerUnit = 32;
 
 bool isNear(Point2 a, Point2 b) { return distance(a, b) <= kReach; }
 
@@ -127,7 +131,7 @@ class Finder {
   public:
     /// \param has_lines whether a symbol has a straight piece, which may be the leaf of a swing
     Finder(std::span<const Segment2> walls, bool has_lines, const DrawnSizes* sizes, Budget& work)
-        : walls_(walls, work), has_lines_(has_lines), sizes_(sizes) {}
+        : walls_(walls, work), has_lines_(has_lines), sizes_(sizes), work_(work) {}
 
     void find(std::span<const PlanShape> symbols, bool are_windows) {
         are_windows_ = are_windows;
@@ -227,31 +231,48 @@ class Finder {
     void keep(const PlanOpening& opening) {
         const auto [a, b] = opening.line;
         if (opening.wall) {
-            std::vector<PlanOpening>& others = on_wall_[*opening.wall];
-            const Segment2& wall = walls_[*opening.wall];
-            const auto extent = [&](const Segment2& s) {
-                return std::minmax(
-                    {dot(s.a - wall.a, wall.b - wall.a), dot(s.b - wall.a, wall.b - wall.a)});
-            };
-            const auto overlaps = [&, mine = extent(opening.line)](const PlanOpening& other) {
-                const auto [low, high] = extent(other.line);
-                return !isAbove(opening, other) && !isAbove(other, opening) &&
-                       std::max(low, mine.first) < std::min(high, mine.second);
-            };
-            if (std::any_of(others.begin(), others.end(), overlaps)) return;
-            others.push_back(opening);
+            std::vector<Extent>& others = on_wall_[*opening.wall];
+            payForComparisons(others.size());
+            const Extent mine = extentOf(opening);
+            if (std::any_of(others.begin(), others.end(),
+                            [&](const Extent& other) { return mine.overlaps(other); }))
+                return;
+            others.push_back(mine);
         } else if (!(lexLess(a, b) ? isNewGap(a, b) : isNewGap(b, a))) {
             return;
         }
         found_.openings.push_back(opening);
     }
 
-    [[nodiscard]] bool isAbove(const PlanOpening& upper, const PlanOpening& lower) const {
-        if (sizes_ == nullptr) return false;
-        const auto a = sizes_->find(upper.drawn_on), b = sizes_->find(lower.drawn_on);
-        return a != sizes_->end() && b != sizes_->end() &&
-               wholeMicrometres(a->second.bottom) >=
-                   wholeMicrometres(b->second.bottom + b->second.height);
+    void payForComparisons(std::size_t count) {
+        unpaid_ += count;
+        if (!work_.take(unpaid_ / kComparedPerUnit))
+            throw FormatError(Diagnostic{"", 0, 0, "openings on one wall make " + work_.excess()});
+        unpaid_ %= kComparedPerUnit;
+    }
+
+    /// Part of a wall's face: along its direction, scaled by its length, and upright.
+    struct Extent {
+        double from, to, bottom, top;
+
+        [[nodiscard]] bool overlaps(const Extent& other) const {
+            return std::max(from, other.from) < std::min(to, other.to) &&
+                   std::max(bottom, other.bottom) < std::min(top, other.top);
+        }
+    };
+
+    [[nodiscard]] Extent extentOf(const PlanOpening& opening) const {
+        constexpr double kFar = std::numeric_limits<double>::infinity();
+        const auto [start, end] = walls_[*opening.wall];
+        const double a = dot(opening.line.a - start, end - start);
+        const double b = dot(opening.line.b - start, end - start);
+        Extent extent{std::min(a, b), std::max(a, b), -kFar, kFar};
+        if (sizes_ == nullptr) return extent;
+        const auto size = sizes_->find(opening.drawn_on);
+        if (size == sizes_->end() || !(size->second.height > 0)) return extent;
+        extent.bottom = wholeMicrometres(size->second.bottom);
+        extent.top = wholeMicrometres(size->second.bottom + size->second.height);
+        return extent;
     }
 
     /// Returns true for the first opening across a gap with these ends.
@@ -386,7 +407,9 @@ class Finder {
     bool are_windows_ = false;
     std::vector<Gap> gaps_;
     PointMap<std::uint32_t> latest_gap_;  // numbers by the lower end
-    std::map<std::size_t, std::vector<PlanOpening>> on_wall_;
+    Budget& work_;
+    std::size_t unpaid_ = 0;  // comparisons
+    std::map<std::size_t, std::vector<Extent>> on_wall_;
     std::map<Cell, std::vector<Segment2>> leaves_;  // by hinge: from there to where it is drawn
     std::vector<Swing> open_swings_;
 };
@@ -411,35 +434,6 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
     finder.noteLost(doors, work);
     finder.noteLost(windows, work);
     return finder.take();
-}
-
-std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,
-                                      std::span<const Segment2> passages, Budget& work) {
-    const NearSegments search(passages, work);
-    std::vector<Segment2> rest;
-    for (const Segment2& line : lines) {
-        const Vec2 along = line.b - line.a;
-        if (line.a == line.b) continue;
-        const auto share = [&](Point2 p) { return dot(p - line.a, along) / dot(along, along); };
-        std::vector<std::pair<double, double>> open;
-        for (const std::size_t i : search.near(bounds(line), kOnLine)) {
-            auto [from, to] = std::minmax({share(passages[i].a), share(passages[i].b)});
-            from = std::max(from, 0.0);
-            to = std::min(to, 1.0);
-            const Point2 a = line.a + from * along, b = line.a + to * along;
-            if (from < to && distance(a, passages[i]) <= kOnLine &&
-                distance(b, passages[i]) <= kOnLine)
-                open.emplace_back(from, to);
-        }
-        std::sort(open.begin(), open.end());
-        double at = 0;
-        for (const auto& [from, to] : open) {
-            if (from > at) rest.push_back({line.a + at * along, line.a + from * along});
-            at = std::max(at, to);
-        }
-        if (at < 1) rest.push_back({line.a + at * along, line.b});
-    }
-    return rest;
 }
 
 }  // namespace ispace

@@ -374,4 +374,33 @@ void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportReco
     for (const PlanRegion& region : rooms.regions) out.inside(region.inside);
 }
 
+std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,
+                                      std::span<const Segment2> passages, Budget& work) {
+    const NearSegments search(passages, work);
+    std::vector<Segment2> rest;
+    for (const Segment2& line : lines) {
+        const Vec2 along = line.b - line.a;
+        if (line.a == line.b) continue;
+        const auto share = [&](Point2 p) { return dot(p - line.a, along) / dot(along, along); };
+        std::vector<std::pair<double, double>> open;
+        for (const std::size_t i : search.near(bounds(line), kOnLine)) {
+            auto [from, to] = std::minmax({share(passages[i].a), share(passages[i].b)});
+            from = std::max(from, 0.0);
+            to = std::min(to, 1.0);
+            const Point2 a = line.a + from * along, b = line.a + to * along;
+            if (from < to && distance(a, passages[i]) <= kOnLine &&
+                distance(b, passages[i]) <= kOnLine)
+                open.emplace_back(from, to);
+        }
+        std::sort(open.begin(), open.end());
+        double at = 0;
+        for (const auto& [from, to] : open) {
+            if (from > at) rest.push_back({line.a + at * along, line.a + from * along});
+            at = std::max(at, to);
+        }
+        if (at < 1) rest.push_back({line.a + at * along, line.b});
+    }
+    return rest;
+}
+
 }  // namespace ispace
