@@ -147,7 +147,7 @@ void DxfWriter::path(const std::string& layer, const std::vector<Point2>& points
     parts_->dxf.writePolylineEnd(parts_->out);
     if (depth == 0) return;
     parts_->out.dxfString(1001, kDxfApplication);
-    parts_->out.dxfReal(1040, depth);
+    parts_->out.dxfReal(1041, depth);
 }
 
 void DxfWriter::curve(const std::string& layer, const Curve& curve) {

@@ -22,8 +22,8 @@ struct DxfExtrusion {
     double bottom = 0, height = 0;
 };
 
-/// Name under which extended data of entities is ours: a real number, the depth of an opening
-/// through its wall in metres.
+/// Name under which extended data of entities is ours: a distance, the depth of an opening through
+/// its wall in units of the drawing.
 constexpr const char* kDxfApplication = "ISPACE";
 
 /// Writes a drawing in ASCII DXF (AutoCAD 2000) through dxflib: metres ($INSUNITS 6), coordinates

@@ -291,7 +291,7 @@ class DxfReader {
         } else if ((code == 10 || code == 20 || (code == 42 && !is_spline)) &&
                    (is_spline || is_vertex || is_path)) {
             addVertexGroup(group, is_vertex);
-        } else if (code == 30 || code == 38 || code == 39 || code == 43 || code == 1040) {
+        } else if (code == 30 || code == 38 || code == 39 || code == 43 || code == 1041) {
             addSize(group, is_path);
         } else if (is_spline && (code == 40 || code == 41)) {
             (code == 40 ? entity_.knots : entity_.weights).push_back(real(group));
@@ -313,7 +313,7 @@ class DxfReader {
         if (group.code == 39) size.height = *value;
         if (group.code == (is_path ? 38 : 30)) size.bottom = *value;
         if (group.code == 43) size.width = *value;
-        if (group.code == 1040 && entity_.application == kDxfApplication) size.depth = *value;
+        if (group.code == 1041 && entity_.application == kDxfApplication) size.depth = *value;
     }
 
     /// \param single for a VERTEX, which is one

@@ -7,11 +7,11 @@
 namespace ispace {
 namespace {
 
-std::string ours(const std::string& entities) {
+std::string ours(const std::string& entities, int units = 6) {
     std::string layers;
     for (const char* name : {"walls", "doors", "windows", "objects", "inside"})
         layers += layer(name, 7, 0);
-    return drawing(entities, "", 6, layers);
+    return drawing(entities, "", units, layers);
 }
 
 Document readOurs(const std::string& entities) {
@@ -69,6 +69,25 @@ TEST(DxfRoom, WindowsInOneWallCostWork) {
                   readDxf(dxf, "room.dxf", options, sceneSchemas());
               }).find("openings on one wall make more than 100000 units of work"),
               std::string::npos);
+}
+
+/// A door whose extended data holds one more group, in a drawing in millimetres.
+std::string doorWith(const std::string& more, const std::string& application = "ISPACE") {
+    const std::string entities = rectangle("walls", 0, 0, 8000, 5000) +
+                                 polyline("doors", false, {{1000, 0}, {1900, 0}}) +
+                                 group(39, 2000) + group(1001, application) + more;
+    const std::string dxf = ours(entities, 4);
+    const std::string text = writeRecordText(readDxf(dxf, "room.dxf", {}, sceneSchemas()));
+    const std::size_t start = text.find("door ");
+    return text.substr(start, text.find('\n', start) - start);
+}
+
+TEST(DxfRoom, DepthsOfOpenings) {
+    const std::string plain = "door wall=f1 from=1,0 to=1.9,0 open=yes";
+    EXPECT_EQ(doorWith(""), plain);
+    EXPECT_EQ(doorWith(group(1041, 700)), "door wall=f1 from=1,0 to=1.9,0 size=0.9,0.7 open=yes");
+    EXPECT_EQ(doorWith(group(1040, 700)), plain);  // CAD programs do not scale these
+    EXPECT_EQ(doorWith(group(1041, 700), "OTHER"), plain);
 }
 
 }  // namespace
