@@ -88,6 +88,9 @@ TEST(DxfRoom, DepthsOfOpenings) {
     EXPECT_EQ(doorWith(group(1041, 700)), "door wall=f1 from=1,0 to=1.9,0 size=0.9,0.7 open=yes");
     EXPECT_EQ(doorWith(group(1040, 700)), plain);  // CAD programs do not scale these
     EXPECT_EQ(doorWith(group(1041, 700), "OTHER"), plain);
+    for (const double unsound : {-700., 1e-4, 1e12})
+        EXPECT_EQ(doorWith(group(1041, unsound)), plain);
+    EXPECT_NE(doorWith(group(1041, 1e9)), plain);  // as deep as `size` allows
 }
 
 }  // namespace

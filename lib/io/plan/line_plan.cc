@@ -244,9 +244,10 @@ class LinePlan {
         const DrawnSize* size = sizeOf(opening.drawn_on);
         if (size != nullptr) {
             record.set("height", wholeMicrometres(size->height));
-            if (size->depth > 0)
+            const double depth = wholeMicrometres(size->depth);
+            if (depth > 0 && depth <= record.schema().find("size")->upper)
                 record.set("size", Tuple{wholeMicrometres(distance(opening.line.a, opening.line.b)),
-                                         wholeMicrometres(size->depth)});
+                                         depth});
             if (opening.is_window)
                 record.set("sill", size->bottom);
             else
