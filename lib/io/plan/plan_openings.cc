@@ -302,16 +302,12 @@ class Finder {
                 const Segment2 other = is_turned ? Segment2{sides[k].b, sides[k].a} : sides[k];
                 const Segment2 middle{a + 0.5 * (other.a - a), b + 0.5 * (other.b - b)};
                 const double off = 0.5 * distance(a, other.a);
-                if (off > kMaxOff || std::abs(off - 0.5 * distance(b, other.b)) > kOnWall ||
-                    distance(middle.a, middle.b) < kMinWidth)
-                    continue;
+                if (off > kMaxOff || std::abs(off - 0.5 * distance(b, other.b)) > kOnWall) continue;
                 for (const std::size_t wall : walls_.wallsAlong(middle, off)) {
-                    const Segment2& line = walls_[wall];
-                    keep({{wholeMicrometres(nearestPoint(line, middle.a)),
-                           wholeMicrometres(nearestPoint(line, middle.b))},
-                          wall,
-                          are_windows_,
-                          drawn_on});
+                    const Segment2 open{wholeMicrometres(nearestPoint(walls_[wall], middle.a)),
+                                        wholeMicrometres(nearestPoint(walls_[wall], middle.b))};
+                    if (distance(open.a, open.b) < kMinWidth) continue;
+                    keep({open, wall, are_windows_, drawn_on});
                     found = true;
                 }
             }

@@ -132,6 +132,20 @@ TEST(PlanOpenings, RectanglesAcrossAWall) {
     EXPECT_NEAR(none.lost[0].at.y, 0.15, 1e-12);
 }
 
+TEST(PlanOpenings, PiecesTooNarrowStayShut) {
+    // The part of a symbol 0.5 m wide that a wall fills, up to the wall's end.
+    const auto opened = [](double filled) {
+        const Lines wall{{{0, 0}, {2 + filled, 0}}};
+        return findOpenings(std::vector{across(2, 2.5, 0.2)}, {}, wall, ampleWork());
+    };
+    EXPECT_EQ(opened(0.41).openings.size(), 1U);
+    EXPECT_TRUE(opened(0.39).openings.empty());
+    EXPECT_EQ(opened(0.39).lost.size(), 1U);
+    const Lines pillar{{{2, 0}, {2.15, 0}}, {{2.15, 0.15}, {2, 0.15}}};
+    EXPECT_TRUE(
+        findOpenings(std::vector{across(1.9, 2.4, 0.3)}, {}, pillar, ampleWork()).openings.empty());
+}
+
 TEST(PlanOpenings, ManySymbolsInOnePlace) {
     std::vector<PlanShape> symbols;
     for (int i = 0; i < 20'000; ++i) {
