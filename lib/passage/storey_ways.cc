@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
-#include <utility>
 
 #include "building/building_sight.h"
 #include "env/walls.h"
@@ -81,7 +80,7 @@ StoreyWays::StoreyWays(const BuildingScene& building, const std::vector<StoreyLi
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         const Environment& room = building.scenes[i]->environment;
         const Obstacles& obstacles = obstacles_.emplace_back(room, size.height, nullptr);
-        finders_.emplace_back(obstacles, bounds(room.indoor()), size.radius, std::move(holes[i]));
+        finders_.emplace_back(obstacles, bounds(room.indoor()), size.radius, holes[i]);
     }
     for (std::size_t i = 0; i < passages.size(); ++i)
         if (passages[i].is_lift)

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <span>
 
 namespace ispace {
 
@@ -29,13 +29,16 @@ Grid gridOver(const Box2& box) {
 }  // namespace
 
 WayFinder::WayFinder(const Obstacles& obstacles, const Box2& box, double radius,
-                     std::vector<Polygon> holes)
+                     const std::vector<Polygon>& holes)
     : obstacles_(&obstacles),
-      holes_(std::move(holes)),
       reach_(radius + kMargin),
       grid_(gridOver(box)),
       stride_(static_cast<std::size_t>(grid_.columns) + 2),
       free_(stride_ * (static_cast<std::size_t>(grid_.rows) + 2)) {
+    for (const Polygon& hole : holes) {
+        const Region region{hole, {}};
+        holes_.emplace_back(std::span(&region, 1));
+    }
     tbb::parallel_for(0, grid_.rows, [this](int row) {
         for (int column = 0; column < grid_.columns; ++column)
             free_[cellOf(column, row)] =
@@ -71,11 +74,22 @@ bool WayFinder::isStraight(Point2 from, Point2 to) const {
 
 /// Returns true if the circle with the margin is over a hole somewhere on the way.
 bool WayFinder::isOverHole(const Segment2& way) const {
-    return std::any_of(holes_.begin(), holes_.end(), [&](const Polygon& hole) {
-        if (locate(hole, way.a) == Side::Inside) return true;
-        for (std::size_t i = 0; i < hole.size(); ++i)
-            if (ispace::distance(way, {hole[i], hole[(i + 1) % hole.size()]}) < reach_) return true;
-        return false;
+    // Piece by piece, as the box about a long way holds edges far from it.
+    constexpr double kMostPieces = 1000, kRounding = 1.01;
+    const Vec2 along = way.b - way.a;
+    const double pieces = std::clamp(std::ceil(ispace::length(along) / reach_), 1.0, kMostPieces);
+    const double half = kRounding * (ispace::length(along) / pieces + reach_);
+    return std::any_of(holes_.begin(), holes_.end(), [&](const RegionIndex& hole) {
+        if (hole.locate(way.a) == Side::Inside) return true;
+        bool is_near = false;
+        for (double i = 0; i < pieces && !is_near; ++i) {
+            const Point2 middle = way.a + (i + 0.5) / pieces * along;
+            hole.edgesIn({middle - Vec2{half, half}, middle + Vec2{half, half}},
+                         [&](const Segment2& edge) {
+                             is_near = is_near || ispace::distance(way, edge) < reach_;
+                         });
+        }
+        return is_near;
     });
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "env/point_location.h"
 #include "geom/point.h"
 #include "geom/polygon.h"
 #include "raster/grid.h"
@@ -27,7 +28,7 @@ class WayFinder {
     /// more than 250 000 \pre the obstacles outlive this object
     /// \param holes without floor
     WayFinder(const Obstacles& obstacles, const Box2& box, double radius,
-              std::vector<Polygon> holes = {});
+              const std::vector<Polygon>& holes = {});
 
     /// Ways from one point to all cells.
     struct Field {
@@ -67,7 +68,7 @@ class WayFinder {
     [[nodiscard]] bool isOverHole(const Segment2& way) const;
 
     const Obstacles* obstacles_;
-    std::vector<Polygon> holes_;
+    std::vector<RegionIndex> holes_;
     double reach_;  // radius and margin
     Grid grid_;
     std::size_t stride_;

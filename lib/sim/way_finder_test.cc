@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,44 @@ TEST(WayFinder, GoesAroundAHoleAsAroundAFence) {
     EXPECT_FALSE(finder.isFree({4, 2}));
     EXPECT_FALSE(finder.isStraight({1, 2}, {7, 2}));
     EXPECT_TRUE(finder.isStraight({1, 0.5}, {7, 0.5}));
+}
+
+TEST(WayFinder, KeepsFromAHoleOfManyCornersByThePlainFormula) {
+    const Floor floor("fence id=f path=0,0;20,0;20,20;0,20 closed=yes\ninside at=1,1\n");
+    constexpr double kRadius = 0.3, kReach = kRadius + WayFinder::kMargin;
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> any(0, 1);
+    for (const int corners : {3, 40, 3000}) {
+        Polygon star;
+        for (int i = 0; i < corners; ++i) {
+            const Angle angle = Angle::degrees(360.0 * i / corners);
+            star.push_back(Point2{10, 9} + (2 + 5 * any(random)) * Vec2{cos(angle), sin(angle)});
+        }
+        const Polygon pit = {{1, 18}, {3, 18}, {3, 19}, {1, 19}};
+        const WayFinder finder(floor.obstacles, floor.box, kRadius, {star, pit});
+        const auto keeps_off = [&](const Polygon& hole, const Segment2& way) {
+            bool is_off = locate(hole, way.a) != Side::Inside;
+            forEachEdge(hole, [&](const Segment2& edge) {
+                is_off = is_off && distance(way, edge) >= kReach;
+            });
+            return is_off;
+        };
+        int free = 0;
+        for (int i = 0; i < 600; ++i) {
+            // Many on centres of cells, whose distances tie.
+            const double step = i % 2 == 0 ? 0.05 : 1e-9;
+            const auto place = [&] { return 1 + step * std::round((18 * any(random)) / step); };
+            const Point2 from{place(), place()}, to{place(), place()};
+            const auto expected = [&](const Segment2& way) {
+                return keeps_off(star, way) && keeps_off(pit, way);
+            };
+            EXPECT_EQ(finder.isFree(from), expected({from, from})) << from.x << ' ' << from.y;
+            EXPECT_EQ(finder.isStraight(from, to), expected({from, to})) << from.x << ' ' << to.x;
+            free += finder.isStraight(from, to) ? 1 : 0;
+        }
+        EXPECT_GT(free, 30);
+        EXPECT_LT(free, 500);
+    }
 }
 
 TEST(WayFinder, FindsNoneOverAHoleAcrossTheRoom) {
