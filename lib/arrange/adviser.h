@@ -2,8 +2,10 @@
 // The search behind suggestChanges().
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +14,7 @@
 
 #include "arrange/arrange.h"
 #include "arrange/suggestion.h"
+#include "coverage/private_floor.h"
 #include "coverage/visible_area.h"
 #include "scene/placement_schemas.h"
 #include "trace/ray_world.h"
@@ -39,20 +42,27 @@ inline double coveredShare(const Coverage& coverage) {
 /// Tries single cameras of a scene at other poses by the rules of SuggestOptions.
 class RuleTrials {
   public:
-    RuleTrials(const MeasuredState& now, const SuggestOptions& options);
+    /// Stores the references. \param private_floor of the scene's environment
+    RuleTrials(const MeasuredState& now, const SuggestOptions& options,
+               PrivateFloor& private_floor);
 
-    /// Returns true if a pose may lower what the rules miss.
-    [[nodiscard]] bool canGain() const { return faces_ + seen_ > 0; }
+    /// Returns a bound of gain() that holds for all poses of the sensor.
+    [[nodiscard]] double mostGain(const Sensor& sensor) const;
     /// Returns by how much less floor the rules miss with the sensor at this pose, m2; 0 for
     /// sensors that are no cameras.
     [[nodiscard]] double gain(const Sensor& sensor, const Pose3& pose);
 
   private:
     const SuggestOptions& options_;
-    Scene alone_;     // with one camera at a time
-    Coverage views_;  // of all cameras
-    double faces_ = 0, seen_ = 0;
+    const Scene& scene_;
+    PrivateFloor& private_floor_;
+    Coverage views_;    // of all cameras
+    double faces_ = 0;  // that are missing, m2
 };
+
+/// Returns the same as missingFloor(). \param private_floor of the scene's environment
+double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestOptions& options,
+                    PrivateFloor& private_floor);
 
 /// Returns the rules of facing that a scene does not meet.
 std::vector<FacingRule> unmetFacing(const MeasuredState& now, const SuggestOptions& options);
@@ -70,10 +80,12 @@ class Adviser {
     std::vector<Suggestion> moves(const MeasuredState& now) {
         std::vector<Suggestion> found = turnAndShift(now);
         for (Suggestion& suggestion : additions(now)) found.push_back(std::move(suggestion));
-        for (Suggestion& suggestion : withoutIntruders(now)) found.push_back(std::move(suggestion));
+        if (auto removal = withoutIntruder(now)) found.push_back(*std::move(removal));
         return found;
     }
 
+    /// Returns the private floor of an environment; valid until that of two others is requested.
+    PrivateFloor& privateFloorOf(const Environment& environment);
     std::optional<Suggestion> furniture(const MeasuredState& now);
     std::optional<Suggestion> replacement(const MeasuredState& now);
     std::optional<Suggestion> removal(const MeasuredState& now);
@@ -81,11 +93,12 @@ class Adviser {
 
   private:
     /// Applies the edits and measures the scene.
-    [[nodiscard]] MeasuredState after(const Scene& scene, std::span<const Edit> edits) const {
+    [[nodiscard]] MeasuredState after(const Scene& scene, std::span<const Edit> edits) {
         Scene changed = makeScene(edited(scene.records, edits, sceneSchemas()), scene, devices_);
         Worlds worlds(changed.environment);
         Coverage coverage = measureCoverage(changed, worlds, options_.measure);
-        const double missing = missingFloor(changed, coverage, options_);
+        const double missing =
+            missingFloor(changed, coverage, options_, privateFloorOf(changed.environment));
         return {std::move(changed), std::move(coverage), missing};
     }
     /// Completes a suggestion by measuring it.
@@ -118,8 +131,11 @@ class Adviser {
     std::optional<Suggestion> addition(const MeasuredState& now,
                                        const std::vector<SensorGroup>& groups,
                                        const ArrangeOptions& options);
-    /// Returns the removals of cameras that see private zones.
-    std::vector<Suggestion> withoutIntruders(const MeasuredState& now);
+    /// Returns the removal of the camera that sees private zones and mends most, if any. Measures
+    /// only cameras that see more of them than the best one mends.
+    std::optional<Suggestion> withoutIntruder(const MeasuredState& now);
+    /// Returns the number of cameras that see private zones.
+    std::size_t intruders(const Scene& scene);
     [[nodiscard]] FloorWeights weightsFor(const MeasuredState& now) const;
     /// Returns the options of a search for one more sensor like one of the scene `home`.
     [[nodiscard]] ArrangeOptions optionsFor(const MeasuredState& now, const Scene& home,
@@ -131,6 +147,8 @@ class Adviser {
     const SuggestOptions& options_;
     const DeviceCatalogue& devices_;
     Progress& progress_;
+    /// Of the first environment, and of the last other one.
+    std::array<std::unique_ptr<PrivateFloor>, 2> private_floors_;
 };
 
 /// Returns the sensors whose pose a person can change: not those of robots and people.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Suggestions that mend what the rules of cameras miss.
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "arrange/adviser.h"
 #include "coverage/camera_rules.h"
+#include "coverage/private_floor.h"
 #include "env/zone.h"
 
 namespace ispace {
@@ -29,46 +31,45 @@ double missingFaces(const Scene& scene, const Coverage& coverage,
     return sum;
 }
 
-/// Returns the private floor that the sensors of a scene see, m2. Zones of unknown sight count as
-/// seen.
-double intrusion(const Scene& scene, const SuggestOptions& options) {
-    double sum = 0;
+}  // namespace
+
+double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestOptions& options,
+                    PrivateFloor& private_floor) {
+    double sum = missingFaces(scene, coverage, options.facing);
+    for (const Requirement& requirement : options.requirements)
+        sum += checkRequirement(requirement, coverage).missing;
+    if (options.privacy.empty()) return sum;
+    // Camera by camera: each that is mended counts, even if another one sees the same floor.
+    PrivateFloor::Sight seen;
+    for (const Sensor& sensor : scene.sensors) {
+        const PrivateFloor::Sight& sight = private_floor.knownSight(sensor);
+        seen.broken += sight.broken;
+        seen.all += sight.all;
+    }
+    if (seen.broken > 0 || seen.all <= kMinPiece) return sum + seen.broken;
+    // Small pieces of several cameras.
     for (const PrivacyResult& result :
          measurePrivacy(scene, options.measure.plane, options.privacy))
         if (!isMet(result)) sum += result.seen.value_or(result.area);
     return sum;
 }
 
-/// Returns the private floor that a camera sees; `alone` holds the scene's other content.
-double intrusionOf(Scene& alone, const Sensor& camera, const SuggestOptions& options) {
-    alone.sensors = {camera};
-    return intrusion(alone, options);
-}
-
-}  // namespace
-
 double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestOptions& options) {
-    double sum = missingFaces(scene, coverage, options.facing);
-    for (const Requirement& requirement : options.requirements)
-        sum += checkRequirement(requirement, coverage).missing;
-    if (options.privacy.empty()) return sum;
-    // Camera by camera: each that is mended counts, even if another one sees the same floor.
-    Scene alone = scene;
-    double seen = 0;
-    for (const Sensor& sensor : scene.sensors)
-        if (sensor.is<Camera>()) seen += intrusionOf(alone, sensor, options);
-    return sum + (seen > 0 ? seen : intrusion(scene, options));
+    PrivateFloor private_floor(scene.environment, options.measure.plane, options.privacy);
+    return missingFloor(scene, coverage, options, private_floor);
 }
 
-RuleTrials::RuleTrials(const MeasuredState& now, const SuggestOptions& options)
-    : options_(options), alone_(now.scene) {
-    if (options.facing.empty() && options.privacy.empty()) return;
+RuleTrials::RuleTrials(const MeasuredState& now, const SuggestOptions& options,
+                       PrivateFloor& private_floor)
+    : options_(options), scene_(now.scene), private_floor_(private_floor) {
+    if (options.facing.empty()) return;
     views_.sensors = now.coverage.sensors;
-    faces_ = missingFaces(now.scene, views_, options.facing);
-    if (options.privacy.empty()) return;
-    for (const Sensor& sensor : now.scene.sensors)
-        if (sensor.is<Camera>()) seen_ += intrusionOf(alone_, sensor, options);
-    alone_.sensors = now.scene.sensors;
+    faces_ = missingFaces(scene_, views_, options.facing);
+}
+
+double RuleTrials::mostGain(const Sensor& sensor) const {
+    if (!sensor.is<Camera>()) return 0;
+    return withoutNoise(private_floor_.knownSight(sensor).broken + faces_);
 }
 
 double RuleTrials::gain(const Sensor& sensor, const Pose3& pose) {
@@ -76,21 +77,18 @@ double RuleTrials::gain(const Sensor& sensor, const Pose3& pose) {
     Sensor moved = sensor;
     moved.pose = pose;
     double gain = 0;
-    if (!options_.privacy.empty()) {
-        std::vector<Sensor> all = alone_.sensors;
-        gain = intrusionOf(alone_, sensor, options_) - intrusionOf(alone_, moved, options_);
-        alone_.sensors = std::move(all);
-    }
+    if (!options_.privacy.empty())
+        gain = private_floor_.knownSight(sensor).broken - private_floor_.seenBy(moved).broken;
     const auto view = std::find_if(views_.sensors.begin(), views_.sensors.end(),
                                    [&](const SensorView& one) { return one.id == sensor.id; });
     if (options_.facing.empty() || view == views_.sensors.end()) return withoutNoise(gain);
-    const VisibleArea sight(alone_.environment, options_.measure.plane);
+    const VisibleArea sight(scene_.environment, options_.measure.plane);
     Camera& camera = std::get<Camera>(moved.model);
     camera = withDensity(camera, options_.measure.density);
     const SensorView before = *view;
     view->pose = pose;
     view->region = sight.regionOf(moved);
-    gain += faces_ - missingFaces(alone_, views_, options_.facing);
+    gain += faces_ - missingFaces(scene_, views_, options_.facing);
     *view = before;
     return withoutNoise(gain);
 }
@@ -120,15 +118,42 @@ std::vector<ArrangeOptions> Adviser::goalsOf(const MeasuredState& now,
     return goals;
 }
 
-std::vector<Suggestion> Adviser::withoutIntruders(const MeasuredState& now) {
-    std::vector<Suggestion> found;
-    if (options_.privacy.empty() || now.missing == 0) return found;
-    Scene alone = now.scene;
+PrivateFloor& Adviser::privateFloorOf(const Environment& environment) {
+    for (const auto& known : private_floors_)
+        if (known && known->environment().digest() == environment.digest()) return *known;
+    // The first environment returns, the others are tried once.
+    std::unique_ptr<PrivateFloor>& made = private_floors_[private_floors_[0] ? 1 : 0];
+    made = std::make_unique<PrivateFloor>(environment, options_.measure.plane, options_.privacy);
+    return *made;
+}
+
+std::size_t Adviser::intruders(const Scene& scene) {
+    PrivateFloor& floor = privateFloorOf(scene.environment);
+    return static_cast<std::size_t>(
+        std::count_if(scene.sensors.begin(), scene.sensors.end(),
+                      [&](const Sensor& sensor) { return floor.knownSight(sensor).broken > 0; }));
+}
+
+std::optional<Suggestion> Adviser::withoutIntruder(const MeasuredState& now) {
+    if (options_.privacy.empty() || now.missing == 0) return std::nullopt;
+    struct Intruder {
+        std::string id;
+        double most;  // that its removal can mend
+    };
+    std::vector<Intruder> all;
+    PrivateFloor& floor = privateFloorOf(now.scene.environment);
     for (const Sensor& sensor : standingSensors(now.scene))
-        if (sensor.is<Camera>() && intrusionOf(alone, sensor, options_) > 0 && !isStopped())
-            found.push_back(measured(now, Suggestion::Kind::Remove, "remove " + sensor.id,
-                                     {parseEdit(Edit::Kind::Delete, sensor.id)}));
-    return found;
+        if (const double seen = floor.knownSight(sensor).broken; seen > 0)
+            all.push_back({sensor.id, withoutNoise(seen)});
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Intruder& a, const Intruder& b) { return a.most > b.most; });
+    std::optional<Suggestion> best;
+    for (const Intruder& one : all) {
+        if (isStopped() || (best && best->required >= one.most)) break;
+        offer(best, measured(now, Suggestion::Kind::Remove, "remove " + one.id,
+                             {parseEdit(Edit::Kind::Delete, one.id)}));
+    }
+    return best;
 }
 
 }  // namespace ispace

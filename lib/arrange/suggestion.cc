@@ -94,19 +94,20 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     });
     const VisibleArea sight(now.scene.environment, options_.measure.plane);
     ExactGain gain(others, sight, sensors, weightsFor(now), 1);
-    RuleTrials rules_of_cameras(now, options_);
+    RuleTrials rules_of_cameras(now, options_, privateFloorOf(now.scene.environment));
     std::optional<Trial> turn, shift;
     const auto attempt = [&](std::vector<Trial> trials, std::optional<Trial>& best) {
-        std::vector<Pose3> poses = {sensors[trials.front().sensor].pose};
+        const Sensor& sensor = sensors[trials.front().sensor];
+        const double most = rules_of_cameras.mostGain(sensor);
+        std::vector<Pose3> poses = {sensor.pose};
         for (const Trial& trial : trials) poses.push_back(poseAfter(poses.front(), trial));
         const std::vector<double> gains = gain.gains(poses);
         for (std::size_t i = 0; i < trials.size(); ++i) {
             Trial& trial = trials[i];
             const std::pair<double, double> least = best ? best->gain : std::pair(0.0, 0.0);
             trial.gain = {0, gains[i + 1] - gains[0]};
-            // Rules that are met can only be lost.
-            if (!rules_of_cameras.canGain() && trial.gain <= least) continue;
-            trial.gain.first = rules_of_cameras.gain(sensors[trial.sensor], poses[i + 1]);
+            if (std::pair(most, trial.gain.second) <= least) continue;
+            trial.gain.first = rules_of_cameras.gain(sensor, poses[i + 1]);
             if (trial.gain > least) best = trial;
         }
     };
@@ -263,18 +264,15 @@ std::optional<Suggestion> Adviser::together(const MeasuredState& now,
     MeasuredState state = now;
     std::vector<Suggestion> steps, choices = std::move(first);
     while (state.missing > 0) {
-        if (steps.size() == kMaxChanges || isStopped()) return std::nullopt;
-        std::optional<MeasuredState> best;
-        const Suggestion* chosen = nullptr;
-        for (const Suggestion& choice : choices) {
-            MeasuredState then = after(state.scene, choice.edits);
-            if (best && then.missing >= best->missing) continue;
-            best = std::move(then);
-            chosen = &choice;
-        }
-        if (!best || best->missing >= state.missing) return std::nullopt;
-        steps.push_back(*chosen);
-        state = std::move(*best);
+        // A change mends one of the cameras that see private zones.
+        const std::size_t left = kMaxChanges - steps.size();
+        if (left == 0 || intruders(state.scene) > left || isStopped()) return std::nullopt;
+        const auto best = std::max_element(
+            choices.begin(), choices.end(),
+            [](const Suggestion& a, const Suggestion& b) { return a.required < b.required; });
+        if (best == choices.end() || best->required <= 0) return std::nullopt;
+        steps.push_back(*best);
+        state = after(state.scene, best->edits);
         if (state.missing > 0) choices = moves(state);
     }
     leaveOutNeedless(now, steps);
@@ -293,7 +291,9 @@ std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& cover
                                        const SuggestOptions& options,
                                        const DeviceCatalogue& devices, Progress& progress) {
     Adviser adviser(options, devices, progress);
-    const MeasuredState now{scene, coverage, missingFloor(scene, coverage, options)};
+    const MeasuredState now{
+        scene, coverage,
+        missingFloor(scene, coverage, options, adviser.privateFloorOf(scene.environment))};
     progress.begin("suggestions", 0);
     std::vector<Suggestion> gains = adviser.moves(now);
     std::optional<Suggestion> whole;

@@ -65,9 +65,11 @@ double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestO
 /// sensor has no exact region; sensors on robots and people stay. Furniture: the pieces nearest to
 /// sensors, by the floor that they can hide, moved to positions without new findings. Together
 /// repeats the best change, so it is short, not proven shortest. It may also remove cameras that
-/// see private zones. No change raises missingFloor(). Deterministic. Measures the scene some
-/// dozens of times. Returns the suggestions so far if progress says stop. \param coverage of the
-/// scene, by options.measure
+/// see private zones. No change raises missingFloor(). Deterministic. Measures the scene up
+/// to some hundreds of times: some dozens of poses of each sensor by its view alone, up to 150
+/// moves of furniture and, if rules are not met, all but the furniture again for each change of
+/// Together, at most eight. Returns the suggestions so far if progress says stop. \param coverage
+/// of the scene, by options.measure
 std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& coverage,
                                        const SuggestOptions& options,
                                        const DeviceCatalogue& devices, Progress& progress);
