@@ -220,8 +220,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.countOr(
         "--suggest", o.suggestions, kSuggestions, 1, kMaxSuggestions,
         "report up to N changes that would help: a sensor to add, turn, move, replace or "
-        "remove, furniture to move, and with --require the changes that meet it; each with "
-        "its gain and its command",
+        "remove, furniture to move, and with --require, --facing or --privacy the changes that "
+        "meet all; each with its gain and its command",
         Enters::Nothing);
     line.parsed(
         "--perturb", "M,DEG", [&o](const std::string& text) { o.perturb = parseTolerance(text); },
