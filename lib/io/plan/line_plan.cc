@@ -72,11 +72,18 @@ class LinePlan {
         std::vector<PlanShape> doors = std::move(shapes.doors);
         doors.insert(doors.end(), std::make_move_iterator(drawn.swings.begin()),
                      std::make_move_iterator(drawn.swings.end()));
-        const DrawnSizes* const sizes = sizes_ ? &*sizes_ : nullptr;
-        PlanOpenings found = findOpenings(doors, shapes.windows, pieces_, budget, sizes);
+        const auto find = [&] {
+            return findOpenings(doors, shapes.windows, pieces_, budget,
+                                sizes_ ? &*sizes_ : nullptr);
+        };
+        PlanOpenings found = find();
+        if (auto straight = withoutJoints(paths_, found.lost_in, budget); straight && !sizes_) {
+            pieces_ = pathPieces(paths_ = std::move(*straight));
+            found = find();
+        }
         if (options.simplify.value_or(0) > 0) {
             simplify(*options.simplify, found.openings, budget);
-            found = findOpenings(doors, shapes.windows, pieces_, budget, sizes);
+            found = find();
         }
         openings_ = std::move(found.openings);
         unused_symbols_ = found.unused;

@@ -54,8 +54,9 @@ struct LostSymbol {
 /// The openings found.
 struct PlanOpenings {
     std::vector<PlanOpening> openings;
-    std::size_t unused = 0;        ///< lines without an opening
-    std::vector<LostSymbol> lost;  ///< doors first
+    std::size_t unused = 0;         ///< lines without an opening
+    std::vector<LostSymbol> lost;   ///< doors first
+    std::vector<Segment2> lost_in;  ///< diagonals of the boxes around these
 };
 
 /// Measures of a line in a drawing besides its course, in metres.

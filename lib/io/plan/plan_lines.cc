@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "base/error.h"
@@ -402,6 +401,34 @@ std::vector<PlanPath> normalisedLines(std::vector<PlanPath> paths, double snap, 
 
 std::vector<PlanPath> joinedAtEnds(std::vector<PlanPath> paths) {
     return Joiner(std::move(paths)).join();
+}
+
+std::optional<std::vector<PlanPath>> withoutJoints(const std::vector<PlanPath>& paths,
+                                                   std::span<const Segment2> places, Budget& work) {
+    if (places.empty()) return std::nullopt;
+    const NearSegments search(places, work);
+    std::vector<PlanPath> joined = joinedAtEnds(paths);
+    PointMap<int> uses;
+    for (const PlanPath& path : joined)
+        for (const Point2 p : path.points) ++uses[p];
+    bool found = false;
+    for (PlanPath& path : joined) {
+        Polygon kept;
+        const std::size_t n = path.points.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            const Point2 p = path.points[i];
+            const bool is_end = !path.closed && (i == 0 || i + 1 == n);
+            const Segment2 past{kept.empty() ? path.points[n - 1] : kept.back(),
+                                path.points[i + 1 == n ? 0 : i + 1]};
+            if (is_end || uses[p] > 1 || distance(p, past) > kCornerTolerance ||
+                search.near(p, 0).empty())
+                kept.push_back(p);
+        }
+        found |= kept.size() < n;
+        path.points = std::move(kept);
+    }
+    if (!found) return std::nullopt;
+    return joined;
 }
 
 }  // namespace ispace

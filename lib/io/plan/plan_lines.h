@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -88,6 +89,12 @@ std::vector<PlanPath> withoutRepeats(std::vector<PlanPath> paths);
 /// Joins open paths where exactly two ends meet, so that a room drawn line by line is one closed
 /// path, at the index and with the `line` of its first part. O(n log n).
 std::vector<PlanPath> joinedAtEnds(std::vector<PlanPath> paths);
+
+/// Joins open paths as above, and drops corners where a path runs straight on and no other has
+/// a corner, in the boxes of which `places` are diagonals. \return std::nullopt if there are none.
+/// O(n log n)
+std::optional<std::vector<PlanPath>> withoutJoints(const std::vector<PlanPath>& paths,
+                                                   std::span<const Segment2> places, Budget& work);
 
 /// Simplifies paths by at most `tolerance` metres, between joints by Douglas and Peucker. Joints
 /// stay: ends of open paths, points that paths share, both ends of a piece that another one meets,

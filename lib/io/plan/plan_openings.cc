@@ -162,8 +162,10 @@ class Finder {
             const Box2 around{box.low - reach, box.high + reach};
             const auto near = search.near(box, kReach);
             if (std::none_of(near.begin(), near.end(),
-                             [&](std::size_t i) { return bounds(lines[i]).meets(around); }))
+                             [&](std::size_t i) { return bounds(lines[i]).meets(around); })) {
                 found_.lost.push_back({shape.layer, box.center(), shape.path.line});
+                found_.lost_in.push_back({box.low, box.high});
+            }
         }
     }
     PlanOpenings take() { return std::move(found_); }

@@ -195,6 +195,32 @@ TEST(PlanOpenings, OfADrawing) {
         << notesOf(document);
 }
 
+TEST(PlanOpenings, AcrossWallsThatMeetInLine) {
+    const auto text_of = [](const std::string& walls) {
+        return writeRecordText(readDxf(
+            drawing(rectangle("WALL", 0, 0, 8, 6) + walls + rectangle("DOORS", 3.8, 2, 4.2, 3), "",
+                    6),
+            "flat.dxf", layers(), sceneSchemas()));
+    };
+    const std::string wanted =
+        "#env 1\n"
+        "fence path=0,0;8,0;8,6;0,6 closed=yes\n"
+        "fence id=f2 path=4,0;4,6\n"
+        "door wall=f2 from=4,2 to=4,3 open=yes\n"
+        "inside at=2,3\n";
+    EXPECT_EQ(text_of(line("WALL", 4, 0, 4, 6)), wanted);
+    EXPECT_EQ(text_of(line("WALL", 4, 0, 4, 2.5) + line("WALL", 4, 2.5, 4, 6)), wanted);
+    EXPECT_EQ(text_of(line("WALL", 4, 0, 4, 2.5) + line("WALL", 4, 6, 4, 2.9) +
+                      line("WALL", 4, 2.9, 4, 2.5)),
+              wanted);
+    EXPECT_EQ(text_of(polyline("WALL", false, {{4, 0}, {4, 2.5}, {4, 6}})), wanted);
+    // A third wall that ends there.
+    EXPECT_EQ(text_of(line("WALL", 4, 0, 4, 2.5) + line("WALL", 4, 2.5, 4, 6) +
+                      line("WALL", 4, 2.5, 8, 2.5))
+                  .find("door"),
+              std::string::npos);
+}
+
 TEST(PlanOpenings, WarnsOfSymbolsThatOpenNoWall) {
     const std::string lost =
         line("DOORS", 2, 1, 2, 2) + line("WINDOWS", 1, 1, 2, 1) + line("DOORS", 5, 1, 5, 1.9);
