@@ -41,7 +41,7 @@ struct BuildingInput {
 /// Name of the building in the folder of its run's record, with the scenes of the start.
 constexpr const char* kRecordedBuilding = "building.yaml";
 /// Returns the building in a folder of its record; "" for a folder without one, as of one room.
-/// \throws as fileOfRecord()
+/// \throws as checkRecordFolder() and fileOfRecord()
 std::string recordedBuilding(const std::string& folder);
 
 /// Measures the record of a building's run, storey by storey and in sum. \param max_work of changes

@@ -38,8 +38,8 @@ MessageForm message_form = MessageForm::Text;
 /// The file "house.glb" from what() = "house.glb: No such file …".
 Diagnostic messageOf(const std::system_error& error) {
     const std::string message = error.code().message();
-    if (const auto* const file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
-        return {file->path1().string(), 0, 0, message};
+    const auto* const file = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
+    if (file != nullptr && !file->path1().empty()) return {file->path1().string(), 0, 0, message};
     const std::string what = error.what();
     const std::string tail = ": " + message;
     if (what.size() > tail.size() && what.ends_with(tail))

@@ -13,7 +13,7 @@ namespace ispace {
 /// A measure between a sensor and the face of a wall, seen from above.
 struct WallDistance {
     std::string wall;  ///< id of the wall or fence; with a number if several of its faces are used
-    Segment2 face;
+    Segment2 face;     ///< to the corners that a person sees
     double distance = 0;
     Point2 foot;  ///< of the perpendicular from the sensor, on the face or its extension
     /// The corner from which `distance` counts, along the face, to the foot: an end of the face, or
