@@ -95,6 +95,41 @@ void CoverCore::reduce() {
     }
 }
 
+std::vector<CoverCore> CoverCore::components() const {
+    constexpr auto kNone = static_cast<std::uint32_t>(-1);
+    std::vector<std::uint32_t> part_of(rows(), kNone), part_of_column(columns(), kNone), open;
+    std::uint32_t count = 0;
+    for (std::uint32_t first = 0; first < rows(); ++first) {
+        if (part_of[first] != kNone) continue;
+        part_of[first] = count;
+        open.push_back(first);
+        while (!open.empty()) {
+            const std::uint32_t row = open.back();
+            open.pop_back();
+            for (const std::uint32_t column : columnsOf(row)) {
+                if (part_of_column[column] != kNone) continue;
+                part_of_column[column] = count;
+                for (const std::uint32_t other : rowsOf(column)) {
+                    if (part_of[other] != kNone) continue;
+                    part_of[other] = count;
+                    open.push_back(other);
+                }
+            }
+        }
+        ++count;
+    }
+    std::vector<CoverCore> parts;
+    for (std::uint32_t part = 0; part < count; ++part) {
+        std::vector<char> out(columns()), closed(rows());
+        for (std::size_t j = 0; j < columns(); ++j) out[j] = part_of_column[j] == part ? 0 : 1;
+        for (std::size_t i = 0; i < rows(); ++i) closed[i] = part_of[i] == part ? 0 : 1;
+        parts.push_back(without(out, std::move(closed), {}));
+        parts.back().taken.clear();
+        parts.back().taken_cost = 0;
+    }
+    return parts;
+}
+
 bool CoverCore::takeForced() {
     std::vector<std::uint32_t> forced;
     for (std::size_t row = 0; row < rows(); ++row)
@@ -149,17 +184,17 @@ std::vector<char> CoverCore::dominatedColumns() const {
     return out;
 }
 
-CoverBound raisePrices(CoverCore& core, double limit, int rounds) {
+CoverBound raisePrices(CoverCore& core, double limit, const PriceRounds& how) {
     constexpr double kUnit = 0x1p-20;
-    constexpr int kPatience = 12;
     const std::size_t m = core.rows(), n = core.columns();
     CoverBound bound{0, std::vector<double>(n), std::vector<char>(n)};
-    std::vector<double> best = core.price, price = core.price, reduced(n);
+    std::vector<double> best = core.price, price = core.price, reduced(n), direction(m);
     std::vector<int> lack(m);
     double step = 1, top = -1;
     int stalled = 0;
+    double newest = 1;  // of directions from the best prices
     constexpr double kMemory = 0.1;
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < how.rounds; ++round) {
         std::fill(lack.begin(), lack.end(), 1);
         double value = std::accumulate(price.begin(), price.end(), 0.0);
         for (std::size_t j = 0; j < n; ++j) {
@@ -180,20 +215,25 @@ CoverBound raisePrices(CoverCore& core, double limit, int rounds) {
             best = price;
             if (std::ceil(top) >= limit) break;
         }
-        if (++stalled >= kPatience) {
-            step /= 2;
+        if (++stalled >= how.patience) {
+            step *= 0.7;
             stalled = 0;
             price = best;
-            if (step < 0.01) break;
+            newest = 1;
+            if (step < 0.005) break;
             continue;
         }
         double norm = 0;
-        for (std::size_t i = 0; i < m; ++i)
-            if (lack[i] > 0 || price[i] > 0) norm += static_cast<double>(lack[i]) * lack[i];
+        for (std::size_t i = 0; i < m; ++i) {
+            direction[i] += newest * (lack[i] - direction[i]);
+            if (direction[i] > 0 || price[i] > 0) norm += direction[i] * direction[i];
+        }
+        newest = how.newest;
         if (norm == 0) break;  // a cover of exactly this cost
         const double length = step * (1.02 * limit - value) / norm;
         for (std::size_t i = 0; i < m; ++i)
-            price[i] = std::max(0.0, std::floor((price[i] + length * lack[i]) / kUnit) * kUnit);
+            price[i] =
+                std::max(0.0, std::floor((price[i] + length * direction[i]) / kUnit) * kUnit);
     }
     core.price = std::move(best);
     bound.value = std::max(top, 0.0);

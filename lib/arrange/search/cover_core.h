@@ -31,6 +31,9 @@ class CoverCore {
     /// Takes columns that are the last of a row, and removes rows and columns that others dominate,
     /// until none is left. Rows without columns remain.
     void reduce();
+    /// Divides the open rows into cores that share no column, with prices and without taken
+    /// columns.
+    [[nodiscard]] std::vector<CoverCore> components() const;
 
     std::vector<double> cost;          ///< of columns, whole numbers
     std::vector<std::uint32_t> id;     ///< of columns, in the first problem
@@ -54,8 +57,22 @@ struct CoverBound {
     std::vector<double> fraction;  ///< of columns: how often rounds took them, 0 to 1
     std::vector<char> excluded;    ///< columns that no cover below the limit takes
 };
+/// How to raise prices: deflected subgradients come closer to the best prices of large cores, plain
+/// ones of small cores.
+struct PriceRounds {
+    int rounds;
+    int patience;   ///< rounds without gain before steps become smaller
+    double newest;  ///< share of the newest subgradient in the direction; 1: plain
+};
 /// Raises core.price by subgradients; ends once no cover below `limit` (of the core's rows) exists.
-CoverBound raisePrices(CoverCore& core, double limit, int rounds);
+CoverBound raisePrices(CoverCore& core, double limit, const PriceRounds& how);
+
+/// Bounds a core by its linear program with Chvatal-Gomory cuts: rows of whole numbers that follow
+/// from sums of rows. Prices and multipliers are multiples of 2^-20, so the bound holds in spite of
+/// rounding. For cores of which raisePrices() leaves a gap: slower, and far stronger. Ends early
+/// once a quarter of the columns are excluded.
+/// \return the bound; value 0 if the core is too large, or progress says stop
+CoverBound raiseByCuts(const CoverCore& core, double limit, const Progress& progress);
 
 /// Finds columns that symmetries of the core map to each other: for each a column of its orbit, the
 /// same for all of them. Misses symmetries that colours of neighbours do not lead to; reports none

@@ -14,16 +14,30 @@ namespace ispace {
 
 namespace {
 
-constexpr int kRootRounds = 1500, kNodeRounds = 40;
+constexpr PriceRounds kRootRounds = {3000, 30, 0.1}, kLastRounds = {500, 12, 1},
+                      kNodeRounds = {40, 12, 1};
 constexpr std::size_t kSubtrees = 64;
 constexpr int kSymmetricDepth = 2;  // of subtrees
+constexpr std::size_t kMinRowsForCuts = 24;
+constexpr double kLeastCut = 0.2;  // of the gap that cuts close at the root, to be used in nodes
+constexpr double kNoShare = 1e-6;  // of a column in a fractional cover
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
+
+/// Keeps what both bounds exclude, and the higher one.
+void takeBetter(const CoverBound& other, CoverBound& bound) {
+    for (std::size_t j = 0; j < bound.excluded.size(); ++j)
+        bound.excluded[j] = bound.excluded[j] | other.excluded[j];
+    if (other.value <= bound.value) return;
+    bound.value = other.value;
+    bound.fraction = other.fraction;
+}
 
 /// Depth-first search of a subtree for covers cheaper than the best.
 class CoverTree {
   public:
-    CoverTree(double best_cost, const Progress& progress)
-        : best_cost_(best_cost), progress_(progress) {}
+    /// \param uses_cuts in nodes
+    CoverTree(double best_cost, bool uses_cuts, const Progress& progress)
+        : best_cost_(best_cost), uses_cuts_(uses_cuts), progress_(progress) {}
 
     /// Replaces a node by its children; a node without children is closed.
     /// \param uses_symmetry of columns that are images of each other, one is taken
@@ -38,6 +52,11 @@ class CoverTree {
   private:
     /// Reduces, bounds and excludes. \return false if the node is closed
     [[nodiscard]] bool isOpen(CoverCore& node, CoverBound& bound);
+    [[nodiscard]] static std::vector<CoverCore> branch(const CoverCore& node,
+                                                       const CoverBound& bound, bool uses_symmetry);
+    /// Searches the components of an open node one by one: each within the bounds of the others.
+    [[nodiscard]] double searchParts(const CoverCore& node, std::vector<CoverCore> parts,
+                                     int depth);
     [[nodiscard]] static bool isBlocked(const CoverCore& node) {
         for (std::size_t row = 0; row < node.rows(); ++row)
             if (node.columnsOf(row).empty()) return true;
@@ -45,6 +64,7 @@ class CoverTree {
     }
 
     double best_cost_;
+    bool uses_cuts_;
     std::vector<std::uint32_t> best_;  // ids; empty: as given
     const Progress& progress_;
 };
@@ -60,6 +80,10 @@ bool CoverTree::isOpen(CoverCore& node, CoverBound& bound) {
         }
         bound = raisePrices(node, best_cost_ - node.taken_cost, kNodeRounds);
         if (std::ceil(node.taken_cost + bound.value) >= best_cost_) return false;
+        if (uses_cuts_ && node.rows() >= kMinRowsForCuts) {
+            takeBetter(raiseByCuts(node, best_cost_ - node.taken_cost, progress_), bound);
+            if (std::ceil(node.taken_cost + bound.value) >= best_cost_) return false;
+        }
         const auto out = std::count(bound.excluded.begin(), bound.excluded.end(), 1);
         if (out == 0) return true;
         node = node.without(bound.excluded, std::vector<char>(node.rows()), {});
@@ -68,7 +92,11 @@ bool CoverTree::isOpen(CoverCore& node, CoverBound& bound) {
 
 std::vector<CoverCore> CoverTree::childrenOf(CoverCore node, bool uses_symmetry) {
     CoverBound bound;
-    if (!isOpen(node, bound)) return {};
+    return isOpen(node, bound) ? branch(node, bound, uses_symmetry) : std::vector<CoverCore>();
+}
+
+std::vector<CoverCore> CoverTree::branch(const CoverCore& node, const CoverBound& bound,
+                                         bool uses_symmetry) {
     std::size_t shortest = 0;
     double highest = -1;
     for (std::size_t row = 0; row < node.rows(); ++row) {
@@ -101,19 +129,52 @@ std::vector<CoverCore> CoverTree::childrenOf(CoverCore node, bool uses_symmetry)
 double CoverTree::search(CoverCore node, int depth) {
     if (progress_.stopped()) {
         // Prices came from the parent: a few rounds restore its bound.
-        const CoverBound bound = raisePrices(node, best_cost_ - node.taken_cost, 4);
+        const CoverBound bound = raisePrices(node, best_cost_ - node.taken_cost, {4, 12, 1});
         return node.taken_cost + bound.value;
     }
+    CoverBound bound;
+    if (!isOpen(node, bound)) return kNoBound;
+    std::vector<CoverCore> parts = node.components();
+    if (parts.size() > 1) return searchParts(node, std::move(parts), depth);
     double least = kNoBound;
-    for (CoverCore& child : childrenOf(std::move(node), depth < kSymmetricDepth))
+    for (CoverCore& child : branch(node, bound, depth < kSymmetricDepth))
         least = std::min(least, search(std::move(child), depth + 1));
     return least;
 }
 
+double CoverTree::searchParts(const CoverCore& node, std::vector<CoverCore> parts, int depth) {
+    std::sort(parts.begin(), parts.end(),
+              [](const CoverCore& a, const CoverCore& b) { return a.rows() < b.rows(); });
+    std::vector<double> least;
+    double sum = node.taken_cost;
+    for (CoverCore& part : parts) {
+        least.push_back(std::ceil(raisePrices(part, best_cost_, {1, 1, 1}).value));
+        sum += least.back();
+    }
+    double cost = node.taken_cost;
+    bool is_complete = true;
+    std::vector<std::uint32_t> cover = node.taken;
+    for (std::size_t i = 0; i < parts.size() && sum < best_cost_; ++i) {
+        CoverTree tree(best_cost_ - (sum - least[i]), uses_cuts_, progress_);
+        const double open = tree.search(std::move(parts[i]), depth);
+        is_complete = is_complete && open == kNoBound;
+        sum += std::max(std::min(std::ceil(open), tree.bestCost()) - least[i], 0.0);
+        cost += tree.best().empty() ? kNoBound : tree.bestCost();
+        cover.insert(cover.end(), tree.best().begin(), tree.best().end());
+    }
+    if (sum >= best_cost_) return kNoBound;
+    if (cost < best_cost_) {
+        best_cost_ = cost;
+        best_ = std::move(cover);
+    }
+    return is_complete ? kNoBound : sum;
+}
+
 /// Divides the tree in subtrees, searched in parallel and each from the same best cover.
-double searchTree(const CoverCore& root, SetCoverResult& result, const Progress& progress) {
+double searchTree(const CoverCore& root, bool uses_cuts, SetCoverResult& result,
+                  const Progress& progress) {
     std::vector<CoverCore> open = {root};
-    CoverTree top(static_cast<double>(result.cost), progress);
+    CoverTree top(static_cast<double>(result.cost), uses_cuts, progress);
     while (!open.empty() && open.size() < kSubtrees && !progress.stopped()) {
         std::vector<CoverCore> next;
         for (CoverCore& node : open)
@@ -121,7 +182,7 @@ double searchTree(const CoverCore& root, SetCoverResult& result, const Progress&
                 next.push_back(std::move(child));
         open = std::move(next);
     }
-    std::vector<CoverTree> trees(open.size(), CoverTree(top.bestCost(), progress));
+    std::vector<CoverTree> trees(open.size(), CoverTree(top.bestCost(), uses_cuts, progress));
     std::vector<double> bounds(open.size());
     tbb::parallel_for(std::size_t{0}, open.size(),
                       [&](std::size_t i) { bounds[i] = trees[i].search(std::move(open[i])); });
@@ -139,6 +200,66 @@ double searchTree(const CoverCore& root, SetCoverResult& result, const Progress&
     return bound;
 }
 
+/// Covers a core by local search; takes the cover if it is cheaper than the result.
+void searchLocally(const CoverCore& core, const SetCoverOptions& options, SetCoverResult& result,
+                   const Progress& progress) {
+    std::vector<std::vector<std::uint32_t>> covers(
+        static_cast<std::size_t>(std::max(options.tries, 1)));
+    tbb::parallel_for(std::size_t{0}, covers.size(), [&](std::size_t i) {
+        covers[i] = coverByWeights(core, options.steps, i, 0, progress);
+    });
+    for (const std::vector<std::uint32_t>& cover : covers) {
+        double cost = core.taken_cost;
+        for (const std::uint32_t column : cover) cost += core.cost[column];
+        if (result.is_coverable && cost >= static_cast<double>(result.cost)) continue;
+        result.is_coverable = true;
+        result.cost = static_cast<std::uint64_t>(cost);
+        result.chosen = core.taken;
+        for (const std::uint32_t column : cover) result.chosen.push_back(core.id[column]);
+    }
+}
+
+/// Covers a core without taken columns.
+SetCoverResult coverCore(CoverCore core, const SetCoverOptions& options, Progress& progress) {
+    SetCoverResult result;
+    searchLocally(core, options, result, progress);
+    const auto limit = [&result] { return static_cast<double>(result.cost); };
+    // Begins from the share of a row in its cheapest column.
+    for (std::size_t row = 0; row < core.rows(); ++row) {
+        double least = kNoBound;
+        for (const std::uint32_t j : core.columnsOf(row))
+            least = std::min(least, core.cost[j] / static_cast<double>(core.rowsOf(j).size()));
+        core.price[row] = std::floor(least * 0x1p20) * 0x1p-20;
+    }
+    raisePrices(core, limit(), kRootRounds);
+    CoverBound bound = raisePrices(core, limit(), kLastRounds);
+    const auto is_open = [&] {
+        return std::ceil(bound.value) < limit() && options.proves && !progress.stopped();
+    };
+    bool uses_cuts = false;
+    if (is_open()) {
+        const double gap = limit() - bound.value;
+        const CoverBound cut = raiseByCuts(core, limit(), progress);
+        uses_cuts = cut.value > limit() - (1 - kLeastCut) * gap;
+        takeBetter(cut, bound);
+    }
+    if (is_open() && uses_cuts) {
+        // Columns of the fractional cover make few, good covers.
+        std::vector<char> out(core.columns());
+        for (std::size_t j = 0; j < out.size(); ++j) out[j] = bound.fraction[j] < kNoShare ? 1 : 0;
+        CoverCore part = core.without(out, std::vector<char>(core.rows()), {});
+        part.reduce();
+        searchLocally(part, options, result, progress);
+    }
+    double least = std::min(std::ceil(bound.value), limit());
+    if (is_open()) {
+        core = core.without(bound.excluded, std::vector<char>(core.rows()), {});
+        least = std::max(least, std::ceil(searchTree(core, uses_cuts, result, progress)));
+    }
+    result.bound = static_cast<std::uint64_t>(std::min(least, limit()));
+    return result;
+}
+
 }  // namespace
 
 SetCoverResult minimumSetCover(const SetCover& problem, const SetCoverOptions& options,
@@ -151,42 +272,12 @@ SetCoverResult minimumSetCover(const SetCover& problem, const SetCoverOptions& o
     core.reduce();
     result.chosen = core.taken;
     result.cost = result.bound = static_cast<std::uint64_t>(core.taken_cost);
-    if (core.rows() == 0) {
-        std::sort(result.chosen.begin(), result.chosen.end());
-        return result;
+    for (CoverCore& part : core.components()) {
+        const SetCoverResult cover = coverCore(std::move(part), options, progress);
+        result.chosen.insert(result.chosen.end(), cover.chosen.begin(), cover.chosen.end());
+        result.cost += cover.cost;
+        result.bound += cover.bound;
     }
-
-    std::vector<std::vector<std::uint32_t>> covers(
-        static_cast<std::size_t>(std::max(options.tries, 1)));
-    tbb::parallel_for(std::size_t{0}, covers.size(), [&](std::size_t i) {
-        covers[i] = coverByWeights(core, options.steps, i, 0, progress);
-    });
-    const auto cost_of = [&core](const std::vector<std::uint32_t>& cover) {
-        double sum = 0;
-        for (const std::uint32_t column : cover) sum += core.cost[column];
-        return sum;
-    };
-    const auto& best =
-        *std::min_element(covers.begin(), covers.end(),
-                          [&](const auto& a, const auto& b) { return cost_of(a) < cost_of(b); });
-    for (const std::uint32_t column : best) result.chosen.push_back(core.id[column]);
-    result.cost += static_cast<std::uint64_t>(cost_of(best));
-
-    const double limit = static_cast<double>(result.cost) - core.taken_cost;
-    // Begins from the share of a row in its cheapest column.
-    for (std::size_t row = 0; row < core.rows(); ++row) {
-        double least = kNoBound;
-        for (const std::uint32_t j : core.columnsOf(row))
-            least = std::min(least, core.cost[j] / static_cast<double>(core.rowsOf(j).size()));
-        core.price[row] = std::floor(least * 0x1p20) * 0x1p-20;
-    }
-    const CoverBound bound = raisePrices(core, limit, kRootRounds);
-    double least = core.taken_cost + std::min(std::ceil(bound.value), limit);
-    if (least < static_cast<double>(result.cost) && options.proves && !progress.stopped()) {
-        core = core.without(bound.excluded, std::vector<char>(core.rows()), {});
-        least = std::max(least, std::ceil(searchTree(core, result, progress)));
-    }
-    result.bound = static_cast<std::uint64_t>(std::min(least, static_cast<double>(result.cost)));
     std::sort(result.chosen.begin(), result.chosen.end());
     return result;
 }

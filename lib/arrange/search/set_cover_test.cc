@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <random>
@@ -70,6 +71,68 @@ TEST(SetCover, EqualsBruteForce) {
     }
     EXPECT_GT(uncoverable, 10);
     EXPECT_LT(uncoverable, 190);
+}
+
+/// Odd cycles without common rows, of which each column covers two neighbours: the linear program
+/// takes half of each column, a cover of 2n + 1 rows n + 1 columns.
+SetCover oddCycles(std::size_t count, std::uint32_t rows) {
+    SetCover cycles{count * rows, {}, std::vector<std::uint32_t>(count * rows, 1)};
+    for (std::uint32_t first = 0; first < count * rows; first += rows)
+        for (std::uint32_t i = 0; i < rows; ++i)
+            cycles.columns.push_back({std::min(first + i, first + (i + 1) % rows),
+                                      std::max(first + i, first + (i + 1) % rows)});
+    return cycles;
+}
+
+TEST(SetCover, CutsProveOddCycles) {
+    SilentProgress progress;
+    CoverCore core(oddCycles(6, 5));
+    EXPECT_LE(raisePrices(core, 18, {1000, 30, 0.1}).value, 15.0);
+    const CoverBound bound = raiseByCuts(core, 18, progress);
+    EXPECT_GT(bound.value, 17.0);
+    EXPECT_LE(bound.value, 18.0);
+}
+
+TEST(SetCover, CutsHoldForAllCovers) {
+    SilentProgress progress;
+    std::mt19937_64 random(23);
+    int strict = 0, excluded = 0;
+    for (int round = 0; round < 300; ++round) {
+        SetCover problem = randomCover(random, 6 + random() % 10, 6 + random() % 7, round % 2 == 0);
+        const std::uint64_t least = leastOfAll(problem);
+        if (least == std::numeric_limits<std::uint64_t>::max()) continue;
+        CoverCore core(problem);
+        const double limit = static_cast<double>(least + round % 3);
+        const CoverBound bound = raiseByCuts(core, limit, progress);
+        ASSERT_LE(bound.value, static_cast<double>(least)) << round;
+        strict += raisePrices(core, limit, {1000, 30, 0.1}).value < bound.value - 0.01 ? 1 : 0;
+        // A cover with an excluded column costs the limit at least.
+        for (std::size_t j = 0; j < problem.columns.size(); ++j) {
+            if (bound.excluded[j] == 0) continue;
+            ++excluded;
+            SetCover with = problem;  // a row of this column alone forces it
+            with.columns[j].push_back(static_cast<std::uint32_t>(with.rows++));
+            ASSERT_GE(static_cast<double>(leastOfAll(with)), limit) << round;
+        }
+    }
+    EXPECT_GT(strict, 20);
+    EXPECT_GT(excluded, 100);
+}
+
+TEST(SetCover, ComponentsAddUp) {
+    SilentProgress progress;
+    const SetCover problem = oddCycles(9, 7);
+    const CoverCore core(problem);
+    const std::vector<CoverCore> parts = core.components();
+    ASSERT_EQ(parts.size(), 9U);
+    for (const CoverCore& part : parts) {
+        EXPECT_EQ(part.rows(), 7U);
+        EXPECT_EQ(part.columns(), 7U);
+    }
+    const SetCoverResult result = minimumSetCover(problem, {.steps = 100}, progress);
+    EXPECT_TRUE(isCover(problem, result.chosen));
+    EXPECT_EQ(result.cost, 36U);
+    EXPECT_EQ(result.bound, 36U);
 }
 
 /// The points on the lines of the plane of order 3: 13 columns that symmetries map to each other.
