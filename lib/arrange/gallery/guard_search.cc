@@ -24,7 +24,7 @@ constexpr double kSliverWidth = 0x1p-20;
 
 GuardCandidate candidateAt(const Floor& floor, const WindowVertex& vertex) {
     const VisibleRegion region = floor.viewFrom(vertex.at);
-    return {StarView(region, floor.walls()), vertex.error, Floor::outlineOf(region)};
+    return {StarView(region, floor.walls()), vertex.error};
 }
 
 }  // namespace
@@ -41,8 +41,7 @@ void GuardSearch::addCandidates(std::span<const WindowVertex> points, const Prog
     tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
         if (progress != nullptr && progress->stopped()) return;
         made[i] = candidateAt(floor_, fresh[i]);
-        for (std::uint32_t row = 0; row < rows_.size(); ++row)
-            if (sees(*made[i], rows_[row])) seen[i].push_back(row);
+        seen[i] = rowsOf(*made[i]);
     });
     for (std::size_t i = 0; i < fresh.size(); ++i) {
         if (!made[i]) continue;
@@ -57,6 +56,18 @@ bool GuardSearch::sees(const GuardCandidate& candidate, const Row& row) {
                : candidate.view.mayHold(row.at, 0);
 }
 
+std::vector<std::uint32_t> GuardSearch::rowsOf(const GuardCandidate& candidate) const {
+    std::vector<std::uint32_t> rows;
+    const auto add_seen = [&](std::uint32_t row) {
+        if (sees(candidate, rows_[row])) rows.push_back(row);
+    };
+    witnesses_.forEachNear(candidate.view.viewpoint(), candidate.error + kOneLine,
+                           [&](std::uint32_t witness) { add_seen(witness_rows_[witness]); });
+    for (const std::uint32_t row : point_rows_) add_seen(row);
+    std::sort(rows.begin(), rows.end());
+    return rows;
+}
+
 void GuardSearch::addRow(Point2 p) { add({p, std::nullopt}); }
 void GuardSearch::addRow(const StarView& witness) { add({witness.viewpoint(), witness}); }
 
@@ -64,6 +75,8 @@ void GuardSearch::add(Row row) {
     const auto number = static_cast<std::uint32_t>(rows_.size());
     for (std::size_t i = 0; i < candidates_.size(); ++i)
         if (sees(candidates_[i], row)) seen_[i].push_back(number);
+    (row.witness ? witness_rows_ : point_rows_).push_back(number);
+    if (row.witness) witnesses_.add(*row.witness);
     rows_.push_back(std::move(row));
 }
 
@@ -88,7 +101,8 @@ GuardSearch::Found GuardSearch::coverRows(std::size_t enough, Progress& progress
 void GuardSearch::measure(Found& found) const {
     std::vector<Polygon> solids;
     solids.reserve(found.guards.size());
-    for (const std::uint32_t guard : found.guards) solids.push_back(candidates_[guard].outline);
+    for (const std::uint32_t guard : found.guards)
+        solids.push_back(candidates_[guard].view.outline());
     found.missed.clear();
     found.missed_area = 0;
     for (const Region& region : floor_.regions())

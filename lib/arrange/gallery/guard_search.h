@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "arrange/gallery/star_view.h"
+#include "arrange/gallery/view_cells.h"
 #include "arrange/gallery/witness_sets.h"
 #include "base/error.h"
 
@@ -18,13 +19,12 @@ namespace ispace::gallery {
 struct GuardCandidate {
     StarView view;
     double error;  ///< bounds the distance from the point of which witnesses are known
-    Polygon outline;
 };
 
 /// The fewest guards among candidates.
 class GuardSearch {
   public:
-    explicit GuardSearch(const Floor& floor) : floor_(floor) {}
+    explicit GuardSearch(const Floor& floor) : floor_(floor), witnesses_(floor) {}
 
     /// Adds candidates that are not known yet; views are computed in parallel.
     /// \param progress if it says stop, adds no more of them; null: adds all
@@ -61,6 +61,8 @@ class GuardSearch {
     };
     void add(Row row);
     static bool sees(const GuardCandidate& candidate, const Row& row);
+    /// Returns the rows that a candidate sees, ascending.
+    [[nodiscard]] std::vector<std::uint32_t> rowsOf(const GuardCandidate& candidate) const;
     /// Adds candidates that see these points, those that see most first.
     void addGreedily(const std::vector<Point2>& points, Found& found) const;
     void measure(Found& found) const;
@@ -68,6 +70,8 @@ class GuardSearch {
     const Floor& floor_;
     std::vector<GuardCandidate> candidates_;
     std::vector<Row> rows_;
+    ViewCells witnesses_;
+    std::vector<std::uint32_t> witness_rows_, point_rows_;
     std::vector<std::vector<std::uint32_t>> seen_;  // rows, by candidate; ascending
 };
 

@@ -73,10 +73,29 @@ std::vector<Corner> cornersOf(const std::vector<Region>& regions) {
     return single;
 }
 
+/// Builds the outline of a region without parts that no wall bounds.
+Polygon outlineAlongWalls(const VisibleRegion& region) {
+    Polygon outline;
+    const auto add = [&outline](Point2 p) {
+        if (outline.empty() || outline.back() != p) outline.push_back(p);
+    };
+    if (!region.is_whole) add(region.viewpoint);
+    for (const VisibilityEdge& edge : region.edges) {
+        if (edge.line == VisibilityEdge::kArc) {
+            add(region.viewpoint);
+            continue;
+        }
+        add(edge.from);
+        add(edge.to);
+    }
+    while (outline.size() > 1 && outline.front() == outline.back()) outline.pop_back();
+    return outline;
+}
+
 }  // namespace
 
 StarView::StarView(const VisibleRegion& region, std::span<const Segment2> walls)
-    : viewpoint_(region.viewpoint) {
+    : viewpoint_(region.viewpoint), outline_(outlineAlongWalls(region)) {
     std::vector<Wedge> wedges;
     std::vector<double> turns;
     for (const VisibilityEdge& edge : region.edges) {
@@ -252,24 +271,6 @@ std::optional<std::vector<Window>> Floor::windowsOf(const VisibleRegion& region)
     if (corner->is_rounded && std::any_of(windows.begin(), windows.end(), is_long))
         return std::nullopt;
     return windows;
-}
-
-Polygon Floor::outlineOf(const VisibleRegion& region) {
-    Polygon outline;
-    const auto add = [&outline](Point2 p) {
-        if (outline.empty() || outline.back() != p) outline.push_back(p);
-    };
-    if (!region.is_whole) add(region.viewpoint);
-    for (const VisibilityEdge& edge : region.edges) {
-        if (edge.line == VisibilityEdge::kArc) {
-            add(region.viewpoint);
-            continue;
-        }
-        add(edge.from);
-        add(edge.to);
-    }
-    while (outline.size() > 1 && outline.front() == outline.back()) outline.pop_back();
-    return outline;
 }
 
 }  // namespace ispace::gallery

@@ -42,6 +42,8 @@ class StarView {
     StarView(const VisibleRegion& region, std::span<const Segment2> walls);
 
     [[nodiscard]] Point2 viewpoint() const { return viewpoint_; }
+    /// Without parts that no wall bounds, outside of the floor.
+    [[nodiscard]] const Polygon& outline() const { return outline_; }
     /// False only if p is farther than `margin` from the region. O(log edges) \pre margin >= 0
     [[nodiscard]] bool mayHold(Point2 p, double margin) const;
 
@@ -54,6 +56,7 @@ class StarView {
     };
 
     Point2 viewpoint_;
+    Polygon outline_;
     Box2 box_;
     std::vector<double> turns_;  // pseudo-angles of `from`, ascending
     std::vector<Wedge> wedges_;
@@ -86,9 +89,6 @@ class Floor {
     /// clear of walls, and without a line of sight that passes one wall on the left and ends at the
     /// end of another on the right, beyond which it might see a needle without area.
     [[nodiscard]] std::optional<std::vector<Window>> windowsOf(const VisibleRegion& region) const;
-    /// Builds the outline of a region; parts without a wall behind them, outside of the floor, are
-    /// left out.
-    [[nodiscard]] static Polygon outlineOf(const VisibleRegion& region);
 
   private:
     [[nodiscard]] std::optional<Window> windowBetween(Point2 from, const VisibilityEdge& edge,

@@ -8,7 +8,12 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <span>
 #include <unordered_map>
+#include <utility>
+
+#include "arrange/gallery/view_cells.h"
+#include "geom/spatial_index.h"
 
 namespace ispace::gallery {
 
@@ -44,71 +49,6 @@ void addCrossing(const Window& s, const Window& t, std::vector<WindowVertex>& ve
     vertices.push_back(
         {s.near + (begin + half) * u, half + std::max(near_apart, far_apart) + kOneLine});
 }
-
-/// Square cells over the windows, for pairs that come near each other.
-class WindowGrid {
-  public:
-    explicit WindowGrid(std::span<const Window> windows) : windows_(windows) {
-        for (const Window& window : windows) {
-            box_.add(window.near);
-            box_.add(window.far);
-        }
-        const double extent = std::max({box_.width(), box_.depth(), 1.0});
-        // About a cell per window, so that short windows touch one or two.
-        const double side = std::clamp(std::sqrt(static_cast<double>(windows.size())), 1.0, 1024.0);
-        step_ = extent / std::floor(side);
-        columns_ = static_cast<std::size_t>(side) + 1;
-        cells_.resize(columns_ * columns_);
-        for (std::uint32_t i = 0; i < windows.size(); ++i)
-            forEachCell(windows[i], [&](std::size_t cell) { cells_[cell].push_back(i); });
-    }
-
-    /// Calls visit(j) once for each j > i that shares a cell with i. \param stamps of windows
-    template <typename Visit>
-    void forEachLater(std::uint32_t i, std::vector<std::uint32_t>& stamps, Visit visit) const {
-        forEachCell(windows_[i], [&](std::size_t cell) {
-            const std::vector<std::uint32_t>& in = cells_[cell];
-            for (auto it = std::upper_bound(in.begin(), in.end(), i); it != in.end(); ++it) {
-                if (stamps[*it] == i) continue;
-                stamps[*it] = i;
-                visit(*it);
-            }
-        });
-    }
-
-  private:
-    [[nodiscard]] std::size_t cellOf(double offset) const {
-        const double cell = std::floor(offset / step_);
-        return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(columns_ - 1)));
-    }
-    /// Visits the cells within kClearance of a window, column by column.
-    template <typename Visit>
-    void forEachCell(const Window& window, Visit visit) const {
-        Point2 a = window.near, b = window.far;
-        if (b.x < a.x) std::swap(a, b);
-        const std::size_t last = cellOf(b.x - box_.low.x + kClearance);
-        const double slope = b.x > a.x ? (b.y - a.y) / (b.x - a.x) : 0;
-        for (std::size_t x = cellOf(a.x - box_.low.x - kClearance); x <= last; ++x) {
-            double from = a.y, to = b.y;
-            if (b.x - a.x > kClearance) {
-                const double left = box_.low.x + static_cast<double>(x) * step_ - kClearance;
-                const double right = left + step_ + 2 * kClearance;
-                from = a.y + slope * (std::clamp(left, a.x, b.x) - a.x);
-                to = a.y + slope * (std::clamp(right, a.x, b.x) - a.x);
-            }
-            if (to < from) std::swap(from, to);
-            const std::size_t top = cellOf(to - box_.low.y + kClearance);
-            for (std::size_t y = cellOf(from - box_.low.y - kClearance); y <= top; ++y)
-                visit(x * columns_ + y);
-        }
-    }
-
-    std::span<const Window> windows_;
-    Box2 box_;
-    double step_ = 1;
-    std::size_t columns_ = 1;
-    std::vector<std::vector<std::uint32_t>> cells_;  // ascending
-};
 
 using Bits = std::vector<std::uint64_t>;
 
@@ -187,7 +127,9 @@ std::vector<WindowVertex> windowVertices(const Floor& floor, std::span<const Wit
     for (const Witness& witness : witnesses)
         windows.insert(windows.end(), witness.windows.begin(), witness.windows.end());
     for (const Window& window : windows) vertices.push_back({window.far, window.error});
-    const WindowGrid grid(windows);
+    std::vector<Segment2> segments;
+    for (const Window& window : windows) segments.push_back({window.near, window.far});
+    const SegmentGrid grid(segments, kClearance);
     constexpr std::size_t kBlock = 64;
     std::vector<std::vector<WindowVertex>> found((windows.size() + kBlock - 1) / kBlock);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, found.size()), [&](const auto& range) {
@@ -195,9 +137,12 @@ std::vector<WindowVertex> windowVertices(const Floor& floor, std::span<const Wit
         for (std::size_t block = range.begin(); block < range.end(); ++block) {
             if (progress.stopped()) return;
             const std::size_t end = std::min(windows.size(), (block + 1) * kBlock);
-            for (std::size_t i = block * kBlock; i < end; ++i)
-                grid.forEachLater(static_cast<std::uint32_t>(i), stamps, [&](std::uint32_t j) {
-                    addCrossing(windows[i], windows[j], found[block]);
+            for (auto i = static_cast<std::uint32_t>(block * kBlock); i < end; ++i)
+                grid.searchAlong(segments[i], [&](std::span<const std::uint32_t> near) {
+                    for (auto j = std::upper_bound(near.begin(), near.end(), i); j != near.end();
+                         ++j)
+                        if (std::exchange(stamps[*j], i) != i)
+                            addCrossing(windows[i], windows[*j], found[block]);
                 });
         }
     });
@@ -209,16 +154,21 @@ std::optional<std::vector<WitnessSet>> largestWitnessSets(const Floor& floor,
                                                           std::span<const Witness> witnesses,
                                                           const Progress& progress) {
     const std::vector<WindowVertex> vertices = windowVertices(floor, witnesses, progress);
+    ViewCells cells(floor);
+    for (const Witness& witness : witnesses) cells.add(witness.view);
     std::vector<std::vector<std::uint32_t>> seen(vertices.size());
     constexpr std::size_t kGrain = 256;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, vertices.size(), kGrain), [&](const auto& range) {
-            if (progress.stopped()) return;
-            for (std::size_t i = range.begin(); i < range.end(); ++i)
-                for (std::uint32_t w = 0; w < witnesses.size(); ++w)
-                    if (witnesses[w].view.mayHold(vertices[i].at, vertices[i].error + kOneLine))
-                        seen[i].push_back(w);
-        });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices.size(), kGrain),
+                      [&](const auto& range) {
+                          if (progress.stopped()) return;
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                              const double margin = vertices[i].error + kOneLine;
+                              cells.forEachNear(vertices[i].at, margin, [&](std::uint32_t w) {
+                                  if (witnesses[w].view.mayHold(vertices[i].at, margin))
+                                      seen[i].push_back(w);
+                              });
+                          }
+                      });
     if (progress.stopped()) return std::nullopt;
     return largest(distinct(std::move(seen), vertices), witnesses.size());
 }
