@@ -127,23 +127,23 @@ std::size_t CutProgram::addCuts() {
     constexpr std::size_t kMaxCuts = 40;
     const int m = glp_get_num_rows(program_.get()), n = glp_get_num_cols(program_.get());
     if (glp_bf_exists(program_.get()) == 0 && glp_factorize(program_.get()) != 0) return 0;
-    std::vector<int> index(static_cast<std::size_t>(m + n) + 1);
-    std::vector<double> value(index.size());
+    std::vector<double> inverse(static_cast<std::size_t>(m) + 1);  // a row of the basis' inverse
     std::vector<std::pair<double, CoverCut>> found;
     for (int j = 1; j <= n; ++j) {
         const double x = glp_get_col_prim(program_.get(), j);
-        if (glp_get_col_stat(program_.get(), j) != GLP_BS || std::abs(x - std::round(x)) < kWhole)
-            continue;
-        const int count = glp_eval_tab_row(program_.get(), m + j, index.data(), value.data());
+        const int basic = glp_get_col_bind(program_.get(), j);
+        if (basic == 0 || std::abs(x - std::round(x)) < kWhole) continue;
+        std::fill(inverse.begin(), inverse.end(), 0);
+        inverse[static_cast<std::size_t>(basic)] = 1;
+        glp_btran(program_.get(), inverse.data());
         std::vector<std::pair<std::size_t, double>> rows;
-        for (int k = 1; k <= count; ++k) {
-            const auto at = static_cast<std::size_t>(k);
-            if (index[at] > m) continue;
-            const double share = -value[at] - std::floor(-value[at] + 1e-7);
+        for (int row = 1; row <= m; ++row) {
+            const auto at = static_cast<std::size_t>(row);
+            if (inverse[at] == 0 || glp_get_row_stat(program_.get(), row) == GLP_BS) continue;
+            const double share = inverse[at] - std::floor(inverse[at] + 1e-7);
             // Rounded down, so that whole coefficients stay.
             const double multiplier = std::floor(share / kPriceUnit - 2) * kPriceUnit;
-            if (multiplier > 0)
-                rows.emplace_back(static_cast<std::size_t>(index[at]) - 1, multiplier);
+            if (multiplier > 0) rows.emplace_back(at - 1, multiplier);
         }
         if (rows.empty()) continue;
         CoverCut cut = combined(rows);
