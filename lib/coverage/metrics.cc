@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "coverage/far_holes.h"
 #include "coverage/metrics.h"
 #include "env/level.h"
 #include "geom/arrangement.h"
@@ -214,7 +215,7 @@ struct Pieces {
         : regions(overlay.regions(in)), areas(overlay.areasOf(regions)) {}
 };
 
-void addPieces(CoverageReport& report, const Overlay& overlay) {
+void addPieces(CoverageReport& report, const Overlay& overlay, const FarHoles& far) {
     std::optional<Pieces> covered, unseen;
     tbb::parallel_invoke(
         [&] {
@@ -226,6 +227,7 @@ void addPieces(CoverageReport& report, const Overlay& overlay) {
             unseen.emplace(overlay, [](const LayerLabel& label) {
                 return label.count == 0 && (label.marks & kFreeMark) != 0;
             });
+            far.cutOut(unseen->regions, unseen->areas);
         });
     double sum = 0, largest = 0;
     for (const double area : covered->areas) {
@@ -325,6 +327,8 @@ void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCu
     CoverageReport& report = coverage.report;
     Areas areas(coverage.sets.size());
     const auto level = environment.level(coverage.target.height);
+    const std::vector<Segment2>& sheets = level->slice().sheets;
+    const FarHoles far(floor, coverage.sets, sheets);
     std::optional<Overlay> main;  // holds the first zones
     for (std::size_t first = 0; first == 0 || first < zones.size(); first += kZonesAtOnce) {
         const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
@@ -339,7 +343,7 @@ void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCu
         };
         if (first > 0) {
             forEachArea(layers, add);
-        } else if (const auto& sheets = level->slice().sheets; keep_depths) {
+        } else if (keep_depths) {
             main.emplace(layers, sheets);
             main->addAreas(add);
         } else {
@@ -361,7 +365,7 @@ void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCu
     for (const double area : areas.indoor_by_count)
         report.redundancy_exact->push_back(shareOf(area, report.indoor_area));
     addSensors(coverage, areas);
-    addPieces(report, *coverage.overlay);
+    addPieces(report, *coverage.overlay, far);
 }
 
 }  // namespace ispace
