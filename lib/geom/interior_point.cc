@@ -7,8 +7,10 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "geom/polygon.h"
 #include "geom/predicates.h"
@@ -21,42 +23,86 @@ constexpr std::size_t kLevels = 24;        // scanlines per direction, of each k
 constexpr std::size_t kManyLevels = 2000;  // the same if the first levels find no point
 constexpr std::size_t kChordsPerLine = 3;  // the longest are tried
 
-/// The region's edges; `swapped`: with x and y exchanged, so that one scan serves both directions.
-std::vector<Segment2> edgesOf(const Region& region, bool swapped) {
+std::vector<Segment2> edgesOf(const Region& region) {
     std::vector<Segment2> edges;
-    region.forEachEdge([&](const Segment2& e) {
-        edges.push_back(swapped ? Segment2{{e.a.y, e.a.x}, {e.b.y, e.b.x}} : e);
-    });
+    region.forEachEdge([&](const Segment2& e) { edges.push_back(e); });
     return edges;
 }
 
+/// A point with x and y exchanged if `swapped`, so that one scan serves both directions.
+Point2 turned(Point2 p, bool swapped) { return swapped ? Point2{p.y, p.x} : p; }
+
 double middle(double a, double b) { return a / 2 + b / 2; }
+
+/// From one vertex to the next above it.
+struct Step {
+    double low, high;
+    [[nodiscard]] double width() const { return high - low; }
+};
+
+/// Finds the steps between neighbours that are wider than twice a part of the extent, if there are
+/// so many, in ascending order: those between neighbouring parts. Any others are narrower.
+std::optional<std::vector<Step>> wideSteps(const std::vector<double>& ys, std::size_t most) {
+    constexpr std::size_t kInPart = 8;
+    const std::size_t count = ys.size() / kInPart;
+    if (count < most) return std::nullopt;
+    const auto [low, high] = std::minmax_element(ys.begin(), ys.end());
+    const double extent = *high - *low, per_metre = static_cast<double>(count) / extent;
+    if (!(std::isfinite(per_metre) && per_metre > 0)) return std::nullopt;
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    std::vector<Step> parts(count, {kFar, -kFar});  // the extent of the vertices in each
+    for (const double y : ys) {
+        const auto part = static_cast<std::size_t>((y - *low) * per_metre);
+        auto& [least, largest] = parts[std::min(part, count - 1)];
+        least = std::min(least, y);
+        largest = std::max(largest, y);
+    }
+    std::vector<Step> steps;
+    double last = *low;
+    for (const auto& [least, largest] : parts) {
+        if (least > largest) continue;
+        if (least - last > 2 / per_metre) steps.push_back({last, least});
+        last = largest;
+    }
+    if (steps.size() < most) return std::nullopt;
+    return steps;
+}
+
+/// All steps between neighbours, in ascending order.
+std::vector<Step> allSteps(std::vector<double> ys) {
+    std::sort(ys.begin(), ys.end());
+    ys.erase(std::unique(ys.begin(), ys.end()), ys.end());
+    std::vector<Step> steps;
+    for (std::size_t i = 1; i < ys.size(); ++i) steps.push_back({ys[i - 1], ys[i]});
+    return steps;
+}
 
 /// Levels halfway between neighbouring vertices, at most `most` of them, widest steps first: each
 /// of them holds a chord of the region.
-std::vector<double> levelsBetweenVertices(const std::vector<Segment2>& edges, std::size_t most) {
+std::vector<double> levelsBetweenVertices(const std::vector<Segment2>& edges, bool swapped,
+                                          std::size_t most) {
     std::vector<double> ys;
     ys.reserve(edges.size());
-    for (const Segment2& e : edges) ys.push_back(e.a.y);
-    std::sort(ys.begin(), ys.end());
-    ys.erase(std::unique(ys.begin(), ys.end()), ys.end());
-    std::vector<std::size_t> steps;
-    for (std::size_t i = 1; i < ys.size(); ++i) steps.push_back(i);
+    for (const Segment2& e : edges) ys.push_back(turned(e.a, swapped).y);
+    std::vector<Step> steps;
+    if (auto wide = wideSteps(ys, most))
+        steps = std::move(*wide);
+    else
+        steps = allSteps(std::move(ys));
     const auto last = steps.begin() + static_cast<std::ptrdiff_t>(std::min(steps.size(), most));
-    std::partial_sort(steps.begin(), last, steps.end(), [&](std::size_t i, std::size_t k) {
-        const double wide = ys[i] - ys[i - 1], other = ys[k] - ys[k - 1];
-        return wide != other ? wide > other : i < k;
+    std::partial_sort(steps.begin(), last, steps.end(), [](const Step& a, const Step& b) {
+        return a.width() != b.width() ? a.width() > b.width() : a.low < b.low;
     });
     steps.erase(last, steps.end());
     std::vector<double> levels;
     levels.reserve(steps.size());
-    for (const std::size_t i : steps) levels.push_back(middle(ys[i - 1], ys[i]));
+    for (const Step& step : steps) levels.push_back(middle(step.low, step.high));
     return levels;
 }
 
-std::vector<double> evenLevels(const std::vector<Segment2>& edges) {
+std::vector<double> evenLevels(const std::vector<Segment2>& edges, bool swapped) {
     Box2 box;
-    for (const Segment2& e : edges) box.add(e.a);
+    for (const Segment2& e : edges) box.add(turned(e.a, swapped));
     std::vector<double> levels;
     for (std::size_t i = 0; i < kLevels; ++i) {
         const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(kLevels);
@@ -85,14 +131,15 @@ void addChordMiddles(std::span<const double> xs, double y, std::vector<Candidate
 }
 
 /// The same at some levels, one after another.
-void addChordMiddles(const std::vector<Segment2>& edges, std::span<const double> levels,
-                     std::vector<Candidate>& middles) {
+void addChordMiddles(const std::vector<Segment2>& edges, bool swapped,
+                     std::span<const double> levels, std::vector<Candidate>& middles) {
     std::vector<std::pair<double, std::size_t>> by_height;
     for (std::size_t i = 0; i < levels.size(); ++i) by_height.emplace_back(levels[i], i);
     std::sort(by_height.begin(), by_height.end());
     std::vector<std::pair<std::size_t, double>> crossings;  // of a level
     std::vector<std::size_t> next(levels.size() + 2, 0);
-    for (const auto& [a, b] : edges) {
+    for (const Segment2& edge : edges) {
+        const Point2 a = turned(edge.a, swapped), b = turned(edge.b, swapped);
         const double low = std::min(a.y, b.y), high = std::max(a.y, b.y);
         auto level = std::lower_bound(by_height.begin(), by_height.end(), low,
                                       [](const auto& l, double y) { return l.first < y; });
@@ -173,8 +220,7 @@ class Bands {
 /// Stores the candidate farthest from the boundary.
 class Best {
   public:
-    explicit Best(const Region& region)
-        : region_(region), edges_(edgesOf(region, false)), bands_(edges_) {
+    explicit Best(const Region& region) : region_(region), edges_(edgesOf(region)), bands_(edges_) {
         for (const Segment2& e : edges_)
             for (const double v : {e.a.x, e.a.y}) rounding_ = std::max(rounding_, std::abs(v));
         rounding_ *= 1e-12;
@@ -205,7 +251,7 @@ class Best {
         point_ = p;
         number_ = number;
     }
-    [[nodiscard]] std::size_t edges() const { return edges_.size(); }
+    [[nodiscard]] const std::vector<Segment2>& edges() const { return edges_; }
     [[nodiscard]] bool found() const { return clearance_ >= 0; }
     [[nodiscard]] Point2 point() const { return point_; }
 
@@ -240,27 +286,28 @@ class Best {
 };
 
 /// Finds candidates on scanlines, in both directions.
-std::vector<Candidate> candidates(const Region& region, bool swapped, std::size_t most) {
+std::vector<Candidate> candidates(const std::vector<Segment2>& edges, bool swapped,
+                                  std::size_t most) {
     constexpr std::size_t kAtOnce = 64;  // levels
-    const auto edges = edgesOf(region, swapped);
-    auto levels = levelsBetweenVertices(edges, most);
-    const auto even = evenLevels(edges);
+    auto levels = levelsBetweenVertices(edges, swapped, most);
+    const auto even = evenLevels(edges, swapped);
     levels.insert(levels.end(), even.begin(), even.end());
     std::vector<Candidate> middles;
     for (std::size_t i = 0; i < levels.size(); i += kAtOnce)
-        addChordMiddles(edges, std::span(levels).subspan(i, std::min(kAtOnce, levels.size() - i)),
+        addChordMiddles(edges, swapped,
+                        std::span(levels).subspan(i, std::min(kAtOnce, levels.size() - i)),
                         middles);
     if (swapped)
         for (Candidate& c : middles) std::swap(c.at.x, c.at.y);
     return middles;
 }
 
-void scan(const Region& region, std::size_t most, Best& best) {
+void scan(std::size_t most, Best& best) {
     constexpr std::size_t kManyEdges = 10'000;
     std::vector<Candidate> up, across;
-    const auto find_up = [&] { up = candidates(region, false, most); };
-    const auto find_across = [&] { across = candidates(region, true, most); };
-    if (best.edges() < kManyEdges) {
+    const auto find_up = [&] { up = candidates(best.edges(), false, most); };
+    const auto find_across = [&] { across = candidates(best.edges(), true, most); };
+    if (best.edges().size() < kManyEdges) {
         find_up();
         find_across();
     } else {
@@ -296,8 +343,8 @@ void tryCorners(const Region& region, Best& best) {
 
 Point2 interiorPoint(const Region& region) {
     Best best(region);
-    scan(region, kLevels, best);
-    if (!best.found()) scan(region, kManyLevels, best);
+    scan(kLevels, best);
+    if (!best.found()) scan(kManyLevels, best);
     if (!best.found()) tryCorners(region, best);
     if (!best.found())
         throw std::invalid_argument(

@@ -167,6 +167,23 @@ TEST(InteriorPoint, isTheWidestPlaceOfManyEdges) {
     EXPECT_GT(clearance(comb, place), 4.9);
 }
 
+/// Rows of posts: few distances between many vertices.
+TEST(InteriorPoint, isInTheWidestAisle) {
+    constexpr int kRows = 41, kColumns = 40, kBefore = 17;
+    constexpr double kAisle = 2.5, kPost = 0.1;
+    Region hall{test::box(-1, -1, 95, 43), {}};
+    for (int row = 0; row < kRows; ++row)
+        for (int column = 0; column < kColumns; ++column) {
+            const double x = 2.4 * column, y = row + (row < kBefore ? 0 : kAisle + kPost - 1);
+            Polygon post = test::box(x, y, x + kPost, y + kPost);
+            std::reverse(post.begin(), post.end());
+            hall.holes.push_back(post);
+        }
+    const Point2 place = interiorPoint(hall);
+    EXPECT_EQ(hall.locate(place), Side::Inside);
+    EXPECT_GT(clearance(hall, place), 1.5);  // between posts of any other aisle: 1.24
+}
+
 TEST(InteriorPoint, isStrictlyInsideSlivers) {
     const Polygon slivers[] = {
         {{0, 0}, {1, 0}, {1, 1e-12}},
