@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "coverage/far_holes.h"
 #include "coverage/metrics.h"
 #include "coverage/outside_view.h"
 #include "coverage/pixel_density.h"
@@ -283,7 +284,7 @@ void mustFit(const Scene& scene, const Grid& grid) {
 }
 
 /// Computes the exact metrics, or stores the reason why they are missing.
-void tryExactMetrics(Coverage& coverage, const Environment& environment, FloorCurves floor,
+void tryExactMetrics(Coverage& coverage, const Environment& environment, FarHoles& holes,
                      const std::vector<Zone>& zones, bool keep_depths) {
     std::string& missing = coverage.report.exact_missing;
     for (const SensorView& view : coverage.sensors)
@@ -297,7 +298,7 @@ void tryExactMetrics(Coverage& coverage, const Environment& environment, FloorCu
             return;
         }
     try {
-        addExactMetrics(coverage, environment, std::move(floor), zones, keep_depths);
+        addExactMetrics(coverage, environment, holes, zones, keep_depths);
     } catch (const FormatError& error) {
         missing = error.diagnostics().front().message;
     }
@@ -356,12 +357,13 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
     mustFit(scene, grid);
     const auto level = environment.level(options.height);
     CoverageReport& report = coverage.report;
-    FloorCurves floor;
+    std::optional<FarHoles> holes;
     runBoth([&] { coverage.sensors = Viewer(own, worlds, grid, options).run(); },
             [&] {
                 coverage.target = makeTarget(environment, options.cells, options.height);
                 report.free_area = totalArea(level->freeFloor());
-                if (options.exact) floor = floorCurvesOf(environment, level->freeFloor());
+                if (options.exact)
+                    holes.emplace(environment.indoor(), level->freeFloor(), level->slice().sheets);
                 static_cast<void>(scene.digest());  // cached, in parallel with the views
             });
     addOutside(outside, own.sensors.size(), options, coverage, grid, scene);
@@ -379,8 +381,7 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
         report.sensors.push_back(metricsOf(scene, view, grid, options.plane));
     const std::vector<Zone> zones = zonesOf(environment);
     report.zones = zoneMetricsOf(environment, zones);
-    if (options.exact)
-        tryExactMetrics(coverage, environment, std::move(floor), zones, options.keep_depths);
+    if (holes) tryExactMetrics(coverage, environment, *holes, zones, options.keep_depths);
     addCellMetrics(coverage, zones);
     addDensities(coverage, environment, level->freeFloor(), zones, options.whole_densities);
     if (options.parallax) addParallax(coverage, environment, *options.parallax);

@@ -27,56 +27,53 @@ std::vector<Box2> boundsOfViews(std::span<const CoveredSet> sets) {
     return boxes;
 }
 
-/// Bounds of all holes, and of the edges of all other boundaries.
-std::vector<Box2> boundsOfFloor(const FloorCurves& floor, std::span<const Box2> holes,
-                                std::span<const Segment2> sheets) {
-    std::vector<Box2> boxes(holes.begin(), holes.end());
-    const auto add_edges = [&boxes](const Curve& curve) {
-        for (const CurveEdge& edge : curve) boxes.push_back(bounds(Curve{edge}));
-    };
-    for (const Curve& curve : floor.indoor) add_edges(curve);
-    for (std::size_t i = 0; i < floor.free.size(); ++i)
-        if (holes[i].empty()) add_edges(floor.free[i]);
-    for (const Segment2& sheet : sheets) boxes.push_back(bounds(sheet));
-    return boxes;
-}
-
 }  // namespace
 
-FarHoles::FarHoles(FloorCurves& floor, std::span<const CoveredSet> sets,
-                   std::span<const Segment2> sheets) {
-    std::vector<Curve>& free = floor.free;
-    std::vector<Box2> boxes(free.size());  // empty: an outline
-    Box2 all;
-    for (std::size_t i = 0; i < free.size(); ++i) {
-        const Box2 box = bounds(free[i]);
-        all.add(box.low);
-        all.add(box.high);
-        if (signedArea(free[i]) < 0) boxes[i] = box;
-    }
+FarHoles::FarHoles(const Regions& indoor, const std::vector<Region>& free_floor,
+                   std::span<const Segment2> sheets)
+    : floor_(free_floor) {
+    const Box2 all = bounds(indoor);
     // Rounding in an overlay moves edges by less.
-    const double margin = std::ldexp(std::max(all.width(), all.depth()), -25);
-    const BoxTree views(boundsOfViews(sets)), others(boundsOfFloor(floor, boxes, sheets));
-    std::vector<char> is_far(free.size());
-    parallelChunks(
-        free.size() > kManyRecords, free.size(), [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) {
-                if (boxes[i].empty()) continue;
-                const Box2 near = grown(boxes[i], margin);
-                bool is_alone = true;
-                views.search(near, [&](std::size_t) { is_alone = false; });
-                others.search(near, [&](std::size_t k) { is_alone = is_alone && k == i; });
-                is_far[i] = static_cast<char>(is_alone);
-            }
-        });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < free.size(); ++i) {
-        if (is_far[i] != 0)
-            holes_.push_back(chords(free[i]));
-        else if (i != kept++)
-            free[kept - 1] = std::move(free[i]);
+    margin_ = std::ldexp(std::max(all.width(), all.depth()), -25);
+    std::vector<Box2> boxes;
+    for (const Region& region : floor_)
+        for (const Polygon& hole : region.holes) boxes.push_back(bounds(hole));
+    is_lone_.resize(boxes.size());
+    const auto add_edge = [&boxes](const Segment2& edge) { boxes.push_back(bounds(edge)); };
+    for (const Region& region : floor_) forEachEdge(region.outline, add_edge);
+    indoor.forEachEdge(add_edge);
+    std::for_each(sheets.begin(), sheets.end(), add_edge);
+    const BoxTree tree(boxes);
+    parallelChunks(is_lone_.size() > kManyRecords, is_lone_.size(),
+                   [&](std::size_t first, std::size_t last) {
+                       for (std::size_t i = first; i < last; ++i) {
+                           bool is_lone = true;
+                           tree.search(grown(boxes[i], margin_),
+                                       [&](std::size_t k) { is_lone = is_lone && k == i; });
+                           is_lone_[i] = static_cast<char>(is_lone);
+                       }
+                   });
+}
+
+std::vector<Curve> FarHoles::curvesWithout(std::span<const CoveredSet> sets) {
+    const BoxTree views(boundsOfViews(sets));
+    const auto is_seen = [&](const Polygon& hole) {
+        bool is_near = false;
+        views.search(grown(bounds(hole), margin_), [&](std::size_t) { is_near = true; });
+        return is_near;
+    };
+    std::vector<Curve> curves;
+    auto is_lone = is_lone_.begin();
+    for (const Region& region : floor_) {
+        curves.push_back(curveOf(region.outline));
+        for (const Polygon& hole : region.holes) {
+            if (*is_lone++ != 0 && !is_seen(hole))
+                far_.push_back(&hole);
+            else
+                curves.push_back(curveOf(hole));
+        }
     }
-    free.resize(kept);
+    return curves;
 }
 
 void FarHoles::cutOut(std::vector<Region>& pieces, std::vector<double>& areas) const {
@@ -86,8 +83,8 @@ void FarHoles::cutOut(std::vector<Region>& pieces, std::vector<double>& areas) c
     const BoxTree tree(boxes);
     std::vector<std::optional<RegionIndex>> indices(pieces.size());
     std::vector<std::size_t> holders;
-    for (const Polygon& hole : holes_) {
-        const Point2 corner = hole.front();
+    for (const Polygon* const hole : far_) {
+        const Point2 corner = hole->front();
         holders.clear();
         tree.search({corner, corner}, [&](std::size_t i) { holders.push_back(i); });
         // One of them holds it: the largest is looked at last.
@@ -100,8 +97,8 @@ void FarHoles::cutOut(std::vector<Region>& pieces, std::vector<double>& areas) c
         };
         const auto found = std::find_if(holders.begin(), holders.end(), is_inside);
         if (found == holders.end()) continue;
-        pieces[*found].holes.push_back(hole);
-        areas[*found] += signedArea(hole);
+        pieces[*found].holes.push_back(*hole);
+        areas[*found] += signedArea(*hole);
     }
 }
 

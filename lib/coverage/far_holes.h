@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "coverage/coverage.h"
-#include "coverage/metrics.h"
 
 namespace ispace {
 
@@ -15,17 +14,24 @@ namespace ispace {
 /// floor's edges, and an overlay of views is the same without them, but for kFreeMark within them.
 class FarHoles {
   public:
-    /// Removes them from `floor.free`.
-    /// \param sets \pre all regions are known
-    FarHoles(FloorCurves& floor, std::span<const CoveredSet> sets,
+    /// Finds the holes that no other boundary of the floor comes near.
+    /// \param free_floor stored by reference
+    FarHoles(const Regions& indoor, const std::vector<Region>& free_floor,
              std::span<const Segment2> sheets);
 
-    /// Cuts them out of the pieces of unseen free floor in such an overlay.
+    /// Returns the boundary of the free floor without the far holes. \pre all regions are known
+    std::vector<Curve> curvesWithout(std::span<const CoveredSet> sets);
+
+    /// Cuts the far holes of curvesWithout() out of the pieces of unseen free floor in an overlay
+    /// of these curves.
     /// \param areas of the pieces
     void cutOut(std::vector<Region>& pieces, std::vector<double>& areas) const;
 
   private:
-    std::vector<Polygon> holes_;
+    const std::vector<Region>& floor_;
+    double margin_ = 0;
+    std::vector<char> is_lone_;  // for each hole of each region
+    std::vector<const Polygon*> far_;
 };
 
 }  // namespace ispace

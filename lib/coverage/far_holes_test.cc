@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/number.h"
+#include "coverage/metrics.h"
 #include "env/level.h"
 #include "geom/arrangement.h"
 #include "support/test_scenes.h"
@@ -25,12 +26,12 @@ struct UnseenFloor {
 UnseenFloor unseenIn(const Scene& scene, const Coverage& coverage, bool all_holes) {
     const auto level = scene.environment.level(0.15);
     const std::vector<Segment2>& sheets = level->slice().sheets;
-    FloorCurves floor = floorCurvesOf(scene.environment, level->freeFloor());
-    FloorCurves whole = floor;
-    const FarHoles far(floor, coverage.sets, sheets);
+    FarHoles far(scene.environment.indoor(), level->freeFloor(), sheets);
+    std::vector<Curve> curves = far.curvesWithout(coverage.sets);
+    if (all_holes) curves = floorCurvesOf(scene.environment, level->freeFloor()).free;
     std::vector<Layer> layers;
     for (const CoveredSet& set : coverage.sets) layers.push_back({.curves = *set.region});
-    layers.push_back(markLayer(all_holes ? whole.free : floor.free, kFreeMark));
+    layers.push_back(markLayer(curves, kFreeMark));
     const Overlay overlay(layers, sheets);
     UnseenFloor unseen;
     unseen.pieces = overlay.regions(

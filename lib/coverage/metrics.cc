@@ -215,7 +215,7 @@ struct Pieces {
         : regions(overlay.regions(in)), areas(overlay.areasOf(regions)) {}
 };
 
-void addPieces(CoverageReport& report, const Overlay& overlay, const FarHoles& far) {
+void addPieces(CoverageReport& report, const Overlay& overlay, const FarHoles& holes) {
     std::optional<Pieces> covered, unseen;
     tbb::parallel_invoke(
         [&] {
@@ -227,7 +227,7 @@ void addPieces(CoverageReport& report, const Overlay& overlay, const FarHoles& f
             unseen.emplace(overlay, [](const LayerLabel& label) {
                 return label.count == 0 && (label.marks & kFreeMark) != 0;
             });
-            far.cutOut(unseen->regions, unseen->areas);
+            holes.cutOut(unseen->regions, unseen->areas);
         });
     double sum = 0, largest = 0;
     for (const double area : covered->areas) {
@@ -322,13 +322,13 @@ FloorCurves floorCurvesOf(const Environment& environment, const std::vector<Regi
     return floor;
 }
 
-void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCurves floor,
+void addExactMetrics(Coverage& coverage, const Environment& environment, FarHoles& holes,
                      const std::vector<Zone>& zones, bool keep_depths) {
     CoverageReport& report = coverage.report;
     Areas areas(coverage.sets.size());
     const auto level = environment.level(coverage.target.height);
     const std::vector<Segment2>& sheets = level->slice().sheets;
-    const FarHoles far(floor, coverage.sets, sheets);
+    FloorCurves floor{curvesWithArcs(environment.indoor()), holes.curvesWithout(coverage.sets)};
     std::optional<Overlay> main;  // holds the first zones
     for (std::size_t first = 0; first == 0 || first < zones.size(); first += kZonesAtOnce) {
         const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
@@ -365,7 +365,7 @@ void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCu
     for (const double area : areas.indoor_by_count)
         report.redundancy_exact->push_back(shareOf(area, report.indoor_area));
     addSensors(coverage, areas);
-    addPieces(report, *coverage.overlay, far);
+    addPieces(report, *coverage.overlay, holes);
 }
 
 }  // namespace ispace

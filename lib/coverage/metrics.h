@@ -51,9 +51,12 @@ struct FloorCurves {
 };
 FloorCurves floorCurvesOf(const Environment& environment, const std::vector<Region>& free_floor);
 
+class FarHoles;
+
 /// Builds the overlay, with or without depths, and sets the exact metrics of the report. \pre all
 /// regions are known
-void addExactMetrics(Coverage& coverage, const Environment& environment, FloorCurves floor,
+/// \param holes of the free floor at the target's height
+void addExactMetrics(Coverage& coverage, const Environment& environment, FarHoles& holes,
                      const std::vector<Zone>& zones, bool keep_depths);
 
 /// Returns the figures that robustness is told of: coverage, free coverage, that of each zone, and
