@@ -26,6 +26,8 @@ constexpr std::size_t kManySensors = 6;
 /// Before the overlap bound, which also gains from a better solution.
 constexpr KickOptions kFewKicks = {.rounds = 1};
 constexpr int kOverlapRounds = 60;
+/// A tree over so few sets of sensors takes less time than swaps from many starts.
+constexpr double kFewSets = 3e5;
 constexpr double kOverlapStall = 0.04;
 
 LagrangeLimits limitsOf(const SearchOptions& options) {
@@ -53,6 +55,15 @@ std::uint64_t enoughOf(const Problem& problem, std::uint64_t bound, double gap) 
     if (problem.budget && gap <= 0) return std::numeric_limits<std::uint64_t>::max();
     return bound -
            static_cast<std::uint64_t>(std::clamp(gap, 0.0, 1.0) * static_cast<double>(bound));
+}
+
+/// Returns true if the survivors of a bound form few sets of so many sensors.
+bool areFew(const Bound& bound, std::size_t sensors) {
+    double survivors = 0, sets = 1;
+    for (const auto& kind : bound.survivors) survivors += static_cast<double>(kind.size());
+    for (std::size_t n = 0; n < sensors; ++n)
+        sets *= std::max(1.0, survivors - static_cast<double>(n)) / static_cast<double>(n + 1);
+    return sets <= kFewSets;
 }
 
 }  // namespace
@@ -130,7 +141,7 @@ class Search {
         noteProgress(problem_, result_, progress_);
         if (options_.optimizer != Optimizer::Greedy && !progress_.stopped()) swap();
         if (share_.isOwn(Shared::Starts)) return std::move(result_);
-        if (!progress_.stopped()) prove();
+        if (!progress_.stopped() && result_.best.value < result_.bound) prove();
         if (result_.bound == problem_.totalWeight() && progress_.stopped()) {
             SilentProgress silent;  // a bound is always required
             const LagrangeLimits soon = {.cut = result_.best.value, .gap = kQuick.gap, .rounds = 2};
@@ -142,12 +153,18 @@ class Search {
 
   private:
     void swap() {
+        const bool is_few = result_.best.chosen.size() < kManySensors && !problem_.budget;
+        if (is_few)
+            result_.best = improveBySwaps(problem_, result_.best,
+                                          {.starts = 0, .enough = options_.swap.enough}, progress_);
         // Swaps may take long: if time runs out, this is the bound.
         LagrangeLimits quick = kQuick;
         quick.cut = result_.best.value;
         quick.gap = std::min(quick.gap, limitsOf(options_).gap);
-        result_.bound = lagrangianBound(problem_, result_.best.chosen, quick, progress_).value;
+        const Bound bound = lagrangianBound(problem_, result_.best.chosen, quick, progress_);
+        result_.bound = bound.value;
         noteProgress(problem_, result_, progress_);
+        if (is_few && areFew(bound, result_.best.chosen.size())) return branch(bound);
         result_ = recalled(share_, problem_, "swapped", unpackResult, progress_, [&] {
             SearchResult better = result_;
             SwapOptions swap = options_.swap;
@@ -172,10 +189,13 @@ class Search {
             boundByOverlaps(bound);
             kick(KickOptions());
         }
-        if (!progress_.stopped() && result_.best.value < result_.bound)
-            result_ = branchAndBound(problem_, bound, std::move(result_), options_.gap, progress_,
-                                     std::numeric_limits<std::uint64_t>::max(), options_.max_bytes,
-                                     share_);
+        branch(bound);
+    }
+    void branch(const Bound& bound) {
+        if (progress_.stopped() || result_.best.value >= result_.bound) return;
+        result_ =
+            branchAndBound(problem_, bound, std::move(result_), options_.gap, progress_,
+                           std::numeric_limits<std::uint64_t>::max(), options_.max_bytes, share_);
     }
     /// Returns true if a tree cannot close the gap in reasonable time.
     [[nodiscard]] bool isWide() const {
