@@ -50,6 +50,12 @@ struct LimitRange {
     std::size_t first = 0, end = 0;
 };
 
+/// Columns of a row that belong to a part, up to before `end`.
+struct Stretch {
+    std::size_t part = 0;
+    int end = 0;
+};
+
 /// Rasterises the views of one position after another and reuses the memory.
 class SectorRaster {
   public:
@@ -62,9 +68,12 @@ class SectorRaster {
     void cutAtRange();
     void takeCentre();
     void cutAt(std::size_t limit, int begin, int end);
-    void addPart(std::size_t part);
-    void addLevelRow(std::size_t part, int row);
-    void addRow(int row, int begin, int end);
+    void splitRow(int row);
+    void addRow(int row);
+    /// Returns the part of the directions just before a limit.
+    [[nodiscard]] std::size_t partBefore(std::size_t limit) const {
+        return (limit == 0 ? limits_.size() : limit) - 1;
+    }
 
     [[nodiscard]] std::uint64_t* wordsOf(int row) {
         return words_.data() + static_cast<std::size_t>(row) * scan_.wordsPerRow();
@@ -101,18 +110,17 @@ class SectorRaster {
     GridAxis x_axis_;
     Point2 place_;
     double max_range_ = 0, slack_ = 0;
-    CellParts* parts_ = nullptr;
-    std::size_t part_begin_ = 0;  // index of its first run
 
     std::vector<Limit> limits_;
     LimitRange below_, above_;  // limits below 0 degrees, and between 0 and 180
     VisibleRegion region_;
     Scanline scan_;
-    std::vector<std::uint64_t> words_;     // bits of the seen cells
-    std::vector<double> dy_;               // offsets of the rows' middles from the viewpoint
-    int level_begin_ = 0, level_end_ = 0;  // rows level with the viewpoint: one or zero
-    std::vector<int> cuts_;                // by limit and row
-    std::vector<char> is_empty_;           // parts between limits with equal cuts in all rows
+    std::vector<std::uint64_t> words_;        // bits of the seen cells
+    std::vector<double> dy_;                  // offsets of the rows' middles from the viewpoint
+    int level_begin_ = 0, level_end_ = 0;     // rows level with the viewpoint: one or zero
+    std::vector<int> cuts_;                   // by limit and row
+    std::vector<Stretch> stretches_;          // of one row
+    std::vector<std::vector<CellRun>> runs_;  // by part
     std::optional<std::uint32_t> centre_;
 };
 
@@ -137,27 +145,26 @@ void SectorRaster::run(const Grid& grid, const Level& level, Point2 place, doubl
     x_axis_ = GridAxis::columnsOf(grid);
     place_ = place;
     max_range_ = max_range;
-    parts_ = &parts;
-    parts.runs.clear();
-    parts.first.assign(1, 0);
     setLimits(limits);
     rasterise(level);
     cutAtRange();
     takeCentre();
     cuts_.resize(limits_.size() * dy_.size());
-    is_empty_.assign(limits_.size(), 0);
     for (std::size_t i = below_.first; i < below_.end; ++i) cutAt(i, 0, level_begin_);
     for (std::size_t i = above_.first; i < above_.end; ++i) cutAt(i, level_end_, scan_.rows());
-    for (std::size_t part = 0; part < limits_.size(); ++part) {
-        if (is_empty_[part] == 0) addPart(part);
+    runs_.resize(limits_.size() + 1);
+    for (std::vector<CellRun>& runs : runs_) runs.clear();
+    for (int row = 0; row < scan_.rows(); ++row) {
+        splitRow(row);
+        addRow(row);
+    }
+    if (centre_) runs_.back().push_back({*centre_, *centre_ + 1});
+    parts.runs.clear();
+    parts.first.assign(1, 0);
+    for (const std::vector<CellRun>& runs : runs_) {
+        parts.runs.insert(parts.runs.end(), runs.begin(), runs.end());
         parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
     }
-    part_begin_ = parts.runs.size();
-    if (limits_.empty())
-        for (int row = 0; row < scan_.rows(); ++row) addRow(row, 0, scan_.columns());
-    else if (centre_)
-        parts.runs.push_back({*centre_, *centre_ + 1});
-    parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
 }
 
 void SectorRaster::setLimits(std::span<const Angle> limits) {
@@ -277,74 +284,44 @@ void SectorRaster::cutAt(std::size_t limit, int begin, int end) {
     // Limits that rounding merges into one line keep their order.
     if (limit == (is_below ? below_ : above_).first) return;
     const int* before = cuts - dy_.size();
-    int different = 0;
-    for (int row = begin; row < end; ++row) {
+    for (int row = begin; row < end; ++row)
         cuts[row] = is_below ? std::max(cuts[row], before[row]) : std::min(cuts[row], before[row]);
-        different |= cuts[row] ^ before[row];
+}
+
+/// Splits the columns of a row among the parts. Below the viewpoint columns rise counter-clockwise,
+/// above it they fall; all cells of a level row on one side of it have the same direction exactly:
+/// 180 or 0 degrees.
+void SectorRaster::splitRow(int row) {
+    stretches_.clear();
+    std::size_t last = limits_.empty() ? 0 : partBefore(above_.first);
+    if (row < level_begin_ && !limits_.empty()) {
+        last = partBefore(below_.first);
+        for (std::size_t limit = below_.first; limit < below_.end; last = limit++)
+            stretches_.push_back({last, cutOf(limit, row)});
+    } else if (row < level_end_) {
+        const int middle = x_axis_.firstNotBelow(place_.x) - scan_.firstColumn();
+        if (!limits_.empty()) stretches_.push_back({limits_.size() - 1, middle});
+    } else {
+        for (std::size_t limit = above_.end; limit-- > above_.first;)
+            stretches_.push_back({limit, cutOf(limit, row)});
     }
-    if (different == 0) is_empty_[limit - 1] = 1;
+    stretches_.push_back({last, scan_.columns()});
 }
 
-/// Below the viewpoint columns rise counter-clockwise, above it they fall.
-void SectorRaster::addPart(std::size_t part) {
-    part_begin_ = parts_->runs.size();
-    const std::size_t count = limits_.size();
-    // Cells before the first limit of a half belong to the part of the limit before it.
-    const auto part_before = [count](std::size_t limit) {
-        return (limit == 0 ? count : limit) - 1;
-    };
-    const auto add_half = [&](const LimitRange& half, bool is_below, int row) {
-        const auto cut_of = [&](std::size_t limit, int otherwise) {
-            return limit < half.end ? cutOf(limit, row) : otherwise;
-        };
-        const int all = scan_.columns();
-        const bool is_after = half.first <= part && part < half.end;
-        const bool is_before = part == part_before(half.first);
-        if (is_below) {
-            if (is_before) addRow(row, 0, cut_of(half.first, all));
-            if (is_after) addRow(row, cutOf(part, row), cut_of(part + 1, all));
-        } else {
-            if (is_after) addRow(row, cut_of(part + 1, 0), cutOf(part, row));
-            if (is_before) addRow(row, cut_of(half.first, 0), all);
-        }
-    };
-    const auto concerns = [&](const LimitRange& half) {
-        return (half.first <= part && part < half.end) || part == part_before(half.first);
-    };
-    for (int row = 0; row < level_begin_ && concerns(below_); ++row) add_half(below_, true, row);
-    for (int row = level_begin_; row < level_end_; ++row) addLevelRow(part, row);
-    for (int row = level_end_; row < scan_.rows() && concerns(above_); ++row)
-        add_half(above_, false, row);
-}
-
-/// All cells on one side of the viewpoint have exactly the same direction: 180 or 0 degrees.
-void SectorRaster::addLevelRow(std::size_t part, int row) {
-    const int middle =
-        std::clamp(x_axis_.firstNotBelow(place_.x) - scan_.firstColumn(), 0, scan_.columns());
-    const std::size_t count = limits_.size();
-    if (part == count - 1) addRow(row, 0, middle);
-    if (part == (above_.first == 0 ? count : above_.first) - 1)
-        addRow(row, middle, scan_.columns());
-}
-
-void SectorRaster::addRow(int row, int begin, int end) {
-    if (begin >= end) return;
-    std::vector<CellRun>& runs = parts_->runs;
+void SectorRaster::addRow(int row) {
     const std::uint64_t* words = wordsOf(row);
-    for (int i = begin / 64; 64 * i < end; ++i) {
-        std::uint64_t bits = words[i] & bitsOf(i, begin, end);
-        while (bits != 0) {
-            const int first = std::countr_zero(bits);
-            const int count = std::countr_one(bits >> first);
-            const std::uint32_t cell = cellAt(row, 64 * i + first);
-            const std::uint32_t end_cell = cell + static_cast<std::uint32_t>(count);
-            if (runs.size() > part_begin_ && runs.back().end == cell)
-                runs.back().end = end_cell;
-            else
-                runs.push_back({cell, end_cell});
-            bits = first + count == 64 ? 0 : bits & (~std::uint64_t{0} << (first + count));
+    const Stretch* stretch = stretches_.data();
+    for (int i = 0; 64 * i < scan_.columns(); ++i)
+        for (std::uint64_t bits = words[i]; bits != 0;) {
+            const int low = std::countr_zero(bits), first = 64 * i + low;
+            while (stretch->end <= first) ++stretch;
+            const int end = std::min(first + std::countr_one(bits >> low), stretch->end);
+            const std::uint32_t cell = cellAt(row, first);
+            std::vector<CellRun>& runs = runs_[stretch->part];
+            if (runs.empty() || runs.back().end != cell) runs.push_back({cell, cell});
+            runs.back().end = cellAt(row, end);
+            bits = end - 64 * i == 64 ? 0 : bits & (~std::uint64_t{0} << (end - 64 * i));
         }
-    }
 }
 
 }  // namespace
