@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/per_thread.h"
+#include "base/simd.h"
 #include "scene/sensor/field_of_view.h"
 
 namespace ispace {
@@ -258,6 +259,22 @@ void SectorRaster::takeCentre() {
                     });
 }
 
+/// Computes the first columns beyond middle + dy * slope; returns true if one of these is within
+/// `slack` of a column's centre.
+ISPACE_SIMD_CLONES bool cutRows(const double* dy, int rows, double middle, double slope,
+                                double most, double slack, int* cuts) {
+    int unsure = 0;
+    for (int row = 0; row < rows; ++row) {
+        const double at = middle + dy[row] * slope;
+        const double up = at < -0.5 ? -0.5 : at;
+        const double next = (up > most ? most : up) + 1;
+        cuts[row] = static_cast<int>(next);
+        const double rest = next - static_cast<double>(cuts[row]);
+        unsure |= static_cast<int>(rest <= slack) | static_cast<int>(rest >= 1 - slack);
+    }
+    return unsure != 0;
+}
+
 /// Computes where a limit cuts rows [begin, end), all above or all below the viewpoint: by its
 /// cotangent, and by the limit's exact test if the cut is too near to a centre.
 void SectorRaster::cutAt(std::size_t limit, int begin, int end) {
@@ -268,13 +285,8 @@ void SectorRaster::cutAt(std::size_t limit, int begin, int end) {
     const double slack = slack_ + kUnsure, most = scan_.columns() - 0.5;
     int* cuts = cuts_.data() + limit * dy_.size();
     const double* dy = dy_.data();
-    bool is_unsure = false;
-    for (int row = begin; row < end; ++row) {
-        const double next = std::max(-0.5, std::min(middle + dy[row] * slope, most)) + 1;
-        cuts[row] = static_cast<int>(next);
-        const double rest = next - cuts[row];
-        is_unsure |= !(rest > slack && rest < 1 - slack);
-    }
+    const bool is_unsure =
+        cutRows(dy + begin, end - begin, middle, slope, most, slack, cuts + begin);
     for (int row = begin; is_unsure && row < end; ++row) {
         const double position = middle + dy[row] * slope;
         const int last = firstBeyond(position + slack);
