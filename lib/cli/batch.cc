@@ -9,9 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <iterator>
-#include <pugixml.hpp>
 #include <set>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -185,48 +183,7 @@ namespace {
 
 using Verdict = JunitCase::Outcome;
 
-void addCase(pugi::xml_node list, const std::string& tool, const JunitCase& one) {
-    pugi::xml_node test = list.append_child("testcase");
-    test.append_attribute("classname") = tool.c_str();
-    test.append_attribute("name") = printable(one.name).c_str();
-    test.append_attribute("time") = formatMilliseconds(one.time).c_str();
-    if (one.outcome == Verdict::Met) return;
-    const bool is_error = one.outcome == Verdict::Error;
-    pugi::xml_node failure = test.append_child(is_error ? "error" : "failure");
-    failure.append_attribute("message") = printable(one.message).c_str();
-    failure.append_attribute("type") = is_error ? "error" : "unmet";
-}
-
 }  // namespace
-
-// The format has no standard; these are the elements and attributes that Jenkins, GitLab and
-// GitHub's readers share: https://github.com/testmoapp/junitxml
-std::string junitXml(const std::string& tool, const std::string& suite,
-                     std::span<const JunitCase> cases) {
-    const auto count = [cases](Verdict outcome) {
-        return static_cast<unsigned long>(std::count_if(
-            cases.begin(), cases.end(), [=](const JunitCase& c) { return c.outcome == outcome; }));
-    };
-    std::chrono::nanoseconds end{};
-    for (const JunitCase& one : cases) end = std::max(end, one.time);
-
-    pugi::xml_document document;
-    pugi::xml_node declaration = document.append_child(pugi::node_declaration);
-    declaration.append_attribute("version") = "1.0";
-    declaration.append_attribute("encoding") = "UTF-8";
-    pugi::xml_node root = document.append_child("testsuites");
-    pugi::xml_node list = root.append_child("testsuite");
-    list.append_attribute("name") = printable(suite).c_str();
-    list.append_attribute("tests") = static_cast<unsigned long>(cases.size());
-    list.append_attribute("failures") = count(Verdict::Unmet);
-    list.append_attribute("errors") = count(Verdict::Error);
-    list.append_attribute("skipped") = 0;
-    list.append_attribute("time") = formatMilliseconds(end).c_str();
-    for (const JunitCase& one : cases) addCase(list, tool, one);
-    std::ostringstream out;
-    document.save(out, "  ");
-    return out.str();
-}
 
 std::string JobOutcome::bytes() const {
     Packer to;
@@ -439,33 +396,6 @@ void runBatch(const BatchRun& run, const JobWork& work) {
     claimOutput(run.batch.cache, "--cache");
     JunitFile junit(run.tool, run.junit);
     junit.during({&run.batch.list, 1}, [&] { runShare(run, work, junit); });
-}
-
-JunitFile::JunitFile(std::string tool, const std::string& file) : tool_(std::move(tool)) {
-    if (!file.empty()) file_.emplace(file);
-}
-
-void JunitFile::write(const std::string& suite, std::span<const JunitCase> cases) {
-    if (!file_) return;
-    file_->write(junitXml(tool_, suite, cases));
-    file_->commit();
-    file_.reset();
-}
-
-void JunitFile::during(std::span<const std::string> inputs, const std::function<void()>& work) {
-    try {
-        work();
-    } catch (...) {
-        JunitCase error{.name = tool_, .outcome = Verdict::Error};
-        for (const std::string& input : inputs) error.name += ' ' + displayName(baseName(input));
-        for (const std::string& line : currentFailure().lines())
-            error.message.append(error.message.empty() ? "" : "; ").append(line);
-        try {
-            write(error.name, {&error, 1});
-        } catch (const std::exception&) {  // the exception of the work is the one to report
-        }
-        throw;
-    }
 }
 
 }  // namespace ispace

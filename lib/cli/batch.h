@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -10,11 +9,11 @@
 #include <string_view>
 #include <vector>
 
-#include "base/file.h"
 #include "base/json_writer.h"
 #include "base/shard.h"
 #include "cli/command_line.h"
 #include "cli/common_options.h"
+#include "cli/junit.h"
 
 namespace ispace {
 
@@ -69,25 +68,6 @@ std::vector<BatchJob> readBatchList(std::string_view bytes, const std::string& n
 /// the run and is rethrown.
 void runInOrder(std::size_t count, const std::function<std::function<void()>(std::size_t)>& work);
 
-/// One verdict, as CI servers list them.
-struct JunitCase {
-    enum class Outcome {
-        Met,
-        Unmet,  ///< judged, and not as required: a `failure`
-        Error,  ///< could not be judged
-    };
-    std::string name;
-    Outcome outcome = Outcome::Met;
-    std::string message = {};            ///< why it is not met
-    std::chrono::nanoseconds time = {};  ///< 0 if not timed
-};
-
-/// Writes the verdicts of a tool in the XML that CI servers read as JUnit's: one testsuite, with
-/// the time of its last verdict and a testcase for each. \param suite its name, e.g. the
-/// environment's
-std::string junitXml(const std::string& tool, const std::string& suite,
-                     std::span<const JunitCase> cases);
-
 /// Result of one job of a list.
 struct JobOutcome {
     std::string line = {};                   ///< of JSON; "": the job failed
@@ -130,22 +110,5 @@ JsonWriter jobLine(const std::string& tool, const BatchJob& job);
 /// \throws UnmetError if one missed a requirement, FormatError if one failed; both after the last
 /// job; UsageError for equal names of products and for a product that is an operand
 void runBatch(const BatchRun& run, const JobWork& work);
-
-/// The file of --junit, which is written whether or not the run succeeds.
-class JunitFile {
-  public:
-    /// \param file "": no file \throws std::system_error, UsageError as OutputFile
-    JunitFile(std::string tool, const std::string& file);
-
-    /// Writes the verdicts of a suite, once.
-    void write(const std::string& suite, std::span<const JunitCase> cases);
-    /// Runs a tool's work. If it throws before write(), the file holds one case, an `error` with
-    /// the messages, named after the tool and `inputs`, its operands; the exception is rethrown.
-    void during(std::span<const std::string> inputs, const std::function<void()>& work);
-
-  private:
-    std::string tool_;
-    std::optional<OutputFile> file_;  // until it is written
-};
 
 }  // namespace ispace

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "cli/command_text.h"
@@ -27,10 +26,10 @@ namespace {
 bool isCompilerName(std::string_view name) { return name == "MD" || name == "MF"; }
 
 /// "--output", "-X" where that is the only name, "-MF"
-std::string nameOf(const CLI::Option& option) {
-    const std::string name = option.get_name();
+std::string shown(const std::string& name) {
     return isCompilerName(std::string_view(name).substr(2)) ? name.substr(1) : name;
 }
+std::string nameOf(const CLI::Option& option) { return shown(option.get_name()); }
 
 }  // namespace
 
@@ -58,10 +57,9 @@ struct CommandLine::Data {
     std::map<std::string, std::string> values;   // of options that may stand without one
     std::function<void()> check = [] {};  // of options against each other, once all are known
 
-    CLI::Option* keep(CLI::Option* option, const std::string& value, const std::string& text,
-                      Enters enters) {
+    void keep(CLI::Option* option, const std::string& value, const std::string& text,
+              Enters enters) {
         entries.push_back({option, value, text, enters, {}});
-        return option;
     }
     [[noreturn]] void usage(const std::string& message) const {
         throw UsageError(message + " (see " + tool + " --help)");
@@ -211,9 +209,8 @@ void CommandLine::parsed(const std::string& names, const std::string& value,
 
 std::function<void(const std::string&)> CommandLine::guarded(
     const std::string& names, std::function<void(const std::string&)> take) const {
-    std::string last = names.substr(names.rfind(',') + 1);
-    if (isCompilerName(last.substr(2))) last.erase(0, 1);
-    return [last, take = std::move(take), data = data_.get()](const std::string& s) {
+    return [last = shown(names.substr(names.rfind(',') + 1)), take = std::move(take),
+            data = data_.get()](const std::string& s) {
         try {
             take(s);
         } catch (const UsageError& error) {
@@ -357,23 +354,6 @@ void rewriteCompilerNames(std::vector<std::string>& words) {
     }
 }
 
-bool wantsJsonErrors(const std::vector<std::string>& words) {
-    for (std::size_t i = 0; i < words.size(); ++i)
-        if (words[i] == "--errors=json" ||
-            (words[i] == "--errors" && i + 1 < words.size() && words[i + 1] == "json"))
-            return true;
-    return false;
-}
-
-std::string versionJson(const std::string& tool) {
-    JsonWriter json;
-    beginReport(json, "ispace-version/1", tool)
-        .key("licence")
-        .value("GPL-3.0-or-later")
-        .endObject();
-    return json.take() + '\n';
-}
-
 }  // namespace
 
 void CommandLine::parse(int argc, const char* const* argv) {
@@ -389,7 +369,10 @@ void CommandLine::parse(int argc, const char* const* argv) {
     // Also of tools without reports in JSON.
     if ((has("-V") || has("--version")) && has("--json")) throw TextRequested{versionJson(d.tool)};
     // Selected at once, so that errors of the command line have that form.
-    if (wantsJsonErrors(words)) selectMessageForm(MessageForm::Json);
+    const std::vector<std::string> json = {"--errors", "json"};
+    if (has("--errors=json") ||
+        std::search(words.begin(), words.end(), json.begin(), json.end()) != words.end())
+        selectMessageForm(MessageForm::Json);
     rewriteCompilerNames(words);
     d.addValues(words);
     std::reverse(words.begin(), words.end());
@@ -402,9 +385,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
         d.usage(error.what());
     }
     if (d.help) throw TextRequested{helpText()};
-    if (d.version)
-        throw TextRequested{d.tool + " (ispace) " + std::string(version()) +
-                            "\nLicence GPL-3.0-or-later; there is no warranty.\n"};
+    if (d.version) throw TextRequested{versionText(d.tool)};
     d.forEachOrdered([](const Data::Entry& entry, const std::string& text) { entry.take(text); });
     std::vector<std::string> rest = d.app.remaining();
     rest.insert(rest.end(), tail.begin(), tail.end());
@@ -418,8 +399,7 @@ namespace {
 std::string signature(const CLI::Option& option, const std::string& value) {
     std::string names;
     for (const std::string& name : option.get_snames()) names += "-" + name + ", ";
-    for (const std::string& name : option.get_lnames())
-        names += (isCompilerName(name) ? "-" : "--") + name + ", ";
+    for (const std::string& name : option.get_lnames()) names += shown("--" + name) + ", ";
     names.resize(names.size() - 2);
     return value.empty() ? names : names + ' ' + value;
 }
@@ -433,10 +413,9 @@ std::string CommandLine::historyLine(const std::vector<std::string>& operands) c
         [&line](const std::string& name, const std::string* value, const Data::Entry& entry) {
             line += ' ' + name;
             if (value == nullptr) return;
-            line += ' ';
-            line += entry.enters == Enters::BaseName    ? fileInHistory(*value)
-                    : entry.enters == Enters::BaseNames ? filesInHistory(*value)
-                                                        : shellQuote(*value);
+            line += ' ' + (entry.enters == Enters::BaseName    ? fileInHistory(*value)
+                           : entry.enters == Enters::BaseNames ? filesInHistory(*value)
+                                                               : shellQuote(*value));
         });
     return line;
 }

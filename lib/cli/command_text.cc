@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <sstream>
 
+#include "base/json_writer.h"
 #include "base/message.h"
 #include "cli/outputs.h"
+#include "cli/run_tool.h"
 
 namespace ispace {
 
@@ -56,6 +58,20 @@ std::string helpText(const HelpPage& page) {
     out += "\nExit status: " + page.statuses + ".\n";
     out += "Details: man " + page.tool + "\n";
     return out;
+}
+
+std::string versionText(const std::string& tool) {
+    return tool + " (ispace) " + std::string(version()) +
+           "\nLicence GPL-3.0-or-later; there is no warranty.\n";
+}
+
+std::string versionJson(const std::string& tool) {
+    JsonWriter json;
+    beginReport(json, "ispace-version/1", tool)
+        .key("licence")
+        .value("GPL-3.0-or-later")
+        .endObject();
+    return json.take() + '\n';
 }
 
 std::string fileInHistory(const std::string& operand) {

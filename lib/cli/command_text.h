@@ -23,6 +23,10 @@ struct HelpPage {
 /// Formats the page in lines of at most 79 characters where words allow it.
 std::string helpText(const HelpPage& page);
 
+/// Returns the text of --version, and of --version --json.
+std::string versionText(const std::string& tool);
+std::string versionJson(const std::string& tool);
+
 /// Returns the name of an operand as the history of a product has it: without folders, quoted for
 /// the shell, "-" for a stream.
 std::string fileInHistory(const std::string& operand);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of files that operands and their records name.
+// Files that operands and their records name, and stdin.
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
 
+#include "base/error.h"
+#include "base/file.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 
@@ -14,6 +17,20 @@ namespace {
 namespace fs = std::filesystem;
 
 }  // namespace
+
+void mustReadStdinOnce(const std::vector<std::string>& files) {
+    const auto is_stdin = [](const std::string& file) {
+        return file == "-" || file == "/dev/stdin" || file == "/dev/fd/0";
+    };
+    if (std::count_if(files.begin(), files.end(), is_stdin) > 1)
+        throw UsageError("stdin cannot be read twice: only one operand can be -");
+}
+
+std::string readStdin() {
+    if (isTerminalInput())
+        throw UsageError("stdin is a terminal: give a file, or send data through a pipe");
+    return readAll("-");
+}
 
 std::vector<std::string> filesOf(const SceneInput& input) {
     std::vector<std::string> files{input.environment_operand};

@@ -249,20 +249,6 @@ class OperandReader {
 
 }  // namespace
 
-void mustReadStdinOnce(const std::vector<std::string>& files) {
-    const auto is_stdin = [](const std::string& file) {
-        return file == "-" || file == "/dev/stdin" || file == "/dev/fd/0";
-    };
-    if (std::count_if(files.begin(), files.end(), is_stdin) > 1)
-        throw UsageError("stdin cannot be read twice: only one operand can be -");
-}
-
-std::string readStdin() {
-    if (isTerminalInput())
-        throw UsageError("stdin is a terminal: give a file, or send data through a pipe");
-    return readAll("-");
-}
-
 SceneInput readScene(const SceneRequest& request) { return OperandReader(request).read(); }
 
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SceneInput& input) {
@@ -303,12 +289,6 @@ OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
 
 namespace {
 
-namespace fs = std::filesystem;
-
-bool isBlank(std::string_view bytes) {
-    return bytes.find_first_not_of(" \t\r\n") == std::string_view::npos;
-}
-
 std::string folderOf(const std::string& operand) {
     return isStream(operand) ? "" : fs::path(operand).parent_path().string();
 }
@@ -329,7 +309,8 @@ void setInside(std::span<const Point2> points, std::vector<Document>& documents)
 /// \param building receives the building
 Document parseInput(const RawInput& raw, const InputRequest& request, const ImportOptions& import,
                     std::optional<StoreyedDocument>& building) {
-    if (raw.name == "-" && request.may_be_empty && isBlank(raw.bytes)) return {};
+    const bool is_blank = raw.bytes.find_first_not_of(" \t\r\n") == std::string::npos;
+    if (raw.name == "-" && request.may_be_empty && is_blank) return {};
     Document document;
     if (isBuilding(raw.bytes)) {
         building = readBuilding(raw.bytes, raw.name, import);
