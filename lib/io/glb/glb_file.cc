@@ -31,10 +31,9 @@ std::string_view bytesOf(const std::vector<T>& items) {
 }
 
 Vector gltfFloats(Vec3 v) {
-    const std::array<double, 3> axes = gltfAxes(v);
-    Vector floats;
-    for (std::size_t i = 0; i < 3; ++i) floats[i] = static_cast<float>(axes[i]) + 0.0F;
-    return floats;
+    const auto [x, y, z] = gltfAxes(v);
+    return {static_cast<float>(x) + 0.0F, static_cast<float>(y) + 0.0F,
+            static_cast<float>(z) + 0.0F};
 }
 
 template <typename List>
@@ -46,8 +45,7 @@ void writeList(JsonWriter& json, const List& list) {
 
 /// Begins an item of a section of the file; the first item also begins the section's array.
 JsonWriter& item(JsonWriter& section, int count) {
-    if (count == 0) section.beginArray();
-    return section;
+    return count == 0 ? section.beginArray() : section;
 }
 
 }  // namespace

@@ -369,17 +369,6 @@ TEST(Dxf, CountsOfTheFileAreNotBelieved) {
               std::string::npos);
 }
 
-TEST(Dxf, LongLinesAndControlCharacters) {
-    const std::string junk = group(0, "TEXT") + group(1, std::string(100'000, 'x')) +
-                             group(0, "TEXT") + group(1, std::string("\0\x01\xff", 3)) +
-                             group(999, "dxflib");
-    EXPECT_DOUBLE_EQ(areaOf(drawing(rectangle("W\xe4nde", 0, 0, 4, 3) + junk, "", 6)), 12);
-    std::string crlf;
-    for (const char c : drawing(rectangle("W", 0, 0, 4, 3), "", 6))
-        crlf += c == '\n' ? "\r\n" : std::string(1, c);
-    EXPECT_DOUBLE_EQ(areaOf(crlf), 12);
-}
-
 TEST(Dxf, OutlinesThatCrossThemselvesCompile) {
     const std::string dxf =
         drawing(polyline("0", true,

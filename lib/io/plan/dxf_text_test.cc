@@ -67,5 +67,19 @@ TEST(DxfText, NamesAreDecoded) {
     EXPECT_NE(notesOf(read(named("W\xff\xff", "ANSI_932"))).find("W??"), std::string::npos);
 }
 
+TEST(DxfText, LongLinesAndControlCharacters) {
+    const auto area = [](const std::string& dxf) {
+        return environmentOf(readDxf(dxf, "plan.dxf", {}, sceneSchemas())).indoor().area();
+    };
+    const std::string junk = group(0, "TEXT") + group(1, std::string(100'000, 'x')) +
+                             group(0, "TEXT") + group(1, std::string("\0\x01\xff", 3)) +
+                             group(999, "dxflib");
+    EXPECT_DOUBLE_EQ(area(drawing(rectangle("W\xe4nde", 0, 0, 4, 3) + junk, "", 6)), 12);
+    std::string crlf;
+    for (const char c : drawing(rectangle("W", 0, 0, 4, 3), "", 6))
+        crlf += c == '\n' ? "\r\n" : std::string(1, c);
+    EXPECT_DOUBLE_EQ(area(crlf), 12);
+}
+
 }  // namespace
 }  // namespace ispace
