@@ -16,6 +16,9 @@
 
 namespace ispace {
 
+/// Parses "10940" of this machine, or "127.0.0.2:10940". \throws UsageError
+Endpoint parsePort(const std::string& text);
+
 /// An option that serves a robot or sensor at the port of a real device.
 struct DevicePortOption {
     const WireProtocol* protocol = nullptr;

@@ -1,18 +1,100 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simrun/simrun_ports.h"
 
+#include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <optional>
 #include <utility>
 
 #include "base/error.h"
 #include "base/json_writer.h"
+#include "base/message.h"
+#include "cli/common_options.h"
 #include "io/exporters.h"
 #include "io/glb/glb_write.h"
 #include "sense/formats/mcap_writer.h"
 #include "simrun/simrun_run.h"
 
 namespace ispace {
+
+namespace {
+
+std::string optionOf(const WireProtocol& protocol) { return "--" + std::string(protocol.name); }
+
+/// Parses "l1=10940" or "l1=127.0.0.2:10940".
+DevicePortOption parseDevicePort(const WireProtocol& protocol, const std::string& text) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+        throw UsageError(excerpt(text) + ": wanted " + std::string(protocol.device) +
+                         "=[ADDR:]PORT with its id, like " +
+                         static_cast<char>(std::tolower(protocol.device.front())) +
+                         "1=" + std::to_string(protocol.port));
+    return {&protocol, text.substr(0, equals), parsePort(text.substr(equals + 1))};
+}
+
+}  // namespace
+
+Endpoint parsePort(const std::string& text) {
+    return parseEndpoint(text.find(':') == std::string::npos ? "127.0.0.1:" + text : text);
+}
+
+void DevicePortOptions::declare(CommandLine& line) {
+    for (const WireProtocol* const protocol : wireProtocols())
+        line.texts(optionOf(*protocol), std::string(protocol->device) + "=[ADDR:]PORT",
+                   texts_[protocol], std::string(protocol->help), Enters::Nothing);
+    if (texts_.empty()) return;
+    line.texts("--allow", "CIDR", allowed_,
+               "machines that may use such ports and --ros2 besides this one, e.g. 192.168.1.0/24",
+               Enters::Nothing);
+    line.choice("--device-clock", clock_, {"simulated", "wall"},
+                "what time stamps of such ports count (default simulated)", Enters::Nothing);
+}
+
+void DevicePortOptions::take(const CommandLine& line, bool has_others, ServerLimits& limits) {
+    for (const WireProtocol* const protocol : wireProtocols()) {
+        for (const std::string& text : texts_[protocol]) {
+            DevicePortOption port =
+                ofOption(optionOf(*protocol), [&] { return parseDevicePort(*protocol, text); });
+            const bool known = std::any_of(ports_.begin(), ports_.end(), [&](const auto& other) {
+                return other.protocol == protocol && other.id == port.id;
+            });
+            if (known)
+                throw UsageError(optionOf(*protocol) + ": " + excerpt(port.id) + " is given twice");
+            if (!port.endpoint.is_loopback && allowed_.empty())
+                throw UsageError(optionOf(*protocol) + ": `" + port.endpoint.address +
+                                 "`: programs for real devices know no token, so say with --allow "
+                                 "which machines may connect, like --allow 192.168.1.0/24; or use "
+                                 "127.0.0.1");
+            ports_.push_back(std::move(port));
+        }
+    }
+    for (const char* option : {"--allow", "--device-clock"}) {
+        const bool is_heeded = has_others && std::string_view(option) == "--allow";
+        if (ports_.empty() && !texts_.empty() && !is_heeded && line.given(option))
+            throw UsageError(std::string(option) +
+                             " is about ports of devices, and none is asked for");
+    }
+    for (const std::string& text : allowed_)
+        limits.allowed.push_back(ofOption("--allow", [&text] { return parseNetwork(text); }));
+    limits.wall_clock = clock_ == "wall";
+}
+
+std::size_t DevicePortOptions::connections() const {
+    std::size_t count = 0;
+    for (const DevicePortOption& port : ports_) count += port.protocol->clients + 1;
+    return count;
+}
+
+DeviceAddresses serveDevices(Server& server, const DevicePortOptions& options) {
+    DeviceAddresses out;
+    for (const auto& [protocol, id, endpoint] : options.ports())
+        out[protocol][id] =
+            ofOption(optionOf(*protocol), [&, where = &endpoint, which = protocol, whose = &id] {
+                return server.serveDevice(*which, *whose, *where);
+            });
+    return out;
+}
 
 namespace {
 
