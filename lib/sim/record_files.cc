@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
+#include <new>
 #include <span>
 #include <system_error>
 #include <thread>
@@ -302,6 +303,27 @@ void appendBumperRows(std::string& out, const World& world, std::vector<std::vec
     }
 }
 
+void appendStateRow(std::string& out, const Event& event) {
+    out.append(formatSimTime(event.time)).append(",").append(event.id);
+    out.append(",").append(event.other).append(",");
+    appendCsvField(out, event.text);
+    out += '\n';
+}
+
+void ActivityRows::append(std::string& out, const Event& event) {
+    SimTime& since = begun_[event.id];
+    if (event.value == 1) {
+        since = event.time;
+        return;
+    }
+    out.append(formatSimTime(since)).append(",").append(formatSimTime(event.time));
+    out.append(",").append(event.id).append(",");
+    appendCsvField(out, event.other);
+    out += ',';
+    appendCsvField(out, event.text);
+    out.append(event.value == 0 ? ",1\n" : ",0\n");
+}
+
 void appendReadingLine(std::string& out, const Sensor& sensor, const SensorReading& reading,
                        std::span<const Sensor> receivers, const std::string& file) {
     appendLine(out, viewOf(sensor, reading, receivers), file);
@@ -331,6 +353,22 @@ std::string frameBytes(const Sensor& sensor, const SensorReading& reading) {
     const Ranger& ranger = *sensor.tryAs<Ranger>();
     return depthPng(ranger.columns, ranger.rows, std::get<DepthFrame>(reading.value).depths,
                     kMillimetres);
+}
+
+void RecordedFrame::make(const SensorReading& reading) {
+    name = frameName(sensor.id, reading.seq);
+    bytes = frameBytes(sensor, reading);
+    const std::string file = std::string(is_picture ? kPictures : kDepths) + "/" + name;
+    appendReadingLine(line, sensor, reading, {}, file);
+}
+
+void RecordedFrame::finish(const std::exception_ptr& failure) {
+    is_made = true;
+    try {
+        if (failure) std::rethrow_exception(failure);
+    } catch (const std::bad_alloc&) {
+        line.clear();
+    }
 }
 
 }  // namespace ispace

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim: the files of a record, and their lines.
+// The files of a record, and their lines.
 #pragma once
 
 #include <sys/types.h>
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <exception>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/number.h"
+#include "sim/events.h"
 #include "sim/sensor_reading.h"
 #include "sim/world.h"
 
@@ -150,6 +153,22 @@ constexpr std::string_view kBumpersHead = "t,id,hit\n";
 /// holds the bumpers of each robot; empty before the first call.
 void appendBumperRows(std::string& out, const World& world, std::vector<std::vector<bool>>& felt);
 
+/// Writes rows of the states that change, as data sets of smart homes have them.
+constexpr std::string_view kStatesHead = "t,id,state,value\n";
+/// \pre the event is a state
+void appendStateRow(std::string& out, const Event& event);
+
+/// Rows of the actions of people, as labels of the states.
+constexpr std::string_view kActivitiesHead = "begin,end,id,activity,action,done\n";
+class ActivityRows {
+  public:
+    /// Writes a row if the event ends an action. \pre it is an activity
+    void append(std::string& out, const Event& event);
+
+  private:
+    std::map<std::string, SimTime> begun_;  // by person
+};
+
 /// Writes a reading as a line of JSON, as `scan` does. A frame with its own file has "file" instead
 /// of its pixels.
 void appendReadingLine(std::string& out, const Sensor& sensor, const SensorReading& reading,
@@ -160,5 +179,24 @@ std::string frameName(const std::string& id, std::int64_t seq, std::string_view 
 /// Converts a frame to PNG: of a ranger 16-bit grey in millimetres, 0 for no return. \pre the
 /// reading is heavy
 std::string frameBytes(const Sensor& sensor, const SensorReading& reading);
+
+/// A picture or depth frame of a step, written once all before it are made.
+struct RecordedFrame {
+    /// The folders of their files.
+    static constexpr const char *kPictures = "pictures", *kDepths = "depths";
+
+    explicit RecordedFrame(const Sensor& the_sensor)
+        : sensor(the_sensor), is_picture(the_sensor.is<Camera>()) {}
+
+    /// Builds file and line of a reading. Call it in any thread.
+    void make(const SensorReading& reading);
+    /// Marks it as made. One for which memory ran out is skipped: a client may have added its
+    /// camera. \throws `failure` otherwise
+    void finish(const std::exception_ptr& failure);
+
+    Sensor sensor;
+    bool is_picture, is_made = false;
+    std::string name, bytes, line;  // "": it is skipped
+};
 
 }  // namespace ispace

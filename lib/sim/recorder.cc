@@ -6,7 +6,6 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
-#include <new>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -47,7 +46,7 @@ enum File {
 constexpr std::array<const char*, kFiles> kFileNames = {
     "robots.csv", "odometry.csv", "people.csv",     "scans.jsonl", "sonars.csv", "bumpers.csv",
     "events.csv", "states.csv",   "activities.csv", "timing.csv",  "info.csv",   "scene.env"};
-constexpr const char *kPictures = "pictures", *kDepths = "depths", *kScenes = "scenes";
+constexpr const char* kScenes = "scenes";
 
 std::string pathIn(const std::string& folder, const char* name) {
     return (std::filesystem::path(folder) / name).string();
@@ -58,34 +57,6 @@ std::int64_t strideOf(double rate, double most) {
     if (most <= 0) return 0;
     return std::max<std::int64_t>(1, std::llround(std::ceil(rate / most - 1e-9)));
 }
-
-/// A frame of the step, written once all before it are made.
-struct Frame {
-    explicit Frame(const Sensor& the_sensor)
-        : sensor(the_sensor), is_picture(the_sensor.tryAs<Camera>() != nullptr) {}
-
-    /// Builds file and line of a reading. Call it in any thread.
-    void make(const SensorReading& reading) {
-        name = frameName(sensor.id, reading.seq);
-        bytes = frameBytes(sensor, reading);
-        const std::string file = std::string(is_picture ? kPictures : kDepths) + "/" + name;
-        appendReadingLine(line, sensor, reading, {}, file);
-    }
-
-    /// A frame for which memory ran out is skipped: a client may have added its camera.
-    void finish(const std::exception_ptr& failure) {
-        is_made = true;
-        try {
-            if (failure) std::rethrow_exception(failure);
-        } catch (const std::bad_alloc&) {
-            line.clear();
-        }
-    }
-
-    Sensor sensor;
-    bool is_picture, is_made = false;
-    std::string name, bytes, line;  // "": it is skipped
-};
 
 }  // namespace
 
@@ -107,8 +78,8 @@ struct Recorder::Data {
           timing(pathIn(folder, kFileNames[kTiming])),
           info(pathIn(folder, kFileNames[kInfo])),
           scene(pathIn(folder, kFileNames[kScene])),
-          pictures(pathIn(folder, kPictures)),
-          depths(pathIn(folder, kDepths)),
+          pictures(pathIn(folder, RecordedFrame::kPictures)),
+          depths(pathIn(folder, RecordedFrame::kDepths)),
           scenes(pathIn(folder, kScenes), ".env") {
         if (options.sonar_rate > 0) sonar_periods.emplace(options.sonar_rate);
     }
@@ -130,7 +101,7 @@ struct Recorder::Data {
     std::uint64_t flushed_size = 0;
     std::exception_ptr ended;  // the error that ended the record early
     std::int64_t next_event = 0;
-    std::map<std::string, SimTime> begun;  // activities by person
+    ActivityRows activity_rows;
     // Of the world's sensors, rebuilt after a change.
     std::int64_t changes = -1;
     std::vector<Sensor> receivers;
@@ -140,10 +111,11 @@ struct Recorder::Data {
     std::vector<std::vector<bool>> felt;  // pressed bumpers of each robot
     std::optional<Periods> sonar_periods;
     SimTime sonars_due{};
-    // Of the step recorded last: the next of World::read() to be written, and frames, which follow.
+    // Of the step recorded last: the next of World::read() to be written, and frames,
+    // which follow.
     bool is_open = false, awaits_frames = false;
     std::size_t next_reading = 0;
-    std::vector<std::shared_ptr<Frame>> frames;
+    std::vector<std::shared_ptr<RecordedFrame>> frames;
 
     /// Returns true if events are newer than the last record.
     [[nodiscard]] bool hasNewEvents() const {
@@ -166,9 +138,8 @@ struct Recorder::Data {
     bool appendScans(World& world, steady_clock::time_point until);
     bool finishStep(World& world, steady_clock::time_point until);
     void appendFeelings(World& world);
-    void appendFrame(const Frame& frame);
+    void appendFrame(const RecordedFrame& frame);
     void appendEvents();
-    void appendDay(const Event& event);
     void append(World& world);
     [[nodiscard]] std::uint64_t size() const;
     void writeLines();
@@ -186,8 +157,8 @@ void Recorder::Data::begin() {
     scans.pending = scanHeaderLine(options.history, options.seed);
     events.pending = eventTableHead();
     if (!events.pending.ends_with('\n')) events.pending += '\n';
-    states.pending = "t,id,state,value\n";
-    activities.pending = "begin,end,id,activity,action,done\n";
+    states.pending = kStatesHead;
+    activities.pending = kActivitiesHead;
     timing.pending = "t,wall,steps\n";
     scene.pending = options.scene;
     scene.flush();
@@ -225,7 +196,7 @@ void Recorder::Data::takeFrames(World& world) {
         const std::int64_t period = world.period(i);
         if (std::exchange(periods[i], period) == period || period % strides[i] != 0) continue;
         if (world.isTaken(i) && world.reading(i).time != world.time()) continue;
-        const auto frame = frames.emplace_back(std::make_shared<Frame>(world.sensors()[i]));
+        const auto frame = frames.emplace_back(std::make_shared<RecordedFrame>(world.sensors()[i]));
         if (!options.frame_taker) {
             frame->make(world.take(i));
             frame->is_made = true;
@@ -238,7 +209,7 @@ void Recorder::Data::takeFrames(World& world) {
     }
 }
 
-void Recorder::Data::appendFrame(const Frame& frame) {
+void Recorder::Data::appendFrame(const RecordedFrame& frame) {
     if (frame.line.empty()) return;
     (frame.is_picture ? pictures : depths).write(frame.name, frame.bytes, steps);
     scans.pending += frame.line;
@@ -293,35 +264,13 @@ void Recorder::Data::appendEvents() {
         for (; next_event < events_log->next(); ++next_event) {
             const Event& event = events_log->at(next_event);
             appendEventRow(events.pending, event);
-            appendDay(event);
+            if (event.kind == EventKind::State) appendStateRow(states.pending, event);
+            if (event.kind == EventKind::Activity) activity_rows.append(activities.pending, event);
         }
     }
     events.endStep(steps);
     states.endStep(steps);
     activities.endStep(steps);
-}
-
-/// Writes states as data sets of smart homes have them, one a line, and apart from them, as the
-/// labels, the actions of people that have ended.
-void Recorder::Data::appendDay(const Event& event) {
-    if (event.kind == EventKind::State) {
-        states.pending.append(formatSimTime(event.time)).append(",").append(event.id);
-        states.pending.append(",").append(event.other).append(",");
-        appendCsvField(states.pending, event.text);
-        states.pending += '\n';
-    }
-    if (event.kind != EventKind::Activity) return;
-    SimTime& since = begun[event.id];
-    if (event.value == 1) {
-        since = event.time;
-        return;
-    }
-    activities.pending.append(formatSimTime(since)).append(",").append(formatSimTime(event.time));
-    activities.pending.append(",").append(event.id).append(",");
-    appendCsvField(activities.pending, event.other);
-    activities.pending += ',';
-    appendCsvField(activities.pending, event.text);
-    activities.pending.append(event.value == 0 ? ",1\n" : ",0\n");
 }
 
 void Recorder::Data::append(World& world) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth frames and pictures are taken on request.
 #include "sim/sensor_scheduler.h"
 
 #include <tbb/parallel_for.h>
@@ -363,97 +362,6 @@ const MovingBodies& SensorReader::bodies(const Movers& movers) {
 const RayWorld& SensorReader::mesh(Surfaces surfaces) {
     worlds_->prepareMesh(surfaces);
     return worlds_->mesh(surfaces);
-}
-
-/// Poses of all bodies that pictures show.
-struct SensorReader::Stage {
-    std::vector<Pose3> poses;  // of Scene::placed
-    std::vector<Angle> swings;
-};
-
-std::shared_ptr<const SensorReader::Stage> SensorReader::stage(const Movers& movers) {
-    if (!std::exchange(pictures_moved_, false)) return stage_;
-    std::vector<Pose3> poses;
-    poses.reserve(scene_->placed.size());
-    std::size_t person = 0;
-    for (const PlacedRecord& placed : scene_->placed) {
-        const std::string& keyword = scene_->records[placed.record].keyword();
-        Pose3 pose = placed.pose;
-        if (sensorKind(keyword) != nullptr) {
-            pose = poseOf(scene_->sensors[placed.index], movers);
-        } else if (keyword == "robot" || keyword == "human") {
-            const Motion& motion =
-                keyword == "robot" ? movers.robots[placed.index] : movers.people[person++];
-            pose.position.x = motion.pose.position.x;
-            pose.position.y = motion.pose.position.y;
-            pose.heading = motion.pose.heading;
-        }
-        poses.push_back(pose);
-    }
-    stage_ = std::make_shared<const Stage>(
-        Stage{std::move(poses), {movers.swings.begin(), movers.swings.end()}});
-    return stage_;
-}
-
-SensorReading SensorReader::begun(std::size_t sensor, SimTime time, const Movers& movers) const {
-    SensorReading reading;
-    reading.time = time;
-    reading.seq = periods_[sensor].newest(time);
-    reading.pose = poseOf(sensors_[sensor], movers);
-    continueZone(sensor, reading);
-    return reading;
-}
-
-/// Several threads may take pictures; they are taken one after another.
-void SensorReader::photograph(const Sensor& camera, const std::shared_ptr<const Stage>& stage,
-                              SensorReading& reading) {
-    const std::lock_guard lock(photographing_);
-    if (photographed_ != stage) photographer_->moveTo(stage->poses, stage->swings);
-    photographed_ = stage;
-    Photo photo = photographer_->take(camera, reading.pose, frameOf(reading.seq));
-    photo.time = seconds(reading.time);
-    reading.value = std::move(photo);
-}
-
-void SensorReader::take(std::size_t sensor, SimTime time, const Movers& movers) {
-    if (isTaken(sensor, time)) return;
-    const Sensor& taken = sensors_[sensor];
-    SensorReading reading = begun(sensor, time, movers);
-    if (taken.is<Camera>()) {
-        photograph(taken, stage(movers), reading);
-    } else {
-        worlds_->prepareMesh();
-        updateBodies(movers);
-        readNow(taken, bodies_, reading);
-    }
-    put(sensor, std::move(reading));
-    // Read in this step like the others.
-    latest_.insert(std::upper_bound(latest_.begin(), latest_.end(), sensor), sensor);
-}
-
-std::function<SensorReading()> SensorReader::captureLater(std::size_t sensor, SimTime time,
-                                                          const Movers& movers) {
-    const Sensor& taken = sensors_[sensor];
-    const SensorReading begun = this->begun(sensor, time, movers);
-    if (taken.is<Camera>())
-        return [this, &taken, begun, stage = stage(movers)] {
-            SensorReading reading = begun;
-            photograph(taken, stage, reading);
-            return reading;
-        };
-    worlds_->prepareMesh();
-    updateBodies(movers);
-    if (!kept_bodies_) kept_bodies_ = std::make_shared<const MovingBodies>(bodies_);
-    return [this, &taken, begun, bodies = kept_bodies_] {
-        SensorReading reading = begun;
-        readNow(taken, *bodies, reading);
-        return reading;
-    };
-}
-
-void SensorReader::put(std::size_t sensor, SensorReading reading) {
-    due_[sensor] = periods_[sensor].begin(reading.seq + 1);
-    readings_[sensor] = std::move(reading);
 }
 
 }  // namespace ispace
