@@ -101,8 +101,7 @@ TEST(SessionChange, WhatFailsLeavesTheWorldAsItWas) {
     Changing talk;
     Session& world = talk.client("WORLD");
     EXPECT_EQ(talk.answer(world, "ADD robot at=0,0.1"),
-              "ERR 409 robots r1 and robot1 overlap: their centres are 0.100 m apart, less than "
-              "their radii together\n");
+              "ERR 409 robot r1 overlaps robot1 near (0.0, 0.05); move one, e.g. by 0.45 m\n");
     EXPECT_EQ(talk.answer(world, "ADD robt at=0,0.1"),
               "ERR 400 unknown keyword `robt`, did you mean `robot`?\n");
     EXPECT_EQ(talk.answer(world, "SET r1.hat=2"),

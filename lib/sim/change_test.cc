@@ -106,7 +106,8 @@ TEST(Change, AFailedOneLeavesTheWorldAsItWas) {
         });
     };
     EXPECT_EQ(in_the_way("2,0"),
-              "room.3dm:2:1: error: robot r1 stands in box (its radius is 0.25 m)\n");
+              "room.3dm:2:1: error: robot r1 stands in cube box near (1.7, 0.0); move it, e.g. by "
+              "0.55 m\n");
     EXPECT_EQ(world.changes(), 0);
     EXPECT_NEAR(world.status(0).pose.position.x, 2, 1e-12);
     EXPECT_EQ(world.scene().records.size(), 3U);

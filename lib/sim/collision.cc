@@ -8,11 +8,12 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <unordered_set>
 
 #include "base/error.h"
-#include "base/number.h"
 #include "geom/predicates.h"
 #include "geom/tolerance.h"
+#include "scene/findings/findings.h"
 #include "trace/moving_bodies.h"
 
 namespace ispace {
@@ -336,33 +337,31 @@ ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> 
     return sets;
 }
 
-void checkStart(const Environment& environment, std::span<const Mover> movers,
-                const ObstacleSets& obstacles) {
-    Diagnostics findings;
+void checkStart(const Scene& scene, std::span<const Mover> movers, const ObstacleSets& obstacles) {
+    std::unordered_set<std::string_view> met;
     const Neighbours neighbours(movers);
-    const auto distance_text = [&](std::size_t i, std::size_t other) {
-        return "overlap: their centres are " + formatFixed(neighbours.apart(i, other), 3) +
-               " m apart, less than their radii together";
-    };
     std::size_t robots = 0;
     while (robots < movers.size() && !movers[robots].is_person) ++robots;
     // Stops at full findings: a heap of robots would be tested in pairs.
-    for (std::size_t i = 0; i < robots && !findings.full(); ++i) {
+    for (std::size_t i = 0; i < robots && met.size() < Diagnostics::kMax; ++i) {
         const Mover& robot = movers[i];
-        const std::string name = "robot " + robot.id;
-        const Obstacles& things = obstacles.at(robot.model.height);
-        if (const auto element = things.overlap(robot.pose.position, robot.model.radius)) {
-            findings.add(
-                robot.place.finding(name + " stands in " + environment.elements()[*element].id +
-                                    " (its radius is " + formatDouble(robot.model.radius) + " m)"));
-        }
-        if (const auto other = neighbours.firstOver(i, 0, i))
-            findings.add(robot.place.finding("robots " + movers[*other].id + " and " + robot.id +
-                                             ' ' + distance_text(i, *other)));
-        if (const auto other = neighbours.firstOver(i, robots, movers.size()))
-            findings.add(robot.place.finding(name + " and human " + movers[*other].id + ' ' +
-                                             distance_text(i, *other)));
+        if (obstacles.at(robot.model.height).overlap(robot.pose.position, robot.model.radius))
+            met.insert(robot.id);
+        for (const auto other :
+             {neighbours.firstOver(i, 0, i), neighbours.firstOver(i, robots, movers.size())})
+            if (other) met.insert({robot.id, movers[*other].id});
     }
+    if (met.empty()) return;
+    Diagnostics findings;
+    for (const Finding& finding :
+         checkScene(scene, {.checks = {"collisions"},
+                           .ids = [&met](const std::string& id) { return met.contains(id); }}))
+        findings.add(finding.diagnostic());
+    // Overlaps within the tolerance of that check.
+    for (std::size_t i = 0; i < robots && findings.empty(); ++i)
+        if (met.contains(movers[i].id))
+            findings.add(movers[i].place.finding("robot " + movers[i].id +
+                                                 " overlaps its surroundings; move it"));
     findings.throwIfAny();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim: collisions of movers with obstacles and with each other.
+// Collisions of movers with obstacles and with each other.
 #pragma once
 
 #include <algorithm>
@@ -190,9 +190,8 @@ using ObstacleSets = std::map<double, Obstacles>;
 ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> movers,
                          const ObstacleSets* before = nullptr);
 
-/// \throws FormatError with all findings if a robot overlaps a body, a robot or a person. People
-/// may overlap bodies, as one on a chair does: they can only get out.
-void checkStart(const Environment& environment, std::span<const Mover> movers,
-                const ObstacleSets& obstacles);
+/// \throws FormatError with the findings of checkScene() if a robot overlaps a body, a robot or a
+/// person. People may overlap bodies, as one on a chair does: they can only get out.
+void checkStart(const Scene& scene, std::span<const Mover> movers, const ObstacleSets& obstacles);
 
 }  // namespace ispace

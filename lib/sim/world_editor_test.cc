@@ -48,7 +48,8 @@ TEST(WorldEditor, Adds) {
     EXPECT_EQ(findings([&] { it.edit(Edit::Kind::Add, "robot id=h at=3,0"); }),
               "error: --add robot id=h at=3,0: the id `h` is taken by the human added before\n");
     EXPECT_EQ(findings([&] { it.edit(Edit::Kind::Add, "cube at=0,0 size=1"); }),
-              "room.3dm:2:1: error: robot r1 stands in cube1 (its radius is 0.25 m)\n");
+              "room.3dm:2:1: error: robot r1 stands in cube1 near (0.0, -0.5); move it, e.g. by "
+              "0.75 m\n");
     EXPECT_EQ(it.world.changes(), 2);
     EXPECT_EQ(it.world.scene().ids.back(), "h");
 }

@@ -152,7 +152,7 @@ World::Data::Data(std::shared_ptr<SceneResources> room, SimTime length, const Ru
       traffic(movers, order, seconds(length)),
       sensors(*setting, {run.seed, run.sensor_noise, length}),
       sensor_index(indexById(sensors.sensors())) {
-    checkStart(scene->environment, movers, setting->obstacles);
+    checkStart(*scene, movers, setting->obstacles);
     if (options.noise) kept_starts = strayStarts(movers, setting->obstacles, options.seed);
     odometers.reserve(scene->robots.size());
     for (std::size_t i = 0; i < motions.size(); ++i) {

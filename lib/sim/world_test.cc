@@ -51,14 +51,17 @@ TEST(World, RobotsMustStandFree) {
     EXPECT_EQ(text("robot id=a at=3.7,0\nrobot id=b at=0,0\nrobot id=c at=0.6,0\n"), "");
     // Their distance comes out as 0.5999999999999999.
     EXPECT_EQ(text("robot id=a at=1.1,-2\nrobot id=b at=1.7,-2\n"), "");
-    EXPECT_EQ(text("robot id=a at=2,0.1\n"
-                   "robot id=b at=0,0\n"
-                   "robot id=c at=3.8,0\n"
-                   "robot id=d at=0.5,0\n"),
-              "room.3dm:2:1: error: robot a stands in box (its radius is 0.3 m)\n"
-              "room.3dm:4:1: error: robot c stands in room (its radius is 0.3 m)\n"
-              "room.3dm:5:1: error: robots b and d overlap: their centres are 0.500 m "
-              "apart, less than their radii together\n");
+    EXPECT_EQ(
+        text("robot id=a at=2,0.1\n"
+             "robot id=b at=0,0\n"
+             "robot id=c at=3.8,0\n"
+             "robot id=d at=0.5,0\n"),
+        "room.3dm:2:1: error: robot a stands in cube box near (2.0, 0.5); move it, e.g. by "
+        "0.70 m\n"
+        "room.3dm:3:1: error: robot b overlaps robot d near (0.25, 0.0); move one, e.g. by "
+        "0.10 m\n"
+        "room.3dm:4:1: error: robot c stands in ispace room near (4.0, 0.0); move it, e.g. by "
+        "0.10 m\n");
     // Over the robot's head.
     EXPECT_EQ(text("robot id=a at=0,2 height=0.5\n"), "");
     std::string heap;
@@ -242,8 +245,8 @@ TEST(World, RobotsMustNotStandInPeople) {
     // Touching is allowed, and people may stand together.
     EXPECT_EQ(text("human height=1 at=0.45,0\nhuman height=1 at=0.5,0\nrobot id=a\n"), "");
     EXPECT_EQ(text("human id=h at=0.5,0\nrobot id=a\n"),
-              "room.3dm:3:1: error: robot a and human h overlap: their centres are 0.500 m apart, "
-              "less than their radii together\n");
+              "room.3dm:2:1: error: human h overlaps robot a near (0.25, 0.0); move one, e.g. by "
+              "0.06 m\n");
 }
 
 TEST(World, RobotsMeetHeadOn) {
