@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/base: errors, numbers, files, history lines, JSON, progress. Uses the standard library only.
+// lib/base: errors, numbers, files, history lines, JSON, progress. zlib, TBB inside.
 #pragma once
 
 #include <cstddef>

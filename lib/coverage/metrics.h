@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/coverage: steps that measureCoverage() shares between its sources.
+// Steps of measureCoverage(), which reports reuse.
 #pragma once
 
 #include <bit>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One importer per foreign format: how the format is recognised, and which records it becomes.
-// importers.cc holds their table.
+// lib/io: rooms in and out. One importer per foreign format: how it is recognised, and the records
+// that it becomes; importers.cc holds their table. The writers are in exporters.h.
 #pragma once
 
 #include <cstddef>

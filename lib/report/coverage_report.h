@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/report: coverage and runs as text, tables and JSON, maps, pages and pictures for people.
 #pragma once
 
 #include <string>

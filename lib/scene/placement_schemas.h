@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/scene: placements, device catalogue, Scene = environment + layout. Uses env, record, geom.
+// The schemas of placements: sensors, robots, people, furniture that a layout adds.
 #pragma once
 
 #include <optional>

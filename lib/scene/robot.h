@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/scene: robots and people as records describe them, and the poses of what they carry.
+// Robots and people as records describe them, and the poses of what they carry.
 #pragma once
 
 #include <array>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/scene: Scene = environment + layout, the device catalogue, the states of rooms. Uses env and
+// below.
 #pragma once
 
 #include <cstddef>

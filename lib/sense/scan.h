@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/sense: sensors and the formats of their readings. Uses render and below; TBB inside.
+// lib/sense: sensors and the formats of their readings. Uses trace, drawing; TBB inside.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/server: the server of the Simulator TCP Protocol, device ports and the web page. Private to
-// lib/server, since it includes Asio.
+// lib/server: the server of the Simulator TCP Protocol, the ports of devices and topics, and the
+// web page. Uses sim and below; Asio and Beast inside.
 #pragma once
 
 #include <chrono>

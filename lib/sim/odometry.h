@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim: errors of motion, odometry and starts.
+// Errors of motion, odometry and starts.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim: the state of a world, and the transition to the next scene.
+// The state of a world, and the transition to the next scene.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/trace: rays against static surfaces and moving bodies. Uses layout and below; Embree inside.
+// lib/trace: rays against static surfaces and moving bodies. Uses scene and below; Embree inside.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # include_direction.sh [ROOT]: dependencies between the folders of lib/ point one way, heavy libraries stay out of
-# headers, and only lib/cli prints, exits or reads the environment. It first shows on a made-up tree that it can fail.
+# headers, headers that are private to a folder are included there alone, and only lib/cli prints, exits or reads the
+# environment. It first shows on a made-up tree that it can fail.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}
 
@@ -40,10 +41,14 @@ violations() {
         is_apart = FILENAME ~ /^lib\/((base|io\/mesh|raster)\/module|client\/sim_aria)\//
         if (in_lib && !(folder in known)) report("folder lib/" folder " has no place in the order")
     }
+    FNR < 6 && match($0, /Private to lib\/[a-z_\/]+/) {
+        private_to[substr(FILENAME, 5)] = substr($0, RSTART + 11, RLENGTH - 11) "/"
+    }
     /^[ \t]*#[ \t]*include/ {
         target = $0
         sub(/^[^<"]*[<"]/, "", target); sub(/[>"].*/, "", target)
         split(target, parts, "/")
+        if (!in_test) included[FILENAME ":" FNR] = target
         if (in_lib && (parts[1] in known) && !((folder, parts[1]) in may))
             report("lib/" folder " must not include " target)
         if (in_lib && index($0, "\"") && !(parts[1] in known) && !(in_test && parts[1] == "support"))
@@ -77,6 +82,11 @@ violations() {
         gsub(/"([^"\\]|\\.)*"/, "\"\"", code)
         sub(/\/\/.*/, "", code)
         if (code ~ quiet) report("below lib/cli nothing prints, exits or reads the environment: " code)
+    }
+    END {
+        for (at in included)
+            if (included[at] in private_to && index(at, private_to[included[at]]) != 1)
+                print at ": " included[at] " is private to " private_to[included[at]]
     }')
 }
 
@@ -124,6 +134,8 @@ expect lib/building/a.cc '#include "passage/lift.h"' yes
 expect lib/sim/a.cc '#include "passage/lift.h"' yes
 expect lib/server/a.cc '#include "passage/lift.h"' yes
 expect lib/passage/a.cc '#include "sim/world.h"' no
+expect lib/sim/a.h $'//\n// Private to lib/sim: parts\n#include "sim/a.h"' no
+expect lib/passage/a.h $'//\n// Private to lib/sim: parts\n#include "passage/a.h"' yes
 expect lib/nowhere/a.cc '#include <vector>' yes
 expect lib/geom/a.cc '#include "pose.h"' yes
 expect lib/geom/a.h '#include <CGAL/Arrangement_2.h>' yes
@@ -151,4 +163,8 @@ expect tools/envc/main.cc '#include "cli/run.h"' no
 
 found=$(violations "$root")
 [ -z "$found" ] || fail "$(printf 'wrong direction\n%s' "$found")"
+# The table of docs/architecture.md names a header of each folder to read first, whose first lines tell its job.
+for folder in $(cd "$root" && find lib -mindepth 1 -name '*.h' -printf '%h\n' | grep -vE '^lib/client|/module' | sort -u); do
+    sed -sn 2,3p "$root/$folder"/*.h | grep -q "^// $folder: " || fail "no header of $folder begins with its job"
+done
 [ -n "$(ls "$root"/lib/base/*.cc)" ] || fail "no sources in $root"

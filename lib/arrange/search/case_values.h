@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/arrange/search: the values of a layout in the cases of a WorstCaseProblem.
+// The values of a layout in the cases of a WorstCaseProblem.
 #pragma once
 
 #include <cstddef>

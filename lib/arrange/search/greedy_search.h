@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/arrange/search: state and candidate finder of greedy and local search.
+// State and candidate finder of greedy and local search.
 #pragma once
 
 #include <cstddef>

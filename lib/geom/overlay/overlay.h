@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/geom/overlay: unions of polygons and arcs, and the areas of all their depths.
 #pragma once
 
 #include <cstddef>

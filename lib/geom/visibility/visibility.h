@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/geom/visibility: the regions that points see, and the rays that bound them.
 #pragma once
 
 #include <cstdint>

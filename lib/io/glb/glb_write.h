@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/io/glb: a scene as named meshes, and as glTF. Uses layout and below.
+// lib/io/glb: a scene as named meshes, and as glTF. Uses scene and below.
 #pragma once
 
 #include <array>

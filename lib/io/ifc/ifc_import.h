@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/io/ifc: buildings in IFC become plans of their storeys, and scenes become IFC.
 #pragma once
 
 #include <cstddef>

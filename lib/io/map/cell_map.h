@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/io/map: maps of cells, which robots and pictures hold, become rooms, and rooms maps.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/io/mesh: meshes and point clouds, read in a confined program and cut to plans.
 #pragma once
 
 #include <exception>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plans drawn as lines on layers, from DXF, SVG and cut meshes.
+// lib/io/plan: plans drawn as lines on layers, from DXF, SVG and cut meshes.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/io/sdf: Gazebo's worlds and robots in URDF become rooms.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads and writes records as YAML. readYaml() parses nodes, reads them into items, and expands
-// items to records.
+// lib/record/yaml: reads and writes records as YAML. readYaml() parses nodes, reads them into
+// items, and expands items to records.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/report/map: maps of coverage and runs, with their legends.
 #pragma once
 
 #include <cstdint>

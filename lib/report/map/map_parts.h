@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/report/map: parts of a coverage map, shared by its sources.
+// Parts of a coverage map, which maps of runs and pages share.
 #pragma once
 
 #include <array>

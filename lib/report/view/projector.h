@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/report/view: pictures of a room for people: viewpoints, and sensors' views drawn into
-// pictures. Uses coverage, render, drawing and below.
+// pictures. Uses coverage, trace/render and drawing.
 #pragma once
 
 #include <memory>

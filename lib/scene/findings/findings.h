@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/scene: the checks of a scene, one list for all tools, so that all report the same
-// findings.
+// lib/scene/findings: the checks of a scene, one list for all tools, so that all report the same.
+// Below the list stand the parts of single checks, for the sources of this folder.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/scene: the tables of a recorded run that have a row for each change.
+// The changes of a recorded run, and readers of the tables beside those of RunReader.
 #pragma once
 
 #include <cstddef>

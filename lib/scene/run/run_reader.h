@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/scene/run: reads the records of runs: moments, collisions, changes of the scene.
 #pragma once
 
 #include <cstddef>

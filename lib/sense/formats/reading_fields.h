@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of readings: the quantities that each kind of sensor measures, and their names in
-// formats. Formats, records, protocol and page read the table and do not depend on kinds.
+// lib/sense/formats: the table of readings: the quantities that each kind of sensor measures, and
+// their names. Formats, records, protocol and page read the table and do not depend on kinds.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/server.
+// lib/server/web: the page that shows and drives a running world. Private to lib/server.
 #pragma once
 
 #include <memory>
