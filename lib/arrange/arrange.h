@@ -73,7 +73,7 @@ struct MountRules {
     std::vector<Pose3> forbidden = {};  ///< candidates that are left out
 };
 
-/// What a layout is to do best.
+/// The objective of a layout.
 struct ObjectiveChoice {
     enum class Of {
         Coverage,

@@ -9,7 +9,7 @@ namespace ispace {
 /// Lets the process reuse freed memory instead of returning it to the system, which would have to
 /// clear it anew. For programs that allocate and free a few hundred megabytes.
 void keepFreedMemory();
-/// The same if these files are so large that their program does.
+/// Does so if these input files are so large that reading them takes such memory.
 void keepFreedMemory(const std::vector<std::string>& inputs);
 
 }  // namespace ispace

@@ -51,7 +51,7 @@ std::shared_ptr<const Scene> sceneWithWholeIds(const BuildingScene& building, st
 BuildingScene makeBuildingScene(StoreyedDocument document, const std::vector<Document>& layouts,
                                 const DeviceCatalogue& devices);
 
-/// Checks what joins the storeys, and their heights; not the rooms, which checkScene() checks.
+/// Checks the passages between storeys and the heights of these; checkScene() checks the rooms.
 ///
 /// - stairs: a flight that begins or ends in a wall, in a solid or outside of the rooms;
 /// - lifts: without a door, with one wider than the cabin, with a load that is no number of

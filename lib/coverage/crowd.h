@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Coverage among people, who stand in the way of sight.
+// Coverage among people, whose bodies block sight.
 #pragma once
 
 #include <cstddef>

@@ -59,8 +59,8 @@ class FarHoles;
 void addExactMetrics(Coverage& coverage, const Environment& environment, FarHoles& holes,
                      const std::vector<Zone>& zones, bool keep_depths);
 
-/// Returns the figures that robustness is told of: coverage, free coverage, that of each zone, and
-/// those of the requirements, each once, as requirements of 0.
+/// Returns the figures whose robustness is reported: coverage, free coverage, that of each zone,
+/// and those of the requirements, each once, as requirements of 0.
 std::vector<Requirement> figuresOf(const CoverageReport& report,
                                    std::span<const Requirement> requirements);
 

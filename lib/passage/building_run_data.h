@@ -26,7 +26,7 @@ namespace ispace {
 /// Metres between two movers on a flight of stairs or waiting.
 constexpr double kFlightGap = 0.2;
 
-/// A robot or a person, wherever it is.
+/// A robot or a person, in any of the worlds.
 struct Traveller {
     std::string id;
     std::size_t room = 0;
@@ -192,7 +192,7 @@ struct BuildingRun::Data {
     [[nodiscard]] std::string bodyText(std::size_t storey, Point2 at, const Traveller& who);
     /// Returns the opening in the floor at a point of a storey, or null.
     [[nodiscard]] const OpenFloor* openingAt(std::size_t storey, Point2 at) const;
-    /// Returns true if it would stand in no body and apart from all movers.
+    /// Returns true if it would overlap no body and no mover.
     [[nodiscard]] bool isFree(std::size_t room, Point2 at, const Traveller& who);
     /// Returns the reason why it would not, or "".
     [[nodiscard]] std::string noRoomText(std::size_t room, Point2 at, const Traveller& who);

@@ -15,7 +15,7 @@ namespace ispace {
 ///
 /// Lines as those of readScript(), with the ids across the building, and besides them
 /// `GOTO STOREY/X,Y`, `PATH STOREY/X,Y;…` and `RIDE LIFT STOREY`. A command that cannot be carried
-/// out when its time has come is skipped; a mark in the events of the room tells the reason.
+/// out when its time has come is skipped; a mark in the events of the room gives the reason.
 class BuildingScript {
   public:
     /// \throws FormatError with all findings (file:line:column)

@@ -33,7 +33,7 @@ class Lift {
 
     enum class Phase { Waiting, Opening, Open, Closing, Riding };
 
-    /// From which all that it shows follows.
+    /// The state, from which height and doors at a time follow.
     struct State {
         Phase phase = Phase::Waiting;
         std::size_t stop = 0;            ///< at which it is, or from which it rides

@@ -21,7 +21,7 @@ struct PirState {
 };
 
 /// Detects people who move in the sight of the PIR sensor `sensor` at `pose`: sightingsOf()
-/// (sense/sighting.h) tells those in sight. The speed that counts is that of the trunk or limb in
+/// (sense/sighting.h) finds those in sight. The speed that counts is that of the trunk or limb in
 /// sight, over the floor.
 ///
 /// Noise, if a seed is given, depends on seed, sensor, frame and person alone: detections drop out,

@@ -29,7 +29,7 @@ struct RadarFrame {
 
 /// Detects the movers that the radar `sensor` sees move from `pose`.
 ///
-/// sightingsOf() (sense/sighting.h) tells the movers in sight; bodies of the radar's carrier do not
+/// sightingsOf() (sense/sighting.h) finds the movers in sight; bodies of the radar's carrier do not
 /// block it. The radial speed is the rate of change of the distance due to the mover: a radar
 /// on a robot compensates its own motion. Movers below the least radial speed have no detection.
 ///

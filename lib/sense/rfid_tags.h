@@ -21,7 +21,7 @@ struct RfidTags {
 };
 
 /// Lists the tags in the field of a reader that neither a solid body nor another mover hides. The
-/// tag of a mover is read where sightingsOf() (sense/sighting.h) tells the mover.
+/// tag of a mover is read where sightingsOf() (sense/sighting.h) finds the mover.
 ///
 /// With noise, a tag is read with the probability `read`, which depends on seed, sensor, frame and
 /// tag alone.

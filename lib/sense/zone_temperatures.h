@@ -9,7 +9,7 @@
 
 namespace ispace {
 
-/// Returns the temperature in the end, if all stays as it is.
+/// Returns the temperature that constant heat and people lead to.
 double steadyTemperature(const ZoneHeat& heat, const MovingBodies& bodies);
 
 /// Solves the equation of ZoneHeat, with constant heat and people:

@@ -13,7 +13,7 @@ namespace ispace {
 
 /// Carries out a request ADD, SET, DELETE, LOAD or RESET. \returns the answer, completed once the
 /// world has changed; it begins with `verb`, if not empty, instead of the request's.
-/// \param prefix of the id that it tells \pre state.mayChange(), state.mayChangeNow()
+/// \param prefix of the id in the answer \pre state.mayChange(), state.mayChangeNow()
 std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
                                                       const std::string& verb = "",
                                                       const std::string& prefix = "");

@@ -78,7 +78,7 @@ class Session {
     /// Stops the held mover after the client has been silent for too long.
     void silent();
 
-    /// Ends pending requests at the end of the run and tells the client.
+    /// Ends pending requests at the end of the run and informs the client.
     void finish();
 
     /// True while a STEP, a SEEK, a change of the world or a picture is under way; later requests

@@ -55,8 +55,8 @@ bool isDayLine(std::string_view line);
 ///     daily HH:MM[:SS] PERSON [NAME:] ACTION; ACTION …
 ///
 /// DAY counts from 1. An action is `goes ID`, `uses ID DURATION`, `stays DURATION`, `opens DOOR`,
-/// `closes DOOR`, or `switches ID on|off`; zones and elements are called by their ids. Without a
-/// NAME an activity is called as its first action. \throws FormatError with all findings
+/// `closes DOOR`, or `switches ID on|off`; zones and elements are named by their ids. Without a
+/// NAME an activity has the name of its first action. \throws FormatError with all findings
 DayPlan readDayPlan(std::string_view text, const std::string& file, const World& world);
 
 /// Makes people follow their days: each does the activities of a plan one after another, each at
@@ -66,7 +66,7 @@ DayPlan readDayPlan(std::string_view text, const std::string& file, const World&
 class ActivityDirector {
   public:
     explicit ActivityDirector(DayPlan plan);
-    /// Starts and ends actions, and tells them as events. Call it after each step.
+    /// Starts and ends actions, and raises their events. Call it after each step.
     void stepped(Simulation& simulation);
 
   private:

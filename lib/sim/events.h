@@ -58,7 +58,7 @@ void appendEventRow(std::string& out, const Event& event);
 /// Seen and Lost follow DetectionMonitor (sense/detection.h), ten times a second.
 ///
 /// State follows the fields of readings that are states, and the records of roomStates(); at a
-/// subscription the states count as known, and no event tells them.
+/// subscription the states count as known, and no event reports them.
 ///
 /// Only subscribed kinds are computed. At the start all movers count as outside every zone, off
 /// every mat and unseen, so those inside raise Enter, Mat or Seen at the next step. Events of one

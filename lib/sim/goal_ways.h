@@ -23,7 +23,7 @@ class GoalWays {
     GoalWays(const GoalWays&) = delete;
     GoalWays& operator=(const GoalWays&) = delete;
 
-    /// A circle on the floor that somebody takes up.
+    /// A circle on the floor that a person occupies.
     struct Spot {
         Point2 center;
         double radius = 0;

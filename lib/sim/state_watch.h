@@ -17,13 +17,13 @@ class World;
 /// readings.
 std::vector<RoomState> statesOf(const World& world);
 
-/// Tells the states of a world that change. All those at its beginning are known.
+/// Reports the states of a world that change, compared with those at its beginning.
 class StateWatch {
   public:
     /// The world must outlive it.
     explicit StateWatch(const World& world);
     /// Returns the states that differ from the last call, the actuators' first. Call it after each
-    /// step. New records are told, removed ones are not.
+    /// step. States of new records are returned, those of removed ones are not.
     std::vector<RoomState> changed();
 
   private:

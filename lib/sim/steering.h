@@ -49,10 +49,10 @@ class Steering {
     /// for obstacles in steps of a half, a quarter, an eighth of it.
     [[nodiscard]] double freeTime(Angle direction) const { return freeTime(direction, 1); }
     /// Returns the desired direction if it is free for `needed` seconds; else the nearest one that
-    /// is, up to a little more than square; else the one that is free longest, with a penalty for
-    /// its angle. A mover that turns aside to pass another turns back in time: obstacles count for
-    /// a quarter of the horizon there. Of left and right it chooses right, so that two movers that
-    /// meet pass each other.
+    /// is, up to slightly more than 90 degrees; else the one that is free longest, with a penalty
+    /// for its angle. A mover that turns aside to pass another turns back in time: obstacles count
+    /// for a quarter of the horizon there. Of left and right it chooses right, so that two movers
+    /// that meet pass each other.
     [[nodiscard]] FreeHeading choose(Angle desired, double needed) const;
 
   private:

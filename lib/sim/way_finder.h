@@ -17,14 +17,14 @@ namespace ispace {
 
 /// Shortest ways of a circle over a floor, by a grid of the cells in which it is free.
 ///
-/// A way leads over sides and corners of cells, costs of which are in the ratio 12 to 17, and is
-/// then straightened where the straight way is free. It keeps kMargin from obstacles besides the
-/// radius, and as far from holes in the floor. Independent of where movers are.
+/// A way steps from cell to cell across sides, at a cost of 12, or corners, at 17, and is then
+/// straightened where the straight line is free. It keeps the radius and kMargin away from
+/// obstacles and from holes in the floor. Movers are ignored.
 class WayFinder {
   public:
     static constexpr double kMargin = 0.05, kCell = 0.1;
 
-    /// Tests all cells. \param box to which the ways keep; cells are larger than kCell where it has
+    /// Tests all cells. \param box that bounds the ways; cells are larger than kCell where it has
     /// more than 250 000 \pre the obstacles outlive this object
     /// \param holes without floor
     WayFinder(const Obstacles& obstacles, const Box2& box, double radius,
@@ -37,10 +37,10 @@ class WayFinder {
     };
     static constexpr std::int32_t kNoWay = -1;
 
-    /// Finds the ways from a point; none, if no cell near it is free. O(cells)
+    /// Finds the ways from a point; no way if no cell near it is free. O(cells)
     [[nodiscard]] Field waysFrom(Point2 from) const;
     /// Returns the points of the shortest way after its first, up to `to`; empty without a way.
-    /// Looks at few cells but those towards the goal.
+    /// Searches mostly the cells towards the goal.
     [[nodiscard]] std::vector<Point2> wayBetween(Point2 from, Point2 to) const;
     /// Returns the length of the way, not yet straightened, in metres; empty without a way.
     [[nodiscard]] std::optional<double> length(const Field& field, Point2 to) const;
@@ -51,7 +51,7 @@ class WayFinder {
         const Field& field, Point2 to, const std::function<bool(Point2)>& is_suitable) const;
     /// Returns true if the circle with the margin is free at that point.
     [[nodiscard]] bool isFree(Point2 p) const;
-    /// Returns true if it is free on the straight way.
+    /// Returns true if the circle is free all along the straight line.
     [[nodiscard]] bool isStraight(Point2 from, Point2 to) const;
 
   private:

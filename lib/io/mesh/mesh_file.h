@@ -47,7 +47,7 @@ class MeshFiles {
   public:
     struct Loaded {
         std::shared_ptr<const TriangleMesh> mesh;
-        std::vector<std::string> side_files;  ///< as loadMesh() tells them
+        std::vector<std::string> side_files;  ///< as loadMesh() returns them
     };
     /// \throws as loadMesh(); for a file that failed before, the same error
     const Loaded& load(const std::string& path, const MeshOptions& options);

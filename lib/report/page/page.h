@@ -39,7 +39,7 @@ struct PageCode {
     std::string text;
 };
 
-/// A sensor as the script of a map needs it to tell how well it sees a spot.
+/// A sensor, for the script of a map, which computes how well the sensor sees a point.
 struct MapSensor {
     std::string id, noun;
     Pose3 pose;

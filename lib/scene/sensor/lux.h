@@ -26,7 +26,7 @@ struct Lux {
     };
 
     std::string model;         ///< "" for the bare meter
-    double max = 100'000;      ///< lux: greatest value that it tells
+    double max = 100'000;      ///< lux: greatest value that it reports
     double resolution = 0;     ///< lux, with noise; 0: exact
     double error = 0;          ///< spread of its constant factor, with noise
     double rate = 1;           ///< readings a second

@@ -23,7 +23,7 @@ struct SoundSource {
 /// A microphone that reports the sound pressure level. It hears in all directions.
 struct Microphone {
     std::string model;                ///< "" for the bare microphone
-    double floor = 30, max = 120;     ///< dB: its own noise, and the loudest sound that it tells
+    double floor = 30, max = 120;     ///< dB: its own noise, and the loudest sound that it reports
     double loss = 30;                 ///< dB that a wall takes
     double sigma = 0;                 ///< dB, standard deviation of a reading
     double rate = 10;                 ///< readings a second

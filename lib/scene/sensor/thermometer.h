@@ -29,8 +29,8 @@ struct ZoneHeat {
 struct Thermometer {
     std::string model;      ///< "" for the bare thermometer
     std::string zone;       ///< id
-    double min = -40;       ///< degrees Celsius: least value that it tells
-    double max = 125;       ///< greatest value that it tells
+    double min = -40;       ///< degrees Celsius: least value that it reports
+    double max = 125;       ///< greatest value that it reports
     double resolution = 0;  ///< kelvin, with noise; 0: exact
     double error = 0;       ///< kelvin: spread of its constant error, with noise
     double rate = 0.1;      ///< readings a second

@@ -84,7 +84,7 @@ enum FieldUse : unsigned {
     kInInfo = 32,   ///< the protocol's description of the sensor; angles in degrees
     kInLine = 64,   ///< the protocol's line of a reading: floats last, or as bytes after it
     kInPage = 128,  ///< frames of the page, lengths in millimetres
-    kIsState = 256  ///< an event tells when it changes
+    kIsState = 256  ///< an event reports its changes
 };
 
 struct ReadingField {

@@ -22,7 +22,7 @@ namespace ispace {
 ///
 /// A state is the retained message PREFIX/ID/KEY: ON or OFF, a share in per cent, a colour as three
 /// numbers up to 255, or the value as in events. A message to PREFIX/ID/KEY/set, in the same form,
-/// is a command to an actuator; PREFIX/error tells the refused ones. The topics of Home Assistant's
+/// is a command to an actuator; PREFIX/error reports refused ones. The topics of Home Assistant's
 /// discovery describe all of them.
 class MqttBridge {
   public:
