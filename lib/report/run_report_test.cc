@@ -22,7 +22,7 @@ RunCoverage runOf(int end) {
     return run;
 }
 
-TEST(RunSightReport, HasTextAndJson) {
+TEST(RunReport, HasTextAndJson) {
     const RunCoverage run = runOf(6);
     const std::string text = runText(run);
     EXPECT_NE(text.find("run drive, t=0.00 to 6.00 s"), std::string::npos) << text;
@@ -37,7 +37,7 @@ TEST(RunSightReport, HasTextAndJson) {
     EXPECT_EQ(coverageJson({}).find("\"run\""), std::string::npos);
 }
 
-TEST(RunSightReport, OfAMoment) {
+TEST(RunReport, OfAMoment) {
     EXPECT_NE(runText(runOf(0)).find("t=0.00 to 0.00 s"), std::string::npos);
 }
 
