@@ -361,7 +361,7 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
     if (options.privacy.empty())
         return arrangeFromResults(limited, limited_groups, options, progress, mps);
     // Cells may miss what the exact regions see.
-    constexpr std::size_t kMostRounds = 100;
+    constexpr std::size_t kMaxRounds = 100;
     ArrangeOptions stricter = options;
     for (std::size_t round = 1;; ++round) {
         Arrangement found = arrangeFromResults(limited, limited_groups, stricter, progress, mps);
@@ -369,7 +369,7 @@ Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
         found.privacy = forbidWhatSees(scene, groups, found, stricter);
         for (Arrangement& other : found.alternatives)
             other.privacy = forbidWhatSees(scene, groups, other, stricter);
-        if (stricter.mount.forbidden.size() == before || progress.stopped() || round == kMostRounds)
+        if (stricter.mount.forbidden.size() == before || progress.stopped() || round == kMaxRounds)
             return found;
     }
 }

@@ -18,7 +18,7 @@ using poses::Convex;
 using poses::Side2;
 
 /// Most visits of cones by parts of the floor in a check, in all.
-constexpr std::size_t kMostVisits = 12'000'000;
+constexpr std::size_t kMaxVisits = 12'000'000;
 
 class GuardChecker {
   public:
@@ -45,7 +45,7 @@ class GuardChecker {
 
     /// Counts visits of cones.
     void visit(std::size_t cones) const {
-        if ((visits_ += cones) > kMostVisits)
+        if ((visits_ += cones) > kMaxVisits)
             floor_.refuse("its leaves divide the floor into too many parts: give fewer witnesses");
     }
     void readLeaves(const GuardCertificate::Tree& tree, std::size_t& at, Leaf path,
@@ -82,7 +82,7 @@ class GuardChecker {
 
 void GuardChecker::readLeaves(const GuardCertificate::Tree& tree, std::size_t& at, Leaf path,
                               std::vector<Leaf>& leaves) const {
-    constexpr std::size_t kDeepest = 32;
+    constexpr std::size_t kMaxDepth = 32;
     if (at == tree.size()) floor_.refuse("a tree ends early");
     const GuardCertificate::Node& node = tree[at++];
     const std::size_t witnesses = certificate_.witnesses.size();
@@ -94,7 +94,8 @@ void GuardChecker::readLeaves(const GuardCertificate::Tree& tree, std::size_t& a
         return;
     }
     if (std::max(node.pair[0], node.pair[1]) >= witnesses) floor_.refuse("a pair of no witnesses");
-    if (path.together.size() + path.apart.size() == kDeepest) floor_.refuse("the tree is too deep");
+    if (path.together.size() + path.apart.size() == kMaxDepth)
+        floor_.refuse("the tree is too deep");
     Leaf together = path;
     together.together.push_back(node.pair);
     readLeaves(tree, at, std::move(together), leaves);

@@ -19,7 +19,7 @@ namespace {
 constexpr double kBlur = 0x1p-40;
 
 /// Most cones in memory, and most tests whether a point is in a triangle.
-constexpr std::size_t kMostCones = 1'000'000, kMostStarts = 50'000'000;
+constexpr std::size_t kMaxCones = 1'000'000, kMaxStarts = 50'000'000;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ double GuardFloor::blurAt(const GuardCone& cone, Point2 end, Point2 p) const {
 
 GuardCones GuardFloor::conesFrom(std::span<const Point2> points, bool must_be_on) const {
     const std::size_t count = floor_.triangles().size();
-    if (points.size() > kMostStarts / std::max<std::size_t>(count, 1))
+    if (points.size() > kMaxStarts / std::max<std::size_t>(count, 1))
         refuse("too many witnesses for a floor of " + std::to_string(count) + " triangles");
     std::atomic<std::size_t> cones = 0;
     std::vector<Sight> own(points.size());
@@ -106,7 +106,7 @@ void GuardFloor::follow(const GuardCone& first, std::size_t triangle, std::size_
         if (next < 0) continue;
         const auto beyond = static_cast<std::size_t>(next);
         if (is_start[beyond] != 0) continue;
-        if (++cones > kMostCones) refuse("its points see the floor through too many edges");
+        if (++cones > kMaxCones) refuse("its points see the floor through too many edges");
         sight.emplace_back(beyond, step.cone);
         for (std::size_t k = 0; k < 3; ++k) {
             if (triangles[beyond].beyond[k] == static_cast<std::int32_t>(step.triangle)) continue;

@@ -19,7 +19,7 @@ struct NamedScene {
 /// Number of mountings and of crowds that a search considers: the first ones of coverage(1).
 constexpr int kRobustSamples = 16;
 /// A search considers all sets of this many sensors, at most.
-constexpr int kMostFailures = 3;
+constexpr int kMaxFailures = 3;
 
 /// The cases of a robust search. It maximises the least value, or the mean.
 struct RobustChoice {

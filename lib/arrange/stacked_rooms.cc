@@ -14,7 +14,7 @@ namespace ispace {
 namespace {
 
 /// Largest total weight that failureProblem() takes.
-constexpr double kMostTotal = 1 << 25;
+constexpr double kMaxTotal = 1 << 25;
 
 std::uint64_t totalOf(const std::vector<std::uint32_t>& weights) {
     return std::accumulate(weights.begin(), weights.end(), std::uint64_t{0});
@@ -79,9 +79,9 @@ void MeasuredScene::stackFailures() {
             "--robust failures:" + std::to_string(failures) + ": there " +
             (sensors == 1 ? "is one sensor" : "are " + std::to_string(sensors) + " sensors") +
             ", and one at least has to work");
-    if (const auto total = static_cast<double>(totalOf(problem_.weights)); total > kMostTotal)
+    if (const auto total = static_cast<double>(totalOf(problem_.weights)); total > kMaxTotal)
         for (std::uint32_t& weight : problem_.weights)
-            weight = static_cast<std::uint32_t>(std::ceil(weight * (kMostTotal / total)));
+            weight = static_cast<std::uint32_t>(std::ceil(weight * (kMaxTotal / total)));
     const std::size_t cells = problem_.cells();
     FailureProblem made = failureProblem(problem_, problem_.achieved, sensors, failures);
     problem_ = std::move(made.problem);

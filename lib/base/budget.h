@@ -27,7 +27,7 @@ class Budget {
   public:
     static constexpr std::uint64_t kMinValue = 1'000'000;  ///< for any input
     static constexpr std::uint64_t kPerByte = 4;           ///< added for each byte of the input
-    static constexpr std::uint64_t kMost = 20'000'000;     ///< for any input, without --max-work
+    static constexpr std::uint64_t kMaxWork = 20'000'000;  ///< for any input, without --max-work
 
     /// \param bytes of the input
     explicit Budget(std::size_t bytes, const WorkLimit& limit = {}) : given_(limit) {
@@ -36,9 +36,9 @@ class Budget {
 
     /// Raises the bound for a file of `bytes` bytes that the input names.
     void grant(std::size_t bytes) {
-        bytes_ += std::min<std::uint64_t>(bytes, kMost);  // no overflow
-        limit_ =
-            given_.max.value_or(std::min(kMost, kMinValue + kPerByte * std::min(bytes_, kMost)));
+        bytes_ += std::min<std::uint64_t>(bytes, kMaxWork);  // no overflow
+        limit_ = given_.max.value_or(
+            std::min(kMaxWork, kMinValue + kPerByte * std::min(bytes_, kMaxWork)));
     }
 
     [[nodiscard]] std::uint64_t limit() const { return limit_; }

@@ -11,8 +11,8 @@ namespace {
 TEST(Budget, FollowsTheSizeBetweenItsBounds) {
     EXPECT_EQ(Budget(0).limit(), Budget::kMinValue);
     EXPECT_EQ(Budget(1000).limit(), Budget::kMinValue + 1000 * Budget::kPerByte);
-    EXPECT_EQ(Budget(1'000'000'000).limit(), Budget::kMost);
-    EXPECT_EQ(Budget(SIZE_MAX).limit(), Budget::kMost);
+    EXPECT_EQ(Budget(1'000'000'000).limit(), Budget::kMaxWork);
+    EXPECT_EQ(Budget(SIZE_MAX).limit(), Budget::kMaxWork);
     EXPECT_EQ(Budget(SIZE_MAX, {7}).limit(), 7U);
 }
 
@@ -21,7 +21,7 @@ TEST(Budget, GrowsWithSideFiles) {
     budget.grant(500);
     EXPECT_EQ(budget.limit(), Budget::kMinValue + 1500 * Budget::kPerByte);
     for (int i = 0; i < 3; ++i) budget.grant(SIZE_MAX);
-    EXPECT_EQ(budget.limit(), Budget::kMost);
+    EXPECT_EQ(budget.limit(), Budget::kMaxWork);
 }
 
 TEST(Budget, TakesAllOrNothing) {

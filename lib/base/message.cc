@@ -88,8 +88,8 @@ std::string lowered(std::string_view word) {
 }  // namespace
 
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known) {
-    constexpr std::size_t kLongest = 64;
-    if (word.size() > kLongest) return "";
+    constexpr std::size_t kMaxLength = 64;
+    if (word.size() > kMaxLength) return "";
     const std::string lower = lowered(word);
     std::string best;
     std::size_t best_distance =

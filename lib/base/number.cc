@@ -276,13 +276,14 @@ template <typename Wide, typename Float, typename Bits>
 char* writeShortest(char* to, Float value, Bits bits) {
     constexpr int kMantissaBits = std::numeric_limits<Float>::digits - 1;
     constexpr int kBias = std::numeric_limits<Float>::max_exponent - 1 + kMantissaBits;
-    constexpr int kLeast = -16 - kMantissaBits, kMost = std::min(-2, 48 - kMantissaBits);
+    constexpr int kMinExponent = -16 - kMantissaBits,
+                  kMaxExponent = std::min(-2, 48 - kMantissaBits);
     const Bits fraction = bits & ((Bits{1} << kMantissaBits) - 1);
     // Of two, of the mantissa's last bit.
     const int exponent = static_cast<int>((bits << 1U) >> (kMantissaBits + 1U)) - kBias;
     *to = value == 0 ? '0' : '-';
     if (value == 0) return to + 1;
-    if (exponent < kLeast || exponent > kMost) return writeByLibrary(to, value);
+    if (exponent < kMinExponent || exponent > kMaxExponent) return writeByLibrary(to, value);
     char* const first = value < 0 ? to + 1 : to;
     // Enough to distinguish neighbours: the least with 10^d 2^exponent >= 1.
     int decimals = ((-exponent * 1233) >> 12) + 1;

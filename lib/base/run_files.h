@@ -81,7 +81,7 @@ class InputSandbox {
     InputSandbox& operator=(const InputSandbox&) = delete;
 };
 
-/// True if no ReadFence forbids reading this file; call it before opening the file.
+/// True if no InputSandbox forbids reading this file; call it before opening the file.
 bool mayBeRead(const std::string& name);
 /// \throws std::system_error, as for a missing file, if it may not be read
 void mustBeReadable(const std::string& name);

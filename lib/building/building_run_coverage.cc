@@ -16,7 +16,7 @@ void addShares(std::vector<double>& sums, const std::vector<double>& shares, dou
 }
 
 /// Adds metrics; the shares of the sum are amounts.
-void addMetrics(RunSightMetrics& sum, const RunSightMetrics& one) {
+void addMetrics(RunCoverageMetrics& sum, const RunCoverageMetrics& one) {
     addShares(sum.time_shares, one.time_shares, one.duration);
     addShares(sum.way_shares, one.way_shares, one.length);
     sum.duration += one.duration;
@@ -42,14 +42,14 @@ RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys) {
         sum.begin = is_first ? storey.begin : std::min(sum.begin, storey.begin);
         sum.end = std::max(sum.end, storey.end);
         is_first = false;
-        for (const RunSightMetrics& member : storey.members) {
+        for (const RunCoverageMetrics& member : storey.members) {
             const auto [at, is_new] = known.try_emplace(member.id, sum.members.size());
             if (is_new) sum.members.push_back({.id = member.id, .is_person = member.is_person});
             addMetrics(sum.members[at->second], member);
         }
         addMetrics(sum.all, storey.all);
     }
-    for (RunSightMetrics& member : sum.members) {
+    for (RunCoverageMetrics& member : sum.members) {
         turnIntoShares(member.time_shares, member.duration);
         turnIntoShares(member.way_shares, member.length);
     }

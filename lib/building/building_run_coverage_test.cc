@@ -6,9 +6,9 @@
 namespace ispace {
 namespace {
 
-RunSightMetrics metrics(double duration, double length, std::vector<double> shares,
-                        std::size_t losses, double gap) {
-    RunSightMetrics metrics;
+RunCoverageMetrics metrics(double duration, double length, std::vector<double> shares,
+                           std::size_t losses, double gap) {
+    RunCoverageMetrics metrics;
     metrics.duration = duration;
     metrics.length = length;
     metrics.time_shares = metrics.way_shares = std::move(shares);
@@ -17,7 +17,7 @@ RunSightMetrics metrics(double duration, double length, std::vector<double> shar
     return metrics;
 }
 
-RunCoverage storey(double begin, double end, const RunSightMetrics& one, const std::string& id) {
+RunCoverage storey(double begin, double end, const RunCoverageMetrics& one, const std::string& id) {
     RunCoverage run;
     run.begin = begin;
     run.end = end;
@@ -37,7 +37,7 @@ TEST(BuildingRunCoverage, AddsUpMoversOverStoreys) {
     EXPECT_EQ(sum.begin, 0);
     EXPECT_EQ(sum.end, 60);
     ASSERT_EQ(sum.members.size(), 2U);
-    const RunSightMetrics& r = sum.members[0];
+    const RunCoverageMetrics& r = sum.members[0];
     EXPECT_EQ(r.id, "ground/r");
     EXPECT_DOUBLE_EQ(r.duration, 50);
     EXPECT_DOUBLE_EQ(r.length, 10);

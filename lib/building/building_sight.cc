@@ -40,7 +40,7 @@ class StoreyViews {
             const auto [at, is_new] = sensors_.try_emplace(scene.get());
             if (!is_new) continue;
             for (std::size_t i = 0; i < scene->sensors.size(); ++i)
-                if (seesOutside(scene->sensors[i]) && !isBuried(*scene, scene->sensors[i]))
+                if (seesOutside(scene->sensors[i]) && !isInsideSolid(*scene, scene->sensors[i]))
                     at->second.push_back(i);
         }
     }
@@ -77,7 +77,7 @@ class StoreyViews {
     [[nodiscard]] double floorOf(std::size_t storey) const {
         return building_.document.storeys[storey].floor;
     }
-    static bool isBuried(const Scene& scene, const Sensor& sensor) {
+    static bool isInsideSolid(const Scene& scene, const Sensor& sensor) {
         const Point3 at = sensor.pose.position;
         return scene.environment.level(at.z)->isInsideSolid(at.onFloor());
     }

@@ -74,7 +74,7 @@ std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
                                                 std::size_t storey, bool with_movers = true);
 
 /// Returns true for a sensor that sees other storeys: by light, in more than its own level plane.
-bool looksAround(const Sensor& sensor);
+bool seesOtherStoreys(const Sensor& sensor);
 
 /// Returns true if other fixed sensors of a storey, or in other poses, may see other storeys.
 bool looksOtherwise(const Scene& before, const Scene& now);

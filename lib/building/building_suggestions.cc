@@ -20,7 +20,7 @@ namespace {
 
 /// Least gain of a suggestion, and greatest loss of one that saves a sensor, as shares of the
 /// storey's indoor floor, as in suggestChanges().
-constexpr double kLeastGain = 1e-3, kMostLoss = 0.01;
+constexpr double kMinGain = 1e-3, kMaxLoss = 0.01;
 constexpr std::size_t kKinds = 7;  // of suggestions, but for Together one of each a storey
 
 double seenShare(const BuildingCoverage& coverage) {
@@ -102,7 +102,7 @@ std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
             one.share = seenShare(
                 measureBuilding(editedStorey(building, i, *whole[i], one.edits), options.measure));
             one.gained = (one.share - before) * coverage.indoor_area;
-            if (one.gained < (saves ? -kMostLoss : kLeastGain) * floor) continue;
+            if (one.gained < (saves ? -kMaxLoss : kMinGain) * floor) continue;
             (saves ? savings : gains).push_back(std::move(one));
         }
     }

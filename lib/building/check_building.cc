@@ -28,7 +28,7 @@ constexpr std::array kBeforeDoor = {0.4, 0.8};
 /// Storeys may overlap by this, metres and square metres.
 constexpr double kHeightTolerance = 1e-3, kAreaTolerance = 0.01;
 /// Corners of outlines that are compared, of all pairs of storeys: less than a second.
-constexpr std::uint64_t kMostCompared = 1'000'000;
+constexpr std::uint64_t kMaxCompared = 1'000'000;
 
 /// True if a person can step from `from` to `to`: free floor, and no wall between.
 bool isWay(const Environment& room, Point2 from, Point2 to) {
@@ -199,7 +199,7 @@ class BuildingCheck {
     void checkHeights() {
         std::vector<Floor> floors;
         for (std::size_t i = 0; i < building_.scenes.size(); ++i) floors.push_back(floorOf(i));
-        Budget work(0, {kMostCompared});
+        Budget work(0, {kMaxCompared});
         for (std::size_t a = 0; a < floors.size(); ++a) {
             const double top = storey(a).floor + building_.height(a);
             for (std::size_t b = a + 1; b < floors.size(); ++b) {

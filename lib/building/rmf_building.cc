@@ -93,7 +93,7 @@ class RmfReader {
     [[nodiscard]] double number(const YamlNode& node) const {
         const auto value =
             node.kind == YamlNode::Kind::Scalar ? parseDouble(node.scalar) : std::nullopt;
-        if (!value || !(std::abs(*value) <= kFarthestPlan))
+        if (!value || !(std::abs(*value) <= kMaxPlanCoordinate))
             fail(node,
                  (node.kind == YamlNode::Kind::Scalar ? excerpt(node.scalar) : "a list or map") +
                      " is no coordinate or length");

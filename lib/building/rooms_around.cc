@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-bool looksAround(const Sensor& sensor) {
+bool seesOtherStoreys(const Sensor& sensor) {
     return kindOf(sensor.model).stopped_by == Surfaces::Opaque &&
            (!sensor.is<Laser>() || !scansSlice(sensor));
 }
@@ -70,7 +70,7 @@ std::shared_ptr<const SurroundedRoom> RoomsAround::room(std::size_t storey, cons
 }
 
 std::shared_ptr<const SurroundedRoom> RoomsAround::around(std::size_t storey, const Scene& scene) {
-    const bool is_seen = std::any_of(scene.sensors.begin(), scene.sensors.end(), looksAround);
+    const bool is_seen = std::any_of(scene.sensors.begin(), scene.sensors.end(), seesOtherStoreys);
     return openings_.empty() || !is_seen ? nullptr : room(storey, scene);
 }
 

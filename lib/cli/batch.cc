@@ -321,11 +321,11 @@ class BatchWriter {
             throw FormatError(
                 {displayName(run_.batch.list), 0, 0, share(failed_) + "failed, see above"});
         if (unmet_ > 0) throw UnmetError(share(unmet_) + "missed a requirement");
-        talk(run_.common, run_.tool,
-             std::to_string(jobs) + " jobs done" +
-                 (cache == nullptr ? ""
-                                   : ", " + std::to_string(cache->reused()) +
-                                         " of them known from " + run_.batch.cache));
+        logInfo(run_.common, run_.tool,
+                std::to_string(jobs) + " jobs done" +
+                    (cache == nullptr ? ""
+                                      : ", " + std::to_string(cache->reused()) +
+                                            " of them known from " + run_.batch.cache));
     }
 
   private:

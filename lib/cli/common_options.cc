@@ -95,7 +95,7 @@ void tell(const CommonOptions& options, const std::string& tool, const std::stri
     writeSentence(tool, {.message = sentence, .severity = Severity::Note});
 }
 
-void talk(const CommonOptions& options, const std::string& tool, const std::string& text) {
+void logInfo(const CommonOptions& options, const std::string& tool, const std::string& text) {
     if (options.verbose > 0) tell(options, tool, text);
 }
 

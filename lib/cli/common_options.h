@@ -35,7 +35,7 @@ struct CommonOptions {
 void addCommonOptions(CommandLine& line, CommonOptions& options, const std::string& output_help);
 
 /// Prints `text` on stderr with -v and without -q.
-void talk(const CommonOptions& options, const std::string& tool, const std::string& text);
+void logInfo(const CommonOptions& options, const std::string& tool, const std::string& text);
 
 /// Prints a sentence on stderr unless -q is given.
 void tell(const CommonOptions& options, const std::string& tool, const std::string& sentence);

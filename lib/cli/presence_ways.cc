@@ -69,8 +69,8 @@ PeopleWays wanderedWays(const WaysChoice& choice, const Scene& scene, std::uint6
 }  // namespace
 
 WaysChoice parseWays(const std::string& text) {
-    constexpr std::int64_t kMostPeople = 1000;
-    constexpr SimTime kLongest = std::chrono::hours(24);
+    constexpr std::int64_t kMaxPeople = 1000;
+    constexpr SimTime kMaxDuration = std::chrono::hours(24);
     if (!text.starts_with(kWander)) return {.record = text};
     const std::string words = text.substr(kWander.size());
     const auto comma = words.find(',');
@@ -78,8 +78,8 @@ WaysChoice parseWays(const std::string& text) {
     const auto people = parseInteger(words.substr(0, comma));
     std::optional<SimTime> duration = choice.duration;
     if (comma != std::string::npos) duration = parseSimTime(words.substr(comma + 1));
-    if (!people || *people < 1 || *people > kMostPeople || !duration || *duration <= SimTime(0) ||
-        *duration > kLongest)
+    if (!people || *people < 1 || *people > kMaxPeople || !duration || *duration <= SimTime(0) ||
+        *duration > kMaxDuration)
         throw UsageError('`' + text + "` is not wander:N[,TIME] with 1 to 1000 people and a time " +
                          "up to a day, as in wander:4,10min");
     choice.people = static_cast<int>(*people);

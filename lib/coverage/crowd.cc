@@ -17,7 +17,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::size_t kMostDraws = 1000;
+constexpr std::size_t kMaxDraws = 1000;
 
 }  // namespace
 
@@ -71,7 +71,7 @@ Crowd CrowdFloor::draw(std::size_t count, RandomKey key) const {
     Crowd crowd;
     for (std::size_t i = 0; i < count; ++i) {
         key.sensor = i;
-        std::vector<float> random(2 * kMostDraws);
+        std::vector<float> random(2 * kMaxDraws);
         ispace::draw(key, 0, {.uniform = random});
         const std::size_t before = crowd.size();
         for (std::size_t k = 0; k < random.size() && crowd.size() == before; k += 2) {

@@ -17,8 +17,8 @@ constexpr int kSamples = 128;
 
 /// Puts the edges that close a level set well beyond a box.
 Box2 enlarged(const Box2& box) {
-    constexpr double kShare = 0.06, kLeast = 1e-3;
-    const double margin = kShare * std::max(box.width(), box.depth()) + kLeast;
+    constexpr double kShare = 0.06, kMinMargin = 1e-3;
+    const double margin = kShare * std::max(box.width(), box.depth()) + kMinMargin;
     return {{box.low.x - margin, box.low.y - margin}, {box.high.x + margin, box.high.y + margin}};
 }
 
@@ -82,7 +82,7 @@ bool meets(const std::vector<Polygon>& polygons, const Box2& box) {
 /// the error of chords, or they are small.
 Interval DenseFloor::densitiesIn(const std::vector<Curve>& part) const {
     constexpr double kMargin = 1.01, kSlack = 1e-3;  // metres
-    constexpr int kDeepest = 6;
+    constexpr int kMaxDepth = 6;
     Interval range{HUGE_VAL, 0};
     std::vector<Polygon> polygons;
     Box2 all;
@@ -98,7 +98,7 @@ Interval DenseFloor::densitiesIn(const std::vector<Curve>& part) const {
         const double low = pixels.low / distance.high, high = pixels.high / distance.low;
         if (low >= range.low && high <= range.high) return;
         if (!meets(polygons, box)) return;
-        if (depth == kDeepest) {
+        if (depth == kMaxDepth) {
             range = {std::min(range.low, low), std::max(range.high, high)};
             return;
         }

@@ -209,11 +209,11 @@ std::vector<WorstSet> worstSets(const std::vector<SharedFloor>& floors, std::siz
 }
 
 void mustBeFew(std::size_t views, std::size_t count, std::size_t floors) {
-    constexpr double kMost = 2e9;
+    constexpr double kMaxWork = 2e9;
     double sets = 1;
     for (std::size_t k = 0; k < count; ++k)
         sets *= static_cast<double>(views - k) / static_cast<double>(k + 1);
-    if (sets * static_cast<double>(floors + 1) > kMost)
+    if (sets * static_cast<double>(floors + 1) > kMaxWork)
         throw UsageError("too many sets of " + std::to_string(count) + " of " +
                          std::to_string(views) + " sensors: take fewer failures");
 }

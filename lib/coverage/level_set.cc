@@ -80,7 +80,7 @@ class LevelTracer {
     }
 
   private:
-    static constexpr int kDeepest = 8;
+    static constexpr int kMaxDepth = 8;
     static constexpr std::size_t kJoined = 16;  // pieces in an arc at most
 
     [[nodiscard]] Point2 place(int column, int row) const {
@@ -205,7 +205,7 @@ class LevelTracer {
     void join(const std::vector<Point2>& roots, std::size_t first, std::size_t last,
               Curve& curve) const {
         constexpr std::size_t kEnough = 4;  // pieces, so that points lie between those of the arc
-        if (last - first == 1) return follow(roots[first], roots[last], kDeepest, curve);
+        if (last - first == 1) return follow(roots[first], roots[last], kMaxDepth, curve);
         const std::size_t middle = first + (last - first) / 2;
         if (last - first >= kEnough) {
             const CurveEdge edge = arcThrough(roots[first], roots[middle], roots[last]);

@@ -32,7 +32,7 @@ struct SpotInformation {
 Point3 spotFor(const Sensor& sensor, Point2 at, double plane);
 
 /// Limits of the error that counts at most, metres.
-constexpr double kLeastErrorLimit = 0.001, kMostErrorLimit = 1000;
+constexpr double kMinErrorLimit = 0.001, kMaxErrorLimit = 1000;
 
 /// Errors of positions over the indoor floor, by cells.
 struct Localisation {

@@ -111,7 +111,7 @@ class SightSum {
     };
 
     void lookAt(std::size_t member, double time, Point2 place, std::size_t count, double fastest);
-    void addTo(RunSightMetrics& metrics, std::size_t count, double time, double way);
+    void addTo(RunCoverageMetrics& metrics, std::size_t count, double time, double way);
     void closeGap(std::size_t member, double time, Point2 place);
     void draw(std::size_t member, Point2 place, std::size_t count);
 
@@ -120,7 +120,7 @@ class SightSum {
     bool is_first_ = true;
 };
 
-void SightSum::addTo(RunSightMetrics& metrics, std::size_t count, double time, double way) {
+void SightSum::addTo(RunCoverageMetrics& metrics, std::size_t count, double time, double way) {
     for (auto* shares : {&metrics.time_shares, &metrics.way_shares})
         if (shares->size() <= count) shares->resize(count + 1);
     metrics.time_shares[count] += time;
@@ -139,7 +139,7 @@ void SightSum::closeGap(std::size_t member, double time, Point2 place) {
         ++sight_.members[member].losses;
         sight_.losses.push_back({member, last.gap->begin, duration, last.gap->from});
     }
-    for (RunSightMetrics* metrics : {&sight_.members[member], &sight_.all}) {
+    for (RunCoverageMetrics* metrics : {&sight_.members[member], &sight_.all}) {
         const auto& longest = metrics->longest_gap;
         if (duration > 0 && (!longest || duration > longest->end - longest->begin))
             metrics->longest_gap = last.gap;
@@ -209,7 +209,7 @@ void SightSum::leaveOut(Members& members) {
     }
 }
 
-void turnIntoShares(RunSightMetrics& metrics) {
+void turnIntoShares(RunCoverageMetrics& metrics) {
     for (double& share : metrics.time_shares)
         share = metrics.duration > 0 ? share / metrics.duration : 0;
     if (!(metrics.length > 0)) metrics.way_shares.clear();
@@ -219,7 +219,7 @@ void turnIntoShares(RunSightMetrics& metrics) {
 RunCoverage SightSum::finish(const RunReader& reader) {
     for (std::size_t member = 0; member < last_.size(); ++member) {
         closeGap(member, last_[member].time, last_[member].place);
-        RunSightMetrics& metrics = sight_.members[member];
+        RunCoverageMetrics& metrics = sight_.members[member];
         metrics.id = reader.members()[member].id;
         metrics.is_person = reader.members()[member].is_person;
         sight_.all.losses += metrics.losses;

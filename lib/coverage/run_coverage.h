@@ -23,7 +23,7 @@ struct UnseenInterval {
 };
 
 /// Metrics of how one mover, or all together, were seen in a run.
-struct RunSightMetrics {
+struct RunCoverageMetrics {
     std::string id = {};  ///< "" for all together
     bool is_person = false;
     double duration = 0, length = 0;  ///< time that it was present, s, and length of its way, m
@@ -54,8 +54,8 @@ struct TrackLoss {
 struct RunCoverage {
     std::string name = {};  ///< of the recorded file
     double begin = 0, end = 0;
-    std::vector<RunSightMetrics> members;
-    RunSightMetrics all;
+    std::vector<RunCoverageMetrics> members;
+    RunCoverageMetrics all;
     std::vector<SeenWay> ways = {};
     std::vector<TrackLoss> losses = {};  ///< sorted by duration, the longest first
 };

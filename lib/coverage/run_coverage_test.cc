@@ -31,7 +31,7 @@ RunCoverage sightOf(const std::string& robots, const std::string& people = "",
 TEST(RunCoverage, SharesTimeAndWay) {
     const RunCoverage run = sightOf(robotsCsv());
     ASSERT_EQ(run.members.size(), 1U);
-    const RunSightMetrics& r1 = run.members[0];
+    const RunCoverageMetrics& r1 = run.members[0];
     EXPECT_EQ(r1.id, "r1");
     EXPECT_FALSE(r1.is_person);
     EXPECT_NEAR(r1.duration, 6, 1e-9);
@@ -58,7 +58,7 @@ TEST(RunCoverage, OfPeopleAndOfAllTogether) {
     for (int i = 0; i <= 600; ++i) people += std::to_string(i * 0.01) + ",h1,3,2.5,0\n";
     const RunCoverage run = sightOf(robotsCsv(), people);
     ASSERT_EQ(run.members.size(), 2U);
-    const RunSightMetrics& h1 = run.members[1];
+    const RunCoverageMetrics& h1 = run.members[1];
     EXPECT_TRUE(h1.is_person);
     EXPECT_EQ(h1.length, 0);
     EXPECT_TRUE(h1.way_shares.empty());

@@ -71,7 +71,7 @@ double distanceFrom(const CurveEdge& edge, Point2 middle, Point2 place);
 
 template <typename Place>
 void follow(Place place, double begin, double end, Curve& curve) {
-    constexpr int kPieces = 8, kDeepest = 16;
+    constexpr int kPieces = 8, kMaxDepth = 16;
     const auto piece = [&](auto& self, double t, Point2 from, double u, Point2 to,
                            int depth) -> void {
         const double half = t + (u - t) / 2;
@@ -91,7 +91,7 @@ void follow(Place place, double begin, double end, Curve& curve) {
         const double t = begin + (end - begin) * (i - 1) / kPieces;
         const double u = begin + (end - begin) * i / kPieces;
         const Point2 to = place(u);
-        piece(piece, t, from, u, to, kDeepest);
+        piece(piece, t, from, u, to, kMaxDepth);
         from = to;
     }
 }

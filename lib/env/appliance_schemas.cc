@@ -21,7 +21,7 @@ KeySpec lightColorKey(Tuple standard) {
 }
 
 Schema projectorSchema() {
-    constexpr double kNarrowest = 0.1, kWidest = 170;
+    constexpr double kMinAngle = 0.1, kMaxAngle = 170;
     KeySpec facing = heading();
     facing.help = "direction that it faces at pan=0, from +x";
     KeySpec fov{.name = "fov",
@@ -31,8 +31,8 @@ Schema projectorSchema() {
                 .default_value = Tuple{36, 21},
                 .min_count = 2,
                 .max_count = 2,
-                .lower = kNarrowest,
-                .upper = kWidest};
+                .lower = kMinAngle,
+                .upper = kMaxAngle};
     return schemaOf(
         "projector", RecordType::Infra,
         "a projector that turns, whose picture or plain light pictures show on walls, "

@@ -168,16 +168,16 @@ namespace {
 
 /// Returns the keys of a zone's heat, for thermometers.
 std::vector<KeySpec> heatKeys() {
-    constexpr double kLeast = 1e-3;  // keeps the temperature finite
+    constexpr double kMinValue = 1e-3;  // keeps the temperature finite
     return {
         keys::number("celsius", Unit::None, "its temperature at the start, degrees Celsius", 20,
                      -100, 100),
         keys::number("storage", Unit::None,
-                     "heat that its air and walls store, kJ/K for a square metre", 165, kLeast,
+                     "heat that its air and walls store, kJ/K for a square metre", 165, kMinValue,
                      1e4),
         keys::number("loss", Unit::None,
                      "heat that it loses to the outside, W/K for a square metre, all windows shut",
-                     1.5, kLeast, 1e4)};
+                     1.5, kMinValue, 1e4)};
 }
 
 void addSpaces(std::vector<Schema>& out) {

@@ -104,10 +104,10 @@ Environment::Environment(std::span<const Record> records, std::span<const std::s
 
 std::optional<ElementChanges> Environment::changesSince(const Environment& before) const {
     if (data_->walls != before.data_->walls) return std::nullopt;
-    constexpr std::size_t kMost = 512, kMostShare = 4;
+    constexpr std::size_t kMaxChanged = 512, kMaxShare = 4;
     ElementChanges changes;
     const std::vector<Element>&was = before.elements(), &is = elements();
-    const std::size_t most = std::min(kMost, was.size() / kMostShare + 1);
+    const std::size_t most = std::min(kMaxChanged, was.size() / kMaxShare + 1);
     for (std::size_t i = 0, j = 0; i < was.size() || j < is.size();) {
         if (i < was.size() && j < is.size() && was[i].shape == is[j].shape) {
             ++i;

@@ -351,7 +351,7 @@ Record withId(Record record, const std::string& id) {
 /// Returns true if findings about the records would be the same, too.
 bool isSame(const Record& a, const Record& b) {
     if (!(a == b) || a.mesh() != b.mesh()) return false;
-    const Place &x = a.place(), &y = b.place();
+    const SourcePosition &x = a.place(), &y = b.place();
     return x.line == y.line && (x.file == y.file || (x.file && y.file && *x.file == *y.file));
 }
 

@@ -74,8 +74,8 @@ inline int roughlyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
     const double all = (std::abs(vw) + std::abs(wv)) * u_lift +
                        (std::abs(wu) + std::abs(uw)) * v_lift +
                        (std::abs(uv) + std::abs(vu)) * w_lift;
-    constexpr double kError = 12 * 0x1p-53, kMinValue = 0x1p-600, kMost = 0x1p1000;
-    if (!(all > kMinValue && all < kMost)) return 0;
+    constexpr double kError = 12 * 0x1p-53, kMinValue = 0x1p-600, kMaxValue = 0x1p1000;
+    if (!(all > kMinValue && all < kMaxValue)) return 0;
     return det > kError * all ? 1 : det < -kError * all ? -1 : 0;
 }
 
@@ -100,8 +100,8 @@ inline int surelyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
                        c_lift.high * most(ax, ay, bx, by);
     // Some 20 roundings, each off by 2^-102 of its operands at most. Underflow in products loses
     // far less: `all` is above kMinValue.
-    constexpr double kError = 0x1p-92, kMinValue = 0x1p-600, kMost = 0x1p1000;
-    if (!(all > kMinValue && all < kMost)) return 0;
+    constexpr double kError = 0x1p-92, kMinValue = 0x1p-600, kMaxValue = 0x1p1000;
+    if (!(all > kMinValue && all < kMaxValue)) return 0;
     const double error = kError * all;
     return det.high > error ? 1 : det.high < -error ? -1 : 0;
 }

@@ -164,7 +164,7 @@ class BoxTree {
         std::uint32_t right;         // the second child; the first one follows; 0: a leaf
     };
     static constexpr std::uint32_t kLeaf = 4;
-    static constexpr std::size_t kDeepest = 64;  // halving 2^32 items, and more
+    static constexpr std::size_t kMaxDepth = 64;  // halving 2^32 items, and more
 
     void build(std::uint32_t first, std::uint32_t count);
 
@@ -175,7 +175,7 @@ class BoxTree {
 template <typename Visit>
 void BoxTree::search(const Box2& window, Visit visit) const {
     if (nodes_.empty()) return;
-    std::array<std::uint32_t, kDeepest> open{};
+    std::array<std::uint32_t, kMaxDepth> open{};
     std::size_t count = 1;
     while (count > 0) {
         const std::uint32_t at = open[--count];

@@ -65,7 +65,7 @@ void ImportRecords::doubt(std::string sentence) {
 }
 
 Record& ImportRecords::add(const char* keyword, int line) {
-    Place place = place_;
+    SourcePosition place = place_;
     place.line = line;
     return document_.records.emplace_back(*schemas_.find(keyword), std::move(place));
 }
@@ -221,8 +221,8 @@ constexpr std::string_view kSchema = "ispace-scan/1";
 
 /// \throws FormatError
 int countOf(const json& value, const char* name) {
-    constexpr int kMost = std::numeric_limits<int>::max();
-    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > kMost)
+    constexpr int kMaxInt = std::numeric_limits<int>::max();
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > kMaxInt)
         throw FormatError({"", 0, 0, '`' + std::string(name) + "` is no whole number from 0 on"});
     return value.get<int>();
 }

@@ -84,7 +84,7 @@ class ImportRecords {
 
   private:
     const Schemas& schemas_;
-    Place place_;
+    SourcePosition place_;
     double wall_height_, wall_thickness_;
     std::set<std::string> ids_;
     std::map<std::string, int> last_numbers_;  // last suffix tried for each word

@@ -20,7 +20,7 @@
 namespace ispace {
 
 /// Plans may reach this far from the origin, in metres; records end at 1000 km.
-constexpr double kFarthestPlan = 900'000;
+constexpr double kMaxPlanCoordinate = 900'000;
 
 /// Which of the closed regions of a plan or map are imported.
 enum class RoomChoice {

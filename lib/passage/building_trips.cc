@@ -14,7 +14,7 @@ namespace ispace {
 namespace {
 
 /// A step of a trip that fails is repeated as often.
-constexpr int kMostAttempts = 5;
+constexpr int kMaxAttempts = 5;
 /// Metres from a landing at which a mover that gets no nearer joins the queue.
 constexpr double kCrowd = 3;
 /// A mover goes straight on to a point to which it turns by less, in degrees, or that is nearer.
@@ -312,7 +312,7 @@ void BuildingRun::Data::step(Traveller& who, BuildingTrip& trip) {
 void BuildingRun::Data::tryAgain(Traveller& who, BuildingTrip& trip, Outcome outcome) {
     trip.steps.clear();
     const bool is_on_storey = rooms[who.room].storey.has_value();
-    if (is_on_storey && ++trip.attempts > kMostAttempts) return giveUp(who, trip, outcome);
+    if (is_on_storey && ++trip.attempts > kMaxAttempts) return giveUp(who, trip, outcome);
     const bool has_leg = trip.leg < trip.legs.size();
     switch (trip.state) {
         case TripState::Walking:

@@ -17,10 +17,10 @@ namespace {
 /// Width that a mover needs besides its own.
 constexpr double kRoom = 0.1;
 /// Landings lie at most this far from a door or from the end of a flight, in metres.
-constexpr double kFarthestLanding = 1.5, kLandingStep = 0.05;
+constexpr double kMaxLanding = 1.5, kLandingStep = 0.05;
 /// Waiting movers stand at most this far from the landing, on a grid of this step.
-constexpr double kFarthestSpot = 4, kSpotStep = 0.5;
-constexpr std::size_t kMostSpots = 8;
+constexpr double kMaxSpot = 4, kSpotStep = 0.5;
+constexpr std::size_t kMaxSpots = 8;
 /// The floor before a door that waiting movers leave free, metres ahead.
 constexpr double kLeftFree = 2.5;
 
@@ -94,7 +94,7 @@ void StoreyWays::addLift(const BuildingScene& building, std::size_t index) {
     const StoreyLink& passage = (*passages_)[index];
     for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop) {
         const std::size_t storey = passage.storeys[stop];
-        for (double lane = size_.radius + kRoom; lane <= kFarthestLanding + size_.radius;
+        for (double lane = size_.radius + kRoom; lane <= kMaxLanding + size_.radius;
              lane += kLandingStep) {
             // About to enter, a mover faces the door.
             const Pose2 before{{passage.cabin.length / 2 + lane, 0}, Angle::degrees(180)};
@@ -154,7 +154,7 @@ std::optional<Point2> StoreyWays::freeBefore(std::size_t storey, const Pose2& en
         return !bodies.near({from, p}, kThin);
     };
     std::optional<Point2> beyond;
-    for (double way = 0; way <= kFarthestLanding; way += kLandingStep)
+    for (double way = 0; way <= kMaxLanding; way += kLandingStep)
         for (int k = 0; k < kDirections; ++k) {
             // First straight away from the steps, then to the sides.
             const int aside = (k + 1) / 2;
@@ -179,7 +179,7 @@ void StoreyWays::addSpots(Landing& landing) const {
     const WayFinder& finder = finders_[landing.storey];
     const double wide = 2 * size_.radius;
     std::vector<std::tuple<double, double, double>> found;
-    const int reach = static_cast<int>(kFarthestSpot / kSpotStep);
+    const int reach = static_cast<int>(kMaxSpot / kSpotStep);
     for (int i = -reach; i <= reach; ++i)
         for (int k = -reach; k <= reach; ++k) {
             const Point2 p = landing.at.position + Vec2{i * kSpotStep, k * kSpotStep};
@@ -200,7 +200,7 @@ void StoreyWays::addSpots(Landing& landing) const {
                 });
             if (is_in_way || !finder.isFree(p)) continue;
             const auto way = finder.length(landing.ways, p);
-            if (way && *way <= 2 * kFarthestSpot) found.emplace_back(*way, p.x, p.y);
+            if (way && *way <= 2 * kMaxSpot) found.emplace_back(*way, p.x, p.y);
         }
     std::sort(found.begin(), found.end());
     for (const auto& [way, x, y] : found) {
@@ -209,7 +209,7 @@ void StoreyWays::addSpots(Landing& landing) const {
             std::all_of(landing.spots.begin(), landing.spots.end(),
                         [&](Point2 other) { return distance(p, other) >= wide + 3 * kRoom; });
         if (is_apart) landing.spots.push_back(p);
-        if (landing.spots.size() == kMostSpots) break;
+        if (landing.spots.size() == kMaxSpots) break;
     }
 }
 

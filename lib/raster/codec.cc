@@ -198,8 +198,8 @@ std::string pngOfShades(int columns, int rows, std::span<const std::uint32_t> pi
 
 std::string pngOfDrawing(int columns, int rows, std::span<const std::uint32_t> pixels,
                          std::size_t stride) {
-    constexpr double kMostBytes = 64e6;  // of a picture that is copied as a whole in memory
-    if (columns > 0 && rows > 0 && 3.0 * columns * rows <= kMostBytes)
+    constexpr double kMaxBytes = 64e6;  // of a picture that is copied as a whole in memory
+    if (columns > 0 && rows > 0 && 3.0 * columns * rows <= kMaxBytes)
         return encodeWhole(columns, rows, pixels, stride);
     return encodePixels(columns, rows, pixels, stride, kOfDrawings);
 }

@@ -170,13 +170,13 @@ class Editor {
     /// Suggests a similar id, else lists the known ids: the last ones if there are many, as layouts
     /// follow rooms.
     [[nodiscard]] std::string knownIds() const {
-        constexpr std::size_t kMost = 20;
+        constexpr std::size_t kMaxNames = 20;
         std::string text = edit_->ids.isPattern() ? "" : didYouMean(edit_->ids.text(), ids_);
         if (!text.empty() || ids_.empty()) return text;
-        const bool is_cut = ids_.size() > kMost;
+        const bool is_cut = ids_.size() > kMaxNames;
         text = "; there are ";
         if (is_cut) text += std::to_string(ids_.size()) + " ids, among them ";
-        const std::size_t first = is_cut ? ids_.size() - kMost : 0;
+        const std::size_t first = is_cut ? ids_.size() - kMaxNames : 0;
         for (std::size_t i = first; i < ids_.size(); ++i)
             text.append(i == first ? "" : ", ").append(ids_[i]);
         return text;
@@ -362,7 +362,7 @@ class Editor {
 std::string takenText(const std::string& id, const Record& holder) {
     const bool is_written = holder.has("id");
     std::string text = "the id `" + id + "` is taken by the " + holder.keyword();
-    const Place place = is_written ? holder.keyPlace("id") : holder.place();
+    const SourcePosition place = is_written ? holder.keyPlace("id") : holder.place();
     if (!place.file) return text;
     if (*place.file == kAdded) return text + " added before";
     text += " in " + displayName(*place.file);

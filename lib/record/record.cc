@@ -24,11 +24,11 @@ std::string noKey(const Schema& schema, std::string_view key) {
 
 }  // namespace
 
-std::string Place::inclusion() const {
+std::string SourcePosition::inclusion() const {
     constexpr int kMaxShown = 5;
     std::string text;
     int left = 0;
-    for (const Place* place = included_from.get(); place != nullptr;
+    for (const SourcePosition* place = included_from.get(); place != nullptr;
          place = place->included_from.get()) {
         if (++left > kMaxShown) continue;
         text += left == 1 ? " (included from " : ", from ";
@@ -39,7 +39,7 @@ std::string Place::inclusion() const {
     return text.empty() ? text : text + ')';
 }
 
-Diagnostic Place::finding(std::string message) const {
+Diagnostic SourcePosition::finding(std::string message) const {
     Diagnostic diagnostic;
     if (file) diagnostic.file = *file;
     diagnostic.line = line;
@@ -48,7 +48,7 @@ Diagnostic Place::finding(std::string message) const {
     return diagnostic;
 }
 
-Record::Record(const Schema& schema, Place place, std::size_t keys)
+Record::Record(const Schema& schema, SourcePosition place, std::size_t keys)
     : schema_(&schema), data_(std::make_shared<Data>()) {
     data_->place = std::move(place);
     data_->entries.reserve(std::min(keys, schema.keys.size()));
@@ -85,7 +85,7 @@ std::string Record::writtenId() const {
 
 bool Record::has(std::string_view key) const { return written(key) != nullptr; }
 
-void Record::set(std::string_view key, Value value, const Place& place) {
+void Record::set(std::string_view key, Value value, const SourcePosition& place) {
     const std::uint32_t index = indexOf(key);
     const KeySpec& spec = schema_->keys[index];
     try {
@@ -95,11 +95,11 @@ void Record::set(std::string_view key, Value value, const Place& place) {
             (place.file ? place : data_->place).finding(error.diagnostics()[0].message));
     }
     Entry entry{{}, index, std::move(value)};
-    const Place& own_place = data_->place;
+    const SourcePosition& own_place = data_->place;
     const bool is_here = own_place.file && place.file && *place.file == *own_place.file &&
                          place.included_from == own_place.included_from;
     if (is_here) entry.spot = {place.line, place.column};
-    std::optional<Place> elsewhere;
+    std::optional<SourcePosition> elsewhere;
     if (place.file && !is_here) elsewhere = place;
     // Read the argument before this: it may refer into the data that own() and put() free.
     Data& data = own();
@@ -168,7 +168,7 @@ Diagnostic Record::finding(std::string message) const {
     return data_->place.finding(std::move(message));
 }
 
-Place Record::keyPlace(std::string_view key) const {
+SourcePosition Record::keyPlace(std::string_view key) const {
     const Entry* const entry = written(key);
     if (entry == nullptr) return data_->place;
     if (data_->rare)
@@ -197,7 +197,7 @@ namespace {
 std::uint64_t hashOf(std::string_view id) { return std::hash<std::string_view>{}(id); }
 
 Diagnostic doubledId(const Record& record, const Record& first) {
-    const Place place = record.keyPlace("id"), other = first.keyPlace("id");
+    const SourcePosition place = record.keyPlace("id"), other = first.keyPlace("id");
     std::string message = "doubled id `" + record.writtenId() + '`';
     const bool same_line =
         place.file && other.file && *place.file == *other.file && place.line == other.line;
@@ -275,7 +275,7 @@ std::vector<std::string> assignIds(const std::vector<Record>& records) {
     return ids;
 }
 
-std::string otherPlace(const Place& other, const Place& here) {
+std::string otherPlace(const SourcePosition& other, const SourcePosition& here) {
     const bool same = !other.file || !here.file || *other.file == *here.file;
     return (same ? "" : displayName(*other.file) + ' ') + "line " + std::to_string(other.line);
 }

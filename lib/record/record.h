@@ -28,17 +28,17 @@ struct LineColumn {
 };
 
 /// Source location of a record or value.
-struct Place {
+struct SourcePosition {
     std::shared_ptr<const std::string> file;  ///< null: not read from a file
     int line = 0, column = 0;
     /// The include that names the file; null: the file is an operand.
-    std::shared_ptr<const Place> included_from = nullptr;
+    std::shared_ptr<const SourcePosition> included_from = nullptr;
 
     /// Creates a finding at this location; appends the chain of includes, nearest first:
     /// " (included from b.yaml:2:3, from a.yaml:1:1)".
     [[nodiscard]] Diagnostic finding(std::string message) const;
     /// Returns another location in the same file.
-    [[nodiscard]] Place at(LineColumn spot) const {
+    [[nodiscard]] SourcePosition at(LineColumn spot) const {
         return {file, spot.line, spot.column, included_from};
     }
     /// " (included from …)", empty for an operand.
@@ -58,11 +58,11 @@ struct TriangleMesh {
 class Record {
   public:
     /// \param keys estimated number of keys to allocate for
-    explicit Record(const Schema& schema, Place place = {}, std::size_t keys = 0);
+    explicit Record(const Schema& schema, SourcePosition place = {}, std::size_t keys = 0);
 
     [[nodiscard]] const Schema& schema() const { return *schema_; }
     [[nodiscard]] const std::string& keyword() const { return schema_->keyword; }
-    [[nodiscard]] const Place& place() const { return data_->place; }
+    [[nodiscard]] const SourcePosition& place() const { return data_->place; }
 
     /// Returns the written id, or "" if assignIds numbers the record.
     [[nodiscard]] std::string writtenId() const;
@@ -72,7 +72,7 @@ class Record {
     [[nodiscard]] bool has(std::string_view key) const;
     /// Inserts or replaces a value. \pre the schema has the key and the value its type
     /// \throws FormatError at the value's location if the value is out of the key's bounds
-    void set(std::string_view key, Value value, const Place& place = {});
+    void set(std::string_view key, Value value, const SourcePosition& place = {});
     /// Inserts a checked value from the record's file while a reader builds the record.
     /// \pre `key` is in the schema, the value passes checkValue, and the record has no copies
     void setRead(const KeySpec& key, Value value, LineColumn spot);
@@ -94,13 +94,13 @@ class Record {
     }
 
     /// Returns the source location of the key's value, else of the record.
-    [[nodiscard]] Place keyPlace(std::string_view key) const;
+    [[nodiscard]] SourcePosition keyPlace(std::string_view key) const;
     /// Creates a finding at the source location of this record, or of a key's written value.
     [[nodiscard]] Diagnostic finding(std::string message) const;
     [[nodiscard]] Diagnostic finding(std::string_view key, std::string message) const;
 
     /// Sets the location of the include that names the record's file.
-    void setIncludedFrom(std::shared_ptr<const Place> place) {
+    void setIncludedFrom(std::shared_ptr<const SourcePosition> place) {
         own().place.included_from = std::move(place);
     }
 
@@ -125,11 +125,12 @@ class Record {
     };
     /// Members that few records need.
     struct Rare {
-        std::vector<std::pair<std::uint32_t, Place>> elsewhere;  // of values of other files, by key
+        std::vector<std::pair<std::uint32_t, SourcePosition>>
+            elsewhere;  // of values of other files, by key
         std::shared_ptr<const TriangleMesh> mesh;
     };
     struct Data {
-        Place place;
+        SourcePosition place;
         std::vector<Entry> entries;        // in the order of the schema's keys
         std::shared_ptr<const Rare> rare;  // may be null
         bool made = false;
@@ -209,7 +210,7 @@ class IdTable {
 };
 
 /// "line 3", with the file's name if it differs from that of `here`.
-std::string otherPlace(const Place& other, const Place& here);
+std::string otherPlace(const SourcePosition& other, const SourcePosition& here);
 
 /// ", did you mean …?" with the nearest of the known words, or ", known: " and all of them.
 std::string spellingHint(std::string_view word, const std::vector<std::string>& known);
@@ -231,8 +232,8 @@ class RecordCollector {
         : file_{std::make_shared<const std::string>(name)}, schemas_(&schemas) {}
 
     /// Sets the file of the records that follow; ignores the line and column of `file`.
-    void setFile(Place file) { file_ = std::move(file); }
-    [[nodiscard]] const Place& file() const { return file_; }
+    void setFile(SourcePosition file) { file_ = std::move(file); }
+    [[nodiscard]] const SourcePosition& file() const { return file_; }
     [[nodiscard]] const Schemas& schemas() const { return *schemas_; }
 
     /// Starts a record. Returns false and reports a finding if the keyword is unknown.
@@ -260,7 +261,7 @@ class RecordCollector {
     /// Reports a finding. `message` is a function that builds its text, called only if the finding
     /// is kept: hints take time, and a hostile file has many errors.
     template <typename Message>
-    void finding(const Place& place, Message message) {
+    void finding(const SourcePosition& place, Message message) {
         findings_.add(findings_.full() ? Diagnostic{} : place.finding(message()));
     }
     template <typename Message>
@@ -276,7 +277,7 @@ class RecordCollector {
   private:
     void checkCount() const;
 
-    Place file_;
+    SourcePosition file_;
     const Schemas* schemas_;
     Diagnostics findings_;
     std::vector<Record> records_;   // also those with findings

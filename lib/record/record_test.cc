@@ -115,7 +115,7 @@ TEST(Record, CopiesShareUntilOneIsChanged) {
     set.set("heading", 30.0);
     erased.erase("id");
     made.setMade();
-    included.setIncludedFrom(std::make_shared<const Place>());
+    included.setIncludedFrom(std::make_shared<const SourcePosition>());
     with_mesh.setMesh(std::make_shared<const TriangleMesh>());
     EXPECT_EQ(formatRecord(desk), "desk id=a");
     EXPECT_FALSE(desk.isMade());
@@ -139,8 +139,8 @@ TEST(Record, AssignedAfterItWasMovedFrom) {
 }
 
 TEST(Record, ValuesKeepThePlacesOfOtherFiles) {
-    const Place own{std::make_shared<const std::string>("a.env"), 3, 1};
-    const Place other{std::make_shared<const std::string>("b.3dm"), 7, 2};
+    const SourcePosition own{std::make_shared<const std::string>("a.env"), 3, 1};
+    const SourcePosition other{std::make_shared<const std::string>("b.3dm"), 7, 2};
     Record desk(*testSchemas().find("desk"), own);
     desk.set("at", Tuple{1, 2}, other);
     desk.set("heading", 30.0, own.at({3, 9}));
@@ -158,7 +158,7 @@ TEST(Record, ValuesKeepThePlacesOfOtherFiles) {
 }
 
 TEST(Record, AMeshAndPlacesInOtherFilesAreKeptTogether) {
-    const Place other{std::make_shared<const std::string>("b.3dm"), 7, 2};
+    const SourcePosition other{std::make_shared<const std::string>("b.3dm"), 7, 2};
     const auto mesh = std::make_shared<const TriangleMesh>();
     Record desk(*testSchemas().find("desk"), {std::make_shared<const std::string>("a.env"), 3, 1});
     desk.set("at", Tuple{1, 2}, other);

@@ -49,8 +49,8 @@ std::string_view separatorOf(const KeySpec& key, std::string_view text) {
 }
 
 bool parseFlag(const KeySpec& key, std::string_view text) {
-    constexpr std::size_t kLongest = 5;
-    std::string lower(text.substr(0, kLongest + 1));
+    constexpr std::size_t kMaxLength = 5;
+    std::string lower(text.substr(0, kMaxLength + 1));
     for (char& c : lower)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     if (lower == "yes" || lower == "true" || lower == "on") return true;
@@ -283,8 +283,8 @@ void refuseNonFinite(const KeySpec& key, std::string_view text) {
     std::string_view bare = text;
     if (bare.starts_with('+') || bare.starts_with('-')) bare.remove_prefix(1);
     if (bare.starts_with('.')) bare.remove_prefix(1);
-    constexpr std::size_t kLongest = 8;
-    if (bare.size() > kLongest || (!bare.empty() && isDigit(bare.front()))) return;
+    constexpr std::size_t kMaxLength = 8;
+    if (bare.size() > kMaxLength || (!bare.empty() && isDigit(bare.front()))) return;
     std::string lower(bare);
     for (char& c : lower)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');

@@ -321,10 +321,10 @@ std::string piecesText(const CoverageReport& report) {
                 " of it\n";
     }
     if (report.unseen.empty()) return text;
-    constexpr double kLeastArea = 0.005;  // square metres: below it 0.00 is printed
+    constexpr double kMinArea = 0.005;  // square metres: below it 0.00 is printed
     std::vector<TextRow> rows;
     for (const UncoveredSpot& spot : report.unseen) {
-        if (rows.size() == kSpotsListed || spot.area < kLeastArea) break;
+        if (rows.size() == kSpotsListed || spot.area < kMinArea) break;
         rows.push_back({" ", area(spot.area), "around",
                         "(" + metres(spot.place.x) + ", " + metres(spot.place.y) + ")"});
     }

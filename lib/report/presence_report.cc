@@ -27,12 +27,12 @@ void writePresenceOf(JsonWriter& json, const PresenceFigures& figures) {
     json.endObject();
 }
 
-std::string wayText(double length) { return formatFixed(length, 2) + " m"; }
+std::string lengthText(double length) { return formatFixed(length, 2) + " m"; }
 
 TextRow peopleRow(const PresenceFigures& figures) {
     return {"  " + (figures.id.empty() ? "all" : "person " + printable(figures.id)),
-            wayText(figures.length), figures.length > 0 ? percentText(figures.share) : "-",
-            wayText(figures.longest_gap)};
+            lengthText(figures.length), figures.length > 0 ? percentText(figures.share) : "-",
+            lengthText(figures.longest_gap)};
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ void writeMember(JsonWriter& json, const char* key, std::vector<double> values) 
     json.key(key).value(values);
 }
 
-void writeMember(JsonWriter& json, const RunSightMetrics& metrics) {
+void writeMember(JsonWriter& json, const RunCoverageMetrics& metrics) {
     json.beginObject();
     if (!metrics.id.empty()) {
         json.key("id").value(metrics.id);
@@ -68,7 +68,7 @@ std::size_t columnsOf(const RunCoverage& run) {
     return std::clamp<std::size_t>(run.all.time_shares.size(), 2, kColumns);
 }
 
-TextRow rowOf(const RunCoverage& run, const RunSightMetrics& metrics, bool is_way) {
+TextRow rowOf(const RunCoverage& run, const RunCoverageMetrics& metrics, bool is_way) {
     const std::vector<double>& shares = is_way ? metrics.way_shares : metrics.time_shares;
     const std::string who =
         metrics.id.empty() ? "all"
@@ -95,7 +95,7 @@ std::string tableOf(const RunCoverage& run, bool is_way) {
     }
     if (!is_way) head.insert(head.end(), {"lost", "longest unseen"});
     std::vector<TextRow> rows = {head};
-    for (const RunSightMetrics& member : run.members) rows.push_back(rowOf(run, member, is_way));
+    for (const RunCoverageMetrics& member : run.members) rows.push_back(rowOf(run, member, is_way));
     if (run.members.size() > 1) rows.push_back(rowOf(run, run.all, is_way));
     std::string sides = "l" + std::string(columns + 3, 'r');
     return aligned(rows, sides + "l");
@@ -109,7 +109,7 @@ void writeRun(JsonWriter& json, const RunCoverage& run) {
     writeMember(json, "begin", run.begin);
     writeMember(json, "end", run.end);
     json.key("members").beginArray();
-    for (const RunSightMetrics& member : run.members) writeMember(json, member);
+    for (const RunCoverageMetrics& member : run.members) writeMember(json, member);
     json.endArray();
     json.key("all");
     writeMember(json, run.all);

@@ -21,7 +21,7 @@ constexpr double kMaxMass = 1e5;
 
 /// Adds the keys of motion and odometry errors, for simrun --noise.
 void addStrayKeys(std::vector<KeySpec>& keys) {
-    constexpr double kMost = 100;
+    constexpr double kMaxError = 100;
     const auto alphas = [&](std::string name, std::string help) {
         keys.push_back({.name = std::move(name),
                         .type = KeyType::Tuple,
@@ -29,7 +29,7 @@ void addStrayKeys(std::vector<KeySpec>& keys) {
                         .min_count = 4,
                         .max_count = 4,
                         .lower = 0,
-                        .upper = kMost});
+                        .upper = kMaxError});
     };
     alphas("motion_noise", "alpha 1 to 4 of the robot's motion relative to that of its wheels");
     alphas("odometry_noise",
@@ -41,12 +41,12 @@ void addStrayKeys(std::vector<KeySpec>& keys) {
                     .min_count = 1,
                     .max_count = 2,
                     .lower = 0,
-                    .upper = kMost});
+                    .upper = kMaxError});
 }
 
 /// Adds the keys of a robot's contact sensors.
 void addContactKeys(std::vector<KeySpec>& keys) {
-    constexpr double kMost = 1000;
+    constexpr double kMaxLength = 1000;
     constexpr double kTurn = 360, kMaxCone = 90;
     const auto list = [&](std::string name, std::string help, std::size_t count) {
         keys.push_back({.name = std::move(name),
@@ -65,7 +65,7 @@ void addContactKeys(std::vector<KeySpec>& keys) {
                     .min_count = 1,
                     .max_count = 2,
                     .lower = 0,
-                    .upper = kMost});
+                    .upper = kMaxLength});
     keys.push_back(
         positiveKey("sonar_fov", Unit::Angle, "full angle of the cone of a sonar", kMaxCone));
     list("bumpers", "parts of its rim that feel: bearings from,to in degrees, counter-clockwise",

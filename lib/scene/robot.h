@@ -91,8 +91,8 @@ struct MotionPlan {
 struct PlacedRobot {
     std::string id;
     RobotModel model;
-    Pose2 pose;   ///< of the centre of rotation
-    Place place;  ///< of its record, for messages
+    Pose2 pose;            ///< of the centre of rotation
+    SourcePosition place;  ///< of its record, for messages
     MotionPlan course = {};
 };
 
@@ -102,7 +102,7 @@ struct PlacedPerson {
     double height = 1.7;
     double speed = 1.2;  ///< m/s, when walking
     Pose2 pose;
-    Place place;  ///< of the record, for messages
+    SourcePosition place;  ///< of the record, for messages
     MotionPlan course = {};
 };
 

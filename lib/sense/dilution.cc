@@ -80,7 +80,7 @@ double uniformSigma(double width) { return width / std::sqrt(12.0); }
 double distanceSigma(const RangeNoise& noise, double range) {
     const auto [s0, s1, s2] = noise.sigma;
     const double sigma = std::max(0.0, s0 + range * (s1 + range * s2));
-    return std::max(kLeastSigma, std::hypot(sigma, uniformSigma(noise.resolution)));
+    return std::max(kMinSigma, std::hypot(sigma, uniformSigma(noise.resolution)));
 }
 
 /// Errors of one measurement of a point: of its distance, metres, and of its direction, radians; 0:
@@ -104,8 +104,7 @@ SightErrors errorsOf(const Ranger& ranger, double range) {
 }
 
 SightErrors errorsOf(const Radar& radar, double range) {
-    return {distanceSigma(radar.noise, range),
-            std::max(directionSigma(radar.noise, 0), kLeastSigma)};
+    return {distanceSigma(radar.noise, range), std::max(directionSigma(radar.noise, 0), kMinSigma)};
 }
 
 SightErrors errorsOf(const Camera& camera, double /*range*/) {
@@ -128,7 +127,7 @@ SightErrors errorsOf(const Model& /*model*/, double /*range*/) {
 SpaceInformation informationOf(const SensorModel& model, Point3 at, Point3 spot) {
     const Vec3 way = spot - at;
     // At the sensor itself the direction is undefined; there it errs as at the least distance.
-    const double range = std::max(length(way), kLeastSigma);
+    const double range = std::max(length(way), kMinSigma);
     const SightErrors errors =
         std::visit([range](const auto& one) { return errorsOf(one, range); }, model);
     SpaceInformation information;

@@ -39,14 +39,14 @@ FloorInformation atKnownHeight(const SpaceInformation& information);
 FloorInformation atAnyHeight(const SpaceInformation& information);
 
 /// Standard deviation of a distance without noise, metres.
-constexpr double kLeastSigma = 0.001;
+constexpr double kMinSigma = 0.001;
 
 /// Returns the information of one reading about a point that the sensor sees:
 /// - lasers, rangers, radars: a distance, by their noise, and the direction;
 /// - cameras: the direction;
 /// - receivers, anchors: the distance of a tag.
 ///
-/// Distances err by `sigma` and the rounding to `resolution`, and by kLeastSigma at least;
+/// Distances err by `sigma` and the rounding to `resolution`, and by kMinSigma at least;
 /// directions by `angle_sigma` and the rounding to beams or pixels. Rounding counts as uniform.
 /// The depth of a depth camera counts as a distance. Zero for kinds that measure no position.
 /// \param at position of the sensor; its heading does not matter

@@ -76,7 +76,7 @@ TEST(Dilution, RoundingCountsAsUniformNoise) {
                 std::hypot(0.06 / std::sqrt(12.0), across), 1e-12);
     laser.noise.resolution = 0;
     EXPECT_NEAR(atKnownHeight(informationOf(laser, {0, 0, 0}, {2, 0, 0})).error(),
-                std::hypot(kLeastSigma, across), 1e-12);
+                std::hypot(kMinSigma, across), 1e-12);
 }
 
 TEST(Dilution, AnUnknownHeightIsThatOfAllVariances) {

@@ -100,7 +100,7 @@ struct Appearance {
         camera.rows = 31;
         camera.fx = camera.fy = camera.focalFor(camera.columns, Angle::degrees(fov));
         camera.center();
-        const EvenSightLines lines = *CameraView(camera, pose).evenSightLines();
+        const EvenPixelRays lines = *CameraView(camera, pose).evenPixelRays();
         grid = {lines.direction, lines.right, lines.down, camera.columns, camera.rows};
     }
 };

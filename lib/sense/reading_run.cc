@@ -19,7 +19,7 @@ namespace ispace {
 namespace {
 
 /// A longer line is not a pose.
-constexpr std::size_t kLongestLine = 4096;
+constexpr std::size_t kMaxLineBytes = 4096;
 
 constexpr int kLastFrame = std::numeric_limits<int>::max();
 
@@ -85,9 +85,9 @@ std::optional<std::string_view> PoseLines::nextLine(Wait wait) {
         if (wait == Wait::No) return std::nullopt;
         buffer_.erase(0, begin_);
         begin_ = 0;
-        if (buffer_.size() > kLongestLine) {
+        if (buffer_.size() > kMaxLineBytes) {
             ++line_;
-            throw error("a line of more than " + std::to_string(kLongestLine) +
+            throw error("a line of more than " + std::to_string(kMaxLineBytes) +
                         " bytes; a pose is `t x y z qx qy qz qw`");
         }
         const std::size_t searched = buffer_.size();

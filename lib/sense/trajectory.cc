@@ -57,8 +57,8 @@ std::optional<TimedPose> parseTumLine(std::string_view line) {
     if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > kMaxDistance)
         fail(columns[1], "the place is more than 1000 km away");
     // Limit of nanoseconds in 64 bits.
-    constexpr double kLongest = 9e9;
-    if (std::fabs(t) > kLongest) fail(columns[0], "t is more than 285 years away");
+    constexpr double kMaxTime = 9e9;
+    if (std::fabs(t) > kMaxTime) fail(columns[0], "t is more than 285 years away");
     const double size = std::max({std::fabs(qx), std::fabs(qy), std::fabs(qz), std::fabs(qw)});
     if (size == 0) fail(columns[4], "the quaternion is 0, which is no rotation");
     const Eigen::Quaterniond rotation(qw / size, qx / size, qy / size, qz / size);

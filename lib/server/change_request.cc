@@ -33,10 +33,10 @@ struct Refusal {
 
 /// The error's text, without names of options, and without positions unless in a file.
 std::string messageOf(const FormatError& error, std::string_view verb) {
-    constexpr std::size_t kMost = 3;
+    constexpr std::size_t kMaxFindings = 3;
     const auto& findings = error.diagnostics();
     std::string text;
-    for (std::size_t i = 0; i < std::min(kMost, findings.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(kMaxFindings, findings.size()); ++i) {
         if (i > 0) text += "; ";
         std::string_view message = findings[i].message;
         const std::size_t space = message.find(' ');
@@ -45,22 +45,24 @@ std::string messageOf(const FormatError& error, std::string_view verb) {
         else
             text += message;
     }
-    if (findings.size() > kMost)
-        text.append("; and ").append(std::to_string(findings.size() - kMost)).append(" more");
+    if (findings.size() > kMaxFindings)
+        text.append("; and ")
+            .append(std::to_string(findings.size() - kMaxFindings))
+            .append(" more");
     return text;
 }
 
 /// Globs of one request, and bytes of each: all ids are compared with them.
 void checkGlobs(const std::vector<Edit>& edits) {
-    constexpr std::ptrdiff_t kMost = 8;
-    constexpr std::size_t kMostBytes = 256;
+    constexpr std::ptrdiff_t kMaxGlobs = 8;
+    constexpr std::size_t kMaxBytes = 256;
     for (const Edit& edit : edits)
-        if (edit.ids.isPattern() && edit.ids.text().size() > kMostBytes)
+        if (edit.ids.isPattern() && edit.ids.text().size() > kMaxBytes)
             throw Refusal{400, excerpt(edit.ids.text()) + " has more than " +
-                                   std::to_string(kMostBytes) + " bytes, which a glob may have"};
+                                   std::to_string(kMaxBytes) + " bytes, which a glob may have"};
     if (std::count_if(edits.begin(), edits.end(),
-                      [](const Edit& edit) { return edit.ids.isPattern(); }) > kMost)
-        throw Refusal{400, "a request has at most " + std::to_string(kMost) + " globs"};
+                      [](const Edit& edit) { return edit.ids.isPattern(); }) > kMaxGlobs)
+        throw Refusal{400, "a request has at most " + std::to_string(kMaxGlobs) + " globs"};
 }
 
 /// True for records that do not belong to a world.
@@ -182,7 +184,7 @@ std::string Changing::end(const std::exception_ptr& failure) {
 }  // namespace
 
 std::string warningOf(const World& world, const std::vector<std::string>& movers) {
-    constexpr std::size_t kMost = 3;
+    constexpr std::size_t kMaxWarnings = 3;
     if (movers.empty()) return "";
     std::vector<std::string> warnings;
     const auto is_moved = [&movers](const std::string& id) {
@@ -194,8 +196,8 @@ std::string warningOf(const World& world, const std::vector<std::string>& movers
     for (const std::string& id : movers)
         for (std::string& warning : startWarnings(world, id))
             warnings.push_back(std::move(warning));
-    if (warnings.size() > kMost) {
-        warnings.resize(kMost);
+    if (warnings.size() > kMaxWarnings) {
+        warnings.resize(kMaxWarnings);
         warnings.emplace_back("and more");
     }
     return joined(warnings, "; ");

@@ -83,13 +83,13 @@ bool isAllowed(std::span<const Network> allowed, const std::string& address) {
 }
 
 std::string readToken(const std::string& file) {
-    constexpr std::size_t kMost = 256;
+    constexpr std::size_t kMaxLength = 256;
     std::string token = readAll(file);
     token.resize(std::min(token.size(), token.find('\n')));
     if (token.ends_with('\r')) token.pop_back();
     const bool plain = std::all_of(token.begin(), token.end(),
                                    [](unsigned char c) { return c > ' ' && c < 0x7f; });
-    if (token.empty() || token.size() > kMost || !plain)
+    if (token.empty() || token.size() > kMaxLength || !plain)
         throw FormatError({file, 1, 0,
                            "no token: wanted a line of 1 to 256 letters, digits and signs, without "
                            "blanks, as `openssl rand -hex 16` prints it"});

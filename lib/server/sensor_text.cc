@@ -174,12 +174,12 @@ std::string littleEndian(std::span<const float> values) {
 }
 
 std::string millimetres(std::span<const float> depths) {
-    constexpr float kMost = 65535;
+    constexpr float kMaxMillimetres = 65535;
     std::string out;
     out.reserve(2 * depths.size());
     for (const float depth : depths) {
         const float rounded = std::round(depth * static_cast<float>(kMillimetres));
-        const auto value = static_cast<unsigned>(rounded <= kMost ? rounded : 0);
+        const auto value = static_cast<unsigned>(rounded <= kMaxMillimetres ? rounded : 0);
         out += static_cast<char>(value & 0xffU);
         out += static_cast<char>(value >> 8U);
     }

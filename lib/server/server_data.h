@@ -38,10 +38,11 @@ struct Server::Data {
                    [this](asio::ip::tcp::socket socket) { welcome(std::move(socket)); }) {
         if (joined != nullptr) join(*joined);
         for (ServerState* const each : states())
-            each->makeAside([this] { asio::post(io, [] {}); }, [this] { return isStopped(); });
+            each->startBackground([this] { asio::post(io, [] {}); },
+                                  [this] { return isStopped(); });
     }
     ~Data() {
-        for (ServerState* const each : states()) each->endAside();
+        for (ServerState* const each : states()) each->stopBackground();
         closeAll();
     }
 

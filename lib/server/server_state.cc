@@ -127,7 +127,7 @@ bool ServerState::hasUpdates() {
 
 std::shared_ptr<const std::string> ServerState::scan(std::size_t sensor, const ReplyForm& form) {
     World& world = simulation_->world();
-    const SensorReading& reading = world.take(sensor);
+    const SensorReading& reading = world.captureNow(sensor);
     Text& text = textOf(sensor, form);
     if (text.seq == reading.seq && text.bytes) return text.bytes;
     auto bytes = counted(scanText(world.sensors()[sensor], reading, form));
@@ -341,7 +341,7 @@ std::shared_ptr<const ServerState::Asked> ServerState::ask(std::size_t sensor,
     World& world = simulation_->world();
     const bool may_wait = workshop_ && isHeavy(world.sensors()[sensor]);
     const std::int64_t seq = world.period(sensor);
-    const bool is_taken = world.isTaken(sensor);
+    const bool is_taken = world.isCaptured(sensor);
     const Text& text = textOf(sensor, form);
     if (!may_wait || (is_taken && text.seq == seq && text.bytes))
         return std::make_shared<const Asked>(Asked{scan(sensor, form)});
@@ -386,7 +386,7 @@ std::function<SensorReading()> ServerState::beginMaking(Making& making) {
             other.seq == making.seq)
             making.reading = other.reading;
     std::function<SensorReading()> take;
-    if (!making.reading && world.isTaken(making.sensor)) {
+    if (!making.reading && world.isCaptured(making.sensor)) {
         making.reading = std::make_shared<SensorReading>(world.reading(making.sensor));
     } else if (!making.reading) {
         making.reading = std::make_shared<SensorReading>();
@@ -415,7 +415,7 @@ void ServerState::make(const Making& making, std::function<SensorReading()> take
                            [&](const Making& other) { return other.asked == making.asked; });
              const bool is_same = making.changes == simulation_->world().changes();
              if (!failure && takes && is_same)
-                 simulation_->world().put(making.sensor, *making.reading);
+                 simulation_->world().storeCapture(making.sensor, *making.reading);
              if (deliver) return deliver(failure);
              making.asked->is_error = failure != nullptr;
              making.asked->bytes = counted(failure ? errorLineOf(failure) : std::move(*text));

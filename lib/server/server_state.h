@@ -183,16 +183,16 @@ class ServerState {
     [[nodiscard]] std::optional<WallTime> nextChange() const {
         return is_changing_ || seek_ ? std::nullopt : std::optional(changes_.next());
     }
-    /// Changes the world: at once, or after makeAside() with the slow part in a background thread,
-    /// during which only pictures wait. collect() then calls `end` with the exception that was
-    /// thrown, or null; `end` may rethrow it. \pre mayChangeNow()
+    /// Changes the world: at once, or after startBackground() with the slow part in a background
+    /// thread, during which only pictures wait. collect() then calls `end` with the exception that
+    /// was thrown, or null; `end` may rethrow it. \pre mayChangeNow()
     void change(WorldChange change, std::function<void(const std::exception_ptr& failure)> end);
     /// Moves a replay to another time, one part now and the rest in collect().
     /// \pre areAllAtRest(), Simulation::maySeek()
     std::shared_ptr<const Seek> seek(SimTime to);
     /// True if collect() can continue a seek at once.
     [[nodiscard]] bool isOnTheWay() const { return seek_ && !is_changing_; }
-    /// Prepares the next step of a replay, in a background thread after makeAside().
+    /// Prepares the next step of a replay, in a background thread after startBackground().
     void prepareStep() {
         if (areAllAtRest()) prepare({});
     }
@@ -212,21 +212,21 @@ class ServerState {
         std::shared_ptr<const std::string> bytes;  ///< null until it is computed
         bool is_error = false;                     ///< `bytes` is an ERR line
     };
-    /// Asynchronous scan(): after makeAside(), a heavy sensor is computed in a background thread
-    /// from the current world. Rejected if too many requests are pending.
+    /// Asynchronous scan(): after startBackground(), a heavy sensor is computed in a background
+    /// thread from the current world. Rejected if too many requests are pending.
     std::shared_ptr<const Asked> ask(std::size_t sensor, const ReplyForm& form);
     /// Computes a frame for a record in the same way; requests by ask() for that frame share it.
     void takeFrame(FrameJob job);
-    /// Runs a job, in a background thread after makeAside(); collect() then delivers it.
+    /// Runs a job, in a background thread after startBackground(); collect() then delivers it.
     void runInBackground(BackgroundWorker::Job job);
     /// Enables background threads for slow jobs. They call `wake` when a result is ready for
     /// collect(). \param stopped returns true once results are no longer awaited
-    void makeAside(const std::function<void()>& wake, std::function<bool()> stopped) {
+    void startBackground(const std::function<void()>& wake, std::function<bool()> stopped) {
         workshop_.emplace(wake);
         builders_.emplace(wake);
         stopped_ = std::move(stopped);
     }
-    void endAside() {
+    void stopBackground() {
         workshop_.reset();
         builders_.reset();
     }

@@ -36,9 +36,9 @@ class SessionSeekTest : public ::testing::Test {
         writeAll(folder_ / "robots.csv", moments());
         replay_ = std::make_unique<Replay>(folder_.path());
         talk_.room.simulation.replay(*replay_, true);
-        talk_.state.makeAside([] {}, nullptr);
+        talk_.state.startBackground([] {}, nullptr);
     }
-    void TearDown() override { talk_.state.endAside(); }
+    void TearDown() override { talk_.state.stopBackground(); }
 
     static std::string moments() {
         std::string text = "t,id,x,y,heading_deg,stall\n";
@@ -163,7 +163,7 @@ TEST(SessionSeek, LeavesTheThreadThatServesToOthers) {
     replay.makeChanges(changes());
     simulation.replay(replay, true);
     ServerState state(simulation);
-    state.makeAside([] {}, nullptr);
+    state.startBackground([] {}, nullptr);
     Session seeker(state), other(state);
     seeker.request("WORLD");
     other.request("WORLD");
@@ -198,7 +198,7 @@ TEST(SessionSeek, LeavesTheThreadThatServesToOthers) {
     }
     EXPECT_TRUE(world.moverNamed("r9"));
     EXPECT_LT(most, whole / 4) << "of " << whole.count() << " ns";
-    state.endAside();
+    state.stopBackground();
 }
 
 }  // namespace

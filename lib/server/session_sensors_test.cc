@@ -172,14 +172,14 @@ TEST(SessionSensors, ASlowReaderGetsTheNewestPictureAndCostsNoOthers) {
 /// A client that has left a picture unread for so long that it is stale. Frames are made aside.
 struct SlowTalk : SensorTalk {
     SlowTalk() : slow(client("SENSOR c1")) {
-        state.makeAside([] {}, nullptr);
+        state.startBackground([] {}, nullptr);
         ask(slow, "STREAM");
         step(2);
         EXPECT_EQ(settle(slow), "");
         EXPECT_GT(slow.scanBytes(), 0U);
         step(20);
     }
-    ~SlowTalk() { state.endAside(); }
+    ~SlowTalk() { state.stopBackground(); }
     SlowTalk(const SlowTalk&) = delete;
     SlowTalk& operator=(const SlowTalk&) = delete;
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr SimTime kDay = std::chrono::hours(24);
 constexpr SimTime kPause = std::chrono::seconds(1);  // before a blocked way is tried again
-constexpr int kMostTries = 5;
+constexpr int kMaxTries = 5;
 
 /// Reads one line; a finding is thrown as a message at a column.
 class DayLineReader {
@@ -82,9 +82,9 @@ std::optional<SimTime> parseClockTime(std::string_view text) {
 SimTime DayLineReader::readTime() {
     SimTime day{};
     if (word(next_).find(':') == std::string_view::npos && word(0) == "at") {
-        constexpr std::int64_t kMostDays = 36'500;
+        constexpr std::int64_t kMaxDays = 36'500;
         const auto number = parseInteger(word(next_));
-        if (!number || *number < 1 || *number > kMostDays)
+        if (!number || *number < 1 || *number > kMaxDays)
             fail(next_, excerpt(word(next_)) +
                             " is no time, wanted HH:MM, or the number of a day "
                             "and HH:MM");
@@ -331,9 +331,9 @@ bool ActivityDirector::goOnWalking(World& world, std::size_t mover, Doer& doer) 
 
 /// Returns the ways of people of a height: doors that are low for one are high enough for another.
 const GoalWays& ActivityDirector::waysOf(const World& world, double height) {
-    constexpr std::size_t kMostHeights = 16;  // bounds memory
+    constexpr std::size_t kMaxHeights = 16;  // bounds memory
     if (std::exchange(ways_of_, world.changes()) != world.changes()) ways_.clear();
-    if (ways_.size() >= kMostHeights && !ways_.contains(height)) ways_.clear();
+    if (ways_.size() >= kMaxHeights && !ways_.contains(height)) ways_.clear();
     auto& ways = ways_[height];
     if (!ways) ways = std::make_shared<const GoalWays>(world.scene(), humanRadius(height), height);
     return *ways;
@@ -362,7 +362,7 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
     World& world = simulation.world();
     const GoalWays& ways = waysOf(world, world.people()[mover - world.robots().size()].height);
     const Point2 from = world.status(mover).pose.position;
-    if (doer.tries++ >= kMostTries) {
+    if (doer.tries++ >= kMaxTries) {
         // A crowd may leave no point of a zone free: in it is there.
         doer.gave_up = !ways.isIn(from, action.target);
         if (!doer.gave_up) doer.until = world.time() + action.lasts;

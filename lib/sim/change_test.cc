@@ -80,9 +80,9 @@ TEST(Change, ANewSensorReadsAtOnce) {
     EXPECT_EQ(world.reading(0).time, milliseconds(700));
     EXPECT_EQ(world.reading(0).seq, 1);
     EXPECT_EQ(world.reading(0).scan().ranges.size(), 3U);
-    ASSERT_EQ(world.read().size(), 1U);
+    ASSERT_EQ(world.latestReadings().size(), 1U);
     run(world, 1);
-    EXPECT_TRUE(world.read().empty());
+    EXPECT_TRUE(world.latestReadings().empty());
     run(world, 2);
     EXPECT_EQ(world.reading(0).seq, 2);
     EXPECT_EQ(world.reading(0).time, milliseconds(1000));

@@ -22,7 +22,7 @@ namespace ispace {
 namespace {
 
 /// Rejects a mistyped digit; also keeps poses within the resolution of doubles.
-constexpr double kLongestPath = 1e6;
+constexpr double kMaxPath = 1e6;
 
 constexpr std::string_view kPathExample = "PATH 1,0;1,2 speed=0.3";
 
@@ -89,10 +89,10 @@ ParsedCommand parseValue(const VerbFacts& facts, std::string_view text) {
             CommandError::Kind::Range,
             join({facts.name, " takes no negative ", facts.value_name, ", use ", facts.opposite}));
     }
-    if (comesToAnEnd(facts.verb) && *value > kLongestPath) {
+    if (comesToAnEnd(facts.verb) && *value > kMaxPath) {
         return refuse(CommandError::Kind::Range,
-                      join({facts.name, " takes at most ", formatDouble(kLongestPath), " ",
-                            facts.unit, ", found ", excerpt(text)}));
+                      join({facts.name, " takes at most ", formatDouble(kMaxPath), " ", facts.unit,
+                            ", found ", excerpt(text)}));
     }
     // Adding 0 drops the sign of minus zero.
     return {Command{facts.verb, *value + 0.0}, {}};
@@ -126,9 +126,9 @@ ParsedCommand parsePath(std::span<const Piece> words) {
         return refusePath("PATH wants places x,y;x,y in metres" + found);
     }
     for (const Point2 p : *places)
-        if (!(std::abs(p.x) <= kLongestPath && std::abs(p.y) <= kLongestPath))
+        if (!(std::abs(p.x) <= kMaxPath && std::abs(p.y) <= kMaxPath))
             return refuse(CommandError::Kind::Range,
-                          join({"PATH goes at most ", formatDouble(kLongestPath), " metres"}));
+                          join({"PATH goes at most ", formatDouble(kMaxPath), " metres"}));
     Command command = pathCommand({.path = *places});
     for (const Piece& word : words.subspan(1))
         if (std::string wrong = applyPathKey(word.text, command); !wrong.empty())
@@ -148,7 +148,7 @@ std::string applyPathKey(std::string_view text, Command& command) {
     } else if (key == "speed" && number && *number > 0) {
         command.speed = *number;
     } else if (key == "pause" && number && *number >= 0) {
-        command.course.pause = std::min(*number, kLongestPath);
+        command.course.pause = std::min(*number, kMaxPath);
     } else {
         return join(
             {"PATH takes speed= in metres a second above 0, pause= in seconds and "

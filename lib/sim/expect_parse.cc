@@ -191,8 +191,8 @@ class SentenceReader {
         result_.amount = 1;
         if (!take("by")) return;
         const auto count = atEnd() ? std::nullopt : parseInteger(words_[next_]);
-        constexpr std::int64_t kMost = 1'000'000;
-        if (!count || *count < 1 || *count > kMost) want("a number of sensors from 1");
+        constexpr std::int64_t kMaxCount = 1'000'000;
+        if (!count || *count < 1 || *count > kMaxCount) want("a number of sensors from 1");
         ++next_;
         result_.amount = static_cast<double>(*count);
         if (!take("sensors")) take("sensor");

@@ -65,8 +65,9 @@ AllReadings readByRun(const Scene& scene, bool noise, SimTime duration) {
     World world(scene, std::chrono::milliseconds(100), {.seed = 7, .sensor_noise = noise});
     for (;; world.step()) {
         for (std::size_t i = 0; i < world.sensors().size(); ++i) {
-            const bool is_new = isHeavy(world.sensors()[i]) ? world.take(i).time == world.time()
-                                                            : world.reading(i).time == world.time();
+            const bool is_new = isHeavy(world.sensors()[i])
+                                    ? world.captureNow(i).time == world.time()
+                                    : world.reading(i).time == world.time();
             if (!is_new) continue;
             std::visit([&](const auto& value) { add(all, world.sensors()[i].id, value); },
                        world.reading(i).value);

@@ -25,7 +25,7 @@ TEST(ImuRun, AgreesWithTheMotionOfItsRobot) {
     double speed = 0, turned = 0, last = 0, fastest = 0;
     while (world.time() < std::chrono::seconds(30)) {
         world.step();
-        if (world.read().empty()) continue;
+        if (world.latestReadings().empty()) continue;
         const auto& reading = std::get<Inertia>(world.reading(0).value);
         speed += reading.accelerations.x * (reading.time - last);
         turned += Angle::radians(reading.rates.z * (reading.time - last)).degrees();
@@ -50,7 +50,7 @@ TEST(RfidRun, ListsATagWhileItPasses) {
     double first = 0, end = 0;
     while (world.time() < std::chrono::seconds(12)) {
         world.step();
-        if (world.read().empty()) continue;
+        if (world.latestReadings().empty()) continue;
         const auto& reading = std::get<RfidTags>(world.reading(0).value);
         if (reading.tags == lists.back()) continue;
         lists.push_back(reading.tags);

@@ -12,7 +12,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 8;
+constexpr std::size_t kMaxPoints = 8;
 
 /// Adds the points of "upper/1,2;3,4". Returns the reason why the text holds none, or "".
 std::string addPoints(std::string_view text, std::span<const JoinedRoom> rooms, std::size_t room,
@@ -33,8 +33,8 @@ std::string addPoints(std::string_view text, std::span<const JoinedRoom> rooms, 
         const auto y =
             comma == std::string_view::npos ? std::nullopt : parseDouble(point.substr(comma + 1));
         if (!x || !y) return "wanted a point like upper/1,2, found " + excerpt(one);
-        if (points.size() == kMostPoints)
-            return "a trip has at most " + std::to_string(kMostPoints) + " points";
+        if (points.size() == kMaxPoints)
+            return "a trip has at most " + std::to_string(kMaxPoints) + " points";
         points.push_back({room, {*x, *y}});
         if (one.size() == text.size()) return "";
         text.remove_prefix(one.size() + 1);

@@ -52,8 +52,8 @@ TEST(Later, LasersAreReadAsInTheirStep) {
     for (std::size_t i = 1; i <= 200; ++i) {
         whole.step();
         parts.stepDeferred();
-        ASSERT_TRUE(std::equal(whole.read().begin(), whole.read().end(), parts.read().begin(),
-                               parts.read().end()));
+        ASSERT_TRUE(std::equal(whole.latestReadings().begin(), whole.latestReadings().end(),
+                               parts.latestReadings().begin(), parts.latestReadings().end()));
         // One is asked for before the others, and what robots are told matters from the next step
         // on.
         expectSame(parts, whole, (17 * i) % count);
@@ -89,9 +89,9 @@ TEST(Later, APictureOutlivesItsWorld) {
     const auto photograph = world.captureLater(0), sense = world.captureLater(1);
     world.restart(scene("ispace size=20,20\n", ""));
     EXPECT_TRUE(std::get<Photo>(photograph().value).rgb ==
-                std::get<Photo>(still.take(0).value).rgb);
+                std::get<Photo>(still.captureNow(0).value).rgb);
     EXPECT_TRUE(std::get<DepthFrame>(sense().value).depths ==
-                std::get<DepthFrame>(still.take(1).value).depths);
+                std::get<DepthFrame>(still.captureNow(1).value).depths);
 }
 
 TEST(Later, APictureShowsTheWorldAsItWasAskedOf) {
@@ -105,15 +105,15 @@ TEST(Later, APictureShowsTheWorldAsItWasAskedOf) {
             each->command(0, {Verb::Speed, 0.5});
             for (int i = 0; i < 300; ++i) each->step();
         }
-        ASSERT_FALSE(world.isTaken(sensor));
+        ASSERT_FALSE(world.isCaptured(sensor));
         const auto take = world.captureLater(sensor);
         // It goes on meanwhile, and somebody looks at it.
         SensorReading later;
         std::thread other([&] { later = take(); });
         for (int i = 0; i < 30; ++i) world.step();
-        const SensorReading now = world.take(sensor);
+        const SensorReading now = world.captureNow(sensor);
         other.join();
-        const SensorReading& wanted = still.take(sensor);
+        const SensorReading& wanted = still.captureNow(sensor);
         EXPECT_EQ(later.seq, wanted.seq);
         EXPECT_EQ(later.time, wanted.time);
         EXPECT_EQ(later.pose, wanted.pose);
@@ -128,9 +128,9 @@ TEST(Later, APictureShowsTheWorldAsItWasAskedOf) {
             EXPECT_FALSE(std::get<DepthFrame>(now.value).depths == depths);
         }
         for (int i = 0; i < 20; ++i) world.step();
-        world.put(sensor, later);
+        world.storeCapture(sensor, later);
         EXPECT_EQ(world.reading(sensor).seq, wanted.seq);
-        EXPECT_FALSE(world.isTaken(sensor)) << "there is a newer period";
+        EXPECT_FALSE(world.isCaptured(sensor)) << "there is a newer period";
     }
 }
 

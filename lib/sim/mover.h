@@ -120,7 +120,7 @@ struct Mover {
     RobotModel model;
     Pose2 pose;  ///< at the start
     MotionPlan course;
-    Place place;  ///< of the record, for messages
+    SourcePosition place;  ///< of the record, for messages
     bool is_person = false;
 };
 

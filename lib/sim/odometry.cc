@@ -10,6 +10,11 @@ namespace ispace {
 
 namespace {
 
+/// Returns true if an alpha is not 0.
+bool hasDeviation(const std::array<double, 4>& alphas) {
+    return std::any_of(alphas.begin(), alphas.end(), [](double alpha) { return alpha != 0; });
+}
+
 /// 1/first - square * (1/second - square * (1/third - ...)).
 ISPACE_INLINE double series(double /*square*/, double last) { return 1.0 / last; }
 template <typename... Others>
@@ -136,10 +141,6 @@ Pose2 strayed(const Pose2& motion, const std::array<double, 4>& alphas, const Ra
     return {Point2{} + (far.x * half + far.y * perpendicular(half)), motion.heading + error};
 }
 
-bool strays(const std::array<double, 4>& alphas) {
-    return std::any_of(alphas.begin(), alphas.end(), [](double alpha) { return alpha != 0; });
-}
-
 std::vector<std::size_t> strayStarts(std::span<Mover> movers, const ObstacleSets& obstacles,
                                      std::uint64_t seed) {
     constexpr std::uint64_t kTries = 100;
@@ -177,8 +178,8 @@ Odometer::Odometer(const Mover& mover, std::uint64_t seed, bool noise)
     : noise_(mover.model.noise),
       seed_(seed),
       id_(hashOf(mover.id)),
-      counts_(noise && (strays(noise_.motion) || strays(noise_.odometry))),
-      drifts_(noise && strays(noise_.motion)),
+      counts_(noise && (hasDeviation(noise_.motion) || hasDeviation(noise_.odometry))),
+      drifts_(noise && hasDeviation(noise_.motion)),
       origin_(mover.pose) {}
 
 Vec2 Odometer::stray(Motion& end, const Pose2& start, std::int64_t step) {

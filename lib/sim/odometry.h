@@ -53,9 +53,6 @@ Pose2 composed(const Pose2& outer, const Pose2& inner);
 /// and a way of one metre.
 Pose2 strayed(const Pose2& motion, const std::array<double, 4>& alphas, const RandomKey& key);
 
-/// Returns true if an alpha is not 0.
-bool strays(const std::array<double, 4>& alphas);
-
 /// Moves the robots' starts by their start errors, drawn up to a hundred times until the start is
 /// free. \returns the robots without a free one, which start as written
 std::vector<std::size_t> strayStarts(std::span<Mover> movers, const ObstacleSets& obstacles,

@@ -23,7 +23,7 @@ TEST(PirRun, HoldsItsOutputAfterThePersonStands) {
     bool was_on = false;
     for (int i = 0; i < 200; ++i) {
         world.step();
-        if (world.read().empty()) continue;
+        if (world.latestReadings().empty()) continue;
         const bool moves = world.status(0).speed >= 0.1;
         moving += moves ? 1 : 0;
         if (moves) {

@@ -30,7 +30,7 @@ TEST(RadarRun, MeasuresTheSpeedsOfRobots) {
     int seen = 0;
     for (int i = 0; i < 200; ++i) {
         world.step();
-        if (world.read().empty()) continue;
+        if (world.latestReadings().empty()) continue;
         const RadarFrame& now = frame(world);
         EXPECT_EQ(now.frame, i / 5 + 1);
         EXPECT_NEAR(now.time, ispace::seconds(world.time()), 1e-12);

@@ -111,7 +111,7 @@ struct Recorder::Data {
     std::vector<std::vector<bool>> felt;  // pressed bumpers of each robot
     std::optional<Periods> sonar_periods;
     SimTime sonars_due{};
-    // Of the step recorded last: the next of World::read() to be written, and frames,
+    // Of the step recorded last: the next of World::latestReadings() to be written, and frames,
     // which follow.
     bool is_open = false, awaits_frames = false;
     std::size_t next_reading = 0;
@@ -195,10 +195,10 @@ void Recorder::Data::takeFrames(World& world) {
         if (strides[i] == 0) continue;
         const std::int64_t period = world.period(i);
         if (std::exchange(periods[i], period) == period || period % strides[i] != 0) continue;
-        if (world.isTaken(i) && world.reading(i).time != world.time()) continue;
+        if (world.isCaptured(i) && world.reading(i).time != world.time()) continue;
         const auto frame = frames.emplace_back(std::make_shared<RecordedFrame>(world.sensors()[i]));
         if (!options.frame_taker) {
-            frame->make(world.take(i));
+            frame->make(world.captureNow(i));
             frame->is_made = true;
             continue;
         }
@@ -218,8 +218,8 @@ void Recorder::Data::appendFrame(const RecordedFrame& frame) {
 /// \returns true once all readings but frames are written
 bool Recorder::Data::appendScans(World& world, steady_clock::time_point until) {
     if (!world.readSome(until)) return false;
-    while (next_reading < world.read().size()) {
-        const std::size_t i = world.read()[next_reading++];
+    while (next_reading < world.latestReadings().size()) {
+        const std::size_t i = world.latestReadings()[next_reading++];
         const Sensor& sensor = world.sensors()[i];
         if (isHeavy(sensor) || !options.readings) continue;
         appendReadingLine(scans.pending, sensor, world.reading(i), receivers);
@@ -227,7 +227,7 @@ bool Recorder::Data::appendScans(World& world, steady_clock::time_point until) {
         scans.flushBlock(kWriteBlock);
         if (steady_clock::now() >= until) break;
     }
-    return next_reading >= world.read().size();
+    return next_reading >= world.latestReadings().size();
 }
 
 bool Recorder::Data::finishStep(World& world, steady_clock::time_point until) {

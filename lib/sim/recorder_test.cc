@@ -104,7 +104,7 @@ TEST_F(RecorderTest, WritesScansAsScanDoes) {
     Recorder recorder(path("run"), world, {.history = {"simrun \"room\".env"}, .seed = 7});
     std::string expected = scanHeaderLine({"simrun \"room\".env"}, 7);
     const auto append = [&] {
-        for (const std::size_t laser : world.read())
+        for (const std::size_t laser : world.latestReadings())
             appendLine(expected, viewOf(world.sensors()[laser], world.reading(laser).scan()));
     };
     append();

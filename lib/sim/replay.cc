@@ -60,13 +60,12 @@ Replay::Replay(const std::string& folder, std::optional<SimTime> joined_step)
         step_ = recordedTime(reader_.time()) - begin;
     else
         step_ = std::chrono::milliseconds(5);
-    if ((begin != SimTime(0) && !is_late_) || step_ < World::kShortestStep ||
-        step_ > World::kLongestStep)
+    if ((begin != SimTime(0) && !is_late_) || step_ < World::kMinStep || step_ > World::kMaxStep)
         throw FormatError({reader_.name(), 0, 0,
                            "begins at t=" + formatSimTime(begin) + " with steps of " +
                                formatSimTime(step_) + " s, wanted 0 and from " +
-                               formatSimTime(World::kShortestStep) + " to " +
-                               formatSimTime(World::kLongestStep) + " s"});
+                               formatSimTime(World::kMinStep) + " to " +
+                               formatSimTime(World::kMaxStep) + " s"});
 }
 
 void Replay::placeAtStart(Scene& scene) const {

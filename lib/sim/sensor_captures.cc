@@ -59,8 +59,8 @@ void SensorReader::photograph(const Sensor& camera, const std::shared_ptr<const 
     reading.value = std::move(photo);
 }
 
-void SensorReader::take(std::size_t sensor, SimTime time, const Movers& movers) {
-    if (isTaken(sensor, time)) return;
+void SensorReader::captureNow(std::size_t sensor, SimTime time, const Movers& movers) {
+    if (isCaptured(sensor, time)) return;
     const Sensor& taken = sensors_[sensor];
     SensorReading reading = begun(sensor, time, movers);
     if (taken.is<Camera>()) {
@@ -70,7 +70,7 @@ void SensorReader::take(std::size_t sensor, SimTime time, const Movers& movers) 
         updateBodies(movers);
         readNow(taken, bodies_, reading);
     }
-    put(sensor, std::move(reading));
+    storeCapture(sensor, std::move(reading));
     // Read in this step like the others.
     latest_.insert(std::upper_bound(latest_.begin(), latest_.end(), sensor), sensor);
 }
@@ -95,7 +95,7 @@ std::function<SensorReading()> SensorReader::captureLater(std::size_t sensor, Si
     };
 }
 
-void SensorReader::put(std::size_t sensor, SensorReading reading) {
+void SensorReader::storeCapture(std::size_t sensor, SensorReading reading) {
     due_[sensor] = periods_[sensor].begin(reading.seq + 1);
     readings_[sensor] = std::move(reading);
 }

@@ -55,7 +55,7 @@ class SensorReader {
     bool readSome(std::chrono::steady_clock::time_point until);
     void finish();
     /// Call it after a skipped step: due sensors are read after a later one.
-    void pass(const Movers& movers) {
+    void skip(const Movers& movers) {
         finish();
         latest_.clear();
         floor_.follow(movers);
@@ -85,15 +85,15 @@ class SensorReader {
         return is_heavy_[sensor] == 0 ? readings_[sensor].seq : periods_[sensor].newest(time);
     }
     /// Returns true unless it is heavy and was not read in its newest period.
-    [[nodiscard]] bool isTaken(std::size_t sensor, SimTime time) const {
+    [[nodiscard]] bool isCaptured(std::size_t sensor, SimTime time) const {
         return due_[sensor] > time || is_heavy_[sensor] == 0;
     }
-    /// Reads a heavy sensor now unless it is taken.
-    void take(std::size_t sensor, SimTime time, const Movers& movers);
+    /// Reads a heavy sensor now unless it is captured.
+    void captureNow(std::size_t sensor, SimTime time, const Movers& movers);
     /// Likewise in two parts: see World::captureLater.
     std::function<SensorReading()> captureLater(std::size_t sensor, SimTime time,
                                                 const Movers& movers);
-    void put(std::size_t sensor, SensorReading reading);
+    void storeCapture(std::size_t sensor, SensorReading reading);
 
     [[nodiscard]] const FloorSensors& floor() const { return floor_; }
     /// Returns the bodies of robots and people at their poses.

@@ -37,7 +37,7 @@ TEST(SensorReader, ReadsAtTheFirstStepOfAPeriod) {
                                  "laser id=a at=0,0 beams=3 rate=" + std::to_string(rate) + "\n");
         for (const SimTime step : {milliseconds(5), milliseconds(3)}) {
             World world(room, step);
-            ASSERT_EQ(world.read().size(), 1U);
+            ASSERT_EQ(world.latestReadings().size(), 1U);
             EXPECT_EQ(world.reading(0).seq, 0);
             EXPECT_EQ(world.reading(0).time, SimTime(0));
             std::int64_t next = 1;
@@ -45,7 +45,7 @@ TEST(SensorReader, ReadsAtTheFirstStepOfAPeriod) {
                 world.step();
                 // Period k begins at k / rate seconds.
                 const bool due = i * step.count() * rate >= next * 1'000'000'000;
-                ASSERT_EQ(world.read().size(), due ? 1U : 0U) << i;
+                ASSERT_EQ(world.latestReadings().size(), due ? 1U : 0U) << i;
                 if (!due) continue;
                 const SensorReading& reading = world.reading(0);
                 ASSERT_EQ(reading.seq, next);
@@ -62,13 +62,13 @@ TEST(SensorReader, ALongStepTakesTheNewest) {
     const Scene room =
         scene("ispace size=8,6\n", "laser id=a at=0,0 rate=40\nlaser id=b at=1,0 rate=0.5\n");
     World world(room, seconds(1));
-    EXPECT_EQ(world.read().size(), 2U);
+    EXPECT_EQ(world.latestReadings().size(), 2U);
     world.step();
-    ASSERT_EQ(world.read().size(), 1U);
-    EXPECT_EQ(world.read()[0], 0U);
+    ASSERT_EQ(world.latestReadings().size(), 1U);
+    EXPECT_EQ(world.latestReadings()[0], 0U);
     EXPECT_EQ(world.reading(0).seq, 40);
     world.step();
-    ASSERT_EQ(world.read().size(), 2U);
+    ASSERT_EQ(world.latestReadings().size(), 2U);
     EXPECT_EQ(world.reading(0).seq, 80);
     EXPECT_EQ(world.reading(1).seq, 1);
     EXPECT_EQ(world.reading(1).time, seconds(2));

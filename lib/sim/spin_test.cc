@@ -84,16 +84,16 @@ TEST(Spin, AScanIsReadWithItsLastBeamAndHasTheTimeOfTheFirst) {
     const Scene room =
         scene(kRoom, "laser id=a at=0,0 fov=270 spin=10\nlaser id=b at=0,0 fov=270\n");
     World world(room, kStep);
-    EXPECT_EQ(world.read().size(), 2U) << "the first ones are of one moment";
+    EXPECT_EQ(world.latestReadings().size(), 2U) << "the first ones are of one moment";
     for (int i = 1; i <= 200; ++i) {
         world.step();
         const bool begins = i % 20 == 0, ends = i > 20 && i % 20 == 15;
-        ASSERT_EQ(world.read().size(), begins || ends ? 1U : 0U) << i;
+        ASSERT_EQ(world.latestReadings().size(), begins || ends ? 1U : 0U) << i;
         if (begins) {
             ASSERT_EQ(world.reading(1).time, i * kStep);
         }
         if (!ends) continue;
-        ASSERT_EQ(world.read()[0], 0U);
+        ASSERT_EQ(world.latestReadings()[0], 0U);
         EXPECT_EQ(world.reading(0).time, (i - 15) * kStep);
         EXPECT_EQ(world.reading(0).seq, i / 20);
         EXPECT_EQ(world.reading(0).scan().time, seconds((i - 15) * kStep));
@@ -112,7 +112,7 @@ TEST(Spin, RatesThatDoNotFitTheSteps) {
         std::map<std::size_t, std::vector<std::pair<std::int64_t, SimTime>>> read;
         for (int i = 0; i < 2000; ++i) {
             world.step();
-            for (const std::size_t sensor : world.read())
+            for (const std::size_t sensor : world.latestReadings())
                 read[sensor].push_back({world.reading(sensor).seq, world.reading(sensor).time});
         }
         // The same scans as of lasers that read at once, but for the last.
@@ -136,7 +136,7 @@ TEST(Spin, AWallLaserSeesAPersonWhereSheIsThen) {
     int seen = 0;
     for (int i = 0; i < 900; ++i) {
         world.step();
-        if (world.read().empty()) continue;
+        if (world.latestReadings().empty()) continue;
         const Scan& scan = world.reading(0).scan();
         for (std::size_t k = 1; k < scan.ranges.size(); ++k) {
             // The first beam that meets the cylinder, on its right side.
@@ -203,7 +203,7 @@ TEST(Spin, TheSameForAnyNumberOfThreads) {
         runs.emplace_back();
         for (int i = 0; i < 300; ++i) {
             world.step();
-            for (const std::size_t sensor : world.read())
+            for (const std::size_t sensor : world.latestReadings())
                 runs.back().push_back(world.reading(sensor).scan().ranges);
         }
     }

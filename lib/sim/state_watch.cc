@@ -67,7 +67,7 @@ std::vector<RoomState> StateWatch::changed() {
     std::vector<RoomState> changed;
     if (changes_ != world_->changes()) learnActuators(&changed);
     if (reporting_.empty()) return changed;
-    const std::span<const std::size_t> read = world_->read();
+    const std::span<const std::size_t> read = world_->latestReadings();
     for (const std::size_t sensor : reporting_)
         if (std::binary_search(read.begin(), read.end(), sensor)) learnSensor(sensor, &changed);
     return changed;

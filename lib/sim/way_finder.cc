@@ -12,7 +12,7 @@ namespace ispace {
 
 namespace {
 
-constexpr double kMostCells = 2.5e5;
+constexpr double kMaxCells = 2.5e5;
 /// Costs of a side and of a corner.
 constexpr std::int32_t kSide = 12, kCorner = 17;
 /// A point may lie this far from the nearest free cell, in metres: movers stand at walls.
@@ -21,7 +21,7 @@ constexpr double kNear = 0.5;
 Grid gridOver(const Box2& box) {
     const double width = std::max(box.width(), WayFinder::kCell);
     const double depth = std::max(box.depth(), WayFinder::kCell);
-    const double size = std::max(WayFinder::kCell, std::sqrt(width * depth / kMostCells));
+    const double size = std::max(WayFinder::kCell, std::sqrt(width * depth / kMaxCells));
     return gridOf(box.low, size, static_cast<int>(std::ceil(width / size)),
                   static_cast<int>(std::ceil(depth / size)));
 }
@@ -75,9 +75,9 @@ bool WayFinder::isStraight(Point2 from, Point2 to) const {
 /// Returns true if the circle with the margin is over a hole somewhere on the way.
 bool WayFinder::isOverHole(const Segment2& way) const {
     // Piece by piece, as the box about a long way holds edges far from it.
-    constexpr double kMostPieces = 1000, kRounding = 1.01;
+    constexpr double kMaxPieces = 1000, kRounding = 1.01;
     const Vec2 along = way.b - way.a;
-    const double pieces = std::clamp(std::ceil(ispace::length(along) / reach_), 1.0, kMostPieces);
+    const double pieces = std::clamp(std::ceil(ispace::length(along) / reach_), 1.0, kMaxPieces);
     const double half = kRounding * (ispace::length(along) / pieces + reach_);
     return std::any_of(holes_.begin(), holes_.end(), [&](const RegionIndex& hole) {
         if (hole.locate(way.a) == Side::Inside) return true;
@@ -97,7 +97,7 @@ std::optional<std::size_t> WayFinder::cellNear(Point2 p) const {
     const double size = grid_.limits.width() / grid_.columns;
     const Point2 at = grid_.toCells(p);
     const auto reach = static_cast<int>(std::ceil(kNear / size));
-    const double largest = 2 * (kMostCells + reach);
+    const double largest = 2 * (kMaxCells + reach);
     if (!(std::abs(at.x) < largest && std::abs(at.y) < largest)) return std::nullopt;
     const int column = static_cast<int>(std::lround(at.x));
     const int row = static_cast<int>(std::lround(at.y));

@@ -25,7 +25,7 @@ World::World(std::shared_ptr<const Scene> scene, SimTime step, const RunOptions&
     : data_(std::make_shared<Data>(
           std::make_shared<SceneResources>(std::move(scene), options, Worlds::Meshes()), step,
           options)) {
-    assert(kShortestStep <= step && step <= kLongestStep);
+    assert(kMinStep <= step && step <= kMaxStep);
     data_->sensors.read(data_->time, data_->where());
 }
 
@@ -52,7 +52,7 @@ std::span<const Sensor> World::sensors() const { return data_->sensors.sensors()
 std::span<const CommandEnd> World::ends() const { return data_->ends; }
 std::span<const Collision> World::collisions() const { return data_->collisions; }
 std::span<const std::size_t> World::keptStarts() const { return data_->kept_starts; }
-std::span<const std::size_t> World::read() const { return data_->sensors.latest(); }
+std::span<const std::size_t> World::latestReadings() const { return data_->sensors.latest(); }
 
 std::optional<std::size_t> World::moverNamed(std::string_view id) const {
     return data_->moverNamed(id);
@@ -102,13 +102,13 @@ std::int64_t World::period(std::size_t sensor) const {
     return data_->sensors.period(sensor, data_->time);
 }
 
-const SensorReading& World::take(std::size_t sensor) {
-    data_->sensors.take(sensor, data_->time, data_->where());
+const SensorReading& World::captureNow(std::size_t sensor) {
+    data_->sensors.captureNow(sensor, data_->time, data_->where());
     return reading(sensor);
 }
 
-bool World::isTaken(std::size_t sensor) const {
-    return data_->sensors.isTaken(sensor, data_->time);
+bool World::isCaptured(std::size_t sensor) const {
+    return data_->sensors.isCaptured(sensor, data_->time);
 }
 
 std::function<SensorReading()> World::captureLater(std::size_t sensor) {
@@ -117,8 +117,8 @@ std::function<SensorReading()> World::captureLater(std::size_t sensor) {
     };
 }
 
-void World::put(std::size_t sensor, SensorReading reading) {
-    data_->sensors.put(sensor, std::move(reading));
+void World::storeCapture(std::size_t sensor, SensorReading reading) {
+    data_->sensors.storeCapture(sensor, std::move(reading));
 }
 
 std::vector<float> World::sonar(std::size_t robot) {
@@ -336,7 +336,7 @@ void World::passTo(std::span<const RobotStatus> states) {
     Data& data = *data_;
     data.begin();
     for (std::size_t i = 0; i < states.size(); ++i) data.put(i, states[i]);
-    data.sensors.pass(data.where());
+    data.sensors.skip(data.where());
 }
 
 std::shared_ptr<const void> World::rewind(const NextScene& next) {

@@ -100,12 +100,12 @@ struct RunOptions {
 class World {
   public:
     /// Limits of the step.
-    static constexpr SimTime kLongestStep = std::chrono::seconds(1);
-    static constexpr SimTime kShortestStep = std::chrono::microseconds(1);
+    static constexpr SimTime kMaxStep = std::chrono::seconds(1);
+    static constexpr SimTime kMinStep = std::chrono::microseconds(1);
 
     /// Sensors take their first reading at time 0.
     /// \throws FormatError with all findings if a robot overlaps a body, another robot or a person
-    /// \pre kShortestStep <= step <= kLongestStep
+    /// \pre kMinStep <= step <= kMaxStep
     World(std::shared_ptr<const Scene> scene, SimTime step, const RunOptions& options = {});
     /// Likewise with a scene that must outlive the world.
     World(const Scene& scene, SimTime step, const RunOptions& options = {});
@@ -157,14 +157,15 @@ class World {
     [[nodiscard]] std::int64_t period(std::size_t sensor) const;
     /// Returns reading(), after reading a heavy sensor now if it was not read in its newest period.
     /// Pictures and depth frames are only taken this way.
-    const SensorReading& take(std::size_t sensor);
-    /// Returns true if take() need not read the sensor.
-    [[nodiscard]] bool isTaken(std::size_t sensor) const;
-    /// take() in two parts, so that a server can answer clients in between: the returned function
-    /// reads the sensor in its present state, in any thread, and while the world goes on or is
-    /// changed. Then put() stores that reading, unless the world was changed. \pre it is heavy
+    const SensorReading& captureNow(std::size_t sensor);
+    /// Returns true if captureNow() need not read the sensor.
+    [[nodiscard]] bool isCaptured(std::size_t sensor) const;
+    /// captureNow() in two parts, so that a server can answer clients in between: the returned
+    /// function reads the sensor in its present state, in any thread, and while the world goes on
+    /// or is changed. Then storeCapture() stores that reading, unless the world was changed. \pre
+    /// it is heavy
     std::function<SensorReading()> captureLater(std::size_t sensor);
-    void put(std::size_t sensor, SensorReading reading);
+    void storeCapture(std::size_t sensor, SensorReading reading);
     /// Computes the sonar ranges of a robot, in the order of its model: metres, +infinity without
     /// an echo. See robot_sensors.h.
     [[nodiscard]] std::vector<float> sonar(std::size_t robot);
@@ -260,7 +261,7 @@ class World {
     [[nodiscard]] std::span<const Collision> collisions() const;
     /// Returns the sensors read in the last step (before the first step: all that are not heavy),
     /// ascending.
-    [[nodiscard]] std::span<const std::size_t> read() const;
+    [[nodiscard]] std::span<const std::size_t> latestReadings() const;
 
   private:
     struct Data;

@@ -164,7 +164,7 @@ std::vector<double> trace(const Scene& room, int threads) {
                                      status.stall ? 1.0 : 0.0});
         }
         for (const CommandEnd& end : world.ends()) seen.push_back(end.id);
-        for (const std::size_t laser : world.read()) {
+        for (const std::size_t laser : world.latestReadings()) {
             const auto& ranges = world.reading(laser).scan().ranges;
             seen.insert(seen.end(), ranges.begin(), ranges.end());
         }

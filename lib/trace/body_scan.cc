@@ -321,7 +321,7 @@ void BodyArc::look(std::span<const std::uint32_t> bodies, std::uint32_t own) {
             waiting.other_last = beam(to + shift) - 1;
         }
         if (!isSeen(waiting)) continue;
-        if (size_ == kMost) meetCollected();
+        if (size_ == kMaxWaiting) meetCollected();
         waiting_[size_++] = waiting;
     }
 }

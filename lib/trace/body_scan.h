@@ -227,7 +227,7 @@ class BodyArc {
     void meetFrom(const FloorGrid& grid, std::uint32_t own);
 
   private:
-    static constexpr std::size_t kBlock = 8, kMost = 256;
+    static constexpr std::size_t kBlock = 8, kMaxWaiting = 256;
 
     /// A body, the lower bound of its distance, and the beams that may meet it: from first to last,
     /// and from other_first to other_last if the body spans both ends of the scan.
@@ -257,7 +257,7 @@ class BodyArc {
     double rate_ = 0;               // beams per radian
     double count_ = 0;              // number of beams
     std::vector<float>& farthest_;  // the maximum range of each block of beams
-    std::array<Waiting, kMost> waiting_;
+    std::array<Waiting, kMaxWaiting> waiting_;
     std::size_t size_ = 0;
 };
 

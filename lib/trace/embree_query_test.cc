@@ -10,7 +10,7 @@ namespace ispace {
 
 namespace {
 
-constexpr float kMost = 8;
+constexpr float kMaxReach = 8;
 
 /// Rays from one origin towards a plane, and what Embree might say of them.
 struct Case {
@@ -20,7 +20,7 @@ struct Case {
     RayPacket packet{};
     SureMeeting sure{.clear = 1e-5,
                      .longest = 1 + kFloatTolerance,
-                     .near = static_cast<float>(kMost * (1 - kFloatTolerance))};
+                     .near = static_cast<float>(kMaxReach * (1 - kFloatTolerance))};
 
     explicit Case(std::mt19937_64& random) {
         std::uniform_real_distribution<double> any(-1, 1);
@@ -32,7 +32,7 @@ struct Case {
         packet.origin_x.fill(any(random));
         packet.origin_y.fill(any(random));
         packet.origin_z.fill(any(random));
-        packet.reach.fill(static_cast<double>(kMost) * (1 + kFloatTolerance));
+        packet.reach.fill(static_cast<double>(kMaxReach) * (1 + kFloatTolerance));
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const Vec3 way{any(random), any(random), any(random)};
             const Vec3 direction = (1 / length(way)) * way;
@@ -48,7 +48,7 @@ struct Case {
     }
     /// \return the lanes that need a closer look
     std::uint32_t meetAll() {
-        return meetPlanes(hits, planes.data(), margins.data(), sure.clear, kMost, packet);
+        return meetPlanes(hits, planes.data(), margins.data(), sure.clear, kMaxReach, packet);
     }
 };
 

@@ -75,12 +75,12 @@ TriangleSet::TriangleSet(const TriangleSoup& soup) : tolerance_(kFloatError * di
     std::size_t count = 0;
     for (const RoundBody& round : soup.rounds) {
         rounds_.push_back({round});
-        if (count <= kMostOfRounds)
+        if (count <= kMaxOfRounds)
             count += trianglesAround(footprints.emplace_back(inscribedIn(round.curve)));
     }
     for (std::size_t i = 0; i < rounds_.size(); ++i) {
         const std::size_t first = size();
-        if (count <= kMostOfRounds) {
+        if (count <= kMaxOfRounds) {
             addTriangles(soupAround(rounds_[i].body, std::move(footprints[i])));
         } else {
             rounds_[i].surface = static_cast<std::uint32_t>(size());

@@ -80,7 +80,7 @@ class TriangleSet {
         std::uint32_t surface = 0;
     };
     /// Maximum number of triangles that represent round bodies.
-    static constexpr std::size_t kMostOfRounds = 1 << 15;
+    static constexpr std::size_t kMaxOfRounds = 1 << 15;
 
     /// Skips triangles thinner than a nanometre.
     explicit TriangleSet(const TriangleSoup& soup);

@@ -34,7 +34,7 @@ struct Case {
         std::vector<RayGrid> grids;
         for (const Sensor& laser : bench::fans(scene, kPictures, false)) {
             views.emplace_back(Camera(), laser.pose);
-            const EvenSightLines lines = *views.back().evenSightLines();
+            const EvenPixelRays lines = *views.back().evenPixelRays();
             origins.push_back(lines.origin);
             grids.push_back({lines.direction, lines.right, lines.down, views.back().columns(),
                              views.back().rows()});

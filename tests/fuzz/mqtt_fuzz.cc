@@ -23,8 +23,8 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     while (world.waiting()) world.proceed();
     testing::MemoryBroker broker;
     MqttBridge bridge(room.state(), std::make_unique<testing::MemoryClient>(broker), "ispace");
-    constexpr int kMostLines = 20;
-    for (int i = 0; i < kMostLines && !bytes.empty(); ++i) {
+    constexpr int kMaxLines = 20;
+    for (int i = 0; i < kMaxLines && !bytes.empty(); ++i) {
         const std::string_view line = bytes.substr(0, bytes.find('\n'));
         bytes.remove_prefix(std::min(bytes.size(), line.size() + 1));
         if (line == "-") {

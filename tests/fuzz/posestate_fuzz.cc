@@ -23,10 +23,10 @@ class StopSoon : public Progress {
     void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
     void advance(std::int64_t /*count*/) override {}
     void end() override {}
-    [[nodiscard]] bool stopped() const override { return ++asked_ > kMost; }
+    [[nodiscard]] bool stopped() const override { return ++asked_ > kMaxAsked; }
 
   private:
-    static constexpr int kMost = 6;
+    static constexpr int kMaxAsked = 6;
     mutable std::atomic<int> asked_ = 0;
 };
 

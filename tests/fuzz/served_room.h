@@ -38,8 +38,8 @@ class ServedRoom {
     /// Takes the steps that clients have asked for, a few at most. Calls `stepped` after each.
     template <typename Stepped>
     void run(Stepped stepped) {
-        constexpr int kMost = 4;
-        for (int i = 0; i < kMost && simulation_.owed() > 0; ++i) {
+        constexpr int kMaxSteps = 4;
+        for (int i = 0; i < kMaxSteps && simulation_.owed() > 0; ++i) {
             simulation_.run({}, std::chrono::nanoseconds(0));
             stepped();
         }

@@ -103,8 +103,8 @@ class ServedTower {
     [[nodiscard]] ServerState& state() { return *states_.front(); }
     template <typename Stepped>
     void run(Stepped stepped) {
-        constexpr int kMost = 200;
-        for (int i = 0; i < kMost && run_.simulation().owed() > 0; ++i) {
+        constexpr int kMaxSteps = 200;
+        for (int i = 0; i < kMaxSteps && run_.simulation().owed() > 0; ++i) {
             run_.simulation().run({}, std::chrono::nanoseconds(0));
             stepped();
         }

@@ -96,9 +96,9 @@ RobustChoice readRobust(const std::string& text, std::vector<std::string>& rooms
     }
     if (word == "failures") {
         const auto count = parseInteger(rest);
-        if (!count || *count < 0 || *count > kMostFailures)
+        if (!count || *count < 0 || *count > kMaxFailures)
             throw UsageError('`' + rest + "` is not a number of failures up to " +
-                             std::to_string(kMostFailures));
+                             std::to_string(kMaxFailures));
         robust.of = RobustChoice::Of::Failures;
         robust.failures = static_cast<int>(*count);
         return robust;
@@ -126,8 +126,7 @@ ObjectiveChoice readObjective(const std::string& text) {
     if (text == "localise" || (word == "localise" && !rest.empty())) {
         objective.of = ObjectiveChoice::Of::Localise;
         if (!rest.empty())
-            objective.within =
-                numbers(rest, Unit::Length, 1, 1, kLeastErrorLimit, kMostErrorLimit)[0];
+            objective.within = numbers(rest, Unit::Length, 1, 1, kMinErrorLimit, kMaxErrorLimit)[0];
         return objective;
     }
     throw UsageError('`' + text + "` is not coverage, path:FROM,TO or localise[:M]");
@@ -354,12 +353,12 @@ void ArrangeCommand::addRobustOptions() {
         "with other furniture or doors; failures:K, any K sensors fail; mounting:M,DEG, as in "
         "mounting:5cm,3deg, random errors of mounting",
         Enters::BaseNames);
-    constexpr int kMostPeople = 1000;
+    constexpr int kMaxPeople = 1000;
     line_.parsed(
         "--crowd", "N",
         [this](const std::string& text) {
             const auto people = parseInteger(text);
-            if (!people || *people < 0 || *people > kMostPeople)
+            if (!people || *people < 0 || *people > kMaxPeople)
                 throw UsageError("--crowd: " + excerpt(text) +
                                  " is no number of people up to 1000");
             options_.how.robust = {.of = RobustChoice::Of::Crowd,
@@ -404,8 +403,8 @@ void ArrangeCommand::addFileOptions() {
                "also report the coverage of 1, 2, ... sensors, and write it to FILE (.csv, .png, "
                ".svg or .pdf)",
                Enters::Nothing);
-    constexpr int kMostAlternatives = 20;
-    line_.count("--alternatives", "N", options_.how.alternatives, 1, kMostAlternatives,
+    constexpr int kMaxAlternatives = 20;
+    line_.count("--alternatives", "N", options_.how.alternatives, 1, kMaxAlternatives,
                 "also find N good layouts that differ by a metre or 30 degrees in some sensor, and "
                 "write them beside -o FILE.3dm as FILE-2.3dm, FILE-3.3dm, ...",
                 Enters::Nothing);
@@ -441,8 +440,8 @@ void ArrangeCommand::addShareOptions() {
                  "work that shards divide: views of the candidates (default of greedy and with "
                  "--target), random starts (of swap), or subtrees of the proof (of exact; poses)",
                  Enters::Nothing);
-    constexpr double kLongest = 86400;
-    line_.duration("--checkpoint-interval", options_.checkpoint_interval, 0, kLongest,
+    constexpr double kMaxInterval = 86400;
+    line_.duration("--checkpoint-interval", options_.checkpoint_interval, 0, kMaxInterval,
                    "with --resume: time between two states of a proof that are kept",
                    Enters::Nothing);
 }

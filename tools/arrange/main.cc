@@ -85,9 +85,9 @@ void report(const ArrangeToolOptions& options, const ArrangeWork& work,
         tell(options.common, "arrange",
              std::to_string(count) + " of " + std::to_string(asked) +
                  " alternatives were found: the candidates have no more layouts that differ");
-    talk(options.common, "arrange",
-         "total effective area " + formatFixed(arrangement.area, 2) + " m2, cost " +
-             formatDouble(arrangement.cost));
+    logInfo(options.common, "arrange",
+            "total effective area " + formatFixed(arrangement.area, 2) + " m2, cost " +
+                formatDouble(arrangement.cost));
 }
 
 /// \throws UnmetError as checkGoals(), and for a rule of cameras that is not met
@@ -168,7 +168,8 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     warnOfSearch(options, work);
     bool is_done = false;
     const auto results = resultsOf(command, work, std::move(parts), is_done);
-    if (is_done) return talk(options.common, "arrange", options.common.output + " is done already");
+    if (is_done)
+        return logInfo(options.common, "arrange", options.common.output + " is done already");
     work.how.search.share.results = results.get();
     int signal = 0;
     Arrangement arrangement;
@@ -192,7 +193,7 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
         report(options, work, arrangement, rules ? &*rules : nullptr);
     if (signal != 0) endBySignal(signal);
     if (shard)
-        talk(options.common, "arrange", "shard " + shard->text() + " is written");
+        logInfo(options.common, "arrange", "shard " + shard->text() + " is written");
     else
         checkAll(options, work, arrangement, rules);
 }

@@ -222,7 +222,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
                                      (advice ? suggestionsText(*advice) : ""));
     for (const JunitCase& verdict : verdicts)
         if (verdict.outcome == JunitCase::Outcome::Met)
-            talk(options.common, "coverage", verdict.message);
+            logInfo(options.common, "coverage", verdict.message);
     junit.write(baseName(input.environment_operand), verdicts);
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
     return true;

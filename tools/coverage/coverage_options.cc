@@ -68,13 +68,13 @@ std::vector<double> parseSpeeds(const std::string& text) {
 
 /// Parses `N`, `scene` or `run`.
 CrowdChoice parseCrowd(const std::string& text) {
-    constexpr int kMostPeople = 10'000;
+    constexpr int kMaxPeople = 10'000;
     if (text == "scene") return {Robustness::CrowdOf::Scene};
     if (text == "run") return {Robustness::CrowdOf::Run};
     const auto people = parseInteger(text);
-    if (!people || *people < 0 || *people > kMostPeople)
+    if (!people || *people < 0 || *people > kMaxPeople)
         throw UsageError('`' + text + "` is not a number of people up to " +
-                         std::to_string(kMostPeople) + ", scene or run");
+                         std::to_string(kMaxPeople) + ", scene or run");
     return {Robustness::CrowdOf::Random, static_cast<int>(*people)};
 }
 
@@ -240,7 +240,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                "report the way between these two zones, over free floor, that sensors see for the "
                "shortest length, and draw it",
                Enters::History);
-    line.meters("--localise", o.localise_to, kLeastErrorLimit, kMostErrorLimit,
+    line.meters("--localise", o.localise_to, kMinErrorLimit, kMaxErrorLimit,
                 "report the error with which the sensors localise a tag or a person, over the "
                 "floor; in the mean, errors above this and floor without a position count as this",
                 Enters::History);

@@ -68,7 +68,7 @@ void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
         for (JunitCase& verdict : judge(*rules)) verdicts.push_back(std::move(verdict));
     for (const JunitCase& verdict : verdicts)
         if (verdict.outcome == JunitCase::Outcome::Met)
-            talk(options.common, "coverage", verdict.message);
+            logInfo(options.common, "coverage", verdict.message);
     junit.write(baseName(input.environment_operand), verdicts);
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
 }
@@ -150,9 +150,9 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     if (!options.report.empty())
         writeAll(options.report, reportFile(options, input, measured.coverage, parts));
     writeAll("-", reportText(options, report, parts));
-    talk(options.common, "coverage",
-         std::to_string(report.sensors.size()) + " sensors measured on " +
-             std::to_string(measured.coverage.target.grid.size()) + " cells");
+    logInfo(options.common, "coverage",
+            std::to_string(report.sensors.size()) + " sensors measured on " +
+                std::to_string(measured.coverage.target.grid.size()) + " cells");
     checkRequired(options, input, judgeAll(options, measured.coverage, parts.presence), parts.rules,
                   junit);
 }

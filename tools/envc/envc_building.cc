@@ -118,7 +118,7 @@ void check(const EnvcOptions& options, const BuildingScene& building, const Impo
     }
     for (Diagnostic& finding : checkBuilding(building)) findings.add(std::move(finding));
     findings.throwIfAny();
-    talk(options.common, "envc", "nothing found");
+    logInfo(options.common, "envc", "nothing found");
 }
 
 /// Writes the building and the files of its rooms.
@@ -192,7 +192,7 @@ void writeBuilding(const EnvcOptions& options, StoreyedDocument document,
                    const ImportReport& report) {
     warn(options.common, "envc", report.choices);
     if (!options.check) warn(options.common, "envc", document.warnings);
-    for (const std::string& note : document.notes) talk(options.common, "envc", note);
+    for (const std::string& note : document.notes) logInfo(options.common, "envc", note);
     const std::vector<std::string> files = document.sources;
     if (options.format != nullptr && options.format->write_records != nullptr) {
         writeProduct(options, {std::move(document), {}, {}});

@@ -133,8 +133,8 @@ Tuple placeFrom(const char* name, Unit unit, std::size_t most, const std::string
                                        .help = "",
                                        .min_count = 2,
                                        .max_count = most,
-                                       .lower = -kFarthestPlan,
-                                       .upper = kFarthestPlan},
+                                       .lower = -kMaxPlanCoordinate,
+                                       .upper = kMaxPlanCoordinate},
                                       text));
 }
 

@@ -95,7 +95,7 @@ Document readModel(const EnvcOptions& options, const std::vector<RawInput>& raw,
     document.history.push_back(options.history_line);
     warn(options.common, "envc", report.choices);
     if (!options.check) warn(options.common, "envc", document.warnings);
-    for (const std::string& note : document.notes) talk(options.common, "envc", note);
+    for (const std::string& note : document.notes) logInfo(options.common, "envc", note);
     return document;
 }
 
@@ -179,7 +179,7 @@ void compile(const EnvcOptions& options, Document document, const FoundRooms* fo
     const DeviceCatalogue& devices = devicesFor({&document});
     if (options.check) {
         check(options, document, report, devices);
-        talk(options.common, "envc", "nothing found");
+        logInfo(options.common, "envc", "nothing found");
         return;
     }
     const std::vector<Diagnostic> warnings = document.warnings;
@@ -191,9 +191,9 @@ void compile(const EnvcOptions& options, Document document, const FoundRooms* fo
         writeAll(output, options.json ? infoJson(info) : infoText(info));
     } else if (options.format != nullptr) {
         writeProduct(options, scene, compiled, found);
-        talk(options.common, "envc",
-             std::to_string(scene.records.size()) + " records compiled, indoor area " +
-                 formatFixed(scene.environment.indoor().area(), 2) + " m2");
+        logInfo(options.common, "envc",
+                std::to_string(scene.records.size()) + " records compiled, indoor area " +
+                    formatFixed(scene.environment.indoor().area(), 2) + " m2");
     }
 }
 

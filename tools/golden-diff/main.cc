@@ -81,12 +81,12 @@ std::vector<std::string> split(const std::vector<std::string>& lists) {
 
 /// Lists the differences of JSON, one a line.
 std::string listOf(const std::vector<std::string>& differences) {
-    constexpr std::size_t kMost = 100;
+    constexpr std::size_t kMaxShown = 100;
     std::string list;
-    for (std::size_t i = 0; i < std::min(kMost, differences.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kMaxShown, differences.size()); ++i)
         list += '\n' + differences[i];
-    if (differences.size() > kMost)
-        list += "\nand " + std::to_string(differences.size() - kMost) + " more";
+    if (differences.size() > kMaxShown)
+        list += "\nand " + std::to_string(differences.size() - kMaxShown) + " more";
     return list.empty() ? "" : ':' + list;
 }
 

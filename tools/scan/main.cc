@@ -78,7 +78,7 @@ std::int64_t scanScene(const ScanCommand& command, const ScanToolOptions& option
     ReadingSampler taker(sensors, worlds, bodies, taking);
     const ReadingWork work = workOf(command, options, input, sensors, *format);
     if (!work.delivery) {
-        talk(options.common, "scan", options.common.output + " is done already");
+        logInfo(options.common, "scan", options.common.output + " is done already");
         return 0;
     }
     const std::int64_t count = work.count;
@@ -103,8 +103,8 @@ std::int64_t scanScene(const ScanCommand& command, const ScanToolOptions& option
         files.insert(files.end(), textures.begin(), textures.end());
     }
     writeDependencies(options.common, files);
-    talk(options.common, "scan",
-         std::to_string(done) + (done == 1 ? " reading" : " readings") + " written");
+    logInfo(options.common, "scan",
+            std::to_string(done) + (done == 1 ? " reading" : " readings") + " written");
     return done;
 }
 

@@ -31,10 +31,10 @@ class RecordedOdometry {
         for (const PlacedRobot& robot : scene.robots) robots_.push_back(robot.id);
         has_next_ = run_.next();
         // A scan is complete in the step after its last beam.
-        constexpr double kLongestStep = 1;
+        constexpr double kMaxStep = 1;
         for (const Sensor& laser : lasers.read)
             if (const double duration = laser.as<Laser>().duration(); duration > 0)
-                kept_ = std::max(kept_, duration + kLongestStep);
+                kept_ = std::max(kept_, duration + kMaxStep);
     }
     /// Returns the pose by odometry, or the true one if that was not recorded; nullopt before the
     /// record begins.
@@ -189,7 +189,7 @@ void writeRecorded(const ScanCommand& command) {
     files.push_back(name);
     if (wants_moments) files.push_back(RecordedFiles(options.view.run).robots);
     writeDependencies(options.common, files);
-    talk(options.common, "scan", std::to_string(count) + " scans written");
+    logInfo(options.common, "scan", std::to_string(count) + " scans written");
 }
 
 }  // namespace ispace

@@ -246,8 +246,8 @@ void mergeReadings(const ScanCommand& command) {
                                std::to_string(units)});
     writeReadings(parts, output);
     writeDependencies(options.common, options.operands);
-    talk(options.common, "scan",
-         std::to_string(count) + (count == 1 ? " reading" : " readings") + " joined");
+    logInfo(options.common, "scan",
+            std::to_string(count) + (count == 1 ? " reading" : " readings") + " joined");
 }
 
 }  // namespace ispace

@@ -47,7 +47,8 @@ Scene sceneOf(const BuildingScene& building, std::span<const FloorOpening> openi
               const StoreySensors& one) {
     Scene scene = *building.scenes[one.storey];
     const std::vector<Sensor>& sensors = one.sensors.read;
-    if (openings.empty() || std::none_of(sensors.begin(), sensors.end(), looksAround)) return scene;
+    if (openings.empty() || std::none_of(sensors.begin(), sensors.end(), seesOtherStoreys))
+        return scene;
     if (auto room = roomWithSurroundings(building, openings, one.storey))
         scene.environment = *std::move(room);
     return scene;
@@ -63,7 +64,7 @@ std::vector<std::unique_ptr<StoreySensors>> sensorsIn(const ScanToolOptions& opt
         for (const bool looks_around : {false, true}) {  // those that see other storeys last
             std::vector<std::string> chosen;             // plain ids
             for (const Sensor& sensor : scene.sensors)
-                if (looksAround(sensor) == looks_around &&
+                if (seesOtherStoreys(sensor) == looks_around &&
                     isSelected(wholeId(storey, sensor.id), options.select))
                     chosen.push_back(sensor.id);
             if (chosen.empty()) continue;
@@ -170,8 +171,8 @@ bool scanBuilding(const ScanCommand& command) {
     }
     if (file) file->commit();
     writeDependencies(options.common, input.files);
-    talk(options.common, "scan",
-         std::to_string(done) + (done == 1 ? " reading" : " readings") + " written");
+    logInfo(options.common, "scan",
+            std::to_string(done) + (done == 1 ? " reading" : " readings") + " written");
     return true;
 }
 

@@ -280,8 +280,8 @@ void takeBuildingViews(const ScanToolOptions& options, const BuildingInput& inpu
     for (const auto& scene : input.building.scenes)
         for (const std::string& texture : textureFiles(*scene)) files.push_back(texture);
     writeDependencies(options.common, files);
-    talk(options.common, "scan",
-         std::to_string(count) + (count == 1 ? " picture" : " pictures") + " written");
+    logInfo(options.common, "scan",
+            std::to_string(count) + (count == 1 ? " picture" : " pictures") + " written");
 }
 
 }  // namespace ispace

@@ -24,12 +24,12 @@ double numberWithin(const std::string& text, double lowest, double highest) {
 }
 
 DepthSpectrum depthSpectrum(const std::string& text) {
-    constexpr double kMost = 1e6, kMinSpan = 0.001;
+    constexpr double kMaxDepth = 1e6, kMinSpan = 0.001;
     const std::size_t comma = std::min(text.find(','), text.size());
     if (comma == text.size())
         throw UsageError("`" + text + "` is no pair WARM,COLD, such as 0.5,3");
-    const DepthSpectrum spectrum{numberWithin(text.substr(0, comma), 0, kMost),
-                                 numberWithin(text.substr(comma + 1), 0, kMost)};
+    const DepthSpectrum spectrum{numberWithin(text.substr(0, comma), 0, kMaxDepth),
+                                 numberWithin(text.substr(comma + 1), 0, kMaxDepth)};
     if (std::fabs(spectrum.warm - spectrum.cold) < kMinSpan)
         throw UsageError("the two ends must be a millimetre apart at least");
     return spectrum;
@@ -198,11 +198,12 @@ void ScanCommand::check() {
                 throw UsageError(std::string(name) +
                                  " does not go with --run, whose readings are taken already");
     if (o.picture_size) {
-        constexpr int kMinValue = 200, kMost = 8000;
+        constexpr int kMinPixels = 200, kMaxPixels = 8000;
         o.map_pixels = o.picture_size->columns;
-        if (o.picture_size->rows != 0 || o.map_pixels < kMinValue || o.map_pixels > kMost)
-            throw UsageError("--size: an obstacle map is a square of " + std::to_string(kMinValue) +
-                             " to " + std::to_string(kMost) + " pixels a side");
+        if (o.picture_size->rows != 0 || o.map_pixels < kMinPixels || o.map_pixels > kMaxPixels)
+            throw UsageError("--size: an obstacle map is a square of " +
+                             std::to_string(kMinPixels) + " to " + std::to_string(kMaxPixels) +
+                             " pixels a side");
     }
     if (line_.given("--compression") && o.format != "mcap")
         throw UsageError("--compression is about mcap, and --to says " + o.format);

@@ -37,8 +37,8 @@ std::string labelOf(const ViewSpec& view) {
 PictureSize pictureSizeOf(const ViewSpec& view, const Scene& scene,
                           std::optional<PictureSize> wanted) {
     const PictureSize size = sizeOf(view, scene, wanted);
-    constexpr double kMostPixels = 64e6;
-    if (1.0 * size.columns * size.rows > kMostPixels)
+    constexpr double kMaxPixels = 64e6;
+    if (1.0 * size.columns * size.rows > kMaxPixels)
         throw UsageError("--size: " + std::to_string(size.columns) + " x " +
                          std::to_string(size.rows) + " pixels, wanted at most 64 million");
     return size;

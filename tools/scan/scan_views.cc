@@ -94,12 +94,12 @@ void checkViewOptions(const CommandLine& line, ViewToolOptions& options) {
 }
 
 PictureSize pictureSize(const std::string& text) {
-    constexpr std::int64_t kMinValue = 16, kMost = 16384;
+    constexpr std::int64_t kMinPixels = 16, kMaxPixels = 16384;
     const auto side = [&](const std::string& word) {
         const std::optional<std::int64_t> pixels = parseInteger(word);
-        if (!pixels || *pixels < kMinValue || *pixels > kMost)
+        if (!pixels || *pixels < kMinPixels || *pixels > kMaxPixels)
             throw UsageError("`" + text + "`: wanted W or W,H, each from " +
-                             std::to_string(kMinValue) + " to " + std::to_string(kMost) +
+                             std::to_string(kMinPixels) + " to " + std::to_string(kMaxPixels) +
                              " pixels");
         return static_cast<int>(*pixels);
     };
@@ -170,8 +170,8 @@ void takeViews(const ScanCommand& command) {
     const std::vector<std::string> textures = textureFiles(scene);
     files.insert(files.end(), textures.begin(), textures.end());
     writeDependencies(options.common, files);
-    talk(options.common, "scan",
-         std::to_string(count) + (count == 1 ? " picture" : " pictures") + " written");
+    logInfo(options.common, "scan",
+            std::to_string(count) + (count == 1 ? " picture" : " pictures") + " written");
 }
 
 }  // namespace ispace

@@ -25,9 +25,9 @@ SimTime timeOption(const std::string& text, SimTime least, SimTime most) {
 namespace {
 
 double recordedRate(const std::string& text, const std::string& what) {
-    constexpr double kMost = 1e5;
+    constexpr double kMaxRate = 1e5;
     const auto rate = parseDouble(text);
-    if (!rate || *rate < 0 || *rate > kMost)
+    if (!rate || *rate < 0 || *rate > kMaxRate)
         throw UsageError(excerpt(text) + " is no number of " + what + " a second from 0 to 100000");
     return *rate;
 }
@@ -81,7 +81,7 @@ void SimrunCommand::declareRun() {
     line_.parsed(
         "--dt", "TIME",
         [&o](const std::string& text) {
-            o.step = timeOption(text, World::kShortestStep, World::kLongestStep);
+            o.step = timeOption(text, World::kMinStep, World::kMaxStep);
         },
         "length of a step (default 5ms)", Enters::History);
     line_.parsed(

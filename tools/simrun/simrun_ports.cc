@@ -100,10 +100,10 @@ namespace {
 
 /// Draws the map of --to ros, coarser for large rooms, since clients get it in one message.
 RosGrid mapOf(const Scene& scene) {
-    constexpr double kFinest = 0.05, kMostCells = 4e6;
+    constexpr double kFinest = 0.05, kMaxCells = 4e6;
     const Box2 box = bounds(scene.environment.indoor());
     double resolution = kFinest;
-    while (box.width() * box.depth() > kMostCells * resolution * resolution) resolution *= 2;
+    while (box.width() * box.depth() > kMaxCells * resolution * resolution) resolution *= 2;
     const Grid grid = rosMapCells(box, resolution);
     const std::string picture = writeRosMap(scene, kScanHeight, resolution, "map.pgm").beside;
     constexpr char kFree = static_cast<char>(254), kOccupied = 0;

@@ -102,16 +102,18 @@ std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions
 
 void report(const Simulation& simulation, const SimrunOptions& options) {
     const World& world = simulation.world();
-    talk(options.common, "simrun",
-         std::to_string(world.steps()) + " steps, t=" + formatSimTime(world.time()));
+    logInfo(options.common, "simrun",
+            std::to_string(world.steps()) + " steps, t=" + formatSimTime(world.time()));
     if (const auto& [steps, late, most, own] = simulation.lateness(); steps > 0)
-        talk(options.common, "simrun",
-             std::to_string(late) + " of " + std::to_string(steps) +
-                 " steps began more than a step late, the latest by " + formatMilliseconds(most) +
-                 " s, the program itself at work for " + formatMilliseconds(own) + " s of that");
+        logInfo(options.common, "simrun",
+                std::to_string(late) + " of " + std::to_string(steps) +
+                    " steps began more than a step late, the latest by " +
+                    formatMilliseconds(most) + " s, the program itself at work for " +
+                    formatMilliseconds(own) + " s of that");
     if (const SimTime lost = simulation.lost(); lost > SimTime(0))
-        talk(options.common, "simrun",
-             "the world could not keep up: the clock gave up " + formatMilliseconds(lost) + " s");
+        logInfo(
+            options.common, "simrun",
+            "the world could not keep up: the clock gave up " + formatMilliseconds(lost) + " s");
 }
 
 void conclude(const ExpectationJudge& judge, const SimrunOptions& options,
@@ -128,7 +130,7 @@ void conclude(const ExpectationJudge& judge, const SimrunOptions& options,
     junit.write(baseName(environment), cases);
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
     if (!verdicts.empty())
-        talk(options.common, "simrun", "all " + std::to_string(verdicts.size()) + " met");
+        logInfo(options.common, "simrun", "all " + std::to_string(verdicts.size()) + " met");
 }
 
 namespace {
@@ -318,8 +320,8 @@ void drawRecord(const SimrunOptions& options, const Scene& scene, const std::str
     }
     writeDependencies(options.common,
                       std::vector<std::string>{RecordedFiles(options.replay).robots});
-    talk(options.common, "simrun",
-         std::to_string(count) + (count == 1 ? " picture" : " pictures") + " drawn");
+    logInfo(options.common, "simrun",
+            std::to_string(count) + (count == 1 ? " picture" : " pictures") + " drawn");
 }
 
 namespace {
@@ -373,12 +375,12 @@ void warnOfTrips(const Scene& scene, const CommonOptions& options) {
 void LagLog::tell() {
     using std::chrono::steady_clock;
     constexpr std::chrono::seconds kCalm(1);  // without a loss, before the run counts as keeping up
-    constexpr int kMost = 10;
+    constexpr int kMaxReported = 10;
     const auto due = simulation_->due();
     if (!due) return;
     const auto now = steady_clock::now();
     const auto say = [&](const std::string& text) {
-        if (count_ <= kMost)
+        if (count_ <= kMaxReported)
             warn(*options_, kTool, "t=" + formatSimTime(simulation_->world().time()) + text);
     };
     if (simulation_->lost() > lost_) {
@@ -388,7 +390,7 @@ void LagLog::tell() {
         ++count_;
         say(" the run falls behind real time, by " + formatMilliseconds(lost_) +
             " s so far: steps take longer than the clock gives them" +
-            (count_ == kMost ? "; further ones are not reported" : ""));
+            (count_ == kMaxReported ? "; further ones are not reported" : ""));
     } else if (is_behind_ && now <= *due && now - last_ >= kCalm) {
         is_behind_ = false;
         say(" the run keeps up with real time again, " + formatMilliseconds(lost_) +

@@ -19,7 +19,7 @@ std::uint64_t WorstCaseProblem::totalOf(std::size_t block) const {
 
 FailureProblem failureProblem(const Problem& plain, const std::vector<std::uint16_t>& seen,
                               std::size_t sensors, std::size_t failures) {
-    constexpr double kMostWeight = 4e9;
+    constexpr double kMaxWeight = 4e9;
     std::vector<double> factors;  // C(n - m, K - m + 1)
     for (std::size_t m = 1; m <= failures + 1; ++m) {
         double factor = 1;
@@ -30,7 +30,7 @@ FailureProblem failureProblem(const Problem& plain, const std::vector<std::uint1
     const double all = std::accumulate(factors.begin(), factors.end(), 0.0);  // C(n, K)
     const auto total = static_cast<double>(plain.totalWeight());
     // Rounding adds up to one to each factor.
-    const double most = kMostWeight / std::max(total, 1.0) - static_cast<double>(factors.size());
+    const double most = kMaxWeight / std::max(total, 1.0) - static_cast<double>(factors.size());
     const double scale = std::max(1.0, all / most);
     FailureProblem made{plain, static_cast<std::uint64_t>(total * all / scale)};
     Problem& problem = made.problem;

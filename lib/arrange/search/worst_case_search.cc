@@ -52,7 +52,7 @@ class CaseMoves {
     /// fails by one not considered yet: the first that passes all cases considered and is as good
     /// as they say is the best.
     bool move(Solution& solution, std::size_t position) const {
-        constexpr int kMostCases = 12;
+        constexpr int kMaxCases = 12;
         std::vector<Choice> others = solution.chosen;
         const std::size_t kind = others[position].kind;
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(position));
@@ -66,7 +66,7 @@ class CaseMoves {
         for (const Choice& other : others)
             if (other.kind == kind) least[other.candidate] = 0;
         CaseValue next = values.worst();
-        for (int round = 0; round < kMostCases; ++round) {
+        for (int round = 0; round < kMaxCases; ++round) {
             add(values, next, set, kind, least);
             const auto best = std::max_element(least.begin(), least.end());
             if (*best <= solution.value) return false;
@@ -211,10 +211,10 @@ class WorstCaseSearch {
 
     /// Finds ways that avoid the cells of those before as far as they can.
     [[nodiscard]] std::vector<CellWay> waysApart() const {
-        constexpr std::size_t kMost = 16;
+        constexpr std::size_t kMaxWays = 16;
         std::vector<CellWay> ways;
         CellSet taken(of_.problem->cells());
-        while (ways.size() < kMost) {
+        while (ways.size() < kMaxWays) {
             ways.push_back(
                 of_.ways->leastSeen([&taken](std::uint32_t cell) { return taken.test(cell); }));
             if (ways.size() > 1 && 2 * ways.back().seen > of_.shortest) break;
@@ -225,13 +225,13 @@ class WorstCaseSearch {
 
     /// Returns the problem of the mean seen length of these ways; empty if weights leave no room.
     [[nodiscard]] std::optional<MeanOfCases> meanOf(const std::vector<CellWay>& ways) const {
-        constexpr std::uint64_t kMostTotal = 0xffffffffU;
+        constexpr std::uint64_t kMaxTotal = 0xffffffffU;
         MeanOfCases mean{*of_.problem, 1, ways.size()};
         std::fill(mean.problem.weights.begin(), mean.problem.weights.end(), 0U);
         std::uint64_t total = 0;
         for (const CellWay& way : ways)
             for (const WayCell& piece : way.cells) total += piece.length;
-        if (total > kMostTotal) return std::nullopt;
+        if (total > kMaxTotal) return std::nullopt;
         for (const CellWay& way : ways)
             for (const WayCell& piece : way.cells) mean.problem.weights[piece.cell] += piece.length;
         return mean;
@@ -241,7 +241,7 @@ class WorstCaseSearch {
     /// leave no room for it.
     [[nodiscard]] std::optional<MeanOfCases> meanBy(const std::vector<double>& sums,
                                                     double pace) const {
-        constexpr double kMost = 1000, kSum = 4e9;
+        constexpr double kMaxScale = 1000, kSum = 4e9;
         const double least = *std::min_element(sums.begin(), sums.end());
         std::vector<double> weights;
         double sum = 0, highest = 0;
@@ -254,7 +254,7 @@ class WorstCaseSearch {
         }
         const bool is_even = std::all_of(weights.begin(), weights.end(),
                                          [&](double weight) { return weight == weights[0]; });
-        const double scale = is_even ? 1 / highest : std::min(kMost / highest, kSum / sum);
+        const double scale = is_even ? 1 / highest : std::min(kMaxScale / highest, kSum / sum);
         if (scale * highest < 1 && !is_even) return std::nullopt;
         MeanOfCases mean{*of_.problem, of_.totalOf(0), 0};
         for (std::size_t b = 0; b < sums.size(); ++b) {

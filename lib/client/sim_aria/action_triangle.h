@@ -73,7 +73,7 @@ class ArActionTriangleDriveTo : public ArAction {
         if (myState == STATE_ACQUIRE || myState == STATE_SEARCHING) {
             if (!sees) return search();
             myState = STATE_GOTO_VERTEX;
-        } else if (!sees && ++myMisses > kMostMisses) {
+        } else if (!sees && ++myMisses > kMaxMisses) {
             myState = STATE_FAILED;
         }
         if (sees) myMisses = 0;
@@ -86,7 +86,7 @@ class ArActionTriangleDriveTo : public ArAction {
   private:
     static constexpr double kAngleTolerance = 10;  // degrees
     static constexpr double kJoint = 100;          // mm between the ends of the walls
-    static constexpr int kMostMisses = 20;         // cycles without a sight of the target
+    static constexpr int kMaxMisses = 20;          // cycles without a sight of the target
 
     void stand() {
         myDesired.setVel(0);

@@ -170,9 +170,9 @@ class Link {
     }
     /// \param side less the middle of each bumper, and its index
     int number(std::vector<std::pair<double, std::size_t>>& side, int bit) {
-        constexpr std::size_t kMost = 7;
+        constexpr std::size_t kMaxBumpers = 7;
         std::sort(side.begin(), side.end());
-        if (side.size() > kMost) side.resize(kMost);
+        if (side.size() > kMaxBumpers) side.resize(kMaxBumpers);
         for (const auto& bumper : side) {
             bits_[bumper.second] = bit;
             bit *= 2;

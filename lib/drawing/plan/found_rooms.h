@@ -26,7 +26,7 @@ struct FoundRooms {
     bool any_plan = false;     ///< an importer of plans ran
     bool all_storeys = false;  ///< requests rooms of other storeys, too, without their floor
     /// Maximum number of rooms that importers return besides kept rooms; the largest ones.
-    static constexpr std::size_t kMost = 200;
+    static constexpr std::size_t kMaxRooms = 200;
 };
 
 /// Formats a table for people, sorted by storey and falling area: area, --inside point, storey (if

@@ -17,10 +17,10 @@
 namespace ispace::lattice {
 
 void mustBeFew(std::size_t crossings) {
-    constexpr std::size_t kMost = 16'000'000;
-    if (crossings > kMost)
+    constexpr std::size_t kMaxCrossings = 16'000'000;
+    if (crossings > kMaxCrossings)
         throw FormatError(
-            {"", 0, 0, "outlines cross more than " + std::to_string(kMost) + " times"});
+            {"", 0, 0, "outlines cross more than " + std::to_string(kMaxCrossings) + " times"});
 }
 
 namespace {

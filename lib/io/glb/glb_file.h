@@ -81,7 +81,7 @@ class Blocks {
     void append(const std::vector<T>& items) {
         if (blocks_.empty() || blocks_.back().capacity() - blocks_.back().size() < items.size()) {
             blocks_.emplace_back();
-            blocks_.back().reserve(std::max(std::clamp(size_, kMinValue, kMost), items.size()));
+            blocks_.back().reserve(std::max(std::clamp(size_, kMinBlock, kMaxBlock), items.size()));
         }
         blocks_.back().insert(blocks_.back().end(), items.begin(), items.end());
         size_ += items.size();
@@ -96,7 +96,7 @@ class Blocks {
     }
 
   private:
-    static constexpr std::size_t kMinValue = 1 << 10, kMost = 1 << 17;
+    static constexpr std::size_t kMinBlock = 1 << 10, kMaxBlock = 1 << 17;
 
     std::vector<std::vector<T>> blocks_;
     std::size_t size_ = 0;

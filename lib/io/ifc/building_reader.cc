@@ -260,11 +260,12 @@ class BuildingReader {
     /// The box of a door or window without a body, e.g. one of plates, by its height and width: its
     /// placement is the lower corner, with x along the width.
     [[nodiscard]] std::optional<BuildingBox> statedBox(StepId id) {
-        constexpr double kMost = 20, kThin = 0.05;  // metres
+        constexpr double kMaxLength = 20, kThin = 0.05;  // metres
         const StepInstance door = file_.read(id);
         const double height = door[8].number().value_or(0) * frames_.units().length;
         const double width = door[9].number().value_or(0) * frames_.units().length;
-        if (door[5].isNull() || !(height > 0 && height < kMost && width > 0 && width < kMost))
+        if (door[5].isNull() ||
+            !(height > 0 && height < kMaxLength && width > 0 && width < kMaxLength))
             return std::nullopt;
         try {
             const IfcFrame frame = frames_.placement(door[5].reference());

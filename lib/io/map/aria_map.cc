@@ -109,8 +109,9 @@ class AriaReader {
     /// Reads a point in the file's millimetres.
     [[nodiscard]] Point2 place(std::size_t word) const {
         const Point2 p{number(word) / 1000, number(word + 1) / 1000};
-        if (std::max(std::abs(p.x), std::abs(p.y)) > kFarthestPlan)
-            fail("a place more than " + formatDouble(kFarthestPlan / 1000) + " km from the origin");
+        if (std::max(std::abs(p.x), std::abs(p.y)) > kMaxPlanCoordinate)
+            fail("a place more than " + formatDouble(kMaxPlanCoordinate / 1000) +
+                 " km from the origin");
         return p;
     }
     void wantWords(std::size_t count, const char* what) const {

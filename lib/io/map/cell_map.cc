@@ -228,7 +228,7 @@ class CellMapImport {
         std::stable_sort(rooms.begin(), rooms.end(), [](const auto& a, const auto& b) {
             return (*a.first)[a.second].cells > (*b.first)[b.second].cells;
         });
-        rooms.resize(std::min(rooms.size(), FoundRooms::kMost));
+        rooms.resize(std::min(rooms.size(), FoundRooms::kMaxRooms));
         for (const auto& [pieces, piece] : rooms) handOver(*pieces, piece);
     }
 

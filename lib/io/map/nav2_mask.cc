@@ -77,7 +77,7 @@ std::string rosMapYaml(const RosMap& map) {
 }
 
 Nav2MaskFiles nav2MaskFiles(const Nav2Mask& mask, const std::string& picture_name) {
-    constexpr double kWhite = 255, kMost = 100;
+    constexpr double kWhite = 255, kMaxValue = 100;
     const Grid& grid = mask.grid;
     std::string picture =
         "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) + "\n255\n";
@@ -85,7 +85,8 @@ Nav2MaskFiles nav2MaskFiles(const Nav2Mask& mask, const std::string& picture_nam
     for (int row = grid.rows; row-- > 0;)
         for (int column = 0; column < grid.columns; ++column) {
             // map_server computes round(100 * (255 - shade) / 255), which restores the value.
-            const double dark = std::round(mask.values[grid.cell(column, row)] * kWhite / kMost);
+            const double dark =
+                std::round(mask.values[grid.cell(column, row)] * kWhite / kMaxValue);
             picture += static_cast<char>(static_cast<std::uint8_t>(kWhite - dark));
         }
     return {mapText(mask, picture_name), std::move(picture)};

@@ -103,7 +103,7 @@ class HeaderReader {
             return {};
         }
         const auto entry = [&](std::size_t i) {
-            return number(node[i], "origin", -kFarthestPlan, kFarthestPlan);
+            return number(node[i], "origin", -kMaxPlanCoordinate, kMaxPlanCoordinate);
         };
         Pose2 pose;
         pose.position = {entry(0), entry(1)};

@@ -155,8 +155,8 @@ void CloudFile::readPcd() {
     std::size_t stride = 0, columns = 0;
     for (std::size_t i = 0; i < fields.size(); ++i) {
         const auto size = parseInteger(sizes[i]), count = parseInteger(counts[i]);
-        constexpr std::int64_t kMost = 1 << 20;
-        if (!size || !count || *size < 1 || *size > 8 || *count < 0 || *count > kMost)
+        constexpr std::int64_t kMaxCount = 1 << 20;
+        if (!size || !count || *size < 1 || *size > 8 || *count < 0 || *count > kMaxCount)
             fail("found SIZE " + excerpt(sizes[i]) + " and COUNT " + excerpt(counts[i]), line_);
         if (const std::size_t axis = axisOf(fields[i]); axis < 3) {
             const char kind = types[i] == "F" ? 'f' : types[i] == "U" ? 'u' : 'i';

@@ -24,7 +24,7 @@ namespace ispace {
 namespace {
 
 constexpr double kCell = 0.05;        // metres, unless the user says otherwise
-constexpr double kMostCells = 25e6;   // of the grid in which points are counted
+constexpr double kMaxCells = 25e6;    // of the grid in which points are counted
 constexpr double kCellsPerUnit = 4;   // of Budget
 constexpr int kRim = 3;               // cells around, so that the outside is connected
 constexpr int kManyPoints = 10;       // in half of the cells: then a single one is a stray
@@ -135,8 +135,8 @@ class CloudPlan {
         corner_ = low - survey_ - Vec2{(rim + 0.5) * cell_, (rim + 0.5) * cell_};
         const double columns = std::ceil((band.high.x - survey_.x - corner_.x) / cell_) + rim;
         const double rows = std::ceil((band.high.y - survey_.y - corner_.y) / cell_) + rim;
-        const bool is_huge = columns * rows > kMostCells;
-        const double units = std::min(columns * rows, kMostCells) / kCellsPerUnit;
+        const bool is_huge = columns * rows > kMaxCells;
+        const double units = std::min(columns * rows, kMaxCells) / kCellsPerUnit;
         if (is_huge || !budget_.take(static_cast<std::uint64_t>(units)))
             failFile(name_, "its points reach over " + formatFixed(band.high.x - band.low.x, 1) +
                                 " x " + formatFixed(band.high.y - band.low.y, 1) + " m, cells of " +

@@ -17,7 +17,7 @@ constexpr double kNarrowLeaf = 0.4, kWideLeaf = 1.5;  // metres
 /// Tolerance of lengths and ends, as share of the leaf's width.
 constexpr double kOff = 0.12;
 /// Angle between the leaf and the closed door.
-constexpr double kMinOpen = 5, kMostOpen = 110;  // degrees
+constexpr double kMinOpen = 5, kMaxOpen = 110;  // degrees
 
 /// Limits of a curve: it turns one way, by less than this at each of its points, and has few.
 constexpr double kMaxTurn = 35;  // degrees
@@ -150,7 +150,7 @@ class DoorFinder {
                         return distance(at, piece) <= kOff * width;
                     });
                 const double open = std::abs(degreesBetween(end - hinge, latch - hinge));
-                if (meets && open >= kMinOpen && open <= kMostOpen)
+                if (meets && open >= kMinOpen && open <= kMaxOpen)
                     leaves.push_back({i, hinge, end, latch});
             }
         }

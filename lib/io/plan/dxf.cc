@@ -53,7 +53,7 @@ class Expander {
     }
 
     /// Moves a drawing of which most stands in surveyors' coordinates to the origin. \return by
-    /// what \throws FormatError: shapes beyond kFarthestPlan
+    /// what \throws FormatError: shapes beyond kMaxPlanCoordinate
     std::optional<Vec2> moveHome(std::vector<PlanShape>& shapes) const {
         std::vector<double> x, y;
         for (const PlanShape& shape : shapes)
@@ -64,7 +64,7 @@ class Expander {
         const auto way = wayFromSurvey({median(x), median(y)});
         for (PlanShape& shape : shapes) {
             if (way) move(shape, *way);
-            requireWithin(kFarthestPlan, shape);
+            requireWithin(kMaxPlanCoordinate, shape);
         }
         return way;
     }
@@ -187,7 +187,7 @@ class Expander {
         for (const Point2 p : shape.path.points)
             if (!(std::max(std::abs(p.x), std::abs(p.y)) <= metres))
                 failFile(name_,
-                         "lies more than " + formatDouble(kFarthestPlan / 1000) +
+                         "lies more than " + formatDouble(kMaxPlanCoordinate / 1000) +
                              " km from the origin: are the units right (--units)?",
                          shape.path.line);
     }

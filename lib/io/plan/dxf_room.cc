@@ -42,13 +42,13 @@ Footprint boxAlong(const Polygon& polygon, Vec2 along) {
 }
 
 /// Sides of one outline along which boxes are tried.
-constexpr std::size_t kMostSides = 500;
+constexpr std::size_t kMaxSides = 500;
 
 /// The smallest box along one of its sides; of a curve with very many, along some of them.
 Footprint boxAround(const Polygon& polygon) {
     Footprint best;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < polygon.size(); i += 1 + polygon.size() / kMostSides) {
+    for (std::size_t i = 0; i < polygon.size(); i += 1 + polygon.size() / kMaxSides) {
         const Vec2 side = polygon[i + 1 == polygon.size() ? 0 : i + 1] - polygon[i];
         if (side == Vec2()) continue;
         const Footprint box = boxAlong(polygon, side);

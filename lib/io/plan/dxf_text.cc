@@ -23,8 +23,8 @@ std::string toUtf8(std::string_view bytes, const std::string& charset) {
     const iconv_t opened = ::iconv_open("UTF-8", charset.c_str());
     if (reinterpret_cast<std::intptr_t>(opened) == -1) return std::string(bytes);
     const std::unique_ptr<void, decltype(close)> converter(opened, close);
-    constexpr std::size_t kMostBytes = 4;  // of a character of UTF-8
-    std::string in(bytes), out(kMostBytes * bytes.size(), '\0');
+    constexpr std::size_t kMaxBytes = 4;  // of a character of UTF-8
+    std::string in(bytes), out(kMaxBytes * bytes.size(), '\0');
     char *from = in.data(), *to = out.data();
     std::size_t unread = in.size(), room = out.size();
     if (::iconv(converter.get(), &from, &unread, &to, &room) == static_cast<std::size_t>(-1))
@@ -71,8 +71,8 @@ void DxfText::setCodePage(std::string_view name) {
     for (const std::string_view prefix : {"ANSI_", "DOS"}) {
         if (!upper.starts_with(prefix)) continue;
         const std::string number = upper.substr(prefix.size());
-        constexpr std::size_t kMostDigits = 4;
-        if (!number.empty() && number.size() <= kMostDigits &&
+        constexpr std::size_t kMaxDigits = 4;
+        if (!number.empty() && number.size() <= kMaxDigits &&
             number.find_first_not_of("0123456789") == std::string::npos)
             charset_ = "CP" + number;
     }

@@ -81,9 +81,9 @@ class GalleryReader {
         if (!number)
             fail(of + ": found " + (word.empty() ? "the end" : excerpt(word)) +
                  ", wanted a coordinate, a number or a fraction p/q");
-        if (!(std::abs(*number) <= kFarthestPlan))
+        if (!(std::abs(*number) <= kMaxPlanCoordinate))
             fail(of + ": " + excerpt(word) + " is too far away, wanted metres up to " +
-                 formatDouble(kFarthestPlan));
+                 formatDouble(kMaxPlanCoordinate));
         return *number;
     }
 

@@ -165,11 +165,11 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
     bool number(double value) {
         if (depth_ == 0 || !wanted()) return depth_ > 0 || scalar("a number");
         if (depth_ != tupleDepth()) return fail("found a number");
-        if (!(std::abs(value) <= kFarthestPlan))
+        if (!(std::abs(value) <= kMaxPlanCoordinate))
             return fail("`" + key_ +
                             "`: " + (std::isfinite(value) ? formatDouble(value) : "a number") +
                             " is too far away",
-                        "wanted metres up to " + formatDouble(kFarthestPlan));
+                        "wanted metres up to " + formatDouble(kMaxPlanCoordinate));
         tuple_.push_back(value);
         return tuple_.size() <= 4 || fail("found a list of five numbers");
     }

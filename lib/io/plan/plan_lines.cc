@@ -39,9 +39,9 @@ std::vector<std::size_t> NearSegments::near(Point2 p, double reach) const {
 
 std::vector<std::size_t> NearSegments::near(const Box2& box, double reach) const {
     const Vec2 margin{reach, reach};
-    constexpr std::size_t kMostOften = 8;
+    constexpr std::size_t kMaxRepeats = 8;
     std::vector<std::size_t> found;
-    found.reserve(kMostOften);
+    found.reserve(kMaxRepeats);
     tree_.search({box.low - margin, box.high + margin},
                  [&found](std::size_t i) { found.push_back(i); });
     unpaid_ += found.size();

@@ -19,12 +19,12 @@ namespace ispace {
 
 namespace {
 
-constexpr double kReach = 0.1;          // frames keep leaves and hinges off the walls
-constexpr double kOnWall = 0.02;        // of lines drawn upon a wall
-constexpr double kNearWall = 0.06;      // of swings that end beside the closed door
-constexpr double kMinWidth = 0.4;       // metres; narrower ones are frames and jambs
-constexpr double kMaxOff = 0.3;         // of the long sides of a symbol across a wall
-constexpr std::size_t kMostSides = 16;  // of such a symbol
+constexpr double kReach = 0.1;         // frames keep leaves and hinges off the walls
+constexpr double kOnWall = 0.02;       // of lines drawn upon a wall
+constexpr double kNearWall = 0.06;     // of swings that end beside the closed door
+constexpr double kMinWidth = 0.4;      // metres; narrower ones are frames and jambs
+constexpr double kMaxOff = 0.3;        // of the long sides of a symbol across a wall
+constexpr std::size_t kMaxSides = 16;  // of such a symbol
 
 /// Short lines across a wall at the ends of an opening, where a drawing has them.
 constexpr double kMinJamb = 0.03, kMaxJamb = 0.25;  // metres
@@ -295,7 +295,7 @@ class Finder {
 
     /// Opens the walls between two opposite sides of a symbol.
     bool addAcross(std::span<const Segment2> sides, int drawn_on) {
-        if (sides.size() > kMostSides) return false;
+        if (sides.size() > kMaxSides) return false;
         bool found = false;
         for (std::size_t i = 0; i < sides.size() && !found; ++i)
             for (std::size_t k = i + 1; k < sides.size() && !found; ++k) {

@@ -101,7 +101,7 @@ class RoomChooser {
         for (const PlanFaces::Group& group : taken.faces.groups()) {
             const bool is_kept =
                 std::find(taken.groups.begin(), taken.groups.end(), &group) != taken.groups.end();
-            if (!is_kept && (others == FoundRooms::kMost || group.area < kMinRoom ||
+            if (!is_kept && (others == FoundRooms::kMaxRooms || group.area < kMinRoom ||
                              !isRoom(plan_, taken.faces, group)))
                 continue;
             others += is_kept ? 0 : 1;

@@ -294,8 +294,8 @@ class SvgReader {
         if (path.closed && points.size() > 1 && points.back() == points.front()) points.pop_back();
         spend(points.size());
         for (const Point2 p : points)
-            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kFarthestPlan))
-                throw SvgError("lies more than " + formatDouble(kFarthestPlan / 1000) +
+            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kMaxPlanCoordinate))
+                throw SvgError("lies more than " + formatDouble(kMaxPlanCoordinate / 1000) +
                                " km from the origin: is the unit right (--units)?");
         if (points.size() < 3) shape.path.closed = false;
         if (points.size() >= 2) drawing_.shapes.push_back(std::move(shape));

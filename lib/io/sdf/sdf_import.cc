@@ -329,11 +329,11 @@ class SdfImporter {
 
     /// True if enough boxes look like walls, at any height, to enclose a room.
     [[nodiscard]] bool hasWalls() const {
-        constexpr std::size_t kFewest = 3;
+        constexpr std::size_t kMinPoints = 3;
         const auto boxes = std::count_if(blocks_.begin(), blocks_.end(), [](const SdfBlock& block) {
             return isWall(block, block.bottom + (block.top - block.bottom) / 2);
         });
-        return walls_.size() + fences_.size() + static_cast<std::size_t>(boxes) >= kFewest;
+        return walls_.size() + fences_.size() + static_cast<std::size_t>(boxes) >= kMinPoints;
     }
 
     void note() {

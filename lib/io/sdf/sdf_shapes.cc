@@ -16,7 +16,7 @@ namespace {
 
 using Transform = Eigen::Isometry3d;
 
-constexpr int kDeepest = 64;  // models in models
+constexpr int kMaxDepth = 64;  // models in models
 
 /// Units of Budget for a shape, which may become a wall, and for a point of a polyline.
 constexpr std::size_t kShapeWork = 80, kPointWork = 10;
@@ -48,9 +48,9 @@ class SdfReader {
     };
 
     void addModels(const SdfScope& scope, const Transform& world_from_scope, const Around& around) {
-        if (around.depth > kDeepest)
+        if (around.depth > kMaxDepth)
             files_.fail(scope.node,
-                        "models nested more than " + std::to_string(kDeepest) + " deep");
+                        "models nested more than " + std::to_string(kMaxDepth) + " deep");
         for (const pugi::xml_node node : scope.node.children()) {
             std::string_view kind = node.name();
             const bool is_include = kind == "include";
@@ -137,8 +137,8 @@ class SdfReader {
             if (kind != "plane" && kind != "empty") ++found_.left_out[printable(kind)];
             return;
         }
-        if (!pose.matrix().allFinite() || !(pose.translation().norm() <= kFarthestPlan))
-            files_.fail(node, "lies more than " + formatDouble(kFarthestPlan / 1000) +
+        if (!pose.matrix().allFinite() || !(pose.translation().norm() <= kMaxPlanCoordinate))
+            files_.fail(node, "lies more than " + formatDouble(kMaxPlanCoordinate / 1000) +
                                   " km from the origin");
         found_.shapes.push_back(std::move(shape));
     }

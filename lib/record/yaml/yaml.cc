@@ -50,7 +50,7 @@ class YamlReader {
     };
     /// State of one file being read.
     struct File {
-        Place place;
+        SourcePosition place;
         YamlDefaults defaults;
         std::map<std::string, const YamlPart*, std::less<>> parts;
         std::vector<Pending> pending;
@@ -73,7 +73,7 @@ class YamlReader {
 
     void readParts(const YamlNode& value, LineColumn at);
     void readPart(const YamlNode& name, const YamlNode& value, LineColumn at);
-    void addPart(const YamlPart& part, const Place& at);
+    void addPart(const YamlPart& part, const SourcePosition& at);
     void resolveParts();
 
     RecordCollector* collector_;
@@ -230,7 +230,7 @@ void YamlReader::readIncludes(const YamlNode& value, LineColumn at, Items& items
 }
 
 void YamlReader::include(const std::string& name, LineColumn at, Items& items) {
-    const Place place = file_.place.at(at);
+    const SourcePosition place = file_.place.at(at);
     std::string bytes;
     try {
         bytes = includes_.enter(name);
@@ -244,7 +244,7 @@ void YamlReader::include(const std::string& name, LineColumn at, Items& items) {
     const bool in_part = std::exchange(in_part_, false);
     outer.defaults = std::exchange(item_reader_.defaults(), {});
     file_.place.file = std::make_shared<const std::string>(includes_.name());
-    file_.place.included_from = std::make_shared<const Place>(place);
+    file_.place.included_from = std::make_shared<const SourcePosition>(place);
     collector_->setFile(file_.place);
     readIncluded(bytes, items);
     includes_.leave();
@@ -320,10 +320,10 @@ void YamlReader::readPart(const YamlNode& name, const YamlNode& value, LineColum
 
 /// Adds a part to those of the current file. Including the same part twice is no error; two parts
 /// with one name are.
-void YamlReader::addPart(const YamlPart& part, const Place& at) {
+void YamlReader::addPart(const YamlPart& part, const SourcePosition& at) {
     const auto [known, is_new] = file_.parts.try_emplace(part.name, &part);
     if (is_new) return;
-    const Place &first = known->second->place, &second = part.place;
+    const SourcePosition &first = known->second->place, &second = part.place;
     if (*first.file == *second.file && first.line == second.line && first.column == second.column)
         return;
     collector_->finding(

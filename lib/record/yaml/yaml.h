@@ -268,7 +268,7 @@ struct YamlItem {
 /// A named group of records with a common frame.
 struct YamlPart {
     std::string name;
-    Place place;
+    SourcePosition place;
     std::vector<YamlItem> items;
 };
 

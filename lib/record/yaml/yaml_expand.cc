@@ -200,7 +200,8 @@ class Expander {
         }
     }
 
-    void moveCopy(Record& copy, const Repetition& repetition, std::size_t i, const Place& place) {
+    void moveCopy(Record& copy, const Repetition& repetition, std::size_t i,
+                  const SourcePosition& place) {
         if (copy.has("id"))
             copy.set("id", copy.text("id") + '-' + std::to_string(i + 1), copy.keyPlace("id"));
         move(copy, repetition.rise(i), place,
@@ -227,7 +228,7 @@ class Expander {
 
     /// Calls act(dz) to move a record, and reports errors as findings.
     template <typename Action>
-    void move(const Record& record, double dz, const Place& place, Action act) {
+    void move(const Record& record, double dz, const SourcePosition& place, Action act) {
         if (dz != 0 && !canRise(record))
             collector_.finding(place, [&] {
                 return '`' + record.keyword() + "` stands on the floor and cannot be lifted";
@@ -241,7 +242,7 @@ class Expander {
     }
 
     /// Prepends the placement's id to the records' ids and to the references among them.
-    void rename(std::span<Record> records, const std::string& id, const Place& place) {
+    void rename(std::span<Record> records, const std::string& id, const SourcePosition& place) {
         const std::string prefix = id + '/';
         std::set<std::string> own;
         if (std::any_of(records.begin(), records.end(), namesAnother))
@@ -263,7 +264,7 @@ class Expander {
                            [&](const KeySpec& key) { return isName(key) && record.has(key.name); });
     }
 
-    void spend(const Place& place, std::size_t units) {
+    void spend(const SourcePosition& place, std::size_t units) {
         if (budget_.take(units)) return;
         collector_.finding(place, [&] { return "parts and repetitions make " + budget_.excess(); });
         collector_.findings().throwIfAny();
@@ -287,8 +288,8 @@ namespace {
 bool isReserved(std::string_view word) {
     constexpr std::string_view kReserved[] = {"y",    "n",     "yes",  "no",  "on", "off",
                                               "true", "false", "null", "nan", "inf"};
-    constexpr std::size_t kLongest = 5;
-    std::string lower(word.substr(0, kLongest + 1));
+    constexpr std::size_t kMaxLength = 5;
+    std::string lower(word.substr(0, kMaxLength + 1));
     for (char& c : lower)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     return std::find(std::begin(kReserved), std::end(kReserved), lower) != std::end(kReserved);

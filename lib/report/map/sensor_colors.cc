@@ -25,7 +25,7 @@ std::size_t farthestHue(const Coverage& coverage, const std::vector<std::size_t>
 }  // namespace
 
 std::vector<std::size_t> sensorHues(const Coverage& coverage) {
-    constexpr std::size_t kMostSensors = 4000;
+    constexpr std::size_t kMaxSensors = 4000;
     const std::vector<SensorView>& sensors = coverage.sensors;
     const auto first_partial = std::find_if(sensors.begin(), sensors.end(),
                                             [](const auto& view) { return view.isPartial(); });
@@ -35,7 +35,7 @@ std::vector<std::size_t> sensorHues(const Coverage& coverage) {
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         if (sensors[i].isPartial() && i != shared)
             hues.push_back(hues[shared]);
-        else if (i < kSeriesColors || sensors.size() > kMostSensors)
+        else if (i < kSeriesColors || sensors.size() > kMaxSensors)
             hues.push_back(i % kSeriesColors);
         else
             hues.push_back(farthestHue(coverage, hues, sensors[i].pose.position.onFloor()));

@@ -48,7 +48,7 @@ void drawPanel(Picture& picture, const PageView& view, const Element& element,
 }
 
 /// Lines that the mark of a sensor would hide are not drawn, millimetres.
-constexpr double kLeastLine = 1.2;
+constexpr double kMinLine = 1.2;
 
 /// Returns the offset of dimension lines from a sensor at a wall, on the page: into the room, so
 /// that they do not lie on the wall.
@@ -57,7 +57,7 @@ Vec2 offWall(const Installation& one, const Pose3& pose, const PageView& view) {
     const Point2 at = view * pose.position.onFloor();
     for (const WallDistance& wall : one.walls) {
         const Point2 foot = view * wall.foot;
-        if (wall.end || distance(at, foot) > kLeastLine) continue;
+        if (wall.end || distance(at, foot) > kMinLine) continue;
         const Vec2 face = view * wall.face.b - view * wall.face.a;
         const Vec2 normal = (1 / length(face)) * perpendicular(face);
         const Vec3 axis = Frame3(pose).forward;
@@ -120,7 +120,7 @@ void drawDimensions(Picture& picture, const Scene& scene,
         for (const WallDistance& wall : one.walls) {
             const Point2 from = wall.end ? view * (wall.foot - wall.distance * wall.along()) : at;
             const Point2 foot = view * wall.foot;
-            if (distance(from, foot) > kLeastLine)
+            if (distance(from, foot) > kMinLine)
                 dimensions.push_back({{from + aside, foot + aside}, formatFixed(wall.distance, 2)});
         }
     }

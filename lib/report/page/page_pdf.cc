@@ -13,7 +13,7 @@ namespace {
 
 // An A4 sheet, its margins and the sizes of text, in millimetres; the smallest is above 8 points.
 constexpr double kWidth = 210, kHeight = 297, kMargin = 16, kColumn = kWidth - 2 * kMargin;
-constexpr double kBody = 3.5, kSmall = 3, kTitle = 6.2, kHeading = 4.7, kLeast = 2.9;
+constexpr double kBody = 3.5, kSmall = 3, kTitle = 6.2, kHeading = 4.7, kMinSize = 2.9;
 constexpr double kLine = 1.42;  // of a text's size
 
 constexpr TextStyle kCaption{kSmall, false, Align::Left, palette::kFaintInk, {}};
@@ -75,7 +75,7 @@ class Sheets {
     }
 
     std::vector<Picture> finish() {
-        const TextStyle style{kLeast, false, Align::Right, palette::kFaintInk, {}};
+        const TextStyle style{kMinSize, false, Align::Right, palette::kFaintInk, {}};
         for (std::size_t i = 0; i < sheets_.size(); ++i)
             sheets_[i].text({kWidth - kMargin, kHeight - kMargin / 2},
                             fitText(title_, 0.7 * kColumn, style) + "  ·  " +
@@ -121,7 +121,7 @@ Columns columnsOf(const PageTable& table) {
     };
     measure();
     if (table.heads.empty() || columns.total() <= kColumn) return columns;
-    columns.size = std::max(kLeast, columns.size * kColumn / columns.total());
+    columns.size = std::max(kMinSize, columns.size * kColumn / columns.total());
     columns.gap = 2;
     measure();
     const double least = 8 * columns.size;
@@ -138,18 +138,18 @@ Columns columnsOf(const PageTable& table) {
 /// begin with its first column.
 std::vector<PageTable> splitTable(const PageTable& table) {
     if (table.heads.size() < 3) return {table};
-    constexpr double kWidest = 36, kGap = 2;  // millimetres; wider cells break
-    const TextStyle style{kLeast, false, Align::Left, palette::kInk, {}};
+    constexpr double kMaxWidth = 36, kGap = 2;  // millimetres; wider cells break
+    const TextStyle style{kMinSize, false, Align::Left, palette::kInk, {}};
     std::vector<double> widths(table.heads.size());
     const auto add = [&](const TextRow& row) {
         for (std::size_t i = 0; i < std::min(row.size(), widths.size()); ++i)
-            widths[i] = std::max(widths[i], std::min(kWidest, textWidth(row[i], style)) + kGap);
+            widths[i] = std::max(widths[i], std::min(kMaxWidth, textWidth(row[i], style)) + kGap);
     };
     add(table.heads);
     for (const TextRow& row : table.rows) add(row);
     const double others = std::accumulate(widths.begin() + 1, widths.end(), 0.0);
     const double room = kColumn + kGap - widths.front();
-    if (others <= room || room <= kWidest) return {table};
+    if (others <= room || room <= kMaxWidth) return {table};
     const double share = others / std::ceil(others / room);  // about as wide as each other
     std::vector<PageTable> parts;
     double width = 0;
@@ -255,10 +255,10 @@ class PdfWriter {
                         4 * columnsOf(table).size);
     }
     static double leastHeight(const PageText& /*text*/) { return 2 * kLine * kBody; }
-    static double leastHeight(const PageCode& /*code*/) { return 2 * kLine * kLeast; }
+    static double leastHeight(const PageCode& /*code*/) { return 2 * kLine * kMinSize; }
     static double leastHeight(const PageFigure& figure) {
         if (figure.is_for_screen) return 0;
-        const double share = canShrink(figure) ? kLeastShare : 1;
+        const double share = canShrink(figure) ? kMinShare : 1;
         return share * scaleOf(figure) * figure.picture.height() + belowOf(figure);
     }
     static double leastHeight(const PageMap& map) { return leastHeight(map.paper); }
@@ -279,11 +279,11 @@ class PdfWriter {
     }
 
     /// Returns true for figures without a scale of their own that fill the column: they shrink to
-    /// kLeastShare to fit the rest of a sheet.
+    /// kMinShare to fit the rest of a sheet.
     static bool canShrink(const PageFigure& figure) {
         return figure.width == 1 && figure.picture.unit() != PageUnit::Millimetre;
     }
-    static constexpr double kLeastShare = 0.9;
+    static constexpr double kMinShare = 0.9;
 
     void add(const PageText& text) {
         const bool is_small = text.tone == Tone::Small;
@@ -354,7 +354,7 @@ class PdfWriter {
     /// Lines with columns are set in their columns, as narrow as the widest line requires; others
     /// are broken.
     void add(const PageCode& code) {
-        TextStyle style{kLeast, false, Align::Left, palette::kInk, {}};
+        TextStyle style{kMinSize, false, Align::Left, palette::kInk, {}};
         std::vector<std::vector<Word>> lines;
         std::size_t longest = 1;
         bool is_table = false;

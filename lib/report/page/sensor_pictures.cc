@@ -245,10 +245,10 @@ PageFigure regionOf(const Scene& scene, const Coverage& coverage, const SensorVi
 
 /// Draws the scan of a laser: its beams, with a dot at each return.
 PageFigure scanOf(const Scene& scene, const SensorView& view, Color color) {
-    constexpr std::size_t kMostBeams = 361;
+    constexpr std::size_t kMaxDrawnBeams = 361;
     const Laser& laser = scene.sensors[view.index].as<Laser>();
     const Point2 at = view.pose.position.onFloor();
-    const std::size_t stride = (view.beams.size() + kMostBeams - 1) / kMostBeams;
+    const std::size_t stride = (view.beams.size() + kMaxDrawnBeams - 1) / kMaxDrawnBeams;
     Box2 box{at, at};
     std::vector<Segment2> beams, returns;
     for (std::size_t k = 0; k < view.beams.size(); k += stride) {

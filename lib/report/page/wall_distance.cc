@@ -36,7 +36,7 @@ Vec2 directionAlong(const Segment2& face) {
 /// Adds the ends of faces: those at which no other face begins, and those at which two faces of
 /// some length turn by 45 degrees or more.
 void addCorners(WallFaces& faces) {
-    constexpr double kLeast = 0.3;  // metres: steps of a map are shorter
+    constexpr double kMinLength = 0.3;  // metres: steps of a map are shorter
     struct End {
         std::size_t count = 0;
         bool is_long = true;
@@ -51,7 +51,7 @@ void addCorners(WallFaces& faces) {
             if (end.count == 0) end.first = along;
             end.last = along;
             ++end.count;
-            end.is_long = end.is_long && distance(line.a, line.b) >= kLeast;
+            end.is_long = end.is_long && distance(line.a, line.b) >= kMinLength;
         }
     for (const auto& [at, end] : ends) {
         const bool turns = end.count > 2 || (end.count == 2 && dot(end.first, end.last) > -0.709);

@@ -70,7 +70,7 @@ struct EncodeAhead::Job {
 };
 
 struct EncodeAhead::Queue {
-    static constexpr std::size_t kMostPixels = 64'000'000;
+    static constexpr std::size_t kMaxPixels = 64'000'000;
 
     Encode encode;
     Write write;
@@ -107,7 +107,7 @@ void EncodeAhead::add(std::string file, Image image) {
     job.task.run([&job, &queue] { job.bytes = queue.encode(job.image); });
     const std::size_t cores =
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    while (queue.jobs.size() > cores || queue.pixels > Queue::kMostPixels) {
+    while (queue.jobs.size() > cores || queue.pixels > Queue::kMaxPixels) {
         queue.writeFirst();
         if (queue.jobs.empty()) return;
     }

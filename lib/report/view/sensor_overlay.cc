@@ -22,7 +22,7 @@ namespace {
 
 /// Number of rays along the rim of a view cube, equal for all edges of a picture.
 constexpr int kRimRays = 96;
-constexpr int kMostBeams = 120;
+constexpr int kMaxDrawnBeams = 120;
 
 /// Finds the last direction in view from `inside`, which is in view, to `rim`.
 template <typename IsSeen>
@@ -192,7 +192,7 @@ bool isWithin(std::optional<Point3> place, const Sensor& sensor) {
 void addBeams(SensorOverlay& marks, Sightlines& sightlines, const Sensor& sensor, Color color) {
     const auto& laser = sensor.as<Laser>();
     const std::vector<float> ranges = sightlines.ranges(sensor);
-    const int step = 1 + (laser.beams - 1) / kMostBeams;
+    const int step = 1 + (laser.beams - 1) / kMaxDrawnBeams;
     for (int i = 0; i < laser.beams; i += step) {
         const auto k = static_cast<std::size_t>(i);
         const double range = std::min(static_cast<double>(ranges[k]), laser.max_range);
@@ -252,8 +252,8 @@ std::vector<Polygon> rectanglesOf(const CellSet& cells, const Grid& grid) {
 }  // namespace
 
 FloorColors::FloorColors(const Scene& scene) : limits_(scene.environment.limits()) {
-    constexpr double kMostPixels = 2400, kFinest = 100;
-    scale_ = std::min(kFinest, kMostPixels / std::max(limits_.width(), limits_.depth()));
+    constexpr double kMaxPixels = 2400, kFinest = 100;
+    scale_ = std::min(kFinest, kMaxPixels / std::max(limits_.width(), limits_.depth()));
     columns_ = std::max(1, static_cast<int>(std::ceil(scale_ * limits_.width())));
     rows_ = std::max(1, static_cast<int>(std::ceil(scale_ * limits_.depth())));
     sums_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
@@ -317,9 +317,9 @@ Rgb FloorColors::at(Point2 place) const {
                            static_cast<std::size_t>(x)];
     if (sum.sensors <= 0) return {1, 1, 1};
     // The mean colour, deeper for each further sensor, up to a limit that keeps it light.
-    constexpr double kOne = 0.38, kEachMore = 0.07, kMost = 0.6;
+    constexpr double kOne = 0.38, kEachMore = 0.07, kMaxDepth = 0.6;
     const double share = std::min(sum.sensors, 1.0F);
-    const double depth = share * std::min(kOne + kEachMore * (sum.sensors - share), kMost);
+    const double depth = share * std::min(kOne + kEachMore * (sum.sensors - share), kMaxDepth);
     const Color mean{sum.color[0] / sum.sensors, sum.color[1] / sum.sensors,
                      sum.color[2] / sum.sensors};
     return linearOf(tint(mean, depth));

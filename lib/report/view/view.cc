@@ -23,9 +23,9 @@ const Color kHighlight = Color::rgb(0xE6007E);
 /// Returns the factor by which a picture is rendered larger, so that per-pixel decisions (colours
 /// on the floor, outlines) get smooth edges, too.
 int finenessFor(PictureSize size, int samples) {
-    constexpr double kMostPixels = 16e6;
+    constexpr double kMaxPixels = 16e6;
     const double pixels = 1.0 * size.columns * size.rows;
-    return samples >= 4 && 4 * pixels <= kMostPixels ? 2 : 1;
+    return samples >= 4 && 4 * pixels <= kMaxPixels ? 2 : 1;
 }
 
 /// Removes overlays: a camera's picture shows only the scene.

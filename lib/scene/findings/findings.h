@@ -26,11 +26,11 @@ namespace ispace {
 /// accept are warnings; records that cannot work at their position are errors.
 struct Finding {
     Severity severity = Severity::Warning;
-    std::string element = {};  ///< its id; "" for the scene as a whole
-    Point2 at = {};            ///< in the world frame; undefined if `message` names no position
-    std::string message = {};  ///< "laser l stands outside the room at (9.0, 3.0)"
-    std::string hint = {};     ///< "move it in"
-    Place source = {};         ///< of the element's record
+    std::string element = {};    ///< its id; "" for the scene as a whole
+    Point2 at = {};              ///< in the world frame; undefined if `message` names no position
+    std::string message = {};    ///< "laser l stands outside the room at (9.0, 3.0)"
+    std::string hint = {};       ///< "move it in"
+    SourcePosition source = {};  ///< of the element's record
 
     /// Returns message and hint in one sentence.
     [[nodiscard]] std::string text() const { return message + "; " + hint; }

@@ -109,7 +109,7 @@ Budget budgetOf(const std::string& folder, std::optional<std::uint64_t> max_work
         const std::uintmax_t size = std::filesystem::file_size(*file, missing);
         if (!missing) bytes += size;
     }
-    return Budget(0, {max_work.value_or(Budget::kMost + Budget::kPerByte * bytes)});
+    return Budget(0, {max_work.value_or(Budget::kMaxWork + Budget::kPerByte * bytes)});
 }
 
 }  // namespace

@@ -21,7 +21,7 @@
 namespace ispace {
 
 /// Longest line of a table in bytes.
-constexpr std::size_t kLongestLine = 16384;
+constexpr std::size_t kMaxLineBytes = 16384;
 
 /// Reads the lines of a file or a text in blocks. A line without its end is not returned.
 class LineSource {
@@ -39,7 +39,7 @@ class LineSource {
                 ++number_;
                 return line;
             }
-            is_too_long_ = bytes_.size() - begin_ > kLongestLine;
+            is_too_long_ = bytes_.size() - begin_ > kMaxLineBytes;
             if (is_too_long_ || !file_) return std::nullopt;
             bytes_.erase(0, std::exchange(begin_, 0));
             searched_ = bytes_.size();
@@ -66,9 +66,9 @@ inline LineSource tableOf(const std::string& file) {
 
 /// Parses a time of a run, in seconds: from 0 to 4e9, beyond the hundred years of the longest run.
 inline std::optional<double> parseRunTime(std::string_view text) {
-    constexpr double kLongest = 4e9;
+    constexpr double kMaxTime = 4e9;
     const std::optional<double> time = parseDouble(text);
-    return time && *time >= 0 && *time <= kLongest ? time : std::nullopt;
+    return time && *time >= 0 && *time <= kMaxTime ? time : std::nullopt;
 }
 
 /// Splits a line without quotes into its fields.
@@ -116,7 +116,7 @@ std::vector<RunChange> recordedChanges(const std::string& folder);
 
 /// Repeats the changes of a recorded run. A change that fails, as in a scene other than the
 /// recorded one, is skipped; so are all changes beyond a bound of work: 1 unit for each change and
-/// record of its scene, Budget::kMost and Budget::kPerByte for each byte of the record in all.
+/// record of its scene, Budget::kMaxWork and Budget::kPerByte for each byte of the record in all.
 class RunChanges {
   public:
     /// Reads a scene of the record.

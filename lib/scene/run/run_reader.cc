@@ -139,7 +139,7 @@ void MomentFile::readLine() {
     const std::optional<Row> before = std::exchange(row_, std::nullopt);
     if (!line) {
         if (lines_.isTooLong())
-            fail("a line is longer than " + std::to_string(kLongestLine) + " bytes");
+            fail("a line is longer than " + std::to_string(kMaxLineBytes) + " bytes");
         is_cut_ = is_cut_ || lines_.isCut();
         return;
     }

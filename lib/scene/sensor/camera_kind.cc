@@ -194,8 +194,8 @@ class OpticsReader {
             return;
         }
         const double focal = record_.number("focal");
-        constexpr double kLongest = 1;  // metres: likewise
-        if (focal > kLongest) {
+        constexpr double kMaxFocal = 1;  // metres: likewise
+        if (focal > kMaxFocal) {
             findings_.add(record_.finding("focal", "a focal length of " + formatDouble(focal) +
                                                        " m: is it " + formatDouble(focal) + "mm?"));
             return;

@@ -21,13 +21,13 @@ Imu imuOf(const Record& record, const Record* device) { return parametersOf<Imu>
 namespace {
 
 void addImuKeys(std::vector<KeySpec>& keys) {
-    constexpr double kMostError = 1e4;
+    constexpr double kMaxError = 1e4;
     const auto error = [&keys](std::string name, std::string help) {
         keys.push_back({.name = std::move(name),
                         .type = KeyType::Number,
                         .help = std::move(help),
                         .lower = 0,
-                        .upper = kMostError});
+                        .upper = kMaxError});
     };
     error("gyro_bias", "spread of the constant error of a rate, degrees a second, with --noise");
     error("gyro_noise", "density of its white noise, degrees a second and square root of Hz");

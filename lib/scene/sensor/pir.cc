@@ -29,7 +29,7 @@ FieldOfView fieldOfView(const Pir& pir, const Pose3& pose) {
 namespace {
 
 void addPirKeys(std::vector<KeySpec>& keys) {
-    constexpr double kMaxSpeed = 1e3, kLongestHold = 86'400, kMaxAlarms = 3600;
+    constexpr double kMaxSpeed = 1e3, kMaxHold = 86'400, kMaxAlarms = 3600;
     keys.push_back(rangeKey("least and greatest distance detected, or the greatest alone"));
     keys.push_back(windowKey());
     keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
@@ -38,7 +38,7 @@ void addPirKeys(std::vector<KeySpec>& keys) {
                     .unit = Unit::Time,
                     .help = "seconds for which the output stays on after a detection; in a run",
                     .lower = 0,
-                    .upper = kLongestHold});
+                    .upper = kMaxHold});
     keys.push_back({.name = "min_speed",
                     .type = KeyType::Number,
                     .unit = Unit::Length,

@@ -38,24 +38,24 @@ Thermometer thermometerOf(const Record& record, const Record* device) {
 namespace {
 
 void addFigures(std::vector<KeySpec>& keys) {
-    constexpr double kWidest = 1000;
+    constexpr double kMaxDegrees = 1000;
     keys.push_back({.name = "limits",
                     .type = KeyType::Tuple,
                     .help = "least and greatest temperature that it tells, degrees Celsius",
                     .min_count = 2,
                     .max_count = 2,
-                    .lower = -kWidest,
-                    .upper = kWidest});
+                    .lower = -kMaxDegrees,
+                    .upper = kMaxDegrees});
     keys.push_back({.name = "resolution",
                     .type = KeyType::Number,
                     .help = "least difference that it tells, kelvin, with --noise",
                     .lower = 0,
-                    .upper = kWidest});
+                    .upper = kMaxDegrees});
     keys.push_back({.name = "error",
                     .type = KeyType::Number,
                     .help = "standard deviation of its constant error, kelvin, with --noise",
                     .lower = 0,
-                    .upper = kWidest});
+                    .upper = kMaxDegrees});
     keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
 }
 
@@ -206,8 +206,8 @@ void addWindow(std::vector<HeatZone>& zones, const HeatWindow& window, double su
 
 /// Computes the heat of all zones with the windows on their outlines.
 std::vector<HeatZone> zonesOf(const RoomRecords& room) {
-    constexpr double kJoules = 1000;      // in a kilojoule
-    constexpr double kLeastArea = 0.001;  // m2: of a degenerate zone
+    constexpr double kJoules = 1000;    // in a kilojoule
+    constexpr double kMinArea = 0.001;  // m2: of a degenerate zone
     ZoneHeat bare;
     double sun = 0;
     for (const Record& weather : room.records) {
@@ -224,7 +224,7 @@ std::vector<HeatZone> zonesOf(const RoomRecords& room) {
                 record.finding("zone has no extent: give `path`, or `at` and `size`"));
         ZoneHeat heat = bare;
         heat.outline = zoneOutline(record);
-        const double area = std::max(std::abs(signedArea(heat.outline)), kLeastArea);
+        const double area = std::max(std::abs(signedArea(heat.outline)), kMinArea);
         heat.start = record.number("celsius");
         heat.storage = record.number("storage") * kJoules * area;
         heat.loss = record.number("loss") * area;

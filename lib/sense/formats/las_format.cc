@@ -26,12 +26,12 @@ void appendFixed(std::string& out, std::string_view text, std::size_t bytes) {
 
 /// Returns text records that map numbers to sensors.
 std::vector<std::string> sensorTexts(const Sensors& sensors) {
-    constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max();
+    constexpr std::size_t kMaxSize = std::numeric_limits<std::uint16_t>::max();
     std::vector<std::string> texts(1);
     for (std::size_t i = 0; i < sensors.read.size(); ++i) {
         const std::string line = std::to_string(i + 1) + " " + sensors.read[i].id + "\n";
-        if (line.size() > kMost) continue;
-        if (texts.back().size() + line.size() > kMost) texts.emplace_back();
+        if (line.size() > kMaxSize) continue;
+        if (texts.back().size() + line.size() > kMaxSize) texts.emplace_back();
         texts.back() += line;
     }
     return texts;

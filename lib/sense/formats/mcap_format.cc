@@ -27,11 +27,11 @@ std::vector<const RosTopic*> topicsOf(const Sensor& sensor) {
 
 /// Converts to nanoseconds; ROS counts seconds in 31 bits. \param who subject of messages
 std::uint64_t rosTime(double seconds, const std::string& who) {
-    constexpr double kMost = 2147483647, kSecond = 1e9;
-    if (!(seconds >= 0 && seconds <= kMost))
+    constexpr double kMaxSeconds = 2147483647, kSecond = 1e9;
+    if (!(seconds >= 0 && seconds <= kMaxSeconds))
         throw FormatError({"", 0, 0,
                            who + " is read at t=" + formatDouble(seconds) +
-                               ", and times of ROS go from 0 to " + formatDouble(kMost)});
+                               ", and times of ROS go from 0 to " + formatDouble(kMaxSeconds)});
     const double whole = std::floor(seconds);
     return static_cast<std::uint64_t>(whole) * 1'000'000'000U +
            static_cast<std::uint64_t>(std::llround((seconds - whole) * kSecond));

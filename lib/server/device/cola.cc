@@ -38,11 +38,11 @@ std::uint32_t numberIn(std::string_view bytes) {
 ColaTelegrams::Found ColaTelegrams::takeText(ColaTelegram& telegram) {
     const std::size_t end = bytes_.find_first_of("\2\3", 1);
     if (end == std::string::npos) {
-        if (bytes_.size() <= kLongest) return Found::Nothing;
+        if (bytes_.size() <= kMaxLength) return Found::Nothing;
         bytes_.erase(0, 1);
         return Found::None;
     }
-    if (bytes_[end] == kBegin || end - 1 > kLongest) {
+    if (bytes_[end] == kBegin || end - 1 > kMaxLength) {
         bytes_.erase(0, end);
         return Found::None;
     }
@@ -58,7 +58,7 @@ ColaTelegrams::Found ColaTelegrams::takeBinary(ColaTelegram& telegram) {
     if (begins && bytes_.size() < kHeader) return Found::Nothing;
     const std::size_t size =
         begins ? numberIn(std::string_view(bytes_).substr(kBinaryBegin.size(), 4)) : 0;
-    if (!begins || size > kLongest) {
+    if (!begins || size > kMaxLength) {
         bytes_.erase(0, 1);
         return Found::None;
     }

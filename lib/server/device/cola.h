@@ -29,7 +29,7 @@ struct ColaTelegram {
 /// length, the content, and the exclusive or of its bytes. Other bytes are skipped.
 class ColaTelegrams {
   public:
-    static constexpr std::size_t kLongest = 1024;
+    static constexpr std::size_t kMaxLength = 1024;
 
     void append(std::string_view bytes) { bytes_ += bytes; }
     /// Returns the next telegram; empty until it is complete.

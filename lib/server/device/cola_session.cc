@@ -13,7 +13,7 @@ namespace {
 constexpr double kAngleUnits = 10'000;  // per degree
 constexpr double kAhead = 90;           // degrees
 constexpr std::uint32_t kRemission = 200;
-constexpr std::uint32_t kMost = 0xFFFF;  // maximum distance
+constexpr std::uint32_t kMaxWord = 0xFFFF;  // of the range of a beam, too
 /// Codes of sFA.
 constexpr std::uint32_t kUnknownMethod = 2, kUnknownVariable = 3, kInvalid = 5;
 /// Events of evaluation fields, outputs and inputs. They can be switched on and never happen.
@@ -56,7 +56,7 @@ std::string refusalOfCola(const World& world, std::string_view id) {
     const Laser& laser = *sensor.tryAs<Laser>();
     if (laser.sweep != SweepAxis::None) return sensor.id + ": it sweeps, which CoLa cannot tell";
     const double step = std::round(laser.step.degrees() * kAngleUnits);
-    if (step >= 1 && step <= kMost) return "";
+    if (step >= 1 && step <= kMaxWord) return "";
     return sensor.id + ": its step is not from 0.0001 to 6.5535 degrees, as CoLa wants it";
 }
 
@@ -87,14 +87,15 @@ ColaFigures ColaFigures::of(const Laser& laser) {
     out.frequency = static_cast<std::uint32_t>(std::lround(laser.rate * kHundred));
     const double beams = laser.rate * 360 / laser.step.degrees();
     out.measurements = static_cast<std::uint32_t>(std::lround(beams / kHundred));
-    while (laser.max_range * kMmPerMetre / static_cast<double>(out.scale) > kMost) out.scale *= 2;
+    while (laser.max_range * kMmPerMetre / static_cast<double>(out.scale) > kMaxWord)
+        out.scale *= 2;
     return out;
 }
 
 std::uint32_t ColaFigures::number(float range) const {
     if (!std::isfinite(range)) return 0;
     const double steps = static_cast<double>(range) * kMmPerMetre / static_cast<double>(scale);
-    return static_cast<std::uint32_t>(std::clamp(std::round(steps), 0.0, double{kMost}));
+    return static_cast<std::uint32_t>(std::clamp(std::round(steps), 0.0, double{kMaxWord}));
 }
 
 ColaSession::ColaSession(WireHost& host, std::string id) : host_(&host), id_(std::move(id)) {
@@ -317,10 +318,10 @@ std::string ColaSession::scan(std::string_view kind, bool is_binary) {
     const SensorReading& reading = host_->world().reading(sensor_);
     const auto taken = host_->clock() - (host_->world().time() - reading.time);
     ColaWriter out(std::string(kind) + " LMDscandata", is_binary);
-    out.u16(1).u16(1).u32(1);                                  // version, device, serial number
-    out.u8(0).u8(0);                                           // state: no error
-    out.u16(++sent_ & kMost);                                  // telegrams
-    out.u16(static_cast<std::uint32_t>(reading.seq) & kMost);  // scans
+    out.u16(1).u16(1).u32(1);                                     // version, device, serial number
+    out.u8(0).u8(0);                                              // state: no error
+    out.u16(++sent_ & kMaxWord);                                  // telegrams
+    out.u16(static_cast<std::uint32_t>(reading.seq) & kMaxWord);  // scans
     out.u32(microseconds(taken)).u32(microseconds(host_->clock()));
     out.u8(0).u8(0).u8(0).u8(0).u16(0);                             // inputs, outputs, reserved
     out.u32(figures_.frequency).u32(figures_.measurements).u16(0);  // no encoder

@@ -70,7 +70,7 @@ TEST(Cola, AnEndlessTelegramTakesNoMemory) {
     for (int i = 0; i < 1000; ++i) {
         telegrams.append(std::string(256, 'x'));
         EXPECT_EQ(telegrams.next(), std::nullopt);
-        EXPECT_LE(telegrams.size(), ColaTelegrams::kLongest + 256);
+        EXPECT_LE(telegrams.size(), ColaTelegrams::kMaxLength + 256);
     }
 }
 

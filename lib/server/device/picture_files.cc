@@ -56,7 +56,7 @@ void PictureFiles::make(World& world, std::size_t sensor, const Entry& entry, co
         std::chrono::steady_clock::duration time{};
     };
     const auto making = std::make_shared<Making>(Making{world.sensors()[sensor], {}, {}, {}});
-    const bool takes = !world.isTaken(sensor);
+    const bool takes = !world.isCaptured(sensor);
     if (takes)
         making->take = world.captureLater(sensor);
     else
@@ -74,7 +74,7 @@ void PictureFiles::make(World& world, std::size_t sensor, const Entry& entry, co
             asked->failure = failure;
             asked->file = making->file;
             if (takes && !failure && world.changes() == changes)
-                world.put(sensor, std::move(making->reading));
+                world.storeCapture(sensor, std::move(making->reading));
         });
 }
 

@@ -181,7 +181,7 @@ std::optional<std::string> ScipLines::next() {
     for (std::size_t i = 0; i < bytes_.size(); ++i) {
         const char c = bytes_[i];
         if (c != '\n' && c != '\r') {
-            if (line_.size() <= kLongest) line_ += c;
+            if (line_.size() <= kMaxLength) line_ += c;
         } else if (!line_.empty()) {
             bytes_.erase(0, i + 1);
             return std::exchange(line_, {});
@@ -199,7 +199,7 @@ ScipRequest ScipRequest::of(std::string_view line) {
     const std::size_t letters = body.starts_with("SCIP2.0") ? 7 : body.starts_with("%") ? 3 : 2;
     request.command = body.substr(0, letters);
     request.parameters = body.substr(request.command.size());
-    if (line.size() > ScipLines::kLongest) {
+    if (line.size() > ScipLines::kMaxLength) {
         request.fault = "0F";
     } else if (request.text.size() > kMaxText + 1) {
         request.fault = "0G";

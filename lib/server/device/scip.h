@@ -65,7 +65,7 @@ void appendScipData(std::string& out, std::string_view values);
 class ScipLines {
   public:
     /// Maximum length of a request; longer ones are truncated.
-    static constexpr std::size_t kLongest = 64;
+    static constexpr std::size_t kMaxLength = 64;
 
     void append(std::string_view bytes) { bytes_ += bytes; }
     /// Returns the next request without its end; empty until it is complete.
@@ -74,7 +74,7 @@ class ScipLines {
     [[nodiscard]] std::size_t size() const { return line_.size() + bytes_.size(); }
 
   private:
-    std::string line_;   // up to kLongest + 1 bytes of an unfinished request
+    std::string line_;   // up to kMaxLength + 1 bytes of an unfinished request
     std::string bytes_;  // unread input
 };
 

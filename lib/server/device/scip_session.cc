@@ -89,7 +89,7 @@ void ScipSession::receive(std::string_view bytes) {
 
 /// Writes echo, status, data and an empty line.
 void ScipSession::reply(std::string_view line, std::string_view status, std::string_view data) {
-    std::string out(line.substr(0, ScipLines::kLongest));
+    std::string out(line.substr(0, ScipLines::kMaxLength));
     out += '\n';
     appendScipLine(out, status);
     send(out.append(data).append("\n"));

@@ -77,7 +77,7 @@ TEST(Scip, AnEndlessLineTakesNoMemory) {
     for (int i = 0; i < 1000; ++i) {
         lines.append(std::string(1000, 'x'));
         EXPECT_EQ(lines.next(), std::nullopt);
-        EXPECT_LE(lines.size(), ScipLines::kLongest + 1);
+        EXPECT_LE(lines.size(), ScipLines::kMaxLength + 1);
     }
     lines.append("\nVV\n");
     const auto cut = lines.next();

@@ -13,7 +13,7 @@ namespace ispace {
 namespace {
 
 /// Subscriptions of all clients of a port.
-constexpr std::size_t kMostSubscriptions = 16384;
+constexpr std::size_t kMaxFeedSubscriptions = 16384;
 
 }  // namespace
 
@@ -112,7 +112,7 @@ std::span<const std::uint32_t> RosFeed::numbersOf(std::string_view topic) const 
     return found->second;
 }
 
-bool RosFeed::isFull() const { return subscriptions_ >= kMostSubscriptions; }
+bool RosFeed::isFull() const { return subscriptions_ >= kMaxFeedSubscriptions; }
 
 void RosFeed::want(std::uint32_t number) {
     const auto found = entries_.find(number);

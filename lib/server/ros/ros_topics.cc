@@ -93,8 +93,8 @@ std::string RosFrames::sonar(std::size_t robot, std::size_t which) const {
 }
 
 std::uint64_t rosTimeOf(SimTime time) {
-    constexpr SimTime kMost = std::chrono::seconds(2147483647);
-    return static_cast<std::uint64_t>(std::clamp(time, SimTime(0), kMost).count());
+    constexpr SimTime kMaxRosTime = std::chrono::seconds(2147483647);
+    return static_cast<std::uint64_t>(std::clamp(time, SimTime(0), kMaxRosTime).count());
 }
 
 std::vector<const RosTopic*> rosTopicsOf(const Sensor& sensor) {

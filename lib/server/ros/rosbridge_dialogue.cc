@@ -138,7 +138,7 @@ void RosbridgeDialogue::receive(std::string_view message, bool is_text) {
 // Topics.
 
 void RosbridgeDialogue::subscribeTo(const Json& request) {
-    constexpr double kMostMilliseconds = 1e6, kMostQueue = 1000;
+    constexpr double kMaxMilliseconds = 1e6, kMaxQueue = 1000;
     const std::string topic = absolute(wordOf(request, "topic")), id = idOf(request),
                       form = wordOf(request, "compression");
     if (form == "png") return tell(Level::Error, "compression png is not served", id);
@@ -147,9 +147,9 @@ void RosbridgeDialogue::subscribeTo(const Json& request) {
         return tell(Level::Error, "too many subscriptions", id);
     Wish& wish = wishes_[topic];
     if (wish.ids.size() >= kMaxIds) return tell(Level::Error, "too many subscriptions", id);
-    const double wait = figureOf(request, "throttle_rate", kMostMilliseconds);
+    const double wait = figureOf(request, "throttle_rate", kMaxMilliseconds);
     wish.ids[id] = {std::chrono::milliseconds(std::llround(wait)),
-                    static_cast<std::size_t>(figureOf(request, "queue_length", kMostQueue))};
+                    static_cast<std::size_t>(figureOf(request, "queue_length", kMaxQueue))};
     wish.form = form == "cbor" ? Form::Cbor : form == "cbor-raw" ? Form::Raw : Form::Json;
     apply(topic, wish);
 }

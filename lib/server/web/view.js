@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which part of the plane the canvas shows: metres with y up, to pixels of the page.
 
-const kLeast = 0.2, kMost = 2000;  // pixels a metre
+const kMinScale = 0.2, kMaxScale = 2000;  // pixels a metre
 
 export class View {
   constructor(canvas) {
@@ -29,7 +29,7 @@ export class View {
     this.scaleTo(Math.min((this.width - rim) / (x1 - x0), (this.height - rim) / (y1 - y0)));
   }
 
-  scaleTo(scale) { this.scale = Math.min(kMost, Math.max(kLeast, scale)); }
+  scaleTo(scale) { this.scale = Math.min(kMaxScale, Math.max(kMinScale, scale)); }
 
   /** Zooms; what lies at a pixel stays there. */
   zoom(factor, px = this.width / 2, py = this.height / 2) {

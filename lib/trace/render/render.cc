@@ -24,7 +24,7 @@ struct Job {
     const Viewpoint& viewpoint;
     const RenderOptions& options;
     Illumination light;
-    std::optional<EvenSightLines> even;
+    std::optional<EvenPixelRays> even;
     std::vector<bool> hidden;
     Shading shading;
     Rendering& out;
@@ -52,7 +52,7 @@ Job::Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptio
       viewpoint(from),
       options(wanted),
       light(chosen(wanted.light, *data.still)),
-      even(from.evenSightLines()),
+      even(from.evenPixelRays()),
       shading(data, light, wanted),
       out(picture),
       samples(placesInPixel(wanted.samples)) {
@@ -342,8 +342,8 @@ class Band final : public Viewpoint {
     [[nodiscard]] std::optional<PixelRay> sightLine(PixelPoint place) const override {
         return whole_.sightLine({place.column, place.row + first_});
     }
-    [[nodiscard]] std::optional<EvenSightLines> evenSightLines() const override {
-        auto lines = whole_.evenSightLines();
+    [[nodiscard]] std::optional<EvenPixelRays> evenPixelRays() const override {
+        auto lines = whole_.evenPixelRays();
         if (!lines) return std::nullopt;
         const PixelRay corner = lines->at({0, 1.0 * first_});
         lines->origin = corner.origin;

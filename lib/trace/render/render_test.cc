@@ -98,7 +98,7 @@ TEST(Render, DepthsAndLabelsAgreeWithRays) {
     options.labels = options.depths = true;
     const Rendering picture = render(RenderScene(room), view, options);
     const RayWorld world = RayWorld::ofEnvironment(room.environment);
-    const auto lines = view.evenSightLines();
+    const auto lines = view.evenPixelRays();
     ASSERT_TRUE(lines);
     std::vector<float> depths(80 * 60);
     world.cast(lines->origin, {lines->direction, lines->right, lines->down, 80, 60}, 100, depths);

@@ -242,7 +242,7 @@ alignas(64) constexpr std::array<double, kLanes> kBelow{0, 0, 0, 0, 1, 1, 1, 1,
                                                         2, 2, 2, 2, 3, 3, 3, 3};
 static_assert(kTile == 4);
 
-ISPACE_SIMD_CLONES void fillDirections(const EvenSightLines& lines, PixelPoint first,
+ISPACE_SIMD_CLONES void fillDirections(const EvenPixelRays& lines, PixelPoint first,
                                        RayTile& tile) {
     const Vec3 d = lines.direction, right = lines.right, down = lines.down;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -253,7 +253,7 @@ ISPACE_SIMD_CLONES void fillDirections(const EvenSightLines& lines, PixelPoint f
     }
 }
 
-ISPACE_SIMD_CLONES void fillOrigins(const EvenSightLines& lines, Vec3 shift, PixelPoint first,
+ISPACE_SIMD_CLONES void fillOrigins(const EvenPixelRays& lines, Vec3 shift, PixelPoint first,
                                     RayTile& tile) {
     const Point3 o = lines.origin + shift;
     const Vec3 right = lines.origin_right, down = lines.origin_down;
@@ -283,7 +283,7 @@ ISPACE_SIMD_CLONES void blacken(RayTile& tile) {
 
 }  // namespace
 
-void RayTile::set(const EvenSightLines& lines, PixelPoint first, Vec3 shift) {
+void RayTile::set(const EvenPixelRays& lines, PixelPoint first, Vec3 shift) {
     fillDirections(lines, first, *this);
     const Point3 kept = lines.origin + shift;
     const bool is_one = lines.origin_right == Vec3() && lines.origin_down == Vec3();

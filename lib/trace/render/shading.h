@@ -26,7 +26,7 @@ struct RayTile : RayPacket {
     }
     void set(std::size_t lane, const PixelRay& line, Vec3 shift);
     /// Sets the lines of sight of a tile with the first pixel `first`; may exceed the picture.
-    void set(const EvenSightLines& lines, PixelPoint first, Vec3 shift);
+    void set(const EvenPixelRays& lines, PixelPoint first, Vec3 shift);
     [[nodiscard]] Vec3 direction(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
     [[nodiscard]] Point3 origin(std::size_t lane) const {
         return {origin_x[lane], origin_y[lane], origin_z[lane]};

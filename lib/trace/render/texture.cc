@@ -19,7 +19,7 @@ namespace ispace {
 namespace {
 
 /// Maximum pixels of all textures of a scene.
-constexpr std::int64_t kMostPixels = 120'000'000;
+constexpr std::int64_t kMaxTexturePixels = 120'000'000;
 
 /// From sRGB.
 const std::array<float, 256>& linearOf() {
@@ -163,10 +163,10 @@ ColorPicture TextureReader::load(const std::string& file) {
     }
     ColorPicture picture = parseColorPicture(readAll(file), file, pictures_);
     pixels_ += std::int64_t{picture.width} * picture.height;
-    if (pixels_ > kMostPixels)
-        throw FormatError(Diagnostic{
-            displayName(file), 0, 0,
-            "the textures together have more than " + std::to_string(kMostPixels) + " pixels"});
+    if (pixels_ > kMaxTexturePixels)
+        throw FormatError(Diagnostic{displayName(file), 0, 0,
+                                     "the textures together have more than " +
+                                         std::to_string(kMaxTexturePixels) + " pixels"});
     return picture;
 }
 

@@ -60,15 +60,15 @@ std::optional<PixelRay> CameraView::sightLine(PixelPoint place) const {
     return PixelRay{world_from_camera_.origin, world_from_camera_ * *ray};
 }
 
-std::optional<EvenSightLines> CameraView::evenSightLines() const {
+std::optional<EvenPixelRays> CameraView::evenPixelRays() const {
     if (!camera_.isStraight()) return std::nullopt;
     const Camera& c = camera_;
-    return EvenSightLines{.origin = world_from_camera_.origin,
-                          .origin_right = {},
-                          .origin_down = {},
-                          .direction = world_from_camera_ * Vec3{1, c.cx / c.fx, c.cy / c.fy},
-                          .right = world_from_camera_ * Vec3{0, -1 / c.fx, 0},
-                          .down = world_from_camera_ * Vec3{0, 0, -1 / c.fy}};
+    return EvenPixelRays{.origin = world_from_camera_.origin,
+                         .origin_right = {},
+                         .origin_down = {},
+                         .direction = world_from_camera_ * Vec3{1, c.cx / c.fx, c.cy / c.fy},
+                         .right = world_from_camera_ * Vec3{0, -1 / c.fx, 0},
+                         .down = world_from_camera_ * Vec3{0, 0, -1 / c.fy}};
 }
 
 std::optional<PixelPoint> CameraView::project(Point3 place) const {

@@ -19,7 +19,7 @@ struct PixelRay {
 
 /// Lines of sight that are linear in the picture position: (column, row) has origin + column *
 /// origin_right + row * origin_down, and likewise its direction.
-struct EvenSightLines {
+struct EvenPixelRays {
     Point3 origin;
     Vec3 origin_right, origin_down;
     Vec3 direction, right, down;
@@ -44,7 +44,7 @@ class Viewpoint {
     /// the rim of the black part: treated as linear within a pixel.
     [[nodiscard]] virtual std::optional<PixelRay> sightLine(PixelPoint place) const = 0;
     /// Returns all lines of sight at once if they are linear: much faster.
-    [[nodiscard]] virtual std::optional<EvenSightLines> evenSightLines() const {
+    [[nodiscard]] virtual std::optional<EvenPixelRays> evenPixelRays() const {
         return std::nullopt;
     }
 
@@ -65,7 +65,7 @@ class CameraView : public Viewpoint {
     /// Returns the same camera at another pose.
     [[nodiscard]] CameraView at(const Pose3& pose) const;
     [[nodiscard]] std::optional<PixelRay> sightLine(PixelPoint place) const override;
-    [[nodiscard]] std::optional<EvenSightLines> evenSightLines() const override;
+    [[nodiscard]] std::optional<EvenPixelRays> evenPixelRays() const override;
     /// Projects a point of the world, possibly outside the picture.
     [[nodiscard]] std::optional<PixelPoint> project(Point3 place) const;
 
@@ -87,14 +87,14 @@ class OrthographicView : public Viewpoint {
     OrthographicView(const Pose3& pose, double width, int columns, int rows);
 
     [[nodiscard]] std::optional<PixelRay> sightLine(PixelPoint place) const override;
-    [[nodiscard]] std::optional<EvenSightLines> evenSightLines() const override { return lines_; }
+    [[nodiscard]] std::optional<EvenPixelRays> evenPixelRays() const override { return lines_; }
     /// Projects a point of the world, possibly outside the picture.
     [[nodiscard]] PixelPoint project(Point3 place) const;
 
   private:
     Frame3 frame_;
     double pixel_;  ///< metres per pixel
-    EvenSightLines lines_;
+    EvenPixelRays lines_;
 };
 
 }  // namespace ispace
