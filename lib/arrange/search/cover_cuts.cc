@@ -43,7 +43,10 @@ class CutProgram {
     [[nodiscard]] CoverCut combined(const std::vector<std::pair<std::size_t, double>>& rows) const;
 
     struct Deleter {
-        void operator()(glp_prob* program) const { glp_delete_prob(program); }
+        void operator()(glp_prob* program) const {
+            glp_delete_prob(program);
+            glp_free_env();  // of this thread
+        }
     };
     const CoverCore& core_;
     std::vector<CoverCut> rows_;
