@@ -85,7 +85,9 @@ std::vector<PosesCase> cases() {
         for (int lasers = 3; lasers > 0; --lasers) {
             all.push_back({plan, lasers});
             // The bound stays near the whole floor: a limit of time would measure the machine.
-            if (lasers == 3 && *plan == '\0') all.back() = {plan, lasers, 1, 600, "2%"};
+            if (lasers != 3 || *plan != '\0') continue;
+            all.back() = {plan, lasers, 1, 600, "2%"};
+            all.push_back({plan, lasers, 1, 600, "1%"});
         }
     return all;
 }
@@ -106,7 +108,7 @@ int main(int argc, char** argv) {
             test.plan.empty() ? hall : std::string(data) + "/plans/" + test.plan + ".json";
         const std::string name = "poses/" + (test.plan.empty() ? "hall" : test.plan) + '/' +
                                  std::to_string(test.lasers) + '/' +
-                                 std::to_string(test.redundancy);
+                                 std::to_string(test.redundancy) + '/' + test.gap;
         benchmark::RegisterBenchmark(
             name.c_str(),
             [room, test](benchmark::State& state) { measurePoses(state, room, test); })

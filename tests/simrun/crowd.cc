@@ -107,7 +107,7 @@ void mountLasers(Scene& scene, const Laser& laser) {
 
 void wander(World& world) {
     constexpr float kNear = 0.8F;
-    for (const std::size_t i : world.read()) {
+    for (const std::size_t i : world.latestReadings()) {
         const Scan& scan = world.reading(i).scan();
         const bool is_free = nearest(scan, 0.3, 0.7) > kNear && nearest(scan, 0.1, 0.9) > kNear / 2;
         const bool left = nearest(scan, 0.5, 0.8) > nearest(scan, 0.2, 0.5);
