@@ -120,6 +120,10 @@ TEST(CheckGuards, FollowsPairs) {
                              .is_complete = true};
     const GuardCertificate made = certifyGuards(cover);
     EXPECT_EQ(made.bound, 3U);  // two and a half, rounded up
+    EXPECT_EQ(weaknessOf(made, 3), "");
+    EXPECT_EQ(weaknessOf(made, 4),
+              "the certificate proves that 3 sensors are needed, not 4: more would take too many "
+              "branches");
     GalleryCover seven = cover;
     // All sets of 4 of 7: fractional covers of 7/4, but two such sets of Fano's plane do not do.
     seven.bound = 3;

@@ -15,7 +15,7 @@ kept=0
 for ((runs = 1; runs < 60; ++runs)); do
     signal=TERM
     ((runs % 3)) || signal=KILL
-    timeout -s $signal "$((1 + runs * runs / 16)).$((runs % 10))" \
+    timeout -s $signal "$((runs * runs / 64)).$((runs % 10))" \
         "${few[@]}" --certificate resumed.certificate --resume --checkpoint-interval 0 -o resumed.3dm || true
     if [ -e resumed.3dm ]; then break; fi
     if grep -aqs '^=posestate' resumed.3dm.resume; then kept=1; fi

@@ -54,8 +54,11 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
     if (const std::string& file = options.certificate_file; !file.empty()) {
         if (const auto& bound = arrangement.poses_bound; bound && bound->certificate)
             writeAll(file, certificateText(*bound->certificate, parts.history));
-        if (const auto& proof = arrangement.over_poses; proof && proof->certificate)
+        if (const auto& proof = arrangement.over_poses; proof && proof->certificate) {
             writeAll(file, certificateText(*proof->certificate, parts.history));
+            const std::string weakness = weaknessOf(*proof->certificate, proof->bound);
+            if (!weakness.empty()) warn(options.common, "arrange", weakness);
+        }
     }
     if (const std::string& file = options.curve_file; !file.empty())
         writeAll(file, curveFile(arrangement.curve, outputFormat({}, file, curveFormats())));

@@ -80,6 +80,13 @@ std::string certificateText(const GuardCertificate& certificate,
     return text;
 }
 
+std::string weaknessOf(const GuardCertificate& certificate, std::size_t needed) {
+    if (certificate.bound >= needed) return {};
+    return "the certificate proves that " + std::to_string(certificate.bound) +
+           " sensors are needed, not " + std::to_string(needed) +
+           ": more would take too many branches";
+}
+
 bool isOfGuards(std::string_view certificate) {
     while (certificate.starts_with('#')) {
         const std::size_t end = certificate.find('\n');

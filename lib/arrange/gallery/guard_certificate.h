@@ -45,6 +45,10 @@ GuardCertificate certifyGuards(const GalleryCover& cover);
 std::string certificateText(const GuardCertificate& certificate,
                             const std::vector<std::string>& history);
 
+/// Returns the warning for a certificate of fewer points than are known to be needed; empty if it
+/// proves as many.
+std::string weaknessOf(const GuardCertificate& certificate, std::size_t needed);
+
 /// True for the text of a GuardCertificate, false for that of a PoseCertificate.
 bool isOfGuards(std::string_view certificate);
 
