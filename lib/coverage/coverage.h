@@ -165,7 +165,8 @@ struct SensorView {
     [[nodiscard]] bool isPartial() const { return kind->together > 1; }
 };
 
-/// Bits of LayerLabel::marks in Coverage::overlay.
+/// Bits of LayerLabel::marks in Coverage::overlay. Holes of the free floor beyond all views
+/// (FarHoles) are marked free, too.
 constexpr std::uint64_t kIndoorMark = 1, kFreeMark = 2;
 
 /// The report, with the regions and cells that maps require.

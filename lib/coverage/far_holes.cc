@@ -63,6 +63,7 @@ std::vector<Curve> FarHoles::curvesWithout(std::span<const CoveredSet> sets) {
         return is_near;
     };
     std::vector<Curve> curves;
+    far_.clear();
     auto is_lone = is_lone_.begin();
     for (const Region& region : floor_) {
         curves.push_back(curveOf(region.outline));

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace ispace::gallery {
 
@@ -18,11 +19,10 @@ struct Interval1 {
     }
 };
 
-/// Returns the y of the part of a triangle between two x; empty (low > high) without one.
-Interval1 stripOf(const std::array<Point2, 3>& triangle, double left, double right) {
+/// Returns the y of the parts of segments between two x; empty (low > high) without one.
+Interval1 stripOf(std::span<const Segment2> segments, double left, double right) {
     Interval1 strip;
-    for (std::size_t i = 0; i < 3; ++i) {
-        Point2 a = triangle[i], b = triangle[(i + 1) % 3];
+    for (auto [a, b] : segments) {
         if (b.x < a.x) std::swap(a, b);
         if (b.x < left || a.x > right) continue;
         const double slope = b.x > a.x ? (b.y - a.y) / (b.x - a.x) : 0;
@@ -35,7 +35,7 @@ Interval1 stripOf(const std::array<Point2, 3>& triangle, double left, double rig
 }  // namespace
 
 ViewCells::ViewCells(const Floor& floor)
-    : side_(std::clamp<std::size_t>(floor.walls().size() / 8, 4, 256)) {
+    : side_(std::clamp<std::size_t>(floor.walls().size() / 16, 4, 128)) {
     for (const Segment2& wall : floor.walls()) {
         box_.add(wall.a);
         box_.add(wall.b);
@@ -50,26 +50,56 @@ std::size_t ViewCells::cellOf(double offset) const {
 }
 
 void ViewCells::add(const StarView& view) {
-    // Twice the clearance, since the ends of steep edges round.
-    constexpr double kMargin = 2 * kClearance;
     const Polygon& outline = view.outline();
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        const std::array<Point2, 3> part = {view.viewpoint(), outline[i],
-                                            outline[(i + 1) % outline.size()]};
-        const auto [low, high] = std::minmax({part[0].x, part[1].x, part[2].x});
-        const std::size_t last = column(high + kMargin);
-        for (std::size_t x = column(low - kMargin); x <= last; ++x) {
-            const double left = box_.low.x + static_cast<double>(x) * step_;
-            const Interval1 strip = stripOf(part, left - kMargin, left + step_ + kMargin);
-            if (strip.low > strip.high) continue;
-            const std::size_t top = row(strip.high + kMargin);
-            for (std::size_t y = row(strip.low - kMargin); y <= top; ++y) {
-                std::vector<std::uint32_t>& cell = cells_[indexOf(x, y)];
-                if (cell.empty() || cell.back() != count_) cell.push_back(count_);
-            }
+    const Point2 from = view.viewpoint();
+    for (std::size_t i = 0; i < outline.size();) {
+        Box2 box;
+        box.add(outline[i]);
+        const Point2 first = outline[i];
+        // Edges within a cell's size count as their bounds.
+        std::size_t edges = 0;
+        while (i < outline.size()) {
+            const Point2 next = outline[(i + 1) % outline.size()];
+            Box2 wider = box;
+            wider.add(next);
+            if (edges > 0 && std::max(wider.width(), wider.depth()) > step_) break;
+            box = wider;
+            ++edges;
+            ++i;
         }
+        if (edges == 1) {
+            const Point2 last = outline[i % outline.size()];
+            mark(std::array{Segment2{from, first}, Segment2{from, last}, Segment2{first, last}});
+            continue;
+        }
+        const Point2 low_right{box.high.x, box.low.y}, high_left{box.low.x, box.high.y};
+        mark(std::array{Segment2{from, box.low}, Segment2{from, low_right},
+                        Segment2{from, box.high}, Segment2{from, high_left},
+                        Segment2{box.low, low_right}, Segment2{low_right, box.high},
+                        Segment2{box.high, high_left}, Segment2{high_left, box.low}});
     }
     ++count_;
+}
+
+void ViewCells::mark(std::span<const Segment2> segments) {
+    // Twice the clearance, since the ends of steep edges round.
+    constexpr double kMargin = 2 * kClearance;
+    Interval1 across;
+    for (const Segment2& segment : segments) {
+        across.add(segment.a.x);
+        across.add(segment.b.x);
+    }
+    const std::size_t last = column(across.high + kMargin);
+    for (std::size_t x = column(across.low - kMargin); x <= last; ++x) {
+        const double left = box_.low.x + static_cast<double>(x) * step_;
+        const Interval1 strip = stripOf(segments, left - kMargin, left + step_ + kMargin);
+        if (strip.low > strip.high) continue;
+        const std::size_t top = row(strip.high + kMargin);
+        for (std::size_t y = row(strip.low - kMargin); y <= top; ++y) {
+            std::vector<std::uint32_t>& cell = cells_[indexOf(x, y)];
+            if (cell.empty() || cell.back() != count_) cell.push_back(count_);
+        }
+    }
 }
 
 }  // namespace ispace::gallery

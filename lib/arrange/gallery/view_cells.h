@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "arrange/gallery/star_view.h"
@@ -30,6 +31,8 @@ class ViewCells {
     }
 
   private:
+    /// Adds the view being added to the cells of a convex hull; segments hold its boundary.
+    void mark(std::span<const Segment2> segments);
     [[nodiscard]] std::size_t cellOf(double offset) const;
     [[nodiscard]] std::size_t column(double x) const { return cellOf(x - box_.low.x); }
     [[nodiscard]] std::size_t row(double y) const { return cellOf(y - box_.low.y); }

@@ -186,6 +186,7 @@ std::vector<char> CoverCore::dominatedColumns() const {
 
 CoverBound raisePrices(CoverCore& core, double limit, const PriceRounds& how) {
     constexpr double kUnit = 0x1p-20;
+    constexpr double kMaxSum = 0x1p32;  // beyond, sums of multiples of the unit are not exact
     const std::size_t m = core.rows(), n = core.columns();
     CoverBound bound{0, std::vector<double>(n), std::vector<char>(n)};
     std::vector<double> best = core.price, price = core.price, reduced(n), direction(m);
@@ -193,10 +194,22 @@ CoverBound raisePrices(CoverCore& core, double limit, const PriceRounds& how) {
     double step = 1, top = -1;
     int stalled = 0;
     double newest = 1;  // of directions from the best prices
+    // Goes on from the best prices in shorter steps; returns false if these become too short.
+    const auto shorten = [&] {
+        step *= 0.7;
+        stalled = 0;
+        price = best;
+        newest = 1;
+        return step >= 0.005;
+    };
     constexpr double kMemory = 0.1;
     for (int round = 0; round < how.rounds; ++round) {
         std::fill(lack.begin(), lack.end(), 1);
         double value = std::accumulate(price.begin(), price.end(), 0.0);
+        if (value >= kMaxSum) {
+            if (!shorten()) break;
+            continue;
+        }
         for (std::size_t j = 0; j < n; ++j) {
             double rest = core.cost[j];
             for (const std::uint32_t row : core.rowsOf(j)) rest -= price[row];
@@ -216,20 +229,18 @@ CoverBound raisePrices(CoverCore& core, double limit, const PriceRounds& how) {
             if (std::ceil(top) >= limit) break;
         }
         if (++stalled >= how.patience) {
-            step *= 0.7;
-            stalled = 0;
-            price = best;
-            newest = 1;
-            if (step < 0.005) break;
+            if (!shorten()) break;
             continue;
         }
         double norm = 0;
+        bool is_cover = true;  // of exactly this cost
         for (std::size_t i = 0; i < m; ++i) {
             direction[i] += newest * (lack[i] - direction[i]);
             if (direction[i] > 0 || price[i] > 0) norm += direction[i] * direction[i];
+            is_cover = is_cover && lack[i] <= 0 && (lack[i] == 0 || price[i] == 0);
         }
         newest = how.newest;
-        if (norm == 0) break;  // a cover of exactly this cost
+        if (is_cover || norm == 0) break;
         const double length = step * (1.02 * limit - value) / norm;
         for (std::size_t i = 0; i < m; ++i)
             price[i] =

@@ -71,7 +71,7 @@ CoverBound raisePrices(CoverCore& core, double limit, const PriceRounds& how);
 /// from sums of rows. Prices and multipliers are multiples of 2^-20, so the bound holds in spite of
 /// rounding. For cores of which raisePrices() leaves a gap: slower, and far stronger. Ends early
 /// once a quarter of the columns are excluded.
-/// \return the bound; value 0 if the core is too large, or progress says stop
+/// \return the bound; value 0 if the core is too large. If progress says stop, that so far
 CoverBound raiseByCuts(const CoverCore& core, double limit, const Progress& progress);
 
 /// Finds columns that symmetries of the core map to each other: for each a column of its orbit, the

@@ -29,8 +29,8 @@ class CutProgram {
   public:
     explicit CutProgram(const CoverCore& core);
 
-    /// Solves the program. \return false if the simplex method failed
-    [[nodiscard]] bool solve();
+    /// Solves the program. \return false if the simplex method failed, or progress says stop
+    [[nodiscard]] bool solve(const Progress& progress);
     /// Computes the bound of the prices, with columns that no cover below the limit takes.
     [[nodiscard]] CoverBound bound(double limit) const;
     /// Adds cuts that the solution violates. \return their number
@@ -79,12 +79,15 @@ void CutProgram::add(CoverCut cut) {
     rows_.push_back(std::move(cut));
 }
 
-bool CutProgram::solve() {
+bool CutProgram::solve(const Progress& progress) {
     glp_smcp how;
     glp_init_smcp(&how);
     how.msg_lev = GLP_MSG_OFF;
     how.meth = GLP_DUALP;
-    return glp_simplex(program_.get(), &how) == 0 && glp_get_status(program_.get()) == GLP_OPT;
+    how.it_lim = 100;  // steps between looks at the progress
+    int code = GLP_EITLIM;
+    while (code == GLP_EITLIM && !progress.stopped()) code = glp_simplex(program_.get(), &how);
+    return code == 0 && glp_get_status(program_.get()) == GLP_OPT;
 }
 
 CoverBound CutProgram::bound(double limit) const {
@@ -176,10 +179,10 @@ CoverBound raiseByCuts(const CoverCore& core, double limit, const Progress& prog
     CoverBound best{0, std::vector<double>(core.columns()), std::vector<char>(core.columns())};
     std::size_t entries = 0;
     for (std::size_t row = 0; row < core.rows(); ++row) entries += core.columnsOf(row).size();
-    if (entries > kMaxEntries) return best;
+    if (entries == 0 || entries > kMaxEntries) return best;
     CutProgram program(core);
     int stalled = 0;
-    for (int round = 0; round < kMaxRounds && !progress.stopped() && program.solve(); ++round) {
+    for (int round = 0; round < kMaxRounds && program.solve(progress); ++round) {
         CoverBound bound = program.bound(limit);
         const double gain = bound.value - best.value;
         for (std::size_t j = 0; j < core.columns(); ++j)

@@ -77,11 +77,11 @@ struct SearchOptions {
 /// little; with six sensors or more it then computes overlapBound() and kicks at length. It removes
 /// the candidates that the bound excludes by their reduced costs, merges cells that the same
 /// remaining candidates see, and branches until value and bound are within the gap. Swap and Exact
-/// branch at once, without swaps, if the quick bound leaves few sets of up to five sensors and
-/// there is no budget. If a budget can be split among the kinds in more than 20'000 ways no tree is
-/// built, and a gap may remain. Returns early, with is_complete = false, if progress says stop.
-/// Deterministic for any number of threads unless it is stopped. A shard of starts ends after the
-/// swaps, one of the tree after its subtrees, see SearchShare.
+/// branch at once, without swaps from random starts, if the quick bound leaves few sets of up to
+/// five sensors and there is no budget. If a budget can be split among the kinds in more than
+/// 20'000 ways no tree is built, and a gap may remain. Returns early, with is_complete = false, if
+/// progress says stop. Deterministic for any number of threads unless it is stopped. A shard of
+/// starts ends after the swaps, one of the tree after its subtrees, see SearchShare.
 SearchResult search(const Problem& problem, const SearchOptions& options, Progress& progress);
 
 /// A cheapest solution that reaches a given value.

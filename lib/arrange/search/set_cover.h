@@ -29,11 +29,12 @@ struct SetCoverResult {
     bool is_coverable = false;  ///< false: some row is in no column, and nothing is chosen
 };
 
-/// Finds a minimum-cost cover. Removes dominated rows and columns; improves a greedy cover by
-/// local search with weights of rows (Gao, Weise & Li 2015); raises Lagrangian multipliers by
-/// subgradients, whose reduced costs exclude columns (Beasley 1990; Caprara, Fischetti & Toth
-/// 1999); and branches on the columns of the shortest row. Multipliers are multiples of 2^-20, so
-/// all sums of them are exact and bounds hold in spite of rounding. Deterministic for any number
+/// Finds a minimum-cost cover. Removes dominated rows and columns, and solves each component by
+/// itself, here and in branches; improves a greedy cover by local search with weights of rows (Gao,
+/// Weise & Li 2015); raises Lagrangian multipliers by subgradients, whose reduced costs exclude
+/// columns (Beasley 1990; Caprara, Fischetti & Toth 1999); adds Chvatal-Gomory cuts; and branches
+/// on the columns of the shortest row. Multipliers are multiples of 2^-20, so all sums of them are
+/// exact and bounds hold in spite of rounding. Deterministic for any number
 /// of threads unless `progress` says stop; cost and bound are valid even then.
 SetCoverResult minimumSetCover(const SetCover& problem, const SetCoverOptions& options,
                                Progress& progress);
