@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <exception>
@@ -164,9 +165,16 @@ void runInOrder(std::size_t count, const std::function<std::function<void()>(std
         control.stop();
         return 0;
     };
-    // A thread that waits within a job does not begin another one.
+    // A thread that waits within a job does not begin another one. An error of one job cancels the
+    // pipeline, but not the loops of jobs that still run: these would go on with half of a result.
     const auto run = [&](std::size_t i) {
-        return tbb::this_task_arena::isolate([&] { return work(i); });
+        return tbb::this_task_arena::isolate([&] {
+            tbb::task_group_context apart(tbb::task_group_context::isolated);
+            tbb::task_group group(apart);
+            std::function<void()> result;
+            group.run_and_wait([&] { result = work(i); });
+            return result;
+        });
     };
     const auto deliver = [](const std::function<void()>& result) { result(); };
     const std::size_t threads =

@@ -2,9 +2,12 @@
 #include "cli/batch.h"
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 #include "base/error.h"
 #include "cli/common_options.h"
@@ -100,6 +103,31 @@ TEST(RunInOrder, EndsWithWhatIsThrown) {
                                 return [] { throw std::runtime_error("full disk"); };
                             }),
                  std::runtime_error);
+}
+
+TEST(RunInOrder, AnErrorLeavesOtherJobsWhole) {
+    limitThreads(2);
+    std::atomic<bool> has_begun = false, has_thrown = false;
+    std::atomic<int> done = 0;
+    const auto wait_for = [](const std::atomic<bool>& event) {
+        for (int k = 0; k < 2000 && !event; ++k)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+    const auto work = [&](std::size_t i) -> std::function<void()> {
+        if (i == 0)
+            return [&] {
+                wait_for(has_begun);
+                has_thrown = true;
+                throw std::runtime_error("full disk");
+            };
+        has_begun = true;
+        wait_for(has_thrown);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        tbb::parallel_for(0, 1000, [&](int) { ++done; });
+        return [] {};
+    };
+    EXPECT_THROW(runInOrder(2, work), std::runtime_error);
+    EXPECT_EQ(done, has_begun ? 1000 : 0);
 }
 
 }  // namespace
