@@ -128,6 +128,7 @@ std::vector<WindowVertex> windowVertices(const Floor& floor, std::span<const Wit
         windows.insert(windows.end(), witness.windows.begin(), witness.windows.end());
     for (const Window& window : windows) vertices.push_back({window.far, window.error});
     std::vector<Segment2> segments;
+    segments.reserve(windows.size());
     for (const Window& window : windows) segments.push_back({window.near, window.far});
     const SegmentGrid grid(segments, kClearance);
     constexpr std::size_t kBlock = 64;

@@ -186,7 +186,7 @@ CoverBound raiseByCuts(const CoverCore& core, double limit, const Progress& prog
         CoverBound bound = program.bound(limit);
         const double gain = bound.value - best.value;
         for (std::size_t j = 0; j < core.columns(); ++j)
-            bound.excluded[j] = bound.excluded[j] | best.excluded[j];
+            if (best.excluded[j] != 0) bound.excluded[j] = 1;
         bound.value = std::max(bound.value, best.value);
         best = std::move(bound);
         if (std::ceil(best.value) >= limit) break;

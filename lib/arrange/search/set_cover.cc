@@ -26,7 +26,7 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 /// Keeps what both bounds exclude, and the higher one.
 void takeBetter(const CoverBound& other, CoverBound& bound) {
     for (std::size_t j = 0; j < bound.excluded.size(); ++j)
-        bound.excluded[j] = bound.excluded[j] | other.excluded[j];
+        if (other.excluded[j] != 0) bound.excluded[j] = 1;
     if (other.value <= bound.value) return;
     bound.value = other.value;
     bound.fraction = other.fraction;
@@ -159,7 +159,10 @@ double CoverTree::searchParts(const CoverCore& node, std::vector<CoverCore> part
         const double open = tree.search(std::move(parts[i]), depth);
         is_complete = is_complete && open == kNoBound;
         sum += std::max(std::min(std::ceil(open), tree.bestCost()) - least[i], 0.0);
-        cost += tree.best().empty() ? kNoBound : tree.bestCost();
+        if (tree.best().empty())
+            cost = kNoBound;
+        else
+            cost += tree.bestCost();
         cover.insert(cover.end(), tree.best().begin(), tree.best().end());
     }
     if (sum >= best_cost_) return kNoBound;
@@ -167,7 +170,8 @@ double CoverTree::searchParts(const CoverCore& node, std::vector<CoverCore> part
         best_cost_ = cost;
         best_ = std::move(cover);
     }
-    return is_complete ? kNoBound : sum;
+    if (is_complete) return kNoBound;
+    return sum;
 }
 
 /// Divides the tree in subtrees, searched in parallel and each from the same best cover.
