@@ -24,7 +24,6 @@ Slice wallSlice(const Environment& environment, double height) {
         return isWall(record) || record.keyword() == "door" || record.keyword() == "window";
     };
     Slice walls;
-    walls.height = height;
     for (std::size_t i = 0; i < slice.sheets.size(); ++i)
         if (is_wall(slice.sheet_owners[i])) walls.sheets.push_back(slice.sheets[i]);
     for (std::size_t i = 0; i < slice.solids.size(); ++i)

@@ -40,7 +40,6 @@ Slice cutOf(std::span<const Element> elements, const std::span<const std::size_t
             double bottom, double top, bool is_slice) {
     assert(is_slice || bottom <= top);  // a slice at NaN is empty
     Slice cut;
-    cut.height = bottom;
     const auto stands = [&](const auto& part) { return part.bottom <= top && bottom <= part.top; };
     forEachOf(elements, which, [&](const Element& element, std::size_t owner) {
         for (const Sheet& sheet : element.body.sheets) {
@@ -171,6 +170,7 @@ struct Environment::Levels {
     std::mutex mutex;
     std::vector<std::shared_ptr<const Level>> kept;
     std::vector<std::weak_ptr<const Level>> let_go;
+    std::shared_ptr<Level::Cuts> cuts = std::make_shared<Level::Cuts>();
 
     /// Returns the evicted level of this height if a caller still holds it, else a new one.
     std::shared_ptr<const Level> find(double height, const std::shared_ptr<const Data>& data) {
@@ -178,7 +178,7 @@ struct Environment::Levels {
         for (const auto& held : let_go)
             if (auto level = held.lock(); level != nullptr && level->height() == height)
                 return level;
-        return std::shared_ptr<const Level>(new Level(data, height));
+        return std::shared_ptr<const Level>(new Level(data, height, cuts));
     }
 
     /// Evicts the oldest levels above the limits, never the latest.

@@ -4,7 +4,6 @@
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
-#include <cassert>
 #include <utility>
 
 #include "geom/arrangement.h"
@@ -23,28 +22,40 @@ std::vector<Region> less(const Regions& indoor, std::vector<Polygon> solids) {
 
 }  // namespace
 
-Level::Level(Slice slice) : height_(slice.height), slice_(std::move(slice)) {}
-
-Level::Level(std::shared_ptr<const Environment::Data> room, double height)
-    : room_(std::move(room)), height_(height) {}
-
-const Slice& Level::slice() const {
-    return slice_.get([this] { return uncancelled([this] { return room_->slice(height_); }); });
+std::shared_ptr<const Level::Cut> Level::Cuts::find(Slice slice) {
+    const std::scoped_lock lock(mutex_);
+    std::erase_if(cuts_, [](const auto& cut) { return cut.expired(); });
+    for (const auto& held : cuts_)
+        if (auto cut = held.lock(); cut != nullptr && cut->slice == slice) return cut;
+    auto cut = std::make_shared<const Cut>(std::move(slice));
+    cuts_.push_back(cut);
+    return cut;
 }
 
+Level::Level(std::shared_ptr<const Environment::Data> room, double height,
+             std::shared_ptr<Cuts> cuts)
+    : room_(std::move(room)), height_(height), cuts_(std::move(cuts)) {}
+
+const Level::Cut& Level::cut() const {
+    return *cut_.get([this] {
+        return cuts_->find(uncancelled([this] { return room_->slice(height_); }));
+    });
+}
+
+const Slice& Level::slice() const { return cut().slice; }
+
 const std::vector<Region>& Level::freeFloor() const {
-    assert(room_ != nullptr);
-    return free_floor_.get([this] {
+    return cut().free_floor.get([this] {
         return uncancelled([this] { return less(room_->walls->indoor, slice().solids); });
     });
 }
 
 const PolygonIndex& Level::solids() const {
-    return solids_.get([this] { return PolygonIndex(slice().solids); });
+    return cut().solids.get([this] { return PolygonIndex(slice().solids); });
 }
 
 const VisibilityMap& Level::sight() const {
-    return sight_.get([this] {
+    return cut().sight.get([this] {
         return uncancelled(
             [this] { return VisibilityMap(slice().straightLines(), slice().curves()); });
     });
@@ -59,11 +70,10 @@ void Level::prepareSight() const {
 }
 
 bool Level::isFree(Point2 p) const {
-    assert(room_ != nullptr);
     if (room_->walls->indoorIndex().locate(p) != Side::Inside || solids().holder(p)) return false;
     const std::vector<Segment2>& sheets = slice().sheets;
     bool is_on_sheet = false;
-    sheets_.get([&] { return SegmentTree(sheets); }).search({p, p}, 0, [&](std::size_t i) {
+    cut().sheets.get([&] { return SegmentTree(sheets); }).search({p, p}, 0, [&](std::size_t i) {
         is_on_sheet = is_on_sheet || intersects(sheets[i], {p, p});
     });
     return !is_on_sheet;
@@ -87,10 +97,10 @@ void Level::query(Point2 viewpoint, double max_range, VisibleRegion& region) con
 }
 
 std::size_t Level::linesMade() const {
-    const Slice* const slice = slice_.peek();
-    if (slice == nullptr) return 0;
-    std::size_t lines = slice->sheets.size();
-    for (const Polygon& solid : slice->solids) lines += solid.size();
+    const std::shared_ptr<const Cut>* const cut = cut_.peek();
+    if (cut == nullptr) return 0;
+    std::size_t lines = (*cut)->slice.sheets.size();
+    for (const Polygon& solid : (*cut)->slice.solids) lines += solid.size();
     return lines;
 }
 

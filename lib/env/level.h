@@ -2,7 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <optional>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
@@ -13,20 +14,17 @@
 namespace ispace {
 
 /// The environment at one height; Environment::level() returns it. Each derived part below is
-/// computed at the first call and shared by all threads.
+/// computed at the first call and shared by all threads, and by all levels with the same slice:
+/// between the tops of furniture and the walls' heights are equal.
 class Level {
   public:
-    /// Creates a level of a slice alone, without a room and so without a free floor.
-    explicit Level(Slice slice);
-
     [[nodiscard]] double height() const { return height_; }
     /// Returns the slice at this height, with owners.
     [[nodiscard]] const Slice& slice() const;
-    /// Returns the indoor region less the solids. \pre the level belongs to an environment
+    /// Returns the indoor region less the solids.
     [[nodiscard]] const std::vector<Region>& freeFloor() const;
 
     /// Returns true strictly indoors, outside all solids and off the lines of the slice; exact.
-    /// \pre the level belongs to an environment
     [[nodiscard]] bool isFree(Point2 p) const;
     /// Returns true deeper in a solid than kRayEpsilon, where a sensor is blind.
     [[nodiscard]] bool isInsideSolid(Point2 p) const;
@@ -45,18 +43,35 @@ class Level {
 
   private:
     friend class Environment;
-    Level(std::shared_ptr<const Environment::Data> room, double height);
+    /// The slice and its derived parts.
+    struct Cut {
+        explicit Cut(Slice cut) : slice(std::move(cut)) {}
+        Slice slice;
+        Lazy<std::vector<Region>> free_floor;
+        Lazy<PolygonIndex> solids;
+        Lazy<SegmentTree> sheets;
+        Lazy<VisibilityMap> sight;
+    };
+    /// The cuts of an environment that levels hold. Thread-safe.
+    class Cuts {
+      public:
+        /// Returns the cut with this slice.
+        std::shared_ptr<const Cut> find(Slice slice);
 
+      private:
+        std::mutex mutex_;
+        std::vector<std::weak_ptr<const Cut>> cuts_;
+    };
+    Level(std::shared_ptr<const Environment::Data> room, double height, std::shared_ptr<Cuts> cuts);
+
+    [[nodiscard]] const Cut& cut() const;
     [[nodiscard]] const PolygonIndex& solids() const;
     [[nodiscard]] const VisibilityMap& sight() const;
 
     std::shared_ptr<const Environment::Data> room_;
     double height_;
-    Lazy<Slice> slice_;
-    Lazy<std::vector<Region>> free_floor_;
-    Lazy<PolygonIndex> solids_;
-    Lazy<SegmentTree> sheets_;
-    Lazy<VisibilityMap> sight_;
+    std::shared_ptr<Cuts> cuts_;
+    Lazy<std::shared_ptr<const Cut>> cut_;
 };
 
 }  // namespace ispace

@@ -67,7 +67,6 @@ TEST(Level, AnswersAsItsSliceDoes) {
         const auto level = room.level(height);
         const Slice slice = room.slice(height);
         EXPECT_EQ(level->height(), height);
-        EXPECT_EQ(level->slice().height, height);
         EXPECT_EQ(level->slice().sheets, slice.sheets);
         EXPECT_EQ(level->slice().solids, slice.solids);
         EXPECT_EQ(level->slice().sheet_owners, slice.sheet_owners);
@@ -114,9 +113,8 @@ TEST(Level, SeesAsAVisibilityMapAndNothingFromWithinSolids) {
     EXPECT_TRUE(region.edges.empty());
     EXPECT_TRUE(region.is_whole);
     EXPECT_EQ(region.max_range, 4);
-    EXPECT_TRUE(Level(Slice{}).slice().sheets.empty());
-    Level(Slice{}).query({2, 2}, 4, region);
-    EXPECT_NEAR(area(region), 16 * M_PI, 1e-6);
+    room.level(9)->query({2, 2}, 4, region);
+    EXPECT_NEAR(area(region), 16 * M_PI, 1e-6) << "above the walls";
 }
 
 TEST(Level, IsTheSameOneForAll) {
@@ -133,6 +131,22 @@ TEST(Level, IsTheSameOneForAll) {
     EXPECT_EQ(level->freeFloor().size(), 1U);
 }
 
+TEST(Level, EqualCutsAreShared) {
+    const Environment room = environment(kRoom);
+    // The low cube alone, both cubes at the height where they touch, the upper one, the walls.
+    const auto low = room.level(0.1), also_low = room.level(0.3), both = room.level(0.5);
+    const auto high = room.level(0.7), above = room.level(1.2);
+    EXPECT_NE(low, also_low);
+    EXPECT_EQ(also_low->height(), 0.3);
+    EXPECT_EQ(&low->slice(), &also_low->slice());
+    EXPECT_EQ(&low->freeFloor(), &also_low->freeFloor());
+    for (const auto& other : {both, high, above}) EXPECT_NE(&low->slice(), &other->slice());
+    // As many solids, elsewhere.
+    EXPECT_EQ(low->slice().solids.size(), high->slice().solids.size());
+    const Environment edited = environment(std::string(kRoom) + "cube at=3,0 size=0.2,0.2,0.2\n");
+    EXPECT_NE(&edited.level(0.1)->slice(), &edited.level(0.3)->slice());
+}
+
 TEST(Level, OutlivesItsEnvironment) {
     const auto level = environment(kRoom).level(0.15);
     EXPECT_TRUE(level->isFree({0, 0}));
@@ -143,7 +157,7 @@ TEST(Level, FewAreKept) {
     const Environment room = environment(kRoom);
     const std::weak_ptr<const Level> first = room.level(0.001), used = room.level(0.002);
     const auto held = used.lock();
-    for (int i = 10; i < 1000; ++i) EXPECT_EQ(room.level(0.001 * i)->slice().height, 0.001 * i);
+    for (int i = 10; i < 1000; ++i) EXPECT_EQ(room.level(0.001 * i)->height(), 0.001 * i);
     EXPECT_TRUE(first.expired());
     EXPECT_TRUE(held->isFree({0, 0}));
 }

@@ -13,13 +13,13 @@ struct Body;
 
 /// The cut through all bodies at one height, or the band between two heights, as seen from above.
 struct Slice {
-    double height = 0;             ///< of a band: its lower end
     std::vector<Segment2> sheets;  ///< walls without thickness
     std::vector<Polygon> solids;   ///< closed sets, counter-clockwise; may overlap
     /// The ellipse of a solid; the solid is outlineOf() the ellipse, a polygon of the same area.
     struct Round {
         Ellipse curve;
         std::size_t solid = 0;  ///< index in `solids`
+        friend bool operator==(const Round&, const Round&) = default;
     };
     std::vector<Round> rounds = {};  ///< ascending by solid; empty in a band
     /// Indices in Environment::elements(); empty in a slice without an environment.
@@ -36,6 +36,7 @@ struct Slice {
     [[nodiscard]] std::vector<Ellipse> curves() const;
     /// Returns true if p lies in a solid or on its edge. O(n); Level answers faster.
     [[nodiscard]] bool blocked(Point2 p) const;
+    friend bool operator==(const Slice&, const Slice&) = default;
 };
 
 template <typename Visit>

@@ -20,7 +20,7 @@ Polygon square(Point2 center, double half) {
 
 /// A room of 10 m with a sheet along x = 2 from y = 0 on, and a closed square of 2 m at -2,-2.
 Slice room() {
-    Slice band{.height = 0, .sheets = {}, .solids = {}};
+    Slice band;
     forEachEdge(square({0, 0}, 5), [&](const Segment2& line) { band.sheets.push_back(line); });
     band.sheets.push_back({{2, 0}, {2, 5}});
     band.solids.push_back(square({-2, -2}, 1));

@@ -31,7 +31,7 @@ namespace ispace {
 /// once built; results do not depend on the number of threads.
 class RayWorld {
   public:
-    /// Builds a world for level rays that start at `slice.height`; their z is ignored.
+    /// Builds a world for level rays that start in the slice; their z is ignored.
     static RayWorld ofSlice(const Slice& slice);
     /// Builds the world of the environment's slice at this height.
     /// \param before such a world of the same height: its tree is copied and updated if few

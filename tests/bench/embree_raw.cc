@@ -101,11 +101,11 @@ RawEmbree::RawEmbree(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 RawEmbree::RawEmbree(RawEmbree&&) noexcept = default;
 RawEmbree::~RawEmbree() = default;
 
-RawEmbree RawEmbree::ofSlice(const Slice& slice) {
+RawEmbree RawEmbree::ofSlice(const Slice& slice, double height) {
     std::vector<Vertex> vertices;
     slice.forEachLine([&](const Segment2& line) {
-        const double low = slice.height - 1;
-        const double high = slice.height + 1;
+        const double low = height - 1;
+        const double high = height + 1;
         vertices.push_back(vertex(line.a.x, line.a.y, low));
         vertices.push_back(vertex(line.b.x, line.b.y, low));
         vertices.push_back(vertex(line.b.x, line.b.y, high));

@@ -21,7 +21,8 @@ namespace ispace::bench {
 /// packets with prepared directions, no contact rule, no exact distance.
 class RawEmbree {
   public:
-    static RawEmbree ofSlice(const Slice& slice);
+    /// \param height of the rays
+    static RawEmbree ofSlice(const Slice& slice, double height);
     static RawEmbree ofEnvironment(const Environment& environment);
     RawEmbree(RawEmbree&&) noexcept;
     ~RawEmbree();

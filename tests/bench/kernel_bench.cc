@@ -200,7 +200,7 @@ class FansInARoom {
           lines_(slice_.straightLines()),
           world_(lines_),
           prototype_(lines_),
-          raw_(bench::RawEmbree::ofSlice(slice_)),
+          raw_(bench::RawEmbree::ofSlice(slice_, kScanHeight)),
           sensors_(bench::fans(scene_, 200, true)),
           ranges_(static_cast<std::size_t>(beams) + bench::FanPrototype::Fan::kBlock) {
         for (Sensor& sensor : sensors_) {

@@ -82,7 +82,6 @@ inline Body meshed(const TriangleMesh& mesh, const std::string& keys = "") {
 
 inline Slice cut(const Body& body, double height) {
     Slice slice;
-    slice.height = height;
     cutMeshes(body, height, slice);
     return slice;
 }

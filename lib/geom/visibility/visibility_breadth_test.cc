@@ -61,7 +61,7 @@ void mustBeSame(const std::vector<VisibilityEdge>& edges,
 TEST(VisibilityBreadth, GivesTheBitsOfDepth) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         const Region plan = makePlan(seed, {5, 4, 60, 9, 120});
-        const ExpansionMesh mesh(test::linesOf(plan));
+        const ExpansionMesh mesh(sightPieces(test::linesOf(plan)));
         const double farthest = length(mesh.box.high - mesh.box.low);
         std::mt19937_64 random(seed);
         for (int i = 0; i < 200; ++i) {
@@ -79,7 +79,7 @@ TEST(VisibilityBreadth, GivesTheBitsOfDepth) {
 TEST(VisibilityBreadth, PrunesInTheOpen) {
     // Hardly anything is within range: views end at edges of triangles.
     const std::vector<Segment2> lines = {{{-40, -3}, {40, -3}}, {{50, 60}, {60, 50}}};
-    const ExpansionMesh mesh(lines);
+    const ExpansionMesh mesh(sightPieces(lines));
     const double farthest = length(mesh.box.high - mesh.box.low);
     for (const double range : {1.0, 3.0, 3.5, 20.0, 500.0}) {
         const auto edges = breadthFirst<true>(mesh, {1, 2}, range, farthest);

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "base/simd.h"
+#include "geom/visibility/mesh_tiles.h"
 #include "geom/visibility/visibility.h"
 #include "geom/visibility/visibility_breadth.h"
 #include "geom/visibility/visibility_mesh.h"
@@ -181,44 +182,36 @@ ISPACE_SIMD_CLONES [[gnu::flatten]] void queryBounded(const Query& query) {
 }  // namespace
 
 struct VisibilityMap::Data {
-    Data(ExpansionMesh lines, RoundBodies bodies)
-        : mesh(std::move(lines)), rounds(std::move(bodies)) {}
-    ExpansionMesh mesh;
-    RoundBodies rounds;
-
-    static std::unique_ptr<Data> of(std::span<const Segment2> lines,
-                                    std::span<const Ellipse> ellipses) {
+    Data(std::span<const Segment2> lines, std::span<const Ellipse> ellipses) {
         constexpr std::size_t kMany = 1000;
-        std::optional<RoundBodies> rounds;
         const auto make_rounds = [&] {
             rounds.emplace(ellipses, static_cast<Index>(lines.size()));
         };
-        std::optional<ExpansionMesh> mesh;
-        const auto make_mesh = [&] { mesh.emplace(lines); };
+        const auto make_meshes = [&] { meshes.emplace(lines); };
         if (ellipses.size() < kMany) {
             make_rounds();
-            make_mesh();
+            make_meshes();
         } else {
             // A waiting thread must not start other work.
-            tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(make_rounds, make_mesh); });
+            tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(make_rounds, make_meshes); });
         }
-        return std::make_unique<Data>(std::move(*mesh), std::move(*rounds));
     }
+    std::optional<MeshTiles> meshes;
+    std::optional<RoundBodies> rounds;
 };
 
 VisibilityMap::VisibilityMap(std::span<const Segment2> lines, std::span<const Ellipse> rounds)
-    : data_(Data::of(lines, rounds)) {}
+    : data_(std::make_unique<Data>(lines, rounds)) {}
 VisibilityMap::VisibilityMap(VisibilityMap&&) noexcept = default;
 VisibilityMap& VisibilityMap::operator=(VisibilityMap&&) noexcept = default;
 VisibilityMap::~VisibilityMap() = default;
 
 void VisibilityMap::query(Point2 viewpoint, double max_range, VisibleRegion& region) const {
     queryLines(viewpoint, max_range, region);
-    if (!data_->rounds.empty()) data_->rounds.cut(region);
+    if (!data_->rounds->empty()) data_->rounds->cut(region);
 }
 
 void VisibilityMap::queryLines(Point2 viewpoint, double max_range, VisibleRegion& region) const {
-    const ExpansionMesh& mesh = data_->mesh;
     viewpoint = withinSight(viewpoint);
     region.viewpoint = viewpoint;
     region.max_range = max_range;
@@ -226,6 +219,7 @@ void VisibilityMap::queryLines(Point2 viewpoint, double max_range, VisibleRegion
     region.edges.clear();
     if (!(max_range > 0)) return;
 
+    const ExpansionMesh& mesh = data_->meshes->meshFor(viewpoint, max_range);
     const bool inside = isStrictlyInside(mesh.box, viewpoint);
     if (!inside) viewpoint = offBoundary(mesh.box, viewpoint);
     Index triangle = 0;
@@ -249,7 +243,7 @@ void VisibilityMap::queryLines(Point2 viewpoint, double max_range, VisibleRegion
     // An unbounded view ends somewhere beyond all lines.
     const double range =
         std::min(max_range, std::isinf(max_range) ? std::max(farthestIn(mesh.box, viewpoint),
-                                                             data_->rounds.farthest(viewpoint))
+                                                             data_->rounds->farthest(viewpoint))
                                                   : kMaxSight);
     if (touches) region.viewpoint = viewpoint;
     region.max_range = range;

@@ -17,7 +17,6 @@
 #include <optional>
 #include <utility>
 
-#include "geom/arrangement.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 
@@ -208,12 +207,16 @@ class LineFinder {
 
 }  // namespace
 
-ExpansionMesh::ExpansionMesh(std::span<const Segment2> all_lines) : in() {
+std::vector<LinePiece> sightPieces(std::span<const Segment2> all_lines) {
     std::vector<Segment2> lines(all_lines.begin(), all_lines.end());
     for (auto& [a, b] : lines) a = withinSight(a), b = withinSight(b);
-    const std::vector<LinePiece> pieces = noded(linePieces(lines));
+    return noded(linePieces(lines));
+}
+
+ExpansionMesh::ExpansionMesh(std::span<const LinePiece> pieces) : in() {
+    std::vector<Segment2> lines;
     std::vector<Index> names;
-    lines.clear();
+    lines.reserve(pieces.size());
     names.reserve(pieces.size());
     for (const LinePiece& piece : pieces) {
         lines.push_back(piece.segment);

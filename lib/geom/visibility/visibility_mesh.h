@@ -11,6 +11,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "geom/arrangement.h"
 #include "geom/point.h"
 #include "geom/predicates.h"
 #include "geom/visibility/visibility.h"
@@ -52,6 +53,10 @@ inline std::uint32_t beforeOf(std::uint32_t portal) {
     return portal - 1 + 3 * static_cast<std::uint32_t>(portal % 3 == 0);
 }
 
+/// Cuts lines, clamped to kMaxSight, where they meet.
+/// \throws FormatError (without a line number) for lines that cross by the million
+std::vector<LinePiece> sightPieces(std::span<const Segment2> lines);
+
 /// Triangulation of lines and a box around them; the box is not a line, and the view beyond it is
 /// free.
 struct ExpansionMesh {
@@ -65,8 +70,8 @@ struct ExpansionMesh {
     double columns_per_metre = 0, rows_per_metre = 0;
     std::vector<std::uint32_t> cells;
 
-    /// \throws FormatError (without a line number) for lines that cross by the million
-    explicit ExpansionMesh(std::span<const Segment2> lines);
+    /// \param pieces as of sightPieces()
+    explicit ExpansionMesh(std::span<const LinePiece> pieces);
 
     /// Returns the line that blocks the view at an edge, seen from inside, or the portal behind it.
     [[nodiscard]] std::uint32_t targetOf(std::uint32_t edge) const {

@@ -141,10 +141,10 @@ Document readMeshWalls(const std::string& operand, const ImportOptions& options,
     Document mesh = meshDocument(operand, options, schemas);
     loadMeshes(mesh, operand, options);
     const Body body = bodyOf(mesh.records.front());
-    Slice slice{options.slice_walls.value_or(kDefaultCut), {}, {}};
-    cutMeshes(body, slice.height, slice);
+    const double height = options.slice_walls.value_or(kDefaultCut);
+    Slice slice;
+    cutMeshes(body, height, slice);
     std::vector<PlanShape> shapes;
-    const double height = slice.height;
     std::size_t bytes = 0;  // as STL has them
     for (const Mesh& part : body.meshes) bytes += 50 * part.triangles.size();
     Budget work(bytes, options.max_work);

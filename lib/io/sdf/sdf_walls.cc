@@ -257,7 +257,7 @@ std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::s
         else if (!work.take(1 + triangles->triangles.size() / kTrianglesPerUnit))
             failFile(name, "cuts of repeated meshes make " + work.excess(), shapes[i].line);
         const Body body = bodyOf(shapes[i], *triangles, schemas);
-        Slice slice{height, {}, {}};
+        Slice slice;
         cutMeshes(body, height, slice);
         std::vector<PlanPath> paths = cutPaths(std::move(slice), work);
         if (!paths.empty())
