@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <map>
+#include <utility>
 
 #include "arrange/candidate.h"
 #include "arrange/case_room.h"
@@ -164,7 +165,7 @@ struct CandidatePool::Data {
         std::size_t proposed = 0, valid = 0;
         for (SitesAtHeight& level : levels) {
             proposed += level.sites.size();
-            level.sites = validSites(validityAt(level.height), level.sites, progress);
+            level.sites = validSites(validityAt(level.height), std::move(level.sites), progress);
             std::erase_if(level.sites, [&](const Site& site) {
                 return !isValidElsewhere(level.height, site.place);
             });

@@ -2,12 +2,14 @@
 #include "arrange/placement_rules.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -70,14 +72,16 @@ struct SiteValidity::Data {
     Data(const Environment& environment, SiteRules wanted)
         : rules(std::move(wanted)),
           level(environment.level(rules.height)),
-          obstacles(linesOf(environment.indoor(), level->slice())),
-          walls(linesOf(wallSlice(environment, rules.height))),
           keep_out(rules.keep_out),
-          keep_in(rules.keep_in) {}
+          keep_in(rules.keep_in) {
+        if (!rules.judges_inside || rules.clearance > kWeldDistance)
+            obstacles.emplace(linesOf(environment.indoor(), level->slice()));
+        if (rules.wall_within) walls.emplace(linesOf(wallSlice(environment, rules.height)));
+    }
 
     SiteRules rules;
     std::shared_ptr<const Level> level;
-    LineFinder obstacles, walls;
+    std::optional<LineFinder> obstacles, walls;  // if a rule needs them
     PolygonIndex keep_out, keep_in;
 };
 
@@ -91,14 +95,14 @@ bool SiteValidity::isValid(Point2 place) const {
     const SiteRules& rules = data.rules;
     const bool is_free = rules.judges_inside ? data.level->isFree(place)
                                              : !data.level->isInsideSolid(place) &&
-                                                   !data.obstacles.anyWithin(place, kWeldDistance);
+                                                   !data.obstacles->anyWithin(place, kWeldDistance);
     if (!is_free || data.keep_out.holder(place)) return false;
     if (!data.keep_in.empty() && !data.keep_in.holder(place)) return false;
     // Distances round: a site at exactly the required distance is valid.
     if (rules.clearance > kWeldDistance &&
-        data.obstacles.anyWithin(place, rules.clearance - kWeldDistance))
+        data.obstacles->anyWithin(place, rules.clearance - kWeldDistance))
         return false;
-    return !rules.wall_within || data.walls.anyWithin(place, *rules.wall_within + kWeldDistance);
+    return !rules.wall_within || data.walls->anyWithin(place, *rules.wall_within + kWeldDistance);
 }
 
 namespace {
@@ -107,7 +111,7 @@ namespace {
 std::vector<Site> withoutDoubles(std::vector<Site> sites) {
     std::vector<std::size_t> order(sites.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&sites](std::size_t a, std::size_t b) {
+    tbb::parallel_sort(order.begin(), order.end(), [&sites](std::size_t a, std::size_t b) {
         const Point2 p = sites[a].place, q = sites[b].place;
         return lexLess(p, q) || (!lexLess(q, p) && a < b);
     });
@@ -132,7 +136,7 @@ std::vector<Site> withoutDoubles(std::vector<Site> sites) {
 
 }  // namespace
 
-std::vector<Site> validSites(const SiteValidity& validity, const std::vector<Site>& sites,
+std::vector<Site> validSites(const SiteValidity& validity, std::vector<Site> sites,
                              Progress& progress) {
     std::vector<char> is_valid(sites.size());
     progress.begin("checking places", static_cast<std::int64_t>(sites.size()));
@@ -141,11 +145,9 @@ std::vector<Site> validSites(const SiteValidity& validity, const std::vector<Sit
         progress.advance(1);
     });
     progress.end();
-    std::vector<Site> valid;
-    valid.reserve(static_cast<std::size_t>(std::count(is_valid.begin(), is_valid.end(), 1)));
-    for (std::size_t i = 0; i < sites.size(); ++i)
-        if (is_valid[i] != 0) valid.push_back(sites[i]);
-    return withoutDoubles(std::move(valid));
+    std::size_t next = 0;
+    std::erase_if(sites, [&](const Site& /*site*/) { return is_valid[next++] == 0; });
+    return withoutDoubles(std::move(sites));
 }
 
 namespace {

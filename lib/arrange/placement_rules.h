@@ -162,7 +162,7 @@ class SiteValidity {
 
 /// Returns the valid sites, in order; tests them in parallel. Merges sites at the same point: it
 /// occurs where it came first, with the headings of all.
-std::vector<Site> validSites(const SiteValidity& validity, const std::vector<Site>& sites,
+std::vector<Site> validSites(const SiteValidity& validity, std::vector<Site> sites,
                              Progress& progress);
 
 /// Reads a list of sites from CSV text: `x,y` or `x,y,heading` per line, in metres and degrees; `#`
