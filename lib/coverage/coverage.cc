@@ -247,14 +247,12 @@ CoveredSet heardByEnough(const std::vector<const SensorView*>& receivers, const 
 /// Returns the covered sets of these views: one for each laser and ranger, then one for all
 /// receivers.
 std::vector<CoveredSet> setsOf(const std::vector<SensorView>& views, const Grid& grid) {
-    std::vector<CoveredSet> sets;
-    std::vector<const SensorView*> receivers;
-    for (const SensorView& view : views) {
-        if (view.isPartial())
-            receivers.push_back(&view);
-        else
-            sets.push_back({view.cells, view.region});
-    }
+    std::vector<const SensorView*> receivers, others;
+    for (const SensorView& view : views) (view.isPartial() ? receivers : others).push_back(&view);
+    std::vector<CoveredSet> sets(others.size());
+    tbb::parallel_for(std::size_t{0}, sets.size(), [&](std::size_t i) {
+        sets[i] = {others[i]->cells, others[i]->region};
+    });
     if (!receivers.empty()) sets.push_back(heardByEnough(receivers, grid));
     return sets;
 }

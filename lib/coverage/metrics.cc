@@ -62,7 +62,7 @@ std::vector<std::uint16_t> timesHeard(const Coverage& coverage) {
 void addSensorMetrics(Coverage& coverage, const std::vector<std::uint32_t>& times) {
     const double cell_area = coverage.target.grid.cellArea();
     const std::vector<std::uint16_t> heard = timesHeard(coverage);
-    for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
+    tbb::parallel_for(std::size_t{0}, coverage.sensors.size(), [&](std::size_t i) {
         const SensorView& view = coverage.sensors[i];
         SensorMetrics& metrics = coverage.report.sensors[i];
         const std::size_t seen = view.cells.count();
@@ -72,7 +72,7 @@ void addSensorMetrics(Coverage& coverage, const std::vector<std::uint32_t>& time
                                               : countSeenOnce(view.cells, times);
         metrics.marginal.grid = static_cast<double>(alone) * cell_area;
         if (!is_receiver) metrics.overlap.grid = static_cast<double>(seen - alone) * cell_area;
-    }
+    });
 }
 
 /// Adds the unseen pieces of free floor, the largest first.
@@ -131,8 +131,10 @@ double shareOf(double part, double whole) {
 void addCellMetrics(Coverage& coverage, const std::vector<Zone>& zones) {
     const Target& target = coverage.target;
     const double cell_area = target.grid.cellArea();
-    const CellSet covered = coveredCells(coverage);
     const std::vector<std::uint32_t> times = timesSeen(coverage);
+    CellSet covered(times.size());
+    for (std::size_t cell = 0; cell < times.size(); ++cell)
+        if (times[cell] > 0) covered.set(cell);
     CoverageReport& report = coverage.report;
     addSensorMetrics(coverage, times);
     report.total_effective_area.grid = static_cast<double>(covered.count()) * cell_area;
