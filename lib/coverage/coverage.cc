@@ -112,6 +112,15 @@ void runBoth(F f, G g) {
                          [&] { tbb::this_task_arena::isolate(g); });
 }
 
+/// Returns a range that no level laser reaches.
+double reachOfScans(const Scene& scene) {
+    constexpr double kBeyond = 1.001;
+    double reach = 0;
+    for (const Sensor& sensor : scene.sensors)
+        if (scansSlice(sensor)) reach = std::max(reach, kBeyond * maxRange(sensor.model));
+    return reach;
+}
+
 /// Computes the view of each laser, ranger and receiver of a scene, in this order, in parallel.
 class Viewer {
   public:
@@ -227,7 +236,7 @@ class Viewer {
     Worlds& worlds_;
     const Grid& grid_;
     const CoverageOptions& options_;
-    VisibleArea sight_{scene_.environment, options_.plane, &worlds_};
+    VisibleArea sight_{scene_.environment, options_.plane, &worlds_, reachOfScans(scene_)};
     std::vector<SensorView> views_;
 };
 

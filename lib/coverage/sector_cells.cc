@@ -60,12 +60,12 @@ struct Stretch {
 /// Rasterises the views of one position after another and reuses the memory.
 class SectorRaster {
   public:
-    void run(const Grid& grid, const Level& level, Point2 place, double max_range,
+    void run(const Grid& grid, const LevelViews& views, Point2 place, double max_range,
              std::span<const Angle> limits, CellParts& parts);
 
   private:
     void setLimits(std::span<const Angle> limits);
-    void rasterise(const Level& level);
+    void rasterise(const LevelViews& views);
     void cutAtRange();
     void takeCentre();
     void cutAt(std::size_t limit, int begin, int end);
@@ -140,14 +140,14 @@ void SectorRaster::forEachCell(int row, int begin, int end, Visit visit) {
             visit(64 * i + std::countr_zero(bits));
 }
 
-void SectorRaster::run(const Grid& grid, const Level& level, Point2 place, double max_range,
+void SectorRaster::run(const Grid& grid, const LevelViews& views, Point2 place, double max_range,
                        std::span<const Angle> limits, CellParts& parts) {
     grid_ = grid;
     x_axis_ = GridAxis::columnsOf(grid);
     place_ = place;
     max_range_ = max_range;
     setLimits(limits);
-    rasterise(level);
+    rasterise(views);
     cutAtRange();
     takeCentre();
     cuts_.resize(limits_.size() * dy_.size());
@@ -185,8 +185,8 @@ void SectorRaster::setLimits(std::span<const Angle> limits) {
 }
 
 /// Rasterises the cells strictly inside the outline of the view, within the bounds of the range.
-void SectorRaster::rasterise(const Level& level) {
-    level.query(place_, kBeyondRange * max_range_, region_);
+void SectorRaster::rasterise(const LevelViews& views) {
+    views.query(place_, kBeyondRange * max_range_, region_);
     Box2 box;
     forEachCorner(region_, [&box](Point2 corner) { box.add(corner); });
     const double reach = kBeyondRange * max_range_;
@@ -204,7 +204,7 @@ void SectorRaster::rasterise(const Level& level) {
     forEachCorner(region_, go_to);
     if (!region_.edges.empty()) go_to(region_.edges.front().from);
     scan_.takeInside(words_);
-    for (const Polygon& solid : level.solidsTouching(place_)) {
+    for (const Polygon& solid : views.level().solidsTouching(place_)) {
         Scanline closed(grid_, box);
         forEachEdge(solid, [&closed](const Segment2& edge) { closed.add(edge); });
         closed.removeClosed(words_);
@@ -345,9 +345,9 @@ std::optional<Sector> sectorOf(const Laser& laser, Angle heading) {
     return Sector{wrapped(first), wrapped(first + span)};
 }
 
-void cellsBySector(const Grid& grid, const Level& level, Point2 place, double max_range,
+void cellsBySector(const Grid& grid, const LevelViews& views, Point2 place, double max_range,
                    std::span<const Angle> limits, CellParts& parts) {
-    perThread<SectorRaster, SectorRaster>().run(grid, level, place, max_range, limits, parts);
+    perThread<SectorRaster, SectorRaster>().run(grid, views, place, max_range, limits, parts);
 }
 
 }  // namespace ispace

@@ -32,7 +32,7 @@ std::optional<Sector> sectorOf(const Laser& laser, Angle heading);
 ///
 /// Reuses the memory of `parts`. O(query + rows * limits + runs)
 /// \pre limits are in (-180, 180] degrees, ascending, all different
-void cellsBySector(const Grid& grid, const Level& level, Point2 place, double max_range,
+void cellsBySector(const Grid& grid, const LevelViews& views, Point2 place, double max_range,
                    std::span<const Angle> limits, CellParts& parts);
 
 }  // namespace ispace

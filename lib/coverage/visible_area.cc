@@ -13,11 +13,11 @@ namespace ispace {
 
 namespace {
 
-std::vector<Curve> regionOfScan(const Level& level, const Sensor& sensor) {
+std::vector<Curve> regionOfScan(const Level& level, double reach, const Sensor& sensor) {
     const Point2 place = sensor.pose.position.onFloor();
     const Laser& laser = sensor.as<Laser>();
     VisibleRegion region;
-    level.query(place, laser.max_range, region);
+    LevelViews(level, reach).query(place, laser.max_range, region);
     Curve outline =
         outlineOf(sectorOf(region, sensor.pose.heading + laser.first, laser.sweptSpan()));
     if (outline.empty()) return {};
@@ -30,7 +30,7 @@ std::vector<Curve> regionOfScan(const Level& level, const Sensor& sensor) {
         [](const LayerLabel& label) { return label.marks == 1 && label.count == 0; });
 }
 
-CellSet cellsOfScan(const Grid& grid, const Level& level, const Sensor& sensor) {
+CellSet cellsOfScan(const Grid& grid, const LevelViews& level, const Sensor& sensor) {
     const Laser& laser = sensor.as<Laser>();
     std::vector<Angle> limits;
     std::size_t seen = 0;  // number of the seen part before the last
@@ -58,7 +58,7 @@ const RayWorld& VisibleArea::meshFor(const SensorModel& model) const {
 std::optional<std::vector<Curve>> VisibleArea::regionOf(const Sensor& sensor) const {
     const Point3 place = sensor.pose.position;
     const std::shared_ptr<const Level> level = levelAt(place.z);
-    if (scansSlice(sensor)) return regionOfScan(*level, sensor);
+    if (scansSlice(sensor)) return regionOfScan(*level, reach_, sensor);
     if (level->isInsideSolid(place.onFloor())) return std::vector<Curve>();
     return shadows_.get([this] { return ShadowCaster(environment_); }).regionSeen(sensor, plane_);
 }
@@ -66,7 +66,7 @@ std::optional<std::vector<Curve>> VisibleArea::regionOf(const Sensor& sensor) co
 CellSet VisibleArea::cellsOf(const Grid& grid, const Sensor& sensor) const {
     const Point3 place = sensor.pose.position;
     const std::shared_ptr<const Level> level = levelAt(place.z);
-    if (scansSlice(sensor)) return cellsOfScan(grid, *level, sensor);
+    if (scansSlice(sensor)) return cellsOfScan(grid, {*level, reach_}, sensor);
     if (level->isInsideSolid(place.onFloor())) return CellSet(grid.size());
     return cellsOnPlane(grid, meshFor(sensor.model), sensor, plane_);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -26,9 +27,11 @@ namespace ispace {
 class VisibleArea {
   public:
     /// Stores the references. \param plane height of the plane \param worlds required for cells on
-    /// planes; null if only regions are requested
-    VisibleArea(const Environment& environment, double plane, Worlds* worlds = nullptr)
-        : environment_(environment), plane_(plane), worlds_(worlds) {}
+    /// planes; null if only regions are requested \param reach of the farthest level laser, see
+    /// LevelViews
+    VisibleArea(const Environment& environment, double plane, Worlds* worlds = nullptr,
+                double reach = std::numeric_limits<double>::infinity())
+        : environment_(environment), plane_(plane), worlds_(worlds), reach_(reach) {}
 
     /// Builds the world for sensors of the same model, height, tilt and roll. One thread must call
     /// it before cellsOf(). \pre worlds is not null
@@ -51,6 +54,7 @@ class VisibleArea {
     const Environment& environment_;
     double plane_;
     Worlds* worlds_;
+    double reach_;
     Lazy<ShadowCaster> shadows_;
 };
 

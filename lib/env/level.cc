@@ -86,8 +86,12 @@ std::vector<Polygon> Level::solidsTouching(Point2 p) const {
 }
 
 void Level::query(Point2 viewpoint, double max_range, VisibleRegion& region) const {
-    if (!isInsideSolid(viewpoint)) {
-        sight().query(viewpoint, max_range, region);
+    LevelViews(*this).query(viewpoint, max_range, region);
+}
+
+void LevelViews::query(Point2 viewpoint, double max_range, VisibleRegion& region) const {
+    if (!level_.isInsideSolid(viewpoint)) {
+        level_.sight().query(viewpoint, max_range, region, reach_);
         return;
     }
     region.viewpoint = viewpoint;

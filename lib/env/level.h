@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -43,6 +44,7 @@ class Level {
 
   private:
     friend class Environment;
+    friend class LevelViews;
     /// The slice and its derived parts.
     struct Cut {
         explicit Cut(Slice cut) : slice(std::move(cut)) {}
@@ -72,6 +74,23 @@ class Level {
     double height_;
     std::shared_ptr<Cuts> cuts_;
     Lazy<std::shared_ptr<const Cut>> cut_;
+};
+
+/// The views of a set of level sensors.
+class LevelViews {
+  public:
+    /// Stores the reference. \param reach of the farthest view, see VisibilityMap::query
+    LevelViews(const Level& level,  // NOLINT(google-explicit-constructor): a level has views
+               double reach = std::numeric_limits<double>::infinity())
+        : level_(level), reach_(reach) {}
+
+    [[nodiscard]] const Level& level() const { return level_; }
+    /// As Level::query.
+    void query(Point2 viewpoint, double max_range, VisibleRegion& region) const;
+
+  private:
+    const Level& level_;
+    double reach_;
 };
 
 }  // namespace ispace

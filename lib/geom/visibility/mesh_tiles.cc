@@ -21,7 +21,7 @@ constexpr double kMarginsPerSide = 8;
 constexpr std::size_t kMaxShared = 4;
 
 /// Views of tiling k reach up to this range; a little more than powers of two, since views of cells
-/// reach a little farther than the sensor.
+/// reach a little farther than the sensor. From one range to the next, tiles become twice as wide.
 double marginOf(std::size_t tiling) { return 1.1 * std::exp2(static_cast<double>(tiling)); }
 
 /// Returns the number of a tile along one axis; the nearest one for coordinates outside.
@@ -57,14 +57,19 @@ MeshTiles::MeshTiles(std::span<const Segment2> lines) : pieces_(sightPieces(line
         box_.add(piece.segment.a);
         box_.add(piece.segment.b);
     }
-    if (pieces_.size() >= kLargePlan) return;
-    static_cast<void>(whole());
-    pieces_ = {};
+    if (pieces_.size() < kLargePlan) {
+        static_cast<void>(whole());
+        pieces_ = {};
+        return;
+    }
+    const double per_area = static_cast<double>(pieces_.size()) / (box_.width() * box_.depth());
+    const double side = std::sqrt(kPerTile / per_area);
+    while (finest_ < kTilings && kMarginsPerSide * marginOf(finest_) < side) ++finest_;
 }
 
 const ExpansionMesh& MeshTiles::meshFor(Point2 viewpoint, double range) const {
     if (pieces_.empty()) return whole();
-    std::size_t k = 0;
+    std::size_t k = finest_;
     while (k < kTilings && !(range <= marginOf(k))) ++k;
     if (k == kTilings) return whole();
     const Tiling& tiling = tilings_[k].get([&] { return tilingOf(marginOf(k)); });
@@ -78,11 +83,10 @@ const ExpansionMesh& MeshTiles::meshFor(Point2 viewpoint, double range) const {
 
 MeshTiles::Tiling MeshTiles::tilingOf(double margin) const {
     Tiling tiling;
-    const double per_area = static_cast<double>(pieces_.size()) / (box_.width() * box_.depth());
-    const double side = std::max(kMarginsPerSide * margin, std::sqrt(kPerTile / per_area));
     const auto most = static_cast<double>(pieces_.size()) / kPerTile;
     const auto count = [=](double extent) {
-        return static_cast<std::uint32_t>(std::clamp(std::floor(extent / side), 1.0, most));
+        const double tiles = std::floor(extent / (kMarginsPerSide * margin));
+        return static_cast<std::uint32_t>(std::clamp(tiles, 1.0, most));
     };
     tiling.columns = count(box_.width());
     tiling.rows = count(box_.depth());

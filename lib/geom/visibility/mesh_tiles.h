@@ -46,6 +46,7 @@ class MeshTiles {
 
     std::vector<LinePiece> pieces_;
     Box2 box_;
+    std::size_t finest_ = 0;  ///< tiling; tiles of finer ones would have few pieces
     Lazy<ExpansionMesh> whole_;
     std::array<Lazy<Tiling>, kTilings> tilings_;
 };

@@ -79,12 +79,16 @@ class VisibilityMap {
     /// log n), and O(edges) for each round body within range.
     /// \pre max_range >= 0; 0 gives an empty region. Use +infinity where lines enclose the
     ///      viewpoint: if the view is free after all, it ends beyond all lines, at region.max_range
-    void query(Point2 viewpoint, double max_range, VisibleRegion& region) const;
+    /// \param reach of the farthest view that the caller asks for: in a large plan, an index of
+    ///     parts serves short views, where few of them pay for their surroundings alone. It is the
+    ///     same view, but may begin at another edge
+    void query(Point2 viewpoint, double max_range, VisibleRegion& region,
+               double reach = std::numeric_limits<double>::infinity()) const;
     [[nodiscard]] VisibleRegion query(Point2 viewpoint, double max_range) const;
 
   private:
     struct Data;
-    void queryLines(Point2 viewpoint, double max_range, VisibleRegion& region) const;
+    void queryLines(Point2 viewpoint, double max_range, double reach, VisibleRegion& region) const;
     std::unique_ptr<Data> data_;
 };
 

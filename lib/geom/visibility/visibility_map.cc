@@ -206,12 +206,14 @@ VisibilityMap::VisibilityMap(VisibilityMap&&) noexcept = default;
 VisibilityMap& VisibilityMap::operator=(VisibilityMap&&) noexcept = default;
 VisibilityMap::~VisibilityMap() = default;
 
-void VisibilityMap::query(Point2 viewpoint, double max_range, VisibleRegion& region) const {
-    queryLines(viewpoint, max_range, region);
+void VisibilityMap::query(Point2 viewpoint, double max_range, VisibleRegion& region,
+                          double reach) const {
+    queryLines(viewpoint, max_range, reach, region);
     if (!data_->rounds->empty()) data_->rounds->cut(region);
 }
 
-void VisibilityMap::queryLines(Point2 viewpoint, double max_range, VisibleRegion& region) const {
+void VisibilityMap::queryLines(Point2 viewpoint, double max_range, double reach,
+                               VisibleRegion& region) const {
     viewpoint = withinSight(viewpoint);
     region.viewpoint = viewpoint;
     region.max_range = max_range;
@@ -219,7 +221,7 @@ void VisibilityMap::queryLines(Point2 viewpoint, double max_range, VisibleRegion
     region.edges.clear();
     if (!(max_range > 0)) return;
 
-    const ExpansionMesh& mesh = data_->meshes->meshFor(viewpoint, max_range);
+    const ExpansionMesh& mesh = data_->meshes->meshFor(viewpoint, std::max(max_range, reach));
     const bool inside = isStrictlyInside(mesh.box, viewpoint);
     if (!inside) viewpoint = offBoundary(mesh.box, viewpoint);
     Index triangle = 0;
