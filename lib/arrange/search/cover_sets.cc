@@ -112,8 +112,10 @@ void CandidateSet::addSite(std::span<const PartRange> ranges, const CellParts& p
 void CandidateSet::addRuns(const CellParts& parts, Site& site) {
     constexpr std::size_t kBlock = std::size_t{1} << 18U;
     const std::uint32_t most = (std::uint32_t{1} << length_bits_) - 1;
-    std::size_t count = 0;
-    for (const CellRun& run : parts.runs) count += (run.end - run.first + most - 1) / most;
+    const bool is_whole = cells_ <= most;  // no run is in pieces
+    std::size_t count = parts.runs.size();
+    for (std::size_t i = 0; !is_whole && i < parts.runs.size(); ++i)
+        count += (parts.runs[i].end - parts.runs[i].first - 1) / most;
     if (blocks_.empty() || blocks_.back().size() + count > blocks_.back().capacity()) {
         blocks_.emplace_back();
         blocks_.back().reserve(std::max(kBlock, count));
@@ -121,7 +123,14 @@ void CandidateSet::addRuns(const CellParts& parts, Site& site) {
     std::vector<std::uint32_t>& block = blocks_.back();
     const std::size_t offset = block.size();
     site.first_part = part_runs_.size();
-    for (std::size_t part = 0; part < parts.size(); ++part) {
+    if (is_whole) {
+        part_runs_.insert(part_runs_.end(), parts.first.begin(), parts.first.end() - 1);
+        block.resize(offset + count);
+        for (std::size_t i = 0; i < count; ++i)
+            block[offset + i] =
+                parts.runs[i].first << length_bits_ | (parts.runs[i].end - parts.runs[i].first);
+    }
+    for (std::size_t part = 0; !is_whole && part < parts.size(); ++part) {
         part_runs_.push_back(static_cast<std::uint32_t>(block.size() - offset));
         for (std::uint32_t i = parts.first[part]; i < parts.first[part + 1]; ++i) {
             CellRun run = parts.runs[i];
