@@ -104,6 +104,21 @@ TEST(BranchAndBound, EqualsBruteForce) {
     }
 }
 
+TEST(BranchAndBound, EqualsBruteForceWhereSetsAreTooManyForOneNode) {
+    SilentProgress progress;
+    for (std::uint64_t round = 0; round < 12; ++round) {
+        RandomProblemOptions options = variedOptions(4 * round);
+        options.kinds = 1;
+        options.sites = 20;
+        options.most = 3;
+        const RandomProblem random = randomProblem(round, options);
+        const std::uint64_t best = bestByBruteForce(random.problem).value;
+        const SearchResult result = searchTree(random.problem, 0, progress);
+        ASSERT_EQ(result.best.value, best) << round;
+        ASSERT_EQ(result.bound, best) << round;
+    }
+}
+
 TEST(BranchAndBound, EqualsBruteForceWhereViewsHangTogether) {
     SilentProgress progress;
     for (std::uint64_t round = 0; round < 120; ++round) {

@@ -14,7 +14,7 @@ namespace {
 constexpr int kMaxTrials = 80;
 constexpr int kTrialsBetweenLooks = 40;
 constexpr std::uint64_t kFairPart = 5;  // of the distance to the cut: minimum gain of trials
-constexpr double kFewSets = 64;         // so many are enumerated one by one
+constexpr double kFewSets = 1e4;        // so many are enumerated one by one
 
 /// Computes the number of ways in which the groups can choose, up to about kFewSets.
 double setsOf(const std::vector<OpenGroup>& groups, bool with_fewer) {
@@ -32,30 +32,55 @@ double setsOf(const std::vector<OpenGroup>& groups, bool with_fewer) {
     return all;
 }
 
-/// Enumerates all sets of choices of a node.
+/// Enumerates the sets of choices of a node, but for those that reduced costs rule out.
 class SetSearch {
   public:
+    /// \param relaxed evaluated for all candidates; its reduced costs are used
     SetSearch(const Problem& problem, const BranchNode& node, const NodeRelaxation& relaxed,
               std::uint64_t cut)
         : problem_(problem),
           reduced_(relaxed.problem()),
+          relaxed_(relaxed),
           groups_(relaxed.groups()),
           cut_(cut),
           multiplicities_(reduced_.cells(), 0),
-          chosen_(node.fixed) {}
+          chosen_(node.fixed) {
+        for (OpenGroup& group : groups_)
+            std::stable_sort(group.list.begin(), group.list.end(),
+                             [&](std::uint32_t a, std::uint32_t b) {
+                                 return costOf(group, a) > costOf(group, b);
+                             });
+    }
     /// Finds the best solution above the cut.
     BranchResult search() {
         if (groups_.empty())
-            check();
+            check(valueHere());
         else
-            visit(0, 0, groups_[0].count);
+            visit(0, 0, groups_[0].count, relaxed_.free());
         return std::move(result_);
     }
 
   private:
-    void visit(std::size_t group, std::size_t first, std::size_t left) {
+    [[nodiscard]] std::uint32_t costOf(const OpenGroup& group, std::uint32_t candidate) const {
+        return relaxed_.costOf(group.kind, candidate);
+    }
+    /// Returns the sum of the reduced costs of the best `left` from `first` on, and of later
+    /// groups.
+    [[nodiscard]] std::uint64_t bestOf(std::size_t group, std::size_t first,
+                                       std::size_t left) const {
+        std::uint64_t sum = 0;
+        for (; group < groups_.size(); first = 0) {
+            const OpenGroup& own = groups_[group];
+            for (std::size_t i = first; i < std::min(first + left, own.list.size()); ++i)
+                sum += costOf(own, own.list[i]);
+            if (++group < groups_.size()) left = groups_[group].count;
+        }
+        return sum;
+    }
+    /// \param most upper bound of the value of the choices so far, by reduced costs
+    void visit(std::size_t group, std::size_t first, std::size_t left, std::uint64_t most) {
         if (group == groups_.size()) {
-            check();
+            check(valueHere());
             return;
         }
         const OpenGroup& own = groups_[group];
@@ -63,12 +88,28 @@ class SetSearch {
         const bool is_full = left == 0 || first == own.list.size();
         if (is_full || problem_.is_connected) {
             const std::size_t next = group + 1;
-            visit(next, 0, next < groups_.size() ? groups_[next].count : 0);
+            visit(next, 0, next < groups_.size() ? groups_[next].count : 0, most);
         }
         if (is_full) return;
+        const bool is_last = left == 1 && group + 1 == groups_.size();
+        WeightSums gains;
+        const std::uint64_t here = is_last ? valueHere() : 0;
+        if (is_last) gains.assign(gainsOf(own.kind));
         for (std::size_t i = first; i < own.list.size(); ++i) {
+            const std::uint64_t bound = most + bestOf(group, i, left);
+            if (bound <= cut_) {
+                close(bound);
+                break;
+            }
+            const std::uint32_t cost = costOf(own, own.list[i]);
+            if (is_last) {
+                chosen_.push_back({own.kind, reduced_.kinds[own.kind].original[own.list[i]]});
+                check(here + reduced_.kinds[own.kind].candidates->weigh(own.list[i], gains));
+                chosen_.pop_back();
+                continue;
+            }
             add(own.kind, own.list[i], 1);
-            visit(group, i + 1, left - 1);
+            visit(group, i + 1, left - 1, most + cost);
             add(own.kind, own.list[i], -1);
             if (!problem_.is_connected && own.list.size() - i <= left) break;
         }
@@ -84,15 +125,28 @@ class SetSearch {
         else
             chosen_.pop_back();
     }
-    void check() {
+    [[nodiscard]] std::uint64_t valueHere() const {
         std::uint64_t value = reduced_.settled;
         for (std::size_t i = 0; i < multiplicities_.size(); ++i)
             if (multiplicities_[i] >= reduced_.needs[i]) value += reduced_.weights[i];
-        if (value <= cut_) {
-            // Once a solution is found, its value is above the others'.
-            if (result_.found.empty()) result_.closed = std::max(result_.closed, value);
-            return;
+        return value;
+    }
+    /// Returns what one more of a kind adds by each cell.
+    [[nodiscard]] std::vector<std::uint32_t> gainsOf(std::size_t kind) const {
+        std::vector<std::uint32_t> gains(reduced_.cells());
+        for (std::size_t i = 0; i < gains.size(); ++i) {
+            const int lack = reduced_.needs[i] - multiplicities_[i];
+            gains[i] =
+                lack > 0 && lack <= reduced_.kinds[kind].multiplicity ? reduced_.weights[i] : 0;
         }
+        return gains;
+    }
+    /// Once a solution is found, its value is above the others'.
+    void close(std::uint64_t bound) {
+        if (result_.found.empty()) result_.closed = std::max(result_.closed, bound);
+    }
+    void check(std::uint64_t value) {
+        if (value <= cut_) return close(value);
         if (problem_.is_connected && !isFeasible(problem_, chosen_)) return;
         cut_ = value;
         result_.found = chosen_;
@@ -100,7 +154,8 @@ class SetSearch {
 
     const Problem& problem_;
     const ReducedProblem& reduced_;
-    const std::vector<OpenGroup>& groups_;
+    const NodeRelaxation& relaxed_;
+    std::vector<OpenGroup> groups_;  // lists by reduced cost, highest first
     std::uint64_t cut_;
     std::vector<int> multiplicities_;
     std::vector<Choice> chosen_;
@@ -214,8 +269,10 @@ BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_
     if (node.bound <= cut) return closedAt(node.bound);
     if (progress.stopped()) return unchanged(node, node.bound);
     NodeRelaxation relaxed(node);
-    if (setsOf(relaxed.groups(), problem.is_connected) <= kFewSets)
+    if (setsOf(relaxed.groups(), problem.is_connected) <= kFewSets) {
+        relaxed.evaluate(relaxed.start(node));
         return SetSearch(problem, node, relaxed, cut).search();
+    }
     MultiplierSearch search(relaxed.problem().weights, relaxed.start(node),
                             static_cast<double>(cut), kWarmPace);
     std::uint64_t bound = boundOf(relaxed, search, node.bound, cut, progress);

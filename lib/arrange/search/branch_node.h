@@ -123,6 +123,11 @@ class NodeRelaxation {
     /// Computes the same from the candidates of the working sites alone: fast, and at most the
     /// result of evaluate().
     std::uint64_t evaluateWorking(const std::vector<std::uint32_t>& multipliers);
+    /// Returns the part of the bound that no candidate adds.
+    [[nodiscard]] std::uint64_t free() const { return free_; }
+    [[nodiscard]] std::uint32_t costOf(std::size_t kind, std::uint32_t candidate) const {
+        return reduced_costs_[kind][candidate];
+    }
     /// After evaluate(): adds the sites of the best reduced costs to the working sites.
     void widen();
     [[nodiscard]] const std::vector<float>& cover() const { return cover_; }
@@ -171,7 +176,7 @@ class NodeRelaxation {
     std::vector<std::vector<float>> frequencies_;  // per group, beside its list
     std::vector<std::uint32_t> cell_costs_;
     std::vector<float> cover_;
-    std::uint64_t bound_ = 0, ruled_out_ = 0;
+    std::uint64_t free_ = 0, bound_ = 0, ruled_out_ = 0;
 };
 
 }  // namespace ispace

@@ -138,9 +138,10 @@ void NodeRelaxation::widen() {
 }
 
 std::uint64_t NodeRelaxation::findBest(const std::vector<std::uint32_t>& multipliers, bool is_all) {
-    bound_ = problem_.settled;
+    free_ = problem_.settled;
     for (std::size_t i = 0; i < multipliers.size(); ++i)
-        bound_ += problem_.weights[i] - multipliers[i];
+        free_ += problem_.weights[i] - multipliers[i];
+    bound_ = free_;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
         const OpenGroup& group = groups_[g];
         const std::vector<std::uint32_t>& reduced_costs = reduced_costs_[group.kind];
