@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <span>
 
 #include "base/per_thread.h"
 #include "base/simd.h"
@@ -57,6 +58,12 @@ struct Stretch {
     int end = 0;
 };
 
+/// A run of cells that belong to a part.
+struct PartRun {
+    CellRun cells;
+    std::size_t part = 0;
+};
+
 /// Rasterises the views of one position after another and reuses the memory.
 class SectorRaster {
   public:
@@ -71,6 +78,7 @@ class SectorRaster {
     void cutAt(std::size_t limit, int begin, int end);
     void splitRow(int row);
     void addRow(int row);
+    void takeParts(CellParts& parts);
     /// Returns the part of the directions just before a limit.
     [[nodiscard]] std::size_t partBefore(std::size_t limit) const {
         return (limit == 0 ? limits_.size() : limit) - 1;
@@ -116,12 +124,12 @@ class SectorRaster {
     LimitRange below_, above_;  // limits below 0 degrees, and between 0 and 180
     VisibleRegion region_;
     Scanline scan_;
-    std::vector<std::uint64_t> words_;        // bits of the seen cells
-    std::vector<double> dy_;                  // offsets of the rows' middles from the viewpoint
-    int level_begin_ = 0, level_end_ = 0;     // rows level with the viewpoint: one or zero
-    std::vector<int> cuts_;                   // by limit and row
-    std::vector<Stretch> stretches_;          // of one row
-    std::vector<std::vector<CellRun>> runs_;  // by part
+    std::vector<std::uint64_t> words_;     // bits of the seen cells
+    std::vector<double> dy_;               // offsets of the rows' middles from the viewpoint
+    int level_begin_ = 0, level_end_ = 0;  // rows level with the viewpoint: one or zero
+    std::vector<int> cuts_;                // by limit and row
+    std::vector<Stretch> stretches_;       // of one row; the last one ends it
+    std::vector<PartRun> runs_;            // ascending
     std::optional<std::uint32_t> centre_;
 };
 
@@ -153,19 +161,26 @@ void SectorRaster::run(const Grid& grid, const LevelViews& views, Point2 place, 
     cuts_.resize(limits_.size() * dy_.size());
     for (std::size_t i = below_.first; i < below_.end; ++i) cutAt(i, 0, level_begin_);
     for (std::size_t i = above_.first; i < above_.end; ++i) cutAt(i, level_end_, scan_.rows());
-    runs_.resize(limits_.size() + 1);
-    for (std::vector<CellRun>& runs : runs_) runs.clear();
+    stretches_.resize(limits_.size() + 2);
+    runs_.assign(1, {{0, 0}, limits_.size() + 1});  // before all others
     for (int row = 0; row < scan_.rows(); ++row) {
         splitRow(row);
         addRow(row);
     }
-    if (centre_) runs_.back().push_back({*centre_, *centre_ + 1});
-    parts.runs.clear();
-    parts.first.assign(1, 0);
-    for (const std::vector<CellRun>& runs : runs_) {
-        parts.runs.insert(parts.runs.end(), runs.begin(), runs.end());
-        parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
-    }
+    if (centre_) runs_.push_back({{*centre_, *centre_ + 1}, limits_.size()});
+    takeParts(parts);
+}
+
+/// Sorts the runs by part; within a part they stay ascending.
+void SectorRaster::takeParts(CellParts& parts) {
+    const std::span<const PartRun> runs = std::span(runs_).subspan(1);
+    parts.first.assign(limits_.size() + 3, 0);
+    for (const PartRun& run : runs) ++parts.first[run.part + 2];
+    for (std::size_t i = 2; i < parts.first.size(); ++i) parts.first[i] += parts.first[i - 1];
+    parts.runs.resize(runs.size());
+    // The end of a part so far is the beginning of the next, once all are there.
+    for (const PartRun& run : runs) parts.runs[parts.first[run.part + 1]++] = run.cells;
+    parts.first.pop_back();
 }
 
 void SectorRaster::setLimits(std::span<const Angle> limits) {
@@ -304,34 +319,41 @@ void SectorRaster::cutAt(std::size_t limit, int begin, int end) {
 /// above it they fall; all cells of a level row on one side of it have the same direction exactly:
 /// 180 or 0 degrees.
 void SectorRaster::splitRow(int row) {
-    stretches_.clear();
+    Stretch* next = stretches_.data();
     std::size_t last = limits_.empty() ? 0 : partBefore(above_.first);
     if (row < level_begin_ && !limits_.empty()) {
         last = partBefore(below_.first);
         for (std::size_t limit = below_.first; limit < below_.end; last = limit++)
-            stretches_.push_back({last, cutOf(limit, row)});
+            *next++ = {last, cutOf(limit, row)};
     } else if (row < level_end_) {
         const int middle = x_axis_.firstNotBelow(place_.x) - scan_.firstColumn();
-        if (!limits_.empty()) stretches_.push_back({limits_.size() - 1, middle});
+        if (!limits_.empty()) *next++ = {limits_.size() - 1, middle};
     } else {
         for (std::size_t limit = above_.end; limit-- > above_.first;)
-            stretches_.push_back({limit, cutOf(limit, row)});
+            *next++ = {limit, cutOf(limit, row)};
     }
-    stretches_.push_back({last, scan_.columns()});
+    *next = {last, scan_.columns()};
 }
 
 void SectorRaster::addRow(int row) {
     const std::uint64_t* words = wordsOf(row);
+    const std::uint32_t row_cell = cellAt(row, 0);
     const Stretch* stretch = stretches_.data();
     for (int i = 0; 64 * i < scan_.columns(); ++i)
         for (std::uint64_t bits = words[i]; bits != 0;) {
             const int low = std::countr_zero(bits), first = 64 * i + low;
             while (stretch->end <= first) ++stretch;
             const int end = std::min(first + std::countr_one(bits >> low), stretch->end);
-            const std::uint32_t cell = cellAt(row, first);
-            std::vector<CellRun>& runs = runs_[stretch->part];
-            if (runs.empty() || runs.back().end != cell) runs.push_back({cell, cell});
-            runs.back().end = cellAt(row, end);
+            const PartRun run{{row_cell + static_cast<std::uint32_t>(first),
+                               row_cell + static_cast<std::uint32_t>(end)},
+                              stretch->part};
+            // One branch, as the next part often begins where a run ends.
+            const bool goes_on = static_cast<int>(runs_.back().cells.end == run.cells.first) &
+                                 static_cast<int>(runs_.back().part == run.part);
+            if (goes_on)
+                runs_.back().cells.end = run.cells.end;
+            else
+                runs_.push_back(run);
             bits = end - 64 * i == 64 ? 0 : bits & (~std::uint64_t{0} << (end - 64 * i));
         }
 }
