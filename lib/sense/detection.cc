@@ -47,9 +47,15 @@ Pose3 Watcher::poseAt(const WatchMoment& moment) const {
 
 /// Pose of a sensor at a moment, with the sine and cosine of its heading, which all targets share.
 struct Stance {
-    explicit Stance(const Pose3& at) : pose(at), heading(cosSin(at.heading)) {}
+    Stance(const Pose3& at, double reach)
+        : pose(at), heading(cosSin(at.heading)), reach2(reach * reach) {}
+    [[nodiscard]] bool reaches(Point2 place) const {
+        const Vec2 way = place - pose.position.onFloor();
+        return dot(way, way) <= reach2;
+    }
     Pose3 pose;
     CosSin heading;
+    double reach2;
 };
 
 /// Returns the start poses of a scene's people, in order.
@@ -176,8 +182,6 @@ bool DetectionMonitor::Data::sees(const Watcher& watcher, const Stance& stance,
                                   Point2 place) const {
     if (watcher.is_blind) return false;
     const Pose3& pose = stance.pose;
-    const Vec2 way = place - pose.position.onFloor();
-    if (dot(way, way) > watcher.reach * watcher.reach) return false;
     if (!watcher.view) {
         const bool is_level = scansSlice(watcher.sensor.as<Laser>(), pose);
         return is_level ? scans(watcher, stance, place) : scansAslant(watcher, pose, place);
@@ -222,7 +226,7 @@ std::vector<std::size_t> DetectionMonitor::seenBy(std::span<const Target> target
     std::vector<Point2> places;
     double reach = 0;
     for (const Watcher& watcher : watchers) {
-        stances.emplace_back(watcher.poseAt(moment));
+        stances.emplace_back(watcher.poseAt(moment), watcher.reach);
         places.push_back(stances.back().pose.position.onFloor());
         reach = std::max(reach, watcher.reach);
     }
@@ -231,6 +235,7 @@ std::vector<std::size_t> DetectionMonitor::seenBy(std::span<const Target> target
     const auto count = [&](const Target& target) {
         std::size_t alone = 0, parts = 0, together = 0;
         grid.forEachNear({target.place, target.place}, [&](std::size_t k) {
+            if (!stances[k].reaches(target.place)) return;
             const Watcher& watcher = watchers[k];
             const bool is_own = watcher.rides() && watcher.carrier == target.owner;
             if (is_own || !data_->sees(watcher, stances[k], target.place)) return;

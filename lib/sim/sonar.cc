@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -98,6 +99,22 @@ struct FlatCone {
         }
     }
     std::array<float, kConeLanes> x, y;
+};
+
+/// The rays of a cone; kept from robot to robot.
+struct ConeRays {
+    explicit ConeRays(Angle of) : fov(of), half(cosSin(0.5 * of)), rays(coneOf(of)), flat(rays) {}
+    /// Returns the rays of a cone, valid until the thread's next call.
+    static const ConeRays& of(Angle fov) {
+        auto& kept = perThread<std::optional<ConeRays>, ConeRays>();
+        if (!kept || kept->fov != fov) kept.emplace(fov);
+        return *kept;
+    }
+
+    Angle fov;
+    CosSin half;
+    Cone rays;
+    FlatCone flat;
 };
 
 /// Lower bounds of the distances along a cone's rays to some surfaces; +infinity for no surface.
@@ -203,18 +220,19 @@ struct SonarRays {
 class RingSearch {
   public:
     RingSearch(const RobotModel& model, const Pose2& pose)
-        : cone_(coneOf(model.sonar.fov)),
-          flat_(cone_),
+        : cone_(ConeRays::of(model.sonar.fov)),
           height_(kSonarHeight * model.height),
-          rays_(perThread<SonarRays, struct RaysOfRing>()) {
-        sonars_.reserve(model.sonar.places.size());
-        const CosSin half = cosSin(0.5 * model.sonar.fov);
+          rays_(perThread<SonarRays, struct RaysOfRing>()),
+          sonars_(perThread<std::vector<Sonar>, struct SonarsOfRing>()) {
+        sonars_.resize(model.sonar.places.size());
         const auto [c, s] = cosSin(pose.heading);
-        for (const Pose2& place : model.sonar.places) {
+        for (std::size_t k = 0; k < sonars_.size(); ++k) {
+            const Pose2& place = model.sonar.places[k];
             const auto& [x, y] = place.position;
-            sonars_.push_back(
-                {{pose.position + Vec2{c * x - s * y, s * x + c * y},
-                  cosSin(pose.heading + place.heading), half, model.sonar.max_range}});
+            sonars_[k].nearest = kNoReturn;
+            sonars_[k].sector = {pose.position + Vec2{c * x - s * y, s * x + c * y},
+                                 cosSin(pose.heading + place.heading), cone_.half,
+                                 model.sonar.max_range};
         }
     }
     [[nodiscard]] std::size_t size() const { return sonars_.size(); }
@@ -226,7 +244,7 @@ class RingSearch {
     template <typename AddBounds, typename Cast>
     void search(AddBounds add_bounds, Cast cast) {
         for (Sonar& sonar : sonars_) {
-            ConeBounds bounds(flat_, sonar.sector, sonar.bounds);
+            ConeBounds bounds(cone_.flat, sonar.sector, sonar.bounds);
             add_bounds(bounds);
             sonar.from = bounds.least();
             // Most echoes are about as near as the least bound, and spare all other rays.
@@ -263,7 +281,7 @@ class RingSearch {
         const auto [origin, axis] = std::pair(sonar.sector.origin, sonar.sector.axis);
         for (std::size_t i = 0; i < kSonarRays; ++i) {
             if (sonar.bounds[i] < sonar.from || sonar.bounds[i] >= sonar.to) continue;
-            const auto& [x, y, z] = cone_[i];
+            const auto& [x, y, z] = cone_.rays[i];
             rays_.directions.x.push_back(x * axis.cos - y * axis.sin);
             rays_.directions.y.push_back(x * axis.sin + y * axis.cos);
             rays_.directions.z.push_back(z);
@@ -273,11 +291,10 @@ class RingSearch {
         }
     }
 
-    Cone cone_;
-    FlatCone flat_;
+    const ConeRays& cone_;
     double height_;
     SonarRays& rays_;
-    std::vector<Sonar> sonars_;
+    std::vector<Sonar>& sonars_;
 };
 
 }  // namespace
