@@ -10,7 +10,7 @@ namespace ispace {
 
 /// The coverage of a building's run: of each storey, and of all floors together.
 struct BuildingRunCoverage {
-    std::vector<RunCoverage> storeys;  ///< without members where nobody came
+    std::vector<RunCoverage> storeys;  ///< without members where no mover came
     RunCoverage sum;
 };
 

@@ -30,7 +30,7 @@ RunCoverage storey(double begin, double end, const RunCoverageMetrics& one, cons
 TEST(BuildingRunCoverage, AddsUpMoversOverStoreys) {
     const std::vector<RunCoverage> storeys = {
         storey(0, 20, metrics(20, 10, {0.5, 0.5}, 1, 4), "ground/r"),
-        RunCoverage(),  // nobody came
+        RunCoverage(),  // no mover came
         storey(30, 60, metrics(30, 0, {0, 0, 1}, 2, 9), "ground/r"),
         storey(5, 50, metrics(10, 10, {1}, 0, 2), "ground/s")};
     const RunCoverage sum = sumOverStoreys(storeys);

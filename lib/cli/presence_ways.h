@@ -21,7 +21,7 @@ struct WaysChoice {
 /// Parses `DIR` or `wander:N[,TIME]`. \throws UsageError
 WaysChoice parseWays(const std::string& text);
 
-/// Reads the ways of a recorded run; or simulates that many people who wander from random positions
+/// Reads the ways of a recorded run; or simulates that many people, wandering from random positions
 /// instead of the scene's, with its robots. Deterministic for a seed.
 /// \throws as RunReader, UnmetError as CrowdFloor::draw()
 PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed);

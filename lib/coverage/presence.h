@@ -21,7 +21,7 @@ constexpr double kPresenceDelay = 1;
 ///
 /// A sensor detects a person at the beginning of a piece if that point, on a level plane, lies in
 /// its region as `coverage` defines it and the piece's velocity is one that its kind detects. No
-/// noise; people do not hide each other. Sensors on movers detect nobody.
+/// noise; people do not hide each other. Sensors on movers detect no people.
 class PresenceView {
   public:
     /// Stores the reference.

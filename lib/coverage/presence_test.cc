@@ -15,7 +15,7 @@ constexpr const char* kRoom = "ispace size=8,6\n";
 constexpr double kStep = 0.1;  // s, between two moments
 constexpr double kPlane = 1;   // m, the height of the sensors, too
 
-/// A person who goes straight for so many seconds.
+/// A person on a straight path for so many seconds.
 PeopleWays straight(Point2 from, Vec2 velocity, double duration) {
     WayCutter cutter;
     for (int i = 0; i * kStep <= duration + 1e-9; ++i)

@@ -61,7 +61,7 @@ TEST(Calibration, OfOpenCv) {
     const std::string size = "pixels=1280,960 fx=800 fy=800 cx=639.5 cy=479.5 ";
     EXPECT_EQ(calibrated(kOpenCv), cameraRecord(size + "projection=pinhole distortion=plumb_bob "
                                                        "coefficients=0.01,-0.002"));
-    // Four numbers are a fisheye's only where somebody says so.
+    // Four numbers are a fisheye's only where the file says so.
     const std::string fisheye =
         size + "projection=fisheye distortion=fisheye coefficients=0.01,-0.002";
     EXPECT_EQ(calibrated(kOpenCv, "distortion=fisheye"), cameraRecord(fisheye));

@@ -97,7 +97,7 @@ TEST(GlbMesh, EqualContentIsStoredOnce) {
     EXPECT_TRUE(meshes[0] == meshes[1] && meshes[1] == meshes[2]);
 }
 
-/// Takes the file apart with somebody else's reader: every node with its mesh in the world.
+/// Parses the file with tinygltf: every node with its mesh in the world.
 std::vector<Point3> worldVertices(const tinygltf::Model& model, const std::string& name) {
     const auto node = std::find_if(model.nodes.begin(), model.nodes.end(),
                                    [&](const tinygltf::Node& n) { return n.name == name; });

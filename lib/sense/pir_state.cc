@@ -34,7 +34,7 @@ PirState castPir(const RayWorld& mesh, const MovingBodies& bodies,
     const auto moves = [](const MoverVelocity& velocity) {
         return velocity.turn != 0 || velocity.linear.x != 0 || velocity.linear.y != 0;
     };
-    // Most of a day nobody moves.
+    // Most of a day is without motion.
     if (std::any_of(velocities.people.begin(), velocities.people.end(), moves)) {
         const Observer observer{fieldOfView(pir, pose), pir.min_range, carrierOf(sensor)};
         const auto is_meant = [&](std::uint32_t owner) {

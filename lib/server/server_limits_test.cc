@@ -76,7 +76,7 @@ TEST(Server, SilentConnectionsKeepNobodyOut) {
     std::this_thread::sleep_for(2 * limits.roleless_grace);
     second.take("WORLD");
     EXPECT_EQ(asking.rest(), kNoRole);
-    // Who has a role stays.
+    // Clients with a role stay.
     std::this_thread::sleep_for(2 * limits.roleless_grace);
     EXPECT_EQ(third.connect().rest(), "ERR 429 too many clients (3): try again later\n");
     EXPECT_EQ(reader.ask("STOP"), "OK STOP");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slow, broken and dying clients in the roles SENSOR and PERSON, and those who change the world.
+// Slow, broken and dying clients in the roles SENSOR and PERSON, and clients that change the world.
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -151,7 +151,7 @@ TEST(SessionSensors, AStreamTakesPicturesWhenDue) {
     EXPECT_EQ(heads,
               (std::vector<std::string>{"SCAN c1 t=0.400 seq=2 p", "SCAN c1 t=0.800 seq=4 p"}));
     EXPECT_EQ(talk.ask(client, "STOP"), "OK STOP\n");
-    // Nobody wants pictures any more.
+    // The last reader of pictures leaves.
     const std::int64_t last = talk.world.reading(0).seq;
     talk.step(20);
     EXPECT_EQ(talk.world.reading(0).seq, last);

@@ -180,7 +180,7 @@ TEST(ActivityDirector, GoesOnWhenAnotherTakesOver) {
 }
 
 TEST(ActivityDirector, TallPeopleTakeHighDoors) {
-    // The low door is nearer to both, whoever departs first.
+    // The low door is nearer to both, in either order of departure.
     const Scene room = testing::scene(
         "fence id=shell path=-5,-2;5,-2;5,2;-5,2 closed=yes height=2.5\n"
         "wall id=w1 from=0,-2 to=0,2 height=2.5\n"

@@ -230,7 +230,7 @@ void EventLog::Data::tellSight() {
     if (std::exchange(look, now) == now) return;
     std::vector<Pose2> poses(walkers.size());
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = world->status(i).pose;
-    if (watch && poses == watched) return;  // most of a day nobody moves
+    if (watch && poses == watched) return;  // most of a day is without motion
     if (!watch) watch.emplace(world->scene(), WatchOptions{.outside = world->options().outside});
     const std::span<const Pose2> all(poses);
     const std::size_t robots = world->robots().size();

@@ -21,7 +21,7 @@ Motion at(Point2 place, double heading = 0) {
     return motion;
 }
 
-/// A room with a person whom the test moves.
+/// A room with a person, moved by the test.
 struct Floor {
     explicit Floor(const std::string& records)
         : room(scene("ispace size=20,20\n", records)), sensors(room) {}

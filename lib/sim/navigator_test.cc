@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Robots and people who go by themselves: along paths, past each other, about.
+// Autonomous robots and people: along paths, past each other, about.
 #include "sim/navigator.h"
 
 #include <gtest/gtest.h>

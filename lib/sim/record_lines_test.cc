@@ -146,7 +146,7 @@ TEST_F(RecordLines, FramesAreRecordedAtTheirRate) {
         for (int i = 0; i < 40; ++i) {
             world.step();
             recorder.record(world);
-            // Somebody else's pictures are not those of the record.
+            // Pictures of another client are not those of the record.
             if (i % 7 == 0) world.captureNow(0);
         }
         recorder.flush(world);

@@ -42,7 +42,7 @@ class ReplayTest : public ::testing::Test {
             recorder.record(*world_);
         }
         recorder.flush(*world_);
-        fs::remove(path("events.csv"));  // nobody asked for them
+        fs::remove(path("events.csv"));  // never requested
     }
 
     Scene scene_ = scene(kRoom, kWho);

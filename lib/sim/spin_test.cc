@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lasers that spin, on robots that move and among people who do, against closed forms.
+// Lasers that spin, on moving robots and among moving people, against closed forms.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 

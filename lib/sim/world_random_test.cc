@@ -18,7 +18,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Radius of somebody 1.7 m tall.
+/// Radius of a person of 1.7 m.
 constexpr double kPerson = 0.255;
 
 /// A row of free places for people.

@@ -273,7 +273,7 @@ TEST(World, RobotsMeetHeadOn) {
 }
 
 TEST(World, MovesAreSettledInTheOrderOfIds) {
-    // Touching in a row, all to the right. Who is settled first must find its way free.
+    // Touching in a row, all to the right. The first mover to be settled must find its way free.
     const auto stalls = [](const std::string& left, const std::string& middle,
                            const std::string& right) {
         const Scene room = scene(kRoom, "robot id=" + left + " at=-0.6,0\nrobot id=" + middle +

@@ -51,7 +51,7 @@ grep -v '^#3dm' walkers.3dm >>people.3dm
 share=$(coverage crowded.env people.3dm -q --json | python3 -c 'import json, sys; print(json.load(sys.stdin)["coverage"]["exact"])')
 same "$(told coverage mean)" "$share"
 
-# Nobody in the way: as planned, without error.
+# A free way: as planned, without error.
 coverage barriers.env barriers.3dm --crowd 0 --json >told.json
 same "$(told coverage mean)" "$(told coverage planned)"
 same "$(told coverage error)" 0

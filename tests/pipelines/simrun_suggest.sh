@@ -55,7 +55,7 @@ expect_status 0 simrun house.yaml house.3dm --listen 127.0.0.1:0 --clock fast --
 grep -q 'no collision' whole.html || fail "the page has no expectations"
 [ "$(grep -o 'id="storey[12]"' whole.html | sort -u | wc -l)" -eq 2 ] || fail "the page has not both storeys"
 
-# All is seen already, or there is nobody to see.
+# All is seen already, or the room is without movers.
 printf '#env 1\nispace size=10,6,2.5\n' >hall.env
 printf '#3dm 1\nlaser id=l1 at=-4.5,0 range=20 fov=360\nhuman id=h at=-2,1 path=-2,1;2,1\n' >seen.3dm
 expect_status 0 simrun hall.env seen.3dm --listen 127.0.0.1:0 --clock fast --until 1 --record seen --suggest 1

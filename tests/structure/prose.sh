@@ -24,14 +24,16 @@ for text in "Computes what is returned" "Returns who reads" "Returns its place" 
     fails "$text"
 done
 # Each kind of file counts, code does not.
-for case in 'b.cc|int x; // what' 'b.sh|x # what' 'b.py|# what' 'b.1|.TP\nwhat' 'b.md|what' 'CMakeLists.txt|# what'; do
+for case in 'b.cc|int x; // what' 'b.sh|x # what' 'b.py|# what' 'b.1|.TP\nwhat' 'b.md|what' 'CMakeLists.txt|# what' \
+        'building/b.h|// what'; do
     tree "Computes the area, returns the pose"
+    mkdir -p tree/building
     printf "${case#*|}\n" >"tree/${case%%|*}"
     fails "$case"
 done
-for case in 'b.cc|int what;' 'b.sh|what' 'b.md|    what' 'b.txt|what' 'build/b.h|// what'; do
+for case in 'b.cc|int what;' 'b.sh|what' 'b.md|    what' 'b.txt|what' 'build/b.h|// what' 'build-lint/b.h|// what'; do
     tree "Computes the area, returns the pose"
-    mkdir -p tree/build
+    mkdir -p tree/build tree/build-lint
     printf "${case#*|}\n" >"tree/${case%%|*}"
     passes "$case"
 done

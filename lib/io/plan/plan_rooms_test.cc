@@ -153,7 +153,7 @@ TEST(PlanRooms, OpenFrontDoorsAreClosed) {
     EXPECT_TRUE(choose(openHall(), options).rooms.regions.empty());
     options.close_gaps = 0;
     EXPECT_NE(choose(openHall(), options).notes.find("nothing is enclosed"), std::string::npos);
-    // A line that somebody adds closes it as well.
+    // An added line closes it as well.
     options.known_walls = {{{2, 0.1}, {5, 0.1}}};
     EXPECT_NEAR(choose(openHall(), options).area(), 7.8 * 4.8 + 0.9 * 0.1, 1e-9);
 }

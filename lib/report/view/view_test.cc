@@ -79,7 +79,7 @@ TEST(Projector, SizesFollowTheView) {
 
 TEST(View, WallsInBetweenAreLeftOut) {
     const Scene scene = room();
-    // From the right, where the wall hides the crate from who stands so low.
+    // From the right, where the wall hides the crate from so low an eye.
     ViewOptions options;
     options.highlight = {"crate"};
     const Image picture = viewPicture(scene, parseView("orbit:0,5"), kSmall, options);

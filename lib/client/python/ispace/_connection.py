@@ -35,7 +35,7 @@ class Connection:
     time; infinity waits for ever.
     """
 
-    _MOST_KEPT = 10000  # events and ends that nobody asks for
+    _MOST_KEPT = 10000  # events and ends without a request
     _MOST_SCANS = 64
 
     def __init__(self, address: Address, timeout: float = 10, token: str = "") -> None:
