@@ -187,7 +187,7 @@ TEST(MostFromAnyPlace, TakesTheDearestCellsThatAreMissing) {
     const auto most_of = [&](int number) {
         const SensorModel devices[] = {small};
         const int most[] = {number};
-        problem.kinds = {Kind{}};
+        problem.kinds = {SensorType{}};
         return maxFromAnyPlace(problem, grid, devices, most);
     };
     EXPECT_EQ(most_of(0), 10U) << "what is met already";
@@ -222,7 +222,7 @@ TEST(MostFromAnyPlace, ABudgetBuysWhatSeesMostForItsCost) {
     const std::uint64_t few = maxCellsInView(devices[0], grid),
                         many = maxCellsInView(devices[1], grid);
     ASSERT_GT(many, 2 * few);
-    problem.kinds = {Kind{}, Kind{}};
+    problem.kinds = {SensorType{}, SensorType{}};
     problem.kinds[1].cost = 2;
     const int most[] = {10, 10};
     problem.budget = 5;

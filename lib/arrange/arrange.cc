@@ -29,7 +29,7 @@ void mustFitInModel(const Problem& problem) {
     constexpr double kMaxEntries = 1e8;
     double entries = 0;
     const std::vector<std::uint32_t> ones(problem.cells(), 1);
-    for (const Kind& kind : problem.kinds) {
+    for (const SensorType& kind : problem.kinds) {
         std::vector<std::uint32_t> counts(kind.candidates->size());
         kind.candidates->weighAll(WeightSums(ones), counts);
         for (const std::uint32_t count : counts) entries += count;
@@ -177,9 +177,9 @@ std::size_t quickPoints(const MeasuredScene& model) {
 /// Returns true if the number of sensors was the only limit of the search.
 bool isByNumber(const MeasuredScene& model) {
     if (!model.options().budget && !model.options().target) return true;
-    const std::vector<Kind>& kinds = model.problem().kinds;
+    const std::vector<SensorType>& kinds = model.problem().kinds;
     return std::all_of(kinds.begin(), kinds.end(),
-                       [&](const Kind& kind) { return kind.cost == kinds[0].cost; });
+                       [&](const SensorType& kind) { return kind.cost == kinds[0].cost; });
 }
 
 /// Computes the value of 1, 2, ... sensors of these kinds, at any cost, with bounds. Once the time
@@ -190,7 +190,7 @@ std::vector<SearchResult> searchByNumber(const SearchResult& found, const Measur
     const std::size_t last = part.size() - 1, quick = quickPoints(model);
     Problem fewer = model.problem();
     fewer.order.clear();
-    for (Kind& kind : fewer.kinds) kind.cost = 1;
+    for (SensorType& kind : fewer.kinds) kind.cost = 1;
     std::vector<SearchResult> results;
     results.reserve(last);
     for (std::size_t n = 1; n <= last; ++n) {

@@ -51,7 +51,7 @@ std::vector<std::size_t> idleAmong(const Problem& problem, std::span<const Count
 }
 
 CountedView viewOf(const Problem& problem, const Choice& choice) {
-    const Kind& kind = problem.kinds[choice.kind];
+    const SensorType& kind = problem.kinds[choice.kind];
     return {kind.candidates->cellsOf(choice.candidate), kind.multiplicity};
 }
 

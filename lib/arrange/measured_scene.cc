@@ -426,7 +426,7 @@ std::uint64_t maxParts(const Problem& problem, const Grid& grid,
     std::vector<Offer> offers;
     offers.reserve(devices.size());
     for (std::size_t k = 0; k < devices.size(); ++k) {
-        const Kind& kind = problem.kinds[k];
+        const SensorType& kind = problem.kinds[k];
         offers.push_back({kind.multiplicity * static_cast<double>(maxCellsInView(devices[k], grid)),
                           kind.cost, most[k]});
     }

@@ -264,8 +264,8 @@ void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
     if (laser == nullptr || laser->sweep != SweepAxis::None || group.record.number("tilt") != 0 ||
         group.record.number("roll") != 0)
         refusePoses("wanted level lasers that do not sweep");
-    if (group.most > kMostPosed)
-        refusePoses("wanted at most " + std::to_string(kMostPosed) + " sensors, found " +
+    if (group.most > kMaxPosed)
+        refusePoses("wanted at most " + std::to_string(kMaxPosed) + " sensors, found " +
                     std::to_string(group.most));
     if (group.most < options.redundancy)
         refusePoses("floor that " + std::to_string(options.redundancy) +
@@ -376,8 +376,8 @@ CheckedPoses checkPoses(const Scene& scene, const FloorWeights& weights, int tim
             refusePoses("wanted lasers of one kind, at one height");
         ++checked.sensors;
     }
-    if (checked.sensors == 0 || checked.sensors > kMostPosed)
-        refusePoses("wanted 1 to " + std::to_string(kMostPosed) + " lasers with a pose, found " +
+    if (checked.sensors == 0 || checked.sensors > kMaxPosed)
+        refusePoses("wanted 1 to " + std::to_string(kMaxPosed) + " lasers with a pose, found " +
                     std::to_string(checked.sensors));
     if (checked.sensors < static_cast<std::size_t>(times))
         refusePoses("floor that " + std::to_string(times) + " sensors see takes as many, found " +

@@ -24,7 +24,7 @@ namespace {
 /// box may hold a handrail as high as this.
 constexpr double kStep = 0.6, kHandrail = 1.5;
 /// Boxes narrower or lower than this are railings and landings, metres.
-constexpr double kNarrowest = 0.5, kLowest = 1.0;
+constexpr double kMinWidth = 0.5, kMinHeight = 1.0;
 /// Doors of a lift lie this far before its cabin, behind the wall of its shaft, or within it.
 constexpr double kBeforeCabin = 0.8, kIntoCabin = 0.3;
 /// Least cosine of the angle between a door and the front of its cabin.
@@ -76,7 +76,7 @@ std::vector<Record> flightsOf(const StoreyedDocument& building, const IfcStoreys
         }
         const auto below = floorAt(building, box.bottom, kStep);
         const auto above = floorAt(building, box.top, kHandrail);
-        if (box.width < kNarrowest || box.top - box.bottom < kLowest || !below || !above ||
+        if (box.width < kMinWidth || box.top - box.bottom < kMinHeight || !below || !above ||
             *below >= *above)
             continue;
         if (!scene) scene = makeBuildingScene(building, {}, {});

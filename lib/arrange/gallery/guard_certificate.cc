@@ -13,7 +13,7 @@ namespace ispace {
 namespace {
 
 constexpr std::string_view kGuards = "guards ";
-constexpr std::size_t kMostWitnesses = 100'000, kMostNodes = 100'000;
+constexpr std::size_t kMaxWitnesses = 100'000, kMaxNodes = 100'000;
 
 /// Removes the first word, up to a separator.
 std::string_view takeWord(std::string_view& line, char separator) {
@@ -110,12 +110,12 @@ GuardCertificate readGuardCertificate(std::string_view text, const std::string& 
         std::string_view line = lines.next();
         const auto x = parseDouble(takeWord(line, ' ')), y = parseDouble(line);
         if (!x || !y || !std::isfinite(*x) || !std::isfinite(*y)) lines.refuse("wanted `X Y`");
-        if (certificate.witnesses.size() == kMostWitnesses) lines.refuse("too many witnesses");
+        if (certificate.witnesses.size() == kMaxWitnesses) lines.refuse("too many witnesses");
         certificate.witnesses.push_back({*x, *y});
     }
     for (std::size_t nodes = 0; !lines.atEnd(); ++nodes) {
         const std::string_view line = lines.next();
-        if (nodes == kMostNodes) lines.refuse("too many nodes");
+        if (nodes == kMaxNodes) lines.refuse("too many nodes");
         if (line == "tree")
             certificate.trees.emplace_back();
         else if (certificate.trees.empty())

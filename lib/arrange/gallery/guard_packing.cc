@@ -108,8 +108,8 @@ void Packing::pivot(std::size_t row, std::size_t column) {
 
 void Packing::solve() {
     constexpr double kZero = 1e-9;
-    constexpr int kMostPivots = 20'000;
-    for (int count = 0; count < kMostPivots; ++count) {
+    constexpr int kMaxPivots = 20'000;
+    for (int count = 0; count < kMaxPivots; ++count) {
         const double* const costs = &table_[sets_ * width_];
         const double* const best = std::min_element(costs, costs + rows_);
         if (best == costs + rows_ || *best > -kZero) return;
@@ -221,8 +221,8 @@ class GuardProof {
     GuardCertificate::Tree take() { return std::move(tree_); }
 
   private:
-    static constexpr std::size_t kMostNodes = 2000;
-    static constexpr int kDeepest = 30;
+    static constexpr std::size_t kMaxNodes = 2000;
+    static constexpr int kMaxDepth = 30;
 
     void prove(std::vector<GuardRows> sets, std::size_t rows, int depth);
     /// Selects the pair of witnesses that the fractional cover sees together by about a half; two
@@ -280,7 +280,7 @@ void GuardProof::prove(std::vector<GuardRows> sets, std::size_t rows, int depth)
     }
     const auto proven = static_cast<std::size_t>((total + kUnit - 1) / kUnit);
     const auto pair =
-        proven < wanted_ && wanted_ == proven_ && depth < kDeepest && tree_.size() < kMostNodes
+        proven < wanted_ && wanted_ == proven_ && depth < kMaxDepth && tree_.size() < kMaxNodes
             ? pairOf(sets, packing.cover())
             : std::array<std::uint32_t, 2>{};
     GuardCertificate::Node& node = tree_.emplace_back();

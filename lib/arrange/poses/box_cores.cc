@@ -127,7 +127,7 @@ void CommonSight::add(Convex polygon, std::vector<double>& areas) const {
 }
 
 BoxCore CommonSight::core() {
-    constexpr int kMostFaces = 8;
+    constexpr int kMaxFaces = 8;
     BoxCore core;
     if (!sector_.isRound() && sector_.field - box_.span <= 2e-9) return core;
     Pieces common;
@@ -138,7 +138,7 @@ BoxCore CommonSight::core() {
         for (std::size_t k = 0; k < 3 && !shared.empty(); ++k)
             keepInside(shared, {at[k], -perpendicular(at[(k + 1) % 3] - at[k])});
         if (shared.empty()) continue;
-        if (++count > kMostFaces) return core;
+        if (++count > kMaxFaces) return core;
         std::vector<Wedge> wedges;
         for (const Point2 corner : shared) wedges.push_back({corner, {}, {}, true});
         Pieces pieces = {{i, {at.begin(), at.end()}}};

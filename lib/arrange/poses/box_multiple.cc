@@ -12,9 +12,9 @@ namespace ispace::poses {
 
 namespace {
 
-constexpr std::size_t kMost = 4;  // sensors
-constexpr int kWhole = 12;        // prices are in twelfths: a half, a third and a quarter are whole
-using Weights = std::array<int, kMost>;
+constexpr std::size_t kMaxSensors = 4;  // sensors
+constexpr int kWhole = 12;  // prices are in twelfths: a half, a third and a quarter are whole
+using Weights = std::array<int, kMaxSensors>;
 
 /// Lists the weights by which the sensors of a subset have a share each, the others none.
 /// \param share_of (number of the others) returns the share; 0: the subset is left out
@@ -34,7 +34,7 @@ void addSubsets(std::size_t sensors, ShareOf share_of, std::vector<Weights>& all
 /// Views and cores of the sensors in the cells from `first` on.
 struct Spread {
     std::size_t first = 0, count = 0;
-    std::array<std::vector<std::uint16_t>, kMost> fat, core;
+    std::array<std::vector<std::uint16_t>, kMaxSensors> fat, core;
     std::vector<std::int32_t> least, sum;
 
     template <typename View>
@@ -99,8 +99,8 @@ double BoxViews::sharedBy(std::span<const Placed> sensors, std::size_t times, do
         spread.put(core, spread.core[i]);
     }
     const auto bound_for = [&](const Weights& price) {
-        double area = 2.0 * kMost * kWhole * kNoShare * static_cast<double>(most_.size()) * side_ *
-                      side_ * most_weight_;
+        double area = 2.0 * kMaxSensors * kWhole * kNoShare * static_cast<double>(most_.size()) *
+                      side_ * side_ * most_weight_;
         for (std::size_t i = 0; i < sensors.size(); ++i) area += price[i] * sensors[i].most;
         spread.least.assign(spread.count, 0);
         for (std::size_t i = 0; i < spread.count; ++i)

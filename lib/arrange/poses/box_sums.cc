@@ -25,10 +25,10 @@ double BoxSums::outside(std::uint32_t box, const Marks& marks) const {
 
 void BoxSums::search(std::uint32_t box, double area, int depth, const Marks& marks,
                      Most& most) const {
-    constexpr int kDeepest = 10;
+    constexpr int kMaxDepth = 10;
     if (area <= most.area) return;
     const CheckedBox& own = boxes_[box];
-    if (own.second == 0 || depth == kDeepest) {
+    if (own.second == 0 || depth == kMaxDepth) {
         most = {area, box};
         return;
     }

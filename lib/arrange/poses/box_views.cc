@@ -30,7 +30,7 @@ class BoxSight {
         std::vector<Point2> lefts, rights;
         std::vector<Side2> limits;
     };
-    static constexpr int kMostSteps = 20'000;  // more: all floor within reach is taken
+    static constexpr int kMaxSteps = 20'000;  // more: all floor within reach is taken
 
     [[nodiscard]] Side2 sideAlong(Vec2 outwards) const;
     void addDisc();
@@ -131,7 +131,7 @@ void BoxSight::follow(std::size_t face, std::size_t edge, const Way& before) {
     const BoxViews::Face& near = floor_.faces_[face];
     if (near.beyond[edge] < 0) return;
     const auto beyond = static_cast<std::size_t>(near.beyond[edge]);
-    if (is_start_[beyond] != 0 || ++steps_ > kMostSteps) return;
+    if (is_start_[beyond] != 0 || ++steps_ > kMaxSteps) return;
     // The near face is to the left of its edge, so ahead its first corner is on the right.
     const Point2 right = near.at[edge], left = near.at[(edge + 1) % 3];
     Way way = before;
@@ -167,7 +167,7 @@ BoxView BoxSight::view() {
     const Way way{source_, {}, {}, {}};
     for (std::size_t i = 0; i < count; ++i)
         for (std::size_t edge = 0; edge < 3 && is_start_[i] != 0; ++edge) follow(i, edge, way);
-    if (steps_ > kMostSteps) {
+    if (steps_ > kMaxSteps) {
         std::fill(areas_.begin(), areas_.end(), 0.0);
         for (const BoxViews::Face& face : floor_.faces_) add({face.at.begin(), face.at.end()});
     }

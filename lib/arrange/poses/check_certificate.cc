@@ -25,7 +25,7 @@ using poses::CheckedBox;
 using poses::PoseBox;
 using poses::Sector;
 
-using Boxes = std::array<std::uint32_t, kMostPosed>;
+using Boxes = std::array<std::uint32_t, kMaxPosed>;
 
 /// A floor in fine cells, and in large ones, which suffice for most tuples.
 struct Floors {
@@ -86,12 +86,12 @@ char CertificateChecker::nextOf(const std::string& tree, const char* name) {
 }
 
 void CertificateChecker::readBox(const PoseBox& box, int depth) {
-    constexpr int kDeepest = 64;
+    constexpr int kMaxDepth = 64;
     const char node = nextOf(certificate_.boxes, "boxes");
     const auto own = static_cast<std::uint32_t>(boxes_.size());
     boxes_.push_back({.box = box});
     if (node != '.') {
-        if (depth == kDeepest) refuse("a box is divided more than 64 times");
+        if (depth == kMaxDepth) refuse("a box is divided more than 64 times");
         PoseBox first = box, second = box;
         if (node == 'x') {
             first.at.high.x = second.at.low.x = box.at.center().x;
@@ -141,7 +141,7 @@ void CertificateChecker::readTuple(Boxes boxes) {
 }
 
 void CertificateChecker::computeViews() {
-    constexpr std::size_t kMostBytes = std::size_t{8} << 30U;
+    constexpr std::size_t kMaxBytes = std::size_t{8} << 30U;
     for (const std::uint32_t id : blind_) boxes_[id].is_used = true;
     std::uint32_t end = 0;  // of the used boxes so far
     for (std::uint32_t id = 0; id < boxes_.size(); ++id) {
@@ -166,7 +166,7 @@ void CertificateChecker::computeViews() {
         }
         parts += box.view.parts.size() + box.core.parts.size() + box.large_view.parts.size() +
                  box.large_core.parts.size();
-        if (parts * sizeof(std::uint16_t) > kMostBytes)
+        if (parts * sizeof(std::uint16_t) > kMaxBytes)
             refuse("the views of its boxes need more than 8 GiB");
     });
     // A sensor that sees no floor may be moved anywhere else.
@@ -181,8 +181,8 @@ void CertificateChecker::computeViews() {
 }
 
 double CertificateChecker::unionOf(bool is_large, const Boxes& boxes, unsigned known) const {
-    std::array<BoxViews::Known, kMostPosed> areas{};
-    std::array<const BoxView*, kMostPosed> views{};
+    std::array<BoxViews::Known, kMaxPosed> areas{};
+    std::array<const BoxView*, kMaxPosed> views{};
     std::size_t areas_size = 0, views_size = 0;
     for (std::size_t i = 0; i < count_; ++i) {
         const CheckedBox& box = boxes_[boxes[i]];
@@ -217,7 +217,7 @@ double CertificateChecker::boundOf(const Boxes& boxes) const {
 
 /// Bounds the area that several of the sensors see.
 double CertificateChecker::sharedBy(bool is_large, const Boxes& boxes) const {
-    std::array<BoxViews::Placed, kMostPosed> placed{};
+    std::array<BoxViews::Placed, kMaxPosed> placed{};
     for (std::size_t i = 0; i < count_; ++i) {
         const CheckedBox& box = boxes_[boxes[i]];
         placed[i] = is_large ? BoxViews::Placed{box.most, &box.large_view, &box.large_core}

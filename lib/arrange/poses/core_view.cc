@@ -165,7 +165,7 @@ void CoreView::intersect() {
 }
 
 std::vector<std::uint8_t> CoreView::compute() {
-    constexpr int kMostParts = 8;
+    constexpr int kMaxParts = 8;
     if (!setField()) return {};
     int parts = 0;
     for (std::size_t i = 0; i < floor_.triangles().size(); ++i) {
@@ -174,7 +174,7 @@ std::vector<std::uint8_t> CoreView::compute() {
         for (std::size_t k = 0; k < 3; ++k)
             clip(source_, besideRay(corners[k], corners[(k + 1) % 3] - corners[k], 1), spare_);
         if (source_.empty()) continue;
-        if (++parts > kMostParts) return {};
+        if (++parts > kMaxParts) return {};
         seen_.clear();
         expandFrom(i);
         if (parts == 1)

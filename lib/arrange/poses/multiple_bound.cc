@@ -11,7 +11,7 @@
 namespace ispace::poses {
 
 struct MultipleBound::Dense {
-    std::array<std::vector<std::uint8_t>, kMostBoxes> fat, core;
+    std::array<std::vector<std::uint8_t>, kMaxBoxes> fat, core;
     std::vector<std::int16_t> least;
 };
 
@@ -19,8 +19,8 @@ namespace {
 
 /// Writes `unit` times `most`, less the cores by their prices.
 ISPACE_SIMD_CLONES void takeCores(std::int16_t* __restrict least, const std::uint8_t* most,
-                                  const std::array<const std::uint8_t*, kMostBoxes>& core,
-                                  const std::array<std::int16_t, kMostBoxes>& price,
+                                  const std::array<const std::uint8_t*, kMaxBoxes>& core,
+                                  const std::array<std::int16_t, kMaxBoxes>& price,
                                   std::int16_t unit, std::size_t count) {
     const std::uint8_t *a = core[0], *b = core[1], *c = core[2], *d = core[3];
     const int pa = price[0], pb = price[1], pc = price[2], pd = price[3];
@@ -31,8 +31,8 @@ ISPACE_SIMD_CLONES void takeCores(std::int16_t* __restrict least, const std::uin
 
 /// Lowers to a sum of views, by factors.
 ISPACE_SIMD_CLONES void lowerTo(std::int16_t* __restrict least,
-                                const std::array<const std::uint8_t*, kMostBoxes>& view,
-                                const std::array<std::int16_t, kMostBoxes>& factor,
+                                const std::array<const std::uint8_t*, kMaxBoxes>& view,
+                                const std::array<std::int16_t, kMaxBoxes>& factor,
                                 std::size_t count) {
     const std::uint8_t *a = view[0], *b = view[1], *c = view[2], *d = view[3];
     const int fa = factor[0], fb = factor[1], fc = factor[2], fd = factor[3];
@@ -87,7 +87,7 @@ MultipleBound::MultipleBound(const PoseFloor& floor, const PoseBoxes& boxes, std
 }
 
 double MultipleBound::ofSingles(std::span<const BoxId> boxes) const {
-    std::array<double, kMostBoxes> most{};
+    std::array<double, kMaxBoxes> most{};
     for (std::size_t i = 0; i < sensors_; ++i) most[i] = boxes_[boxes[i]].most;
     std::sort(most.begin(), most.begin() + static_cast<std::ptrdiff_t>(sensors_));
     // All but the largest j see the floor times - j times.
@@ -104,9 +104,9 @@ double MultipleBound::boundFor(const Prices& prices, std::span<const BoxId> boxe
                                Dense& views) const {
     const std::vector<std::uint8_t>& most = floor_.in(grain).parts();
     const std::size_t cells = most.size();
-    std::array<const std::uint8_t*, kMostBoxes> fat{}, core{};
+    std::array<const std::uint8_t*, kMaxBoxes> fat{}, core{};
     double area = 0;
-    for (std::size_t i = 0; i < kMostBoxes; ++i) {
+    for (std::size_t i = 0; i < kMaxBoxes; ++i) {
         fat[i] = views.fat[i].data();
         core[i] = views.core[i].data();
         if (i < sensors_) area += prices[i] * boxes_[boxes[i]].most;
@@ -115,7 +115,7 @@ double MultipleBound::boundFor(const Prices& prices, std::span<const BoxId> boxe
     takeCores(views.least.data(), most.data(), core, prices, kUnit, cells);
     for (const Prices& cell_prices : cell_prices_) {
         Prices factors{};
-        std::array<const std::uint8_t*, kMostBoxes> view = fat;
+        std::array<const std::uint8_t*, kMaxBoxes> view = fat;
         for (std::size_t i = 0; i < sensors_; ++i) {
             factors[i] = static_cast<std::int16_t>(cell_prices[i] - prices[i]);
             if (factors[i] < 0) view[i] = core[i];
@@ -123,7 +123,7 @@ double MultipleBound::boundFor(const Prices& prices, std::span<const BoxId> boxe
         lowerTo(views.least.data(), view, factors, cells);
     }
     // Cores are rounded down but for kNoShare of a cell.
-    area += 2.0 * kUnit * kMostBoxes * kNoShare * kParts * floor_.in(grain).partArea() *
+    area += 2.0 * kUnit * kMaxBoxes * kNoShare * kParts * floor_.in(grain).partArea() *
             floor_.mostWeight() * static_cast<double>(cells);
     return (area + floor_.in(grain).weightOf([&views](std::size_t first, std::size_t count) {
                return sumOfLeast(&views.least[first], count);
@@ -143,7 +143,7 @@ double MultipleBound::of(std::span<const BoxId> boxes, double enough) const {
 double MultipleBound::boundIn(Grain grain, std::span<const BoxId> boxes, double enough) const {
     thread_local Dense views;  // memory is reused
     const std::size_t cells = floor_.in(grain).parts().size();
-    for (std::size_t i = 0; i < kMostBoxes; ++i) {
+    for (std::size_t i = 0; i < kMaxBoxes; ++i) {
         spread(i < sensors_ ? boxes_[boxes[i]].fatIn(grain) : CellParts(), cells, views.fat[i]);
         spread(i < sensors_ ? boxes_[boxes[i]].coreIn(grain) : CellParts(), cells, views.core[i]);
     }

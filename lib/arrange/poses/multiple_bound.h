@@ -13,7 +13,7 @@
 namespace ispace::poses {
 
 /// Largest number of sensors of a tuple.
-constexpr std::size_t kMostBoxes = 4;
+constexpr std::size_t kMaxBoxes = 4;
 
 /// Bounds the area that at least `times` of the sensors see together, at any poses in their boxes.
 ///
@@ -33,7 +33,7 @@ constexpr std::size_t kMostBoxes = 4;
 /// at most `times`, and 0 for the others.
 class MultipleBound {
   public:
-    /// Stores the references. \pre sensors <= kMostBoxes, 1 <= times <= sensors
+    /// Stores the references. \pre sensors <= kMaxBoxes, 1 <= times <= sensors
     MultipleBound(const PoseFloor& floor, const PoseBoxes& boxes, std::size_t sensors,
                   std::size_t times);
 
@@ -46,7 +46,7 @@ class MultipleBound {
 
   private:
     /// In units of 1 / kUnit, so that shares of 1 / times are whole.
-    using Prices = std::array<std::int16_t, kMostBoxes>;
+    using Prices = std::array<std::int16_t, kMaxBoxes>;
     static constexpr std::int16_t kUnit = 12;
 
     struct Dense;  // views of boxes in all cells

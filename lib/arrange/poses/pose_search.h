@@ -60,7 +60,7 @@ struct PoseBound {
 };
 
 /// Largest number of sensors of boundOverPoses().
-constexpr int kMostPosed = 4;
+constexpr int kMaxPosed = 4;
 
 /// Bounds the area that equal sensors see together, or that several of them see, at any poses on
 /// the floor, by branch and bound over tuples of boxes of poses, one box for each sensor.
@@ -76,7 +76,7 @@ constexpr int kMostPosed = 4;
 /// Deterministic for any number of threads, unless stopped. With a share a stopped search continues
 /// to the result of one that was not. \throws FormatError for a state or a part that is damaged
 /// \pre 1 <= times <= sensors <=
-/// kMostPosed
+/// kMaxPosed
 PoseBound boundOverPoses(const poses::PoseFloor& floor, const poses::Sector& sector,
                          const PoseSearchOptions& options, Progress& progress);
 

@@ -21,7 +21,7 @@ namespace ispace::poses {
 
 struct Tuple {
     double bound = 0;
-    std::array<BoxId, kMostPosed> boxes{};
+    std::array<BoxId, kMaxPosed> boxes{};
     std::uint32_t node = 0;  // of the tree of tuples
 };
 /// A tuple of the tree that becomes a certificate.

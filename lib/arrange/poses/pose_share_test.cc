@@ -198,12 +198,12 @@ TEST(PoseShare, NegativeBoundsOfTuplesAreRefused) {
         return number;
     };
     // At the end: the bounds, the boxes and nodes, and a tree of one node, each after its count.
-    constexpr std::size_t kTree = 8 + 5 * 4, kBound = 8, kTuple = (kMostPosed + 1) * 4;
+    constexpr std::size_t kTree = 8 + 5 * 4, kBound = 8, kTuple = (kMaxPosed + 1) * 4;
     std::size_t count = 1, end = 0;
     for (;; ++count) {
         ASSERT_LT(kTree + 16 + count * (kBound + kTuple), bytes.size());
         end = bytes.size() - kTree - 8 - count * kTuple;
-        if (number_at(end) == count * (kMostPosed + 1) &&
+        if (number_at(end) == count * (kMaxPosed + 1) &&
             number_at(end - count * kBound - 8) == count)
             break;
     }

@@ -71,7 +71,7 @@ bool PoseSearcher::recall() {
 /// Reads five numbers for each node: its halves, later nodes, the box that is halved, and its
 /// bound.
 void PoseSearcher::readTree(const std::vector<std::uint32_t>& numbers) {
-    constexpr std::size_t kNode = 5, kDeepest = std::size_t{64} * kMostPosed;
+    constexpr std::size_t kNode = 5, kMaxDepth = std::size_t{64} * kMaxPosed;
     if (numbers.size() % kNode != 0) Unpacker::refuse();
     const std::size_t nodes = numbers.size() / kNode;
     std::vector<std::size_t> depths(nodes);
@@ -80,7 +80,7 @@ void PoseSearcher::readTree(const std::vector<std::uint32_t>& numbers) {
         if (own[2] > count_ || (i > 0 && depths[i] == 0)) Unpacker::refuse();
         for (const std::uint32_t half : {own[0], own[1]}) {
             if (half == 0) continue;
-            if (half >= nodes || half <= i || depths[half] != 0 || depths[i] == kDeepest)
+            if (half >= nodes || half <= i || depths[half] != 0 || depths[i] == kMaxDepth)
                 Unpacker::refuse();
             depths[half] = depths[i] + 1;
         }
@@ -91,17 +91,17 @@ void PoseSearcher::readTree(const std::vector<std::uint32_t>& numbers) {
 }
 
 void PoseSearcher::unpackTuples(Unpacker& from) {
-    constexpr std::size_t kNumbers = kMostPosed + 1;
+    constexpr std::size_t kNumbers = kMaxPosed + 1;
     const auto bounds = from.all<std::uint64_t>();
     const auto tuples = from.all<std::uint32_t>(), tree = from.all<std::uint32_t>();
     if (tuples.size() != kNumbers * bounds.size()) Unpacker::refuse();
     readTree(tree);
     std::vector<BoxId> open;
     for (std::size_t i = 0; i < bounds.size(); ++i) {
-        Tuple tuple{std::bit_cast<double>(bounds[i]), {}, tuples[kNumbers * i + kMostPosed]};
+        Tuple tuple{std::bit_cast<double>(bounds[i]), {}, tuples[kNumbers * i + kMaxPosed]};
         if (!std::isfinite(tuple.bound) || tuple.bound < 0 || tuple.node >= tree_.size())
             Unpacker::refuse();
-        for (std::size_t k = 0; k < kMostPosed; ++k) {
+        for (std::size_t k = 0; k < kMaxPosed; ++k) {
             tuple.boxes[k] = tuples[kNumbers * i + k];
             if (tuple.boxes[k] >= boxes_.size()) Unpacker::refuse();
             if (k < count_) open.push_back(tuple.boxes[k]);

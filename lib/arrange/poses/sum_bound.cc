@@ -90,7 +90,7 @@ double SumBound::seenBy(BoxId box, const std::vector<std::uint8_t>& outside) con
 
 std::pair<double, BoxId> SumBound::mostSeenBy(BoxId box, const std::vector<std::uint8_t>& outside,
                                               Wanted& wanted) const {
-    constexpr int kDeepest = 9, kMostVisits = 30;
+    constexpr int kMaxDepth = 9, kMaxVisits = 30;
     struct Part {
         double most;
         BoxId box;
@@ -106,7 +106,7 @@ std::pair<double, BoxId> SumBound::mostSeenBy(BoxId box, const std::vector<std::
         const Part part = heap.back();
         heap.pop_back();
         const BoxNode& node = boxes_[part.box];
-        if (visits == kMostVisits || part.depth == kDeepest || node.isBlind())
+        if (visits == kMaxVisits || part.depth == kMaxDepth || node.isBlind())
             return {part.most, part.box};
         const BoxId child = node.child;
         if (child == 0 || !boxes_[child].hasLarge() || !boxes_[child + 1].hasLarge()) {

@@ -270,7 +270,7 @@ TEST(ReducedProblem, PricesStayTheSame) {
         const RandomProblem random = variedProblem(round);
         const RelaxedCells cells(random.problem);
         std::vector<std::vector<std::uint32_t>> kept;
-        for (const Kind& kind : random.problem.kinds) {
+        for (const SensorType& kind : random.problem.kinds) {
             kept.emplace_back();
             for (std::uint32_t i = 0; i < kind.candidates->size(); ++i)
                 if ((i * 7 + round) % 3 == 0) kept.back().push_back(i);

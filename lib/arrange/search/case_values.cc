@@ -51,7 +51,7 @@ CaseValues::CaseValues(const WorstCaseProblem& of, const std::vector<Choice>& ch
     countStanding();
     const Problem& problem = *of.problem;
     for (const Choice& choice : withoutRepeats(chosen)) {
-        const Kind& kind = problem.kinds[choice.kind];
+        const SensorType& kind = problem.kinds[choice.kind];
         const auto added = static_cast<std::uint32_t>(of.failures > 0 ? 1 : kind.multiplicity);
         kind.candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
             for (std::uint32_t i = run.first; i < run.end; ++i) counts_[i] += added;

@@ -23,8 +23,8 @@ class CostLevelsTest : public testing::Test {
     CostLevelsTest() : candidates_(1) {
         for (int i = 0; i < 1000; ++i) candidates_.addSite(CellSet(1));
     }
-    std::vector<Kind> kindsOf(const std::vector<double>& costs, int most) const {
-        std::vector<Kind> kinds;
+    std::vector<SensorType> kindsOf(const std::vector<double>& costs, int most) const {
+        std::vector<SensorType> kinds;
         kinds.reserve(costs.size());
         for (const double cost : costs) kinds.push_back({&candidates_, most, cost, 1});
         return kinds;
@@ -98,7 +98,7 @@ TEST_F(CostLevelsTest, EachSumIsBoughtByOneLevelAndNotByTheOneBefore) {
         problem.kinds = kindsOf({costs[random() % 10], costs[random() % 10], costs[random() % 10]},
                                 static_cast<int>(1 + random() % 6));
         double most = 0;
-        for (const Kind& kind : problem.kinds) most += kind.cost * kind.most;
+        for (const SensorType& kind : problem.kinds) most += kind.cost * kind.most;
         if (round % 2 == 0) most /= 2;
         const CostLevels levels(problem.kinds, most);
         ASSERT_FALSE(levels.isEven());

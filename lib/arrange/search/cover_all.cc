@@ -16,7 +16,7 @@ class CoverRounds {
   public:
     CoverRounds(const Problem& problem, const std::vector<Choice>& start) : problem_(problem) {
         std::vector<int> change(problem.cells() + 1);
-        for (const Kind& kind : problem.kinds)
+        for (const SensorType& kind : problem.kinds)
             for (std::size_t i = 0; i < kind.candidates->size(); ++i)
                 kind.candidates->forEachRun(i, [&change](const CellRun& run) {
                     ++change[run.first];

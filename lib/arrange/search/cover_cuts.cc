@@ -175,7 +175,7 @@ std::size_t CutProgram::addCuts() {
 CoverBound raiseByCuts(const CoverCore& core, double limit, const Progress& progress) {
     constexpr std::size_t kMaxEntries = 300'000;  // of a program that takes seconds
     constexpr int kMaxRounds = 40, kPatience = 3;
-    constexpr double kLeastGain = 0.05;  // of the gap
+    constexpr double kMinGain = 0.05;  // of the gap
     CoverBound best{0, std::vector<double>(core.columns()), std::vector<char>(core.columns())};
     std::size_t entries = 0;
     for (std::size_t row = 0; row < core.rows(); ++row) entries += core.columnsOf(row).size();
@@ -192,7 +192,7 @@ CoverBound raiseByCuts(const CoverCore& core, double limit, const Progress& prog
         if (std::ceil(best.value) >= limit) break;
         const auto out = std::count(best.excluded.begin(), best.excluded.end(), 1);
         if (4 * static_cast<std::size_t>(out) > core.columns()) break;  // a smaller core is faster
-        stalled = gain < kLeastGain * (limit - best.value) ? stalled + 1 : 0;
+        stalled = gain < kMinGain * (limit - best.value) ? stalled + 1 : 0;
         if (stalled >= kPatience || program.addCuts() == 0) break;
     }
     return best;

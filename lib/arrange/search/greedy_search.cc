@@ -235,7 +235,7 @@ void placeRest(const SearchBasis& basis, bool per_cost, CoverageState& state, Pr
 
 Solution placeGreedily(const Problem& problem, Progress& progress) {
     const SearchBasis basis(problem);
-    const auto has_cost_of_first = [&](const Kind& kind) {
+    const auto has_cost_of_first = [&](const SensorType& kind) {
         return kind.cost == problem.kinds.front().cost;
     };
     const bool is_by_cost =

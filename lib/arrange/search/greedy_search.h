@@ -78,8 +78,8 @@ class CoverageState {
     std::uint64_t value_ = 0, partial_value_ = 0;
 };
 
-/// Returns the maximum number of sensors of each kind: Kind::most, at most as many as the order
-/// lists, and 0 for a kind without candidates.
+/// Returns the maximum number of sensors of each kind: SensorType::most, at most as many as the
+/// order lists, and 0 for a kind without candidates.
 std::vector<int> limitsOf(const Problem& problem);
 
 /// Marginal gain of a candidate: the primary gain in the upper 32 bits, the tie breaker below.

@@ -22,7 +22,7 @@ std::vector<int> loadsOf(const Problem& problem, const std::vector<Choice>& chos
     std::vector<int> loads(problem.achieved.begin(), problem.achieved.end());
     loads.resize(problem.cells(), 0);
     for (const Choice& choice : chosen) {
-        const Kind& kind = problem.kinds[choice.kind];
+        const SensorType& kind = problem.kinds[choice.kind];
         kind.candidates->cellsOf(choice.candidate).forEach([&](std::size_t cell) {
             loads[cell] += kind.multiplicity;
         });
@@ -38,7 +38,8 @@ Gain gainOf(const Problem& problem, const std::vector<int>& loads, const Choice&
             int to_come) {
     const int multiplicity = problem.kinds[choice.kind].multiplicity;
     bool takes_steps = false;
-    for (const Kind& kind : problem.kinds) takes_steps |= kind.multiplicity < problem.required;
+    for (const SensorType& kind : problem.kinds)
+        takes_steps |= kind.multiplicity < problem.required;
     Gain gain;
     problem.kinds[choice.kind].candidates->cellsOf(choice.candidate).forEach([&](std::size_t cell) {
         const int lack = problem.required - loads[cell];
@@ -57,7 +58,7 @@ std::vector<Choice> naiveGreedy(const Problem& problem) {
     std::vector<Choice> chosen;
     std::vector<int> counts(problem.kinds.size(), 0);
     int sensors = 0, multiplicities = 0;
-    for (const Kind& kind : problem.kinds) {
+    for (const SensorType& kind : problem.kinds) {
         sensors += kind.most;
         multiplicities += kind.most * std::min(kind.multiplicity, problem.required);
     }

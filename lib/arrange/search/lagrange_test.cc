@@ -111,7 +111,7 @@ TEST(Lagrange, HoldsWithOddCosts) {
         random.problem.budget = 2.5;
         const Solution best = bestByBruteForce(random.problem);
         EXPECT_GE(boundFor(random.problem, best, progress).value, best.value);
-        for (Kind& kind : random.problem.kinds) kind.cost *= 1e-5;
+        for (SensorType& kind : random.problem.kinds) kind.cost *= 1e-5;
         *random.problem.budget *= 1e-5;
         EXPECT_GE(boundFor(random.problem, best, progress).value, best.value);
     }

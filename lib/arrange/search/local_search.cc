@@ -43,8 +43,9 @@ std::size_t slotsFor(const SearchBasis& basis) {
 }
 
 bool haveCostsThatDiffer(const Problem& problem) {
-    return std::any_of(problem.kinds.begin(), problem.kinds.end(),
-                       [&](const Kind& kind) { return kind.cost != problem.kinds.front().cost; });
+    return std::any_of(problem.kinds.begin(), problem.kinds.end(), [&](const SensorType& kind) {
+        return kind.cost != problem.kinds.front().cost;
+    });
 }
 
 }  // namespace
@@ -138,7 +139,7 @@ Response LocalSearch::respond(const CoverageState& others, Slot& slot,
                               const std::optional<Response>& known) {
     const ResponseCache::Key key(others.chosen());
     if (const auto response = cache_.find(key)) return *response;
-    const std::vector<Kind>& kinds = basis_.problem.kinds;
+    const std::vector<SensorType>& kinds = basis_.problem.kinds;
     Response best;
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
         if (!others.canTake(kind, basis_.limits[kind])) continue;

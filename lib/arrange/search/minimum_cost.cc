@@ -78,7 +78,7 @@ class MinimumCostSearch {
 Problem MinimumCostSearch::within(double cost) const {
     Problem cheaper = problem_;
     if (cheaper.kinds.size() == 1) {
-        Kind& kind = cheaper.kinds[0];
+        SensorType& kind = cheaper.kinds[0];
         const auto most = static_cast<std::size_t>(std::max(kind.most, 0));
         kind.most = static_cast<int>(affordableCount(cost, 0, kind.cost, most));
     } else {
@@ -92,7 +92,7 @@ Solution MinimumCostSearch::reachGreedily() {
     std::vector<Choice> everything;
     double cost = 0, dearest = 0;
     for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
-        const Kind& kind = problem_.kinds[k];
+        const SensorType& kind = problem_.kinds[k];
         for (std::size_t i = 0; i < kind.candidates->size(); ++i) everything.push_back({k, i});
         cost += kind.cost * kind.most;
         dearest = std::max(dearest, kind.cost);
@@ -190,7 +190,7 @@ MinimumCostCover MinimumCostSearch::unreached(const Solution& greedy) {
     cover.cost = normaliseCost(costOf(problem_, cover.result.best.chosen));
     // A positive value requires at least one sensor.
     cover.cost_bound = problem_.kinds.empty() ? 0 : problem_.kinds[0].cost;
-    for (const Kind& kind : problem_.kinds)
+    for (const SensorType& kind : problem_.kinds)
         cover.cost_bound = std::min(cover.cost_bound, kind.cost);
     return cover;
 }
@@ -292,9 +292,9 @@ void MinimumCostSearch::stepDown(const CostLevels& levels, Solution& best) {
 bool MinimumCostSearch::isSetCover() const {
     return problem_.required == 1 && !problem_.is_connected && !problem_.budget &&
            wanted_ == problem_.totalWeight() &&
-           std::all_of(problem_.kinds.begin(), problem_.kinds.end(), [this](const Kind& kind) {
-               return kind.cost == problem_.kinds.front().cost;
-           });
+           std::all_of(
+               problem_.kinds.begin(), problem_.kinds.end(),
+               [this](const SensorType& kind) { return kind.cost == problem_.kinds.front().cost; });
 }
 
 MinimumCostCover MinimumCostSearch::cheapen(Solution best) {

@@ -92,7 +92,7 @@ std::shared_ptr<const ReducedProblem> unpackProblem(Unpacker& from, const Proble
     problem->needs = from.all<std::uint16_t>();
     if (problem->needs.size() != problem->cells() || from.number() != original.kinds.size())
         Unpacker::refuse();
-    for (const Kind& kind : original.kinds) {
+    for (const SensorType& kind : original.kinds) {
         ReducedProblem::OfKind& own = problem->kinds.emplace_back();
         const std::uint64_t multiplicity = from.number();
         if (multiplicity == 0 || multiplicity > UINT16_MAX) Unpacker::refuse();
@@ -121,7 +121,8 @@ const T& at(const std::vector<T>& things, std::uint64_t number) {
 /// Returns true if the fixed choices and full groups are within the limits of the problem.
 bool isWithinLimits(const Problem& problem, const BranchNode& node) {
     std::size_t most = 0;
-    for (const Kind& kind : problem.kinds) most += static_cast<std::size_t>(std::max(kind.most, 0));
+    for (const SensorType& kind : problem.kinds)
+        most += static_cast<std::size_t>(std::max(kind.most, 0));
     std::vector<Choice> all = node.fixed;
     for (const BranchGroup& group : node.groups) {
         if (all.size() > most || group.count > most - all.size()) return false;
@@ -164,7 +165,7 @@ std::uint64_t fingerprintOf(const Problem& problem) {
     const auto add = [&hash](std::uint64_t number) { hash = mixedBits(hash ^ number); };
     for (const std::uint32_t weight : problem.weights) add(weight);
     for (const std::uint16_t times : problem.achieved) add(times);
-    for (const Kind& kind : problem.kinds) {
+    for (const SensorType& kind : problem.kinds) {
         for (const int number : {kind.most, kind.multiplicity}) add(static_cast<unsigned>(number));
         add(kind.candidates->size());
         add(kind.candidates->runs());

@@ -428,10 +428,10 @@ void OverlapRelaxation::addToBundle(std::uint32_t candidate) {
 }
 
 void OverlapRelaxation::widen() {
-    constexpr std::size_t kMost = 40, kHeavy = 250;
+    constexpr std::size_t kMaxPlaces = 40, kHeavy = 250;
     for (std::size_t i = 0; i < areas_.size(); ++i) {
         Area& area = areas_[i];
-        for (std::size_t n = 0; n < std::min(kMost, area.order.size()); ++n) {
+        for (std::size_t n = 0; n < std::min(kMaxPlaces, area.order.size()); ++n) {
             const Place& place = area.places[area.order[n]];
             area.working.push_back(place.candidate);
             if (place.second != kNone) area.working.push_back(area.places[place.second].candidate);

@@ -34,7 +34,7 @@ std::uint64_t valueOf(const Problem& problem, const std::vector<Choice>& chosen)
     // Stores differences of the multiplicity from cell to cell, so that a run costs two writes.
     std::vector<std::int64_t> steps(problem.cells() + 1, 0);
     for (const Choice& choice : distinct(chosen)) {
-        const Kind& kind = problem.kinds[choice.kind];
+        const SensorType& kind = problem.kinds[choice.kind];
         kind.candidates->forEachRun(choice.candidate, [&](const CellRun& run) {
             steps[run.first] += kind.multiplicity;
             steps[run.end] -= kind.multiplicity;
@@ -232,8 +232,8 @@ constexpr std::size_t kMaxLevels = 4'000;
 
 }  // namespace
 
-CostLevels::CostLevels(const std::vector<Kind>& kinds, double most) {
-    for (const Kind& kind : kinds) {
+CostLevels::CostLevels(const std::vector<SensorType>& kinds, double most) {
+    for (const SensorType& kind : kinds) {
         // 1, 2, 4, ... and the rest: they make up any number, and equal sums never pile up.
         auto left =
             std::min(static_cast<std::size_t>(std::max(kind.most, 0)), kind.candidates->size());
@@ -303,7 +303,7 @@ class MpsWriter {
     MpsWriter(const Problem& problem, const std::vector<std::string>& kinds, std::ostream& out)
         : problem_(problem), names_(kinds), out_(out), lacks_(problem.cells(), 0) {
         std::vector<char> is_seen(problem.cells(), 0);
-        for (const Kind& kind : problem.kinds)
+        for (const SensorType& kind : problem.kinds)
             for (std::size_t i = 0; i < kind.candidates->size(); ++i)
                 kind.candidates->forEachRun(i, [&is_seen](const CellRun& run) {
                     std::fill(is_seen.begin() + run.first, is_seen.begin() + run.end, char{1});
@@ -392,7 +392,7 @@ void MpsWriter::writeRows() {
 
 /// Coefficients are clipped to the need of the cell: the same integer solutions, a tighter model.
 void MpsWriter::writeSensor(std::size_t kind, std::size_t candidate) {
-    const Kind& own = problem_.kinds[kind];
+    const SensorType& own = problem_.kinds[kind];
     const std::string name = nameOf(kind, candidate);
     line({"    ", name, " most_", names_[kind], " 1"});
     if (problem_.budget) line({"    ", name, " budget ", formatDouble(own.cost)});

@@ -14,12 +14,11 @@
 namespace ispace {
 
 /// Interchangeable sensors: they share one set of candidates.
-struct Kind {
+struct SensorType {
     const CandidateSet* candidates = nullptr;
     int most = 1;     ///< maximum number of sensors
     double cost = 1;  ///< of each; above 0
-    int multiplicity =
-        1;  ///< increment of the coverage multiplicity of a cell that one sensor sees
+    int multiplicity = 1;  ///< that one sensor adds to the cells that it sees
 };
 
 /// A weighted coverage problem: find sensors that maximise the weight of the covered cells.
@@ -37,8 +36,8 @@ struct Problem {
     int required = 1;
     /// Multiplicity of each cell from standing sensors; empty: all 0.
     std::vector<std::uint16_t> achieved;
-    std::vector<Kind> kinds;  ///< all candidate sets are of weights.size() cells
-    /// Upper limit of the total cost; without it only Kind::most limits the choice.
+    std::vector<SensorType> kinds;  ///< all candidate sets are of weights.size() cells
+    /// Upper limit of the total cost; without it only SensorType::most limits the choice.
     std::optional<double> budget;
     /// Kinds in the order in which greedy search adds them; empty: the best first.
     std::vector<std::size_t> order;
@@ -81,7 +80,7 @@ std::size_t affordableCount(double budget, double spent, double cost, std::size_
 /// Rounds a sum of decimal costs to 12 significant digits, or to as many as isCheaper() tells
 /// apart: 0.1 + 0.2 becomes 0.3.
 double normaliseCost(double cost);
-/// Returns true for choices within Kind::most and the budget.
+/// Returns true for choices within SensorType::most and the budget.
 bool isWithinLimits(const Problem& problem, const std::vector<Choice>& chosen);
 /// Returns true for choices within these limits and, if required, connected.
 bool isFeasible(const Problem& problem, const std::vector<Choice>& chosen);
@@ -122,7 +121,7 @@ std::vector<std::uint32_t> integerWeights(const std::vector<double>& weights);
 class CostLevels {
   public:
     /// O(4000 * kinds * log of how many of each)
-    CostLevels(const std::vector<Kind>& kinds, double most);
+    CostLevels(const std::vector<SensorType>& kinds, double most);
 
     [[nodiscard]] std::size_t size() const { return levels_.size(); }
     [[nodiscard]] bool isEven() const { return is_even_; }

@@ -34,7 +34,7 @@ std::uint64_t slowValueOf(const Problem& problem, const std::vector<Choice>& cho
     for (std::size_t cell = 0; cell < problem.cells(); ++cell) {
         int multiplicities = problem.achieved.empty() ? 0 : problem.achieved[cell];
         for (std::size_t i = 0; i < chosen.size(); ++i) {
-            const Kind& kind = problem.kinds[chosen[i].kind];
+            const SensorType& kind = problem.kinds[chosen[i].kind];
             const bool is_repeated =
                 std::find(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(i),
                           chosen[i]) != chosen.begin() + static_cast<std::ptrdiff_t>(i);

@@ -16,7 +16,7 @@ constexpr std::size_t kMaxWays = 20'000;
 /// Computes the largest multiplicity that all sensors together can give a cell.
 std::uint64_t maxMultiplicityOf(const Problem& problem) {
     std::uint64_t multiplicities = 0;
-    for (const Kind& kind : problem.kinds) {
+    for (const SensorType& kind : problem.kinds) {
         auto most =
             std::min(static_cast<std::size_t>(std::max(kind.most, 0)), kind.candidates->size());
         if (problem.budget) most = affordableCount(*problem.budget, 0, kind.cost, most);
@@ -33,10 +33,10 @@ RelaxedCells::RelaxedCells(const Problem& problem)
     scale = static_cast<std::uint32_t>(
         std::max<std::uint64_t>(std::numeric_limits<std::uint32_t>::max() / total, 1));
     int common = 0;
-    for (const Kind& kind : problem.kinds) common = std::gcd(common, kind.multiplicity);
+    for (const SensorType& kind : problem.kinds) common = std::gcd(common, kind.multiplicity);
     common = std::max(common, 1);
     multiplicities.reserve(problem.kinds.size());
-    for (const Kind& kind : problem.kinds)
+    for (const SensorType& kind : problem.kinds)
         multiplicities.push_back(static_cast<std::uint16_t>(kind.multiplicity / common));
     const std::uint64_t max_multiplicity = maxMultiplicityOf(problem);
     for (std::size_t i = 0; i < weights.size(); ++i) {

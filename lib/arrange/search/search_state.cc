@@ -22,7 +22,7 @@ std::uint32_t stepScaleOf(const Problem& problem) {
 
 std::vector<std::uint32_t> partialWeights(const Problem& problem) {
     std::uint64_t most = 1;
-    for (const Kind& kind : problem.kinds)
+    for (const SensorType& kind : problem.kinds)
         most = std::max<std::uint64_t>(
             most, static_cast<std::uint64_t>(std::min(kind.multiplicity, problem.required)));
     std::vector<std::uint32_t> weights = problem.weights;
@@ -41,8 +41,9 @@ std::vector<std::uint32_t> partialWeights(const Problem& problem) {
 }
 
 bool takesSteps(const Problem& problem) {
-    return std::any_of(problem.kinds.begin(), problem.kinds.end(),
-                       [&](const Kind& kind) { return kind.multiplicity < problem.required; });
+    return std::any_of(problem.kinds.begin(), problem.kinds.end(), [&](const SensorType& kind) {
+        return kind.multiplicity < problem.required;
+    });
 }
 
 std::vector<int> limitsOf(const Problem& problem) {
@@ -64,7 +65,7 @@ CoverageState::CoverageState(const Problem& problem, const std::vector<std::uint
       required_(static_cast<std::uint32_t>(problem.required)),
       step_scale_(stepScaleOf(problem)) {
     multiplicities_.reserve(problem.kinds.size());
-    for (const Kind& kind : problem.kinds)
+    for (const SensorType& kind : problem.kinds)
         multiplicities_.push_back(
             static_cast<std::uint32_t>(std::min(kind.multiplicity, problem.required)));
     clear();

@@ -19,7 +19,7 @@ constexpr PriceRounds kRootRounds = {3000, 30, 0.1}, kLastRounds = {500, 12, 1},
 constexpr std::size_t kSubtrees = 64;
 constexpr int kSymmetricDepth = 2;  // of subtrees
 constexpr std::size_t kMinRowsForCuts = 24;
-constexpr double kLeastCut = 0.2;  // of the gap that cuts close at the root, to be used in nodes
+constexpr double kMinCut = 0.2;    // of the gap that cuts close at the root, to be used in nodes
 constexpr double kNoShare = 1e-6;  // of a column in a fractional cover
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
@@ -244,7 +244,7 @@ SetCoverResult coverCore(CoverCore core, const SetCoverOptions& options, Progres
     if (is_open()) {
         const double gap = limit() - bound.value;
         const CoverBound cut = raiseByCuts(core, limit(), progress);
-        uses_cuts = cut.value > limit() - (1 - kLeastCut) * gap;
+        uses_cuts = cut.value > limit() - (1 - kMinCut) * gap;
         takeBetter(cut, bound);
     }
     if (is_open() && uses_cuts) {

@@ -157,7 +157,8 @@ class WorstCaseSearch {
     /// The failure of any K of the placed sensors leaves a layout of so many less.
     void takeFewer() {
         std::size_t placed = 0;
-        for (const Kind& kind : of_.problem->kinds) placed += static_cast<std::size_t>(kind.most);
+        for (const SensorType& kind : of_.problem->kinds)
+            placed += static_cast<std::size_t>(kind.most);
         const auto failures = static_cast<std::size_t>(of_.failures);
         if (placed <= failures) {
             result_.bound =
@@ -167,7 +168,7 @@ class WorstCaseSearch {
         Problem fewer = *of_.problem;
         std::fill(fewer.weights.begin() + static_cast<std::ptrdiff_t>(of_.blocks[0].end),
                   fewer.weights.end(), 0U);
-        for (Kind& kind : fewer.kinds) kind.cost = 1;
+        for (SensorType& kind : fewer.kinds) kind.cost = 1;
         fewer.budget = static_cast<double>(placed - failures);
         fewer.order.clear();
         result_.bound = std::min(result_.bound, search(fewer, options_, progress_).bound);

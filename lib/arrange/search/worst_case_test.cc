@@ -128,7 +128,7 @@ struct FailingProblem {
         }
         Problem bare = plain.problem;
         std::size_t sensors = standing.size();
-        for (Kind& kind : bare.kinds) {
+        for (SensorType& kind : bare.kinds) {
             sensors += static_cast<std::size_t>(kind.most);
             auto& set =
                 candidates.emplace_back(std::make_unique<CandidateSet>(cells * (count + 1)));
