@@ -16,8 +16,8 @@ namespace ispace {
 /// Interchangeable sensors: they share one set of candidates.
 struct SensorType {
     const CandidateSet* candidates = nullptr;
-    int most = 1;     ///< maximum number of sensors
-    double cost = 1;  ///< of each; above 0
+    int most = 1;          ///< maximum number of sensors
+    double cost = 1;       ///< of each; above 0
     int multiplicity = 1;  ///< that one sensor adds to the cells that it sees
 };
 
