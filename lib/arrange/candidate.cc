@@ -24,7 +24,6 @@
 #include "coverage/plane_cells.h"
 #include "coverage/presence.h"
 #include "coverage/sector_cells.h"
-#include "geom/spatial_index.h"
 
 namespace ispace {
 
@@ -190,34 +189,6 @@ void CandidateViews::lookAtWays(const PresenceView& ways) { data_->ways = &ways;
 bool CandidateViews::isRound() const { return data_->is_round; }
 
 namespace {
-
-/// Computes the position of a point along a Morton curve through the box.
-std::uint64_t alongCurve(Point2 place, const Box2& box) {
-    const double scale = 0xffff / std::max({box.width(), box.depth(), kRayEpsilon});
-    const auto x = static_cast<std::uint32_t>((place.x - box.low.x) * scale);
-    const auto y = static_cast<std::uint32_t>((place.y - box.low.y) * scale);
-    return mortonCode(x & 0xffffU, y & 0xffffU);
-}
-
-/// Returns `count` of the sites from `first` on, spread over the plan in any order of the list,
-/// ascending: the middle of each of `count` equal stretches of a Morton curve. O(n log n)
-/// \pre count <= sites.size() - first
-std::vector<std::size_t> sitesSpreadOver(std::span<const Site> sites, std::size_t first,
-                                         std::size_t count) {
-    Box2 box;
-    for (const Site& site : sites) box.add(site.place);
-    std::vector<std::pair<std::uint64_t, std::size_t>> curve;
-    curve.reserve(sites.size() - first);
-    for (std::size_t i = first; i < sites.size(); ++i)
-        curve.emplace_back(alongCurve(sites[i].place, box), i);
-    std::sort(curve.begin(), curve.end());
-    std::vector<std::size_t> sample;
-    sample.reserve(count);
-    for (std::size_t k = 0; k < count; ++k)
-        sample.push_back(curve[(2 * k + 1) * curve.size() / (2 * count)].second);
-    std::sort(sample.begin(), sample.end());
-    return sample;
-}
 
 /// Scans some sites at a time and adds their views to the set, in the order of the list. Once
 /// progress says stop, scans only a sample of the other sites, so that candidates exist everywhere.

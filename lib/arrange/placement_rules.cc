@@ -21,6 +21,7 @@
 #include "geom/planar_map.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
+#include "geom/tolerance.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -264,6 +265,35 @@ std::vector<Site> readSites(const std::string& text, const std::string& name,
     LineReader lines(text);
     while (const auto line = reader.full() ? std::nullopt : lines.next()) reader.readLine(*line);
     return reader.finish();
+}
+
+namespace {
+
+/// Computes the position of a point along a Morton curve through the box.
+std::uint64_t alongCurve(Point2 place, const Box2& box) {
+    const double scale = 0xffff / std::max({box.width(), box.depth(), kRayEpsilon});
+    const auto x = static_cast<std::uint32_t>((place.x - box.low.x) * scale);
+    const auto y = static_cast<std::uint32_t>((place.y - box.low.y) * scale);
+    return mortonCode(x & 0xffffU, y & 0xffffU);
+}
+
+}  // namespace
+
+std::vector<std::size_t> sitesSpreadOver(std::span<const Site> sites, std::size_t first,
+                                         std::size_t count) {
+    Box2 box;
+    for (const Site& site : sites) box.add(site.place);
+    std::vector<std::pair<std::uint64_t, std::size_t>> curve;
+    curve.reserve(sites.size() - first);
+    for (std::size_t i = first; i < sites.size(); ++i)
+        curve.emplace_back(alongCurve(sites[i].place, box), i);
+    std::sort(curve.begin(), curve.end());
+    std::vector<std::size_t> sample;
+    sample.reserve(count);
+    for (std::size_t k = 0; k < count; ++k)
+        sample.push_back(curve[(2 * k + 1) * curve.size() / (2 * count)].second);
+    std::sort(sample.begin(), sample.end());
+    return sample;
 }
 
 }  // namespace ispace

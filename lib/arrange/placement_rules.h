@@ -172,4 +172,10 @@ std::vector<Site> validSites(const SiteValidity& validity, std::vector<Site> sit
 std::vector<Site> readSites(const std::string& text, const std::string& name,
                             const std::vector<Angle>& headings);
 
+/// Returns `count` of the sites from `first` on, spread over the plan in any order of the list,
+/// ascending: the middle of each of `count` equal stretches of a Morton curve. O(n log n)
+/// \pre count <= sites.size() - first
+std::vector<std::size_t> sitesSpreadOver(std::span<const Site> sites, std::size_t first,
+                                         std::size_t count);
+
 }  // namespace ispace

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts of ARIA's classes that need no server: functors, resolver, packets, threads,
-// configurations, arguments, sockets.
+// configurations, arguments, sockets, poses, sonars.
 #include <Sim_Aria.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -371,6 +372,68 @@ TEST(SimAriaInterpolation, PosesBetweenAndAfterReadings) {
     EXPECT_EQ(poses.getPose(timeOf(50), &pose), -2) << "three readings are kept";
     poses.reset();
     EXPECT_EQ(poses.getPose(timeOf(300), &pose), -3);
+}
+
+TEST(SimAriaPose, IsInMillimetresAndDegrees) {
+    ArPose pose(1000, 0, 270);
+    EXPECT_EQ(pose.getTh(), -90);
+    EXPECT_EQ(ArPose(0, 0, -180).getTh(), 180);
+    EXPECT_NEAR(pose.getThRad(), -M_PI / 2, 1e-15);
+    EXPECT_EQ(pose.findDistanceTo(ArPose(1000, -300)), 300);
+    EXPECT_EQ(pose.findAngleTo(ArPose(1000, -300)), -90);
+    EXPECT_EQ((pose + ArPose(1, 2, -100)).getTh(), 170);
+    EXPECT_EQ((pose - ArPose(1, 2, 100)).getX(), 999);
+    EXPECT_TRUE(pose == ArPose(1000, 0, -90));
+    EXPECT_TRUE(pose != ArPose(1000, 0, -91));
+    double x = 0, y = 0;
+    pose.getPose(&x, &y);
+    EXPECT_EQ(x, 1000);
+    EXPECT_EQ(ArMath::addAngle(170, 20), -170);
+    EXPECT_EQ(ArMath::subAngle(-170, 20), 170);
+    EXPECT_TRUE(ArMath::angleBetween(175, 170, -170));
+    EXPECT_FALSE(ArMath::angleBetween(0, 170, -170));
+    EXPECT_EQ(ArMath::roundInt(-2.5), -3);
+}
+
+TEST(SimAriaSonar, SectorsLookFromTheRobot) {
+    ArSonarDevice sonar;
+    std::vector<ArSensorReading> ring = {ArSensorReading(100, 100, 90), ArSensorReading(150, 0, 0),
+                                         ArSensorReading(100, -100, -90)};
+    const ArPose robot(1000, 1000, 90);
+    EXPECT_EQ(sonar.currentReadingPolar(-90, 90), 5000);
+    ring[0].newData(400, robot, 1);
+    ring[1].newData(850, robot, 1);
+    ring[2].newData(5000, robot, 1);
+    EXPECT_NEAR(ring[1].getX(), 1000, 1e-9);
+    EXPECT_NEAR(ring[1].getY(), 2000, 1e-9);
+    sonar.processReadings(ring, robot);
+    double angle = 0;
+    EXPECT_NEAR(sonar.currentReadingPolar(-30, 30, &angle), 1000, 1e-6);
+    EXPECT_NEAR(angle, 0, 1e-9);
+    EXPECT_NEAR(sonar.currentReadingPolar(-90, 90, &angle), std::hypot(100, 500), 1e-6);
+    EXPECT_NEAR(angle, std::atan2(500, 100) * 180 / M_PI, 1e-9);
+    EXPECT_EQ(sonar.currentReadingPolar(-100, -60), 5000);
+    EXPECT_NEAR(sonar.currentReadingBox(500, -200, 2000, 200), 1000, 1e-6);
+    EXPECT_EQ(sonar.getCurrentBuffer()->size(), 2U);
+    EXPECT_EQ(sonar.getMaxRange(), 5000U);
+    for (int i = 0; i < 50; ++i) sonar.processReadings(ring, robot);
+    EXPECT_EQ(sonar.getCurrentBuffer()->size(), 24U);
+    EXPECT_EQ(sonar.getCumulativeBuffer()->size(), 64U);
+    // Those of long ago are forgotten, and the far ones of the cumulative.
+    sonar.processReadings({}, ArPose(9000, 9000));
+    EXPECT_TRUE(sonar.getCumulativeBuffer()->empty());
+}
+
+TEST(SimAriaArguments, AreTakenFromTheLine) {
+    char program[] = "a", host[] = "-rh", name[] = "there", rest[] = "left", flag[] = "-fast";
+    char* words[] = {program, host, name, flag, rest, nullptr};
+    int count = 5;
+    ArArgumentParser parser(&count, words);
+    EXPECT_TRUE(parser.checkArgument("-fast"));
+    EXPECT_FALSE(parser.checkArgument("-fast"));
+    EXPECT_STREQ(parser.checkParameterArgument("-rh"), "there");
+    EXPECT_EQ(count, 2);
+    EXPECT_STREQ(words[1], "left");
 }
 
 }  // namespace
