@@ -246,9 +246,7 @@ std::vector<AxisPlace> thinned(std::vector<AxisPlace> places, double step) {
 std::vector<Point2> medialPlaces(const std::vector<Region>& free_floor, double step,
                                  std::span<const Segment2> sheets) {
     assert(step > 0);
-    Box2 box;
-    for (const Region& region : free_floor)
-        for (const Point2 corner : region.outline) box.add(corner);
+    const Box2 box = bounds(free_floor);
     if (box.empty()) return {};
     const Point2 origin = box.low;
 

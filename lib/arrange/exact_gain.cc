@@ -30,10 +30,6 @@ struct Floor {
     Box2 box;
 };
 
-Box2 grown(const Box2& box, double by) {
-    return {{box.low.x - by, box.low.y - by}, {box.high.x + by, box.high.y + by}};
-}
-
 Polygon cornersOf(const Box2& box) {
     return {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
 }
@@ -145,7 +141,7 @@ struct ExactGain::Data {
         constexpr double kReach = 3;  // metres that a sensor may move before they are computed anew
         Surroundings& own = around[in_hand];
         if (!own.floors.empty() && own.box.contains(near)) return own.floors;
-        own.box = grown(near, kReach);
+        own.box = near.expanded(kReach);
         if (own.box.contains(floor_box)) {
             own.floors = floors;
             return own.floors;
@@ -168,7 +164,7 @@ struct ExactGain::Data {
         missing.clear();
         near = {};
         if (region.empty()) return;
-        near = grown(region, kReach);
+        near = region.expanded(kReach);
         std::vector<Layer> layers = {markLayer({curveOf(cornersOf(near))}, kNearMark)};
         addFloors(floorsNear(), layers);
         for (const View& view : standing)

@@ -20,6 +20,7 @@
 #include "base/packed.h"
 #include "coverage/coverage.h"
 #include "geom/arrangement.h"
+#include "geom/polygon.h"
 #include "geom/predicates.h"
 
 namespace ispace {
@@ -48,9 +49,7 @@ std::vector<Region> floorAt(const Scene& scene, double height) {
 /// Returns the floor that the lasers must see.
 std::vector<Region> floorFor(const Scene& scene, const Laser& laser, double height) {
     std::vector<Region> floor = floorAt(scene, height);
-    Box2 box;
-    for (const Region& region : floor)
-        for (const Point2 p : region.outline) box.add(p);
+    const Box2 box = bounds(floor);
     const double extent = std::hypot(box.width(), box.depth());
     if (!floor.empty() && laser.max_range < extent)
         refusePoses("the range of " + formatDouble(laser.max_range) +
@@ -386,12 +385,9 @@ CheckedPoses checkPoses(const Scene& scene, const FloorWeights& weights, int tim
     for (const Sensor& sensor : scene.sensors)
         if (kindOf(sensor.model).perceives && !isOn(floor, sensor.pose.position.onFloor()))
             refusePoses(sensor.id + " is not on the free floor");
-    Box2 box;
-    for (const Region& region : floor)
-        for (const Point2 p : region.outline) box.add(p);
-    checked.check =
-        checkCertificate(floor, kCells, sectorOf(*first, box), static_cast<int>(checked.sensors),
-                         {times, weightingOf(weights)}, certificate, name);
+    checked.check = checkCertificate(floor, kCells, sectorOf(*first, bounds(floor)),
+                                     static_cast<int>(checked.sensors),
+                                     {times, weightingOf(weights)}, certificate, name);
     Worlds worlds(scene.environment);
     if (times == 1 && weights.isUniform()) {
         checked.floor = totalArea(floor);

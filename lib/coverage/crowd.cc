@@ -58,7 +58,7 @@ bool CrowdFloor::isFree(Point2 place) const {
         if (sensor.pose.position.z < kUsualHeight && !sensor.mount && !sensor.person &&
             distance(sensor.pose.position.onFloor(), place) <= radius)
             return false;
-    const Box2 around{{place.x - radius, place.y - radius}, {place.x + radius, place.y + radius}};
+    const Box2 around = Box2{place, place}.expanded(radius);
     const auto touches = [&](const Segment2& line) {
         return around.meets(bounds(line)) && distance(place, line) <= radius;
     };

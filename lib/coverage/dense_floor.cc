@@ -18,8 +18,7 @@ constexpr int kSamples = 128;
 /// Puts the edges that close a level set well beyond a box.
 Box2 enlarged(const Box2& box) {
     constexpr double kShare = 0.06, kMinMargin = 1e-3;
-    const double margin = kShare * std::max(box.width(), box.depth()) + kMinMargin;
-    return {{box.low.x - margin, box.low.y - margin}, {box.high.x + margin, box.high.y + margin}};
+    return box.expanded(kShare * std::max(box.width(), box.depth()) + kMinMargin);
 }
 
 }  // namespace
@@ -108,8 +107,7 @@ Interval DenseFloor::densitiesIn(const std::vector<Curve>& part) const {
         self(self, {{box.low.x, middle.y}, {middle.x, box.high.y}}, depth + 1);
         self(self, {middle, box.high}, depth + 1);
     };
-    const Vec2 slack{kSlack, kSlack};
-    if (!all.empty()) widen(widen, {all.low - slack, all.high + slack}, 0);
+    if (!all.empty()) widen(widen, all.expanded(kSlack), 0);
     return range;
 }
 

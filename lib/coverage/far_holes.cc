@@ -15,10 +15,6 @@ namespace ispace {
 
 namespace {
 
-Box2 grown(const Box2& box, double margin) {
-    return {box.low - Vec2{margin, margin}, box.high + Vec2{margin, margin}};
-}
-
 /// Bounds of the curves of all views.
 std::vector<Box2> boundsOfViews(std::span<const CoveredSet> sets) {
     std::vector<Box2> boxes;
@@ -48,7 +44,7 @@ FarHoles::FarHoles(const Regions& indoor, const std::vector<Region>& free_floor,
                    [&](std::size_t first, std::size_t last) {
                        for (std::size_t i = first; i < last; ++i) {
                            bool is_lone = true;
-                           tree.search(grown(boxes[i], margin_),
+                           tree.search(boxes[i].expanded(margin_),
                                        [&](std::size_t k) { is_lone = is_lone && k == i; });
                            is_lone_[i] = static_cast<char>(is_lone);
                        }
@@ -59,7 +55,7 @@ std::vector<Curve> FarHoles::curvesWithout(std::span<const CoveredSet> sets) {
     const BoxTree views(boundsOfViews(sets));
     const auto is_seen = [&](const Polygon& hole) {
         bool is_near = false;
-        views.search(grown(bounds(hole), margin_), [&](std::size_t) { is_near = true; });
+        views.search(bounds(hole).expanded(margin_), [&](std::size_t) { is_near = true; });
         return is_near;
     };
     std::vector<Curve> curves;

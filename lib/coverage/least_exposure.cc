@@ -34,12 +34,6 @@ bool isReflex(Point2 before, Point2 at, Point2 after) {
     return turn == Turn::Right || (turn == Turn::Straight && dot(at - before, after - at) < 0);
 }
 
-Box2 around(const Segment2& segment, double margin) {
-    Box2 box = bounds(segment);
-    const Vec2 more{margin, margin};
-    return {box.low - more, box.high + more};
-}
-
 }  // namespace
 
 FloorSight::FloorSight(std::span<const Region> regions, double tolerance)
@@ -58,7 +52,7 @@ bool FloorSight::sees(Point2 a, Point2 b) const {
     const Vec2 along = (1 / reach) * (b - a);
     std::vector<double> touched = {0, reach};
     bool is_cut = false;
-    index_.edgesIn(around({a, b}, tolerance_), [&](const Segment2& edge) {
+    index_.edgesIn(bounds(Segment2{a, b}).expanded(tolerance_), [&](const Segment2& edge) {
         if (is_cut) return;
         const double left = cross(along, edge.a - a), right = cross(along, edge.b - a);
         const double at_a = dot(along, edge.a - a), at_b = dot(along, edge.b - a);
@@ -226,7 +220,7 @@ class ExposureSearch {
     /// Visits the legs from an end to nearest points of edges, and to corners.
     void extendFrom(const LegEnd& from) {
         const Point2 at = from.corner.at;
-        const Box2 window = around({at, at}, limit_ - nodes_[from.node].exposed);
+        const Box2 window = Box2{at, at}.expanded(limit_ - nodes_[from.node].exposed);
         edge_tree_.search(window, [&](std::size_t i) {
             const Point2 to = nearestPoint(edges_[i].line, at);
             if (isShorter(from.node, edges_[i].region, distance(at, to)) && mayEnd(from, to))
@@ -244,7 +238,7 @@ class ExposureSearch {
     void extendFrom(const Edge& from) {
         const Vec2 along = from.line.b - from.line.a;
         end_tree_.search(
-            around(from.line, limit_ - nodes_[from.region].exposed), [&](std::size_t i) {
+            bounds(from.line).expanded(limit_ - nodes_[from.region].exposed), [&](std::size_t i) {
                 const LegEnd& to = ends_[i];
                 const double at = dot(to.corner.at - from.line.a, along) / dot(along, along);
                 if (!(at > 0 && at < 1)) return;

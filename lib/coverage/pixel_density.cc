@@ -194,8 +194,7 @@ std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
     Box2 box = boundsOfAll(*view.region);
     if (box.empty()) return sets;
     constexpr double kAround = 1;
-    box = {{box.low.x - kAround, box.low.y - kAround},
-           {box.high.x + kAround, box.high.y + kAround}};
+    box = box.expanded(kAround);
     std::optional<DenseFloor> floor;
     if (!density.isEven()) floor.emplace(density.denseFloor(box));
     const Point2 origin = Point2{} + (Point2{} - density.foot());
@@ -290,14 +289,14 @@ namespace {
 class SeenBoxes {
   public:
     explicit SeenBoxes(const std::vector<const SensorView*>& cameras) {
-        const Vec2 margin{1e-3, 1e-3};  // above the rounding of an overlay
+        constexpr double kMargin = 1e-3;  // above the rounding of an overlay
         std::vector<Box2> boxes;
         for (const SensorView* view : cameras) {
             std::vector<const std::vector<Curve>*> regions = {&*view->region};
             for (const CoveredSet& set : view->classes) regions.push_back(&*set.region);
             for (const std::vector<Curve>* region : regions) {
                 const Box2 box = boundsOfAll(*region);
-                if (!box.empty()) boxes.push_back({box.low - margin, box.high + margin});
+                if (!box.empty()) boxes.push_back(box.expanded(kMargin));
             }
         }
         tree_ = BoxTree(boxes);

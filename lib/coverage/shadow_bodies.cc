@@ -249,11 +249,8 @@ Shadows::Shadows(std::span<const ShadowBody* const> bodies, Point3 sensor, doubl
 }
 
 bool Shadows::mayTouch(const ShadowBody& body) const {
-    return sensor_.x >= body.plan.low.x - kRayEpsilon &&
-           sensor_.x <= body.plan.high.x + kRayEpsilon &&
-           sensor_.y >= body.plan.low.y - kRayEpsilon &&
-           sensor_.y <= body.plan.high.y + kRayEpsilon && sensor_.z >= body.bottom - kRayEpsilon &&
-           sensor_.z <= body.top + kRayEpsilon;
+    return body.plan.expanded(kRayEpsilon).contains(sensor_.onFloor()) &&
+           sensor_.z >= body.bottom - kRayEpsilon && sensor_.z <= body.top + kRayEpsilon;
 }
 
 /// Adds the shadow of a body that stands from the plane to the sensor or higher: of the line

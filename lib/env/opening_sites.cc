@@ -162,7 +162,7 @@ std::optional<OpeningSite> OpeningSites::nearest(Point2 p, Allowed allowed, Off 
             near.emplace_back(d, line);
         }
     };
-    grid().searchBox({{p.x - kReach, p.y - kReach}, {p.x + kReach, p.y + kReach}}, look);
+    grid().searchBox(Box2{p, p}.expanded(kReach), look);
     std::optional<OpeningSite> best;
     for (const auto& [d, line] : near) {
         if (d > least + kWeldDistance || (best && best->line == line)) continue;

@@ -41,14 +41,6 @@ int cellAlong(double offset, double extent, int count) {
     return cell < count ? static_cast<int>(cell) : count - 1;
 }
 
-template <typename Shape>
-BoxTree treeOf(std::span<const Shape> shapes) {
-    std::vector<Box2> boxes;
-    boxes.reserve(shapes.size());
-    for (const Shape& shape : shapes) boxes.push_back(bounds(shape));
-    return BoxTree(boxes);
-}
-
 double distanceFromEdges(const Polygon& polygon, Point2 p) {
     double least = std::numeric_limits<double>::infinity();
     forEachEdge(polygon, [&](const Segment2& edge) { least = std::min(least, distance(p, edge)); });
@@ -73,7 +65,7 @@ RegionIndex::RegionIndex(std::span<const Region> regions) {
         });
     }
     if (edges_.empty()) return;
-    tree_ = treeOf(std::span<const Segment2>(edges_));
+    tree_ = BoxTree(boundsOfEach(edges_));
     grid_ = gridOver(box, edges_.size());
     inside_ = cellsWithin(grid_, curves);
 }
@@ -81,8 +73,7 @@ RegionIndex::RegionIndex(std::span<const Region> regions) {
 Side RegionIndex::locate(Point2 p) const {
     if (edges_.empty()) return Side::Outside;
     const Box2& limits = grid_.limits;
-    if (p.x < limits.low.x || p.x > limits.high.x || p.y < limits.low.y || p.y > limits.high.y)
-        return Side::Outside;
+    if (!limits.contains(p)) return Side::Outside;
     const std::size_t cell =
         grid_.cell(cellAlong(p.x - limits.low.x, limits.width(), grid_.columns),
                    cellAlong(p.y - limits.low.y, limits.depth(), grid_.rows));
@@ -123,7 +114,7 @@ bool RegionIndex::isWithin(Point2 p, double reach) const {
 }
 
 PolygonIndex::PolygonIndex(std::span<const Polygon> polygons)
-    : polygons_(polygons), boxes_(treeOf(polygons)) {}
+    : polygons_(polygons), boxes_(boundsOfEach(polygons)) {}
 
 std::optional<std::size_t> PolygonIndex::holder(Point2 p) const {
     std::optional<std::size_t> holder;

@@ -43,10 +43,7 @@ struct EdgeTree {
                 edges.push_back(edge);
                 owners.push_back(i);
             });
-        std::vector<Box2> boxes;
-        boxes.reserve(edges.size());
-        for (const Segment2& edge : edges) boxes.push_back(bounds(edge));
-        tree = BoxTree(boxes);
+        tree = BoxTree(boundsOfEach(edges));
     }
 
     [[nodiscard]] bool meets(const Box2& box) const {
@@ -104,9 +101,7 @@ std::vector<Region> difference(const Region& region, std::span<const Polygon> so
     addCurve(region.outline, true, 1, 0, lines);
     for (const Polygon& hole : region.holes) addCurve(hole, false, 1, 0, lines);
     const Box2 box = bounds(region.outline);
-    std::vector<Box2> boxes;
-    boxes.reserve(solids.size());
-    for (const Polygon& solid : solids) boxes.push_back(bounds(solid));
+    const std::vector<Box2> boxes = boundsOfEach(solids);
     // Most furniture is apart from other solids and simply becomes a hole.
     const std::vector<bool> is_alone = alone(boxes);
     const EdgeTree walls({&region, 1});

@@ -139,6 +139,11 @@ struct Box2 {
         return low.x < other.high.x && other.low.x < high.x && low.y < other.high.y &&
                other.low.y < high.y;
     }
+    /// Returns the box with each side moved outwards by `margin`.
+    [[nodiscard]] Box2 expanded(double margin) const { return expanded(margin, margin); }
+    [[nodiscard]] Box2 expanded(double x, double y) const {
+        return {{low.x - x, low.y - y}, {high.x + x, high.y + y}};
+    }
     friend bool operator==(const Box2&, const Box2&) = default;
 };
 

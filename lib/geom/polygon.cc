@@ -128,10 +128,19 @@ std::vector<Polygon> curvesOf(const std::vector<Region>& regions) {
 
 std::vector<Polygon> curvesOf(const Regions& regions) { return curvesOf(regions.parts); }
 
-Box2 bounds(const Regions& regions) {
+Box2 bounds(const Regions& regions) { return bounds(std::span(regions.parts)); }
+
+Box2 bounds(std::span<const Region> regions) {
     Box2 box;
-    for (const Region& part : regions.parts)
-        for (const Point2 p : part.outline) box.add(p);
+    for (const Region& region : regions)
+        for (const Point2 p : region.outline) box.add(p);
+    return box;
+}
+
+Box2 bounds(std::span<const Polygon> curves) {
+    Box2 box;
+    for (const Polygon& curve : curves)
+        for (const Point2 p : curve) box.add(p);
     return box;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "geom/point.h"
@@ -64,6 +65,16 @@ struct Regions {
     friend bool operator==(const Regions&, const Regions&) = default;
 };
 Box2 bounds(const Regions& regions);
+Box2 bounds(std::span<const Region> regions);
+Box2 bounds(std::span<const Polygon> curves);
+/// Returns the bounding box of each shape.
+template <typename Shapes>
+std::vector<Box2> boundsOfEach(const Shapes& shapes) {
+    std::vector<Box2> boxes;
+    boxes.reserve(shapes.size());
+    for (const auto& shape : shapes) boxes.push_back(bounds(shape));
+    return boxes;
+}
 
 /// Returns the outline and then the holes of each region. If the regions are disjoint, the curves
 /// enclose the same area by the even-odd rule.

@@ -23,6 +23,23 @@ TEST(Box2, growsFromEmpty) {
     EXPECT_EQ(box.center(), (Point2{0, 4}));
 }
 
+TEST(Box2, expandsEachSide) {
+    const Box2 box{{1, 2}, {4, 6}};
+    EXPECT_EQ(box.expanded(0.5), (Box2{{0.5, 1.5}, {4.5, 6.5}}));
+    EXPECT_EQ(box.expanded(1, 0), (Box2{{0, 2}, {5, 6}}));
+    EXPECT_EQ((Box2{{1, 2}, {1, 2}}.expanded(1)), (Box2{{0, 1}, {2, 3}}));
+    EXPECT_TRUE(box.expanded(-2).empty());
+    EXPECT_TRUE(Box2().expanded(3).empty());
+}
+
+TEST(Polygon, boundsOfManyHoldAllOutlines) {
+    const std::vector<Polygon> curves = {test::box(1, 2, 4, 6), test::box(-3, 5, 0, 9), {}};
+    EXPECT_EQ(bounds(curves), (Box2{{-3, 2}, {4, 9}}));
+    const std::vector<Region> regions = {{curves[0], {test::box(2, 3, 3, 4)}}, {curves[1], {}}};
+    EXPECT_EQ(bounds(regions), bounds(curves));
+    EXPECT_TRUE(bounds(std::vector<Region>()).empty());
+}
+
 TEST(Polygon, areaPerimeterBounds) {
     const Polygon room = test::box(1, 2, 4, 6);
     EXPECT_EQ(signedArea(room), 12);

@@ -145,8 +145,7 @@ Box2 SegmentTree::boxOf(const Segment2& segment, double reach) const {
     Box2 box;
     for (const Point2 p : {segment.a, segment.b})
         box.add({axis_.x * p.x + axis_.y * p.y, axis_.x * p.y - axis_.y * p.x});
-    const Vec2 margin{reach + slack_, reach + slack_};
-    return {box.low - margin, box.high + margin};
+    return box.expanded(reach + slack_);
 }
 
 namespace {

@@ -249,10 +249,7 @@ void Scanline::removeClosed(std::vector<std::uint64_t>& words) const {
 namespace {
 
 Scanline scanOf(const Grid& grid, std::span<const Polygon> curves) {
-    Box2 box;
-    for (const Polygon& curve : curves)
-        for (const Point2 p : curve) box.add(p);
-    Scanline scan(grid, box);
+    Scanline scan(grid, bounds(curves));
     for (const Polygon& curve : curves)
         forEachEdge(curve, [&scan](const Segment2& edge) { scan.add(edge); });
     return scan;

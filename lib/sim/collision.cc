@@ -11,6 +11,7 @@
 #include <unordered_set>
 
 #include "base/error.h"
+#include "geom/polygon.h"
 #include "geom/predicates.h"
 #include "geom/tolerance.h"
 #include "scene/findings/findings.h"
@@ -19,13 +20,6 @@
 namespace ispace {
 
 namespace {
-
-std::vector<Box2> boxesOf(std::span<const Polygon> polygons) {
-    std::vector<Box2> boxes;
-    boxes.reserve(polygons.size());
-    for (const Polygon& polygon : polygons) boxes.push_back(bounds(polygon));
-    return boxes;
-}
 
 std::vector<Segment2> linesOf(const Slice& band) {
     std::vector<Segment2> lines;
@@ -56,7 +50,7 @@ double distance(const Segment2& s, const Segment2& t) {
 
 Obstacles::Part::Part(const Slice& band)
     : solids(band.solids),
-      boxes(boxesOf(band.solids)),
+      boxes(boundsOfEach(band.solids)),
       lines(linesOf(band)),
       solid_owners(band.solid_owners),
       line_owners(band.sheet_owners),
@@ -267,11 +261,8 @@ void Traffic::rebuild(std::span<const Motion> motions) {
 
 std::optional<std::size_t> Traffic::hit(std::span<const Move> moves, std::size_t mover) const {
     const Move& move = moves[mover];
-    Box2 box;
-    box.add(move.start());
-    box.add(move.end());
-    const Vec2 margin{move.radius + move.to.bulge, move.radius + move.to.bulge};
-    box = {box.low - margin, box.high + margin};
+    const Box2 box =
+        bounds(Segment2{move.start(), move.end()}).expanded(move.radius + move.to.bulge);
     const std::size_t rank = rank_[mover];
     std::optional<std::size_t> first;
     grid_.forEachNear(box, [&](std::size_t other) {

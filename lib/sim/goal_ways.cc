@@ -21,8 +21,7 @@ constexpr double kApart = 0.2;
 /// Returns the middle of an element, of which a person may stand in front.
 std::optional<Point2> middleOf(const Element& element) {
     if (element.record.keyword() != "zone") return placeOf(element.record);
-    Box2 box;
-    for (const Point2 corner : zoneOutline(element.record)) box.add(corner);
+    const Box2 box = bounds(zoneOutline(element.record));
     return Point2{(box.low.x + box.high.x) / 2, (box.low.y + box.high.y) / 2};
 }
 

@@ -126,9 +126,7 @@ StarView::StarView(const VisibleRegion& region, std::span<const Segment2> walls)
 
 bool StarView::mayHold(Point2 p, double margin) const {
     margin += kRounding;
-    if (p.x < box_.low.x - margin || p.x > box_.high.x + margin || p.y < box_.low.y - margin ||
-        p.y > box_.high.y + margin || wedges_.empty())
-        return false;
+    if (wedges_.empty() || !box_.expanded(margin).contains(p)) return false;
     const Vec2 way = p - viewpoint_;
     // Beyond, rays that pass within the margin lie within a sixth of a turn.
     if (dot(way, way) <= 4 * margin * margin) return true;

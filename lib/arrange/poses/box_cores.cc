@@ -13,8 +13,7 @@ class CommonSight {
   public:
     CommonSight(const BoxViews& floor, const PoseBox& box)
         : floor_(floor), sector_(floor.sector_), box_(box) {
-        const Vec2 margin{kWiden, kWiden};
-        source_ = cornersOf({box.at.low - margin, box.at.high + margin});
+        source_ = cornersOf(box.at.expanded(kWiden));
     }
 
     BoxCore core();

@@ -15,8 +15,7 @@ class BoxSight {
   public:
     BoxSight(const BoxViews& floor, const PoseBox& box)
         : floor_(floor), sector_(floor.sector_), areas_(floor.most_.size()) {
-        const Vec2 margin{kWiden, kWiden};
-        source_ = cornersOf({box.at.low - margin, box.at.high + margin});
+        source_ = cornersOf(box.at.expanded(kWiden));
         addDisc();
         addDirections(box);
     }

@@ -26,8 +26,7 @@ class CoreView {
   public:
     CoreView(const PoseFloor& floor, const Sector& sector, const PoseBox& box)
         : floor_(floor), sector_(sector), box_(box) {
-        box_.at.low = box.at.low - Vec2{kWiden, kWiden};
-        box_.at.high = box.at.high + Vec2{kWiden, kWiden};
+        box_.at = box.at.expanded(kWiden);
     }
 
     std::vector<std::uint8_t> compute();

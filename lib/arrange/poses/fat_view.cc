@@ -48,8 +48,7 @@ class WeakView {
     WeakView(const PoseFloor& floor, const Sector& sector, const PoseBox& box,
              PoseFloor::Tally* tally)
         : floor_(floor), sector_(sector), box_(box), tally_(tally) {
-        box_.at.low = box.at.low - Vec2{kWiden, kWiden};
-        box_.at.high = box.at.high + Vec2{kWiden, kWiden};
+        box_.at = box.at.expanded(kWiden);
         addRange();
         addField();
     }

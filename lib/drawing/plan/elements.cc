@@ -19,6 +19,7 @@
 #include "env/walls.h"
 #include "geom/arrangement.h"
 #include "geom/point.h"
+#include "geom/polygon.h"
 #include "geom/predicates.h"
 #include "geom/tolerance.h"
 #include "raster/contour.h"
@@ -164,9 +165,7 @@ MapCells cellsUnder(const std::vector<Polygon>& triangles, const Grid& grid) {
 }
 
 std::vector<Polygon> rasterOutline(const std::vector<Polygon>& triangles) {
-    Box2 box;
-    for (const Polygon& triangle : triangles)
-        for (const Point2 p : triangle) box.add(p);
+    const Box2 box = bounds(triangles);
     const double side = std::max(box.width(), box.depth());
     if (!(side > kCornerTolerance)) return {};
     const double size = side / kCells;

@@ -65,9 +65,8 @@ PlanLayer::PlanLayer(PlanDrawing& plan, std::string_view name) : PlanLayer(plan,
 PlanLayer::PlanLayer(PlanDrawing& plan, std::string_view name, std::span<const Polygon> clip)
     : picture_(plan.picture_) {
     picture_.pushView(plan.style_.view);
-    const double rim = plan.metres(0.5);  // pens on the edge are not cut
-    const Box2& box = plan.style_.box;
-    const Point2 low = box.low - Vec2{rim, rim}, high = box.high + Vec2{rim, rim};
+    // Pens on the edge are not cut.
+    const auto [low, high] = plan.style_.box.expanded(plan.metres(0.5));
     const Polygon frame = {low, {high.x, low.y}, high, {low.x, high.y}};
     picture_.pushLayer(name, clip.empty() ? std::span(&frame, 1) : clip);
 }
@@ -90,15 +89,11 @@ Box2 planBox(const Scene& scene) {
     const Environment& environment = scene.environment;
     Box2 box = environment.limits();
     // Bodies far outside are skipped: they would shrink the room on the page.
-    const double near = 0.5 + 0.1 * std::max(box.width(), box.depth());
-    const Box2 reach{{box.low.x - near, box.low.y - near}, {box.high.x + near, box.high.y + near}};
-    const auto add = [&](Point2 p) {
-        if (p.x >= reach.low.x && p.x <= reach.high.x && p.y >= reach.low.y && p.y <= reach.high.y)
-            box.add(p);
-    };
+    const Box2 reach = box.expanded(0.5 + 0.1 * std::max(box.width(), box.depth()));
     for (const Element& element : environment.elements())
         for (const Prism& prism : element.body.prisms)
-            for (const Point2 p : prism.footprint) add(p);
+            for (const Point2 p : prism.footprint)
+                if (reach.contains(p)) box.add(p);
     return box;
 }
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "geom/polygon.h"
 #include "geom/predicates.h"
 
 namespace ispace {
@@ -225,9 +226,7 @@ BuildingSection sectionOf(const IfcShape& shape, double height) {
         BuildingSection::Part part;
         std::vector<Polygon> sheets;
         part.curves = curvesAt(solid.body, height, sheets);
-        Box2 box;
-        for (const Polygon& curve : part.curves)
-            for (const Point2 p : curve) box.add(p);
+        const Box2 box = bounds(part.curves);
         for (const IfcCut& cut : solid.cuts) {
             if (!cut.limit) {
                 clip(part.curves, *cut.half_space, height, 1);

@@ -41,11 +41,10 @@ Grid rosMapCells(const Box2& box, double resolution) {
         throw UsageError("a map of " + formatDouble(resolution) +
                          " m a cell cannot be written, wanted " + formatDouble(kFinest) + " to " +
                          formatDouble(kCoarsest));
-    const double rim = kRim * resolution;
-    const Point2 origin{multipleBelow(box.low.x - rim, resolution),
-                        multipleBelow(box.low.y - rim, resolution)};
-    const double columns = std::ceil((box.high.x + rim - origin.x) / resolution);
-    const double rows = std::ceil((box.high.y + rim - origin.y) / resolution);
+    const auto [low, high] = box.expanded(kRim * resolution);
+    const Point2 origin{multipleBelow(low.x, resolution), multipleBelow(low.y, resolution)};
+    const double columns = std::ceil((high.x - origin.x) / resolution);
+    const double rows = std::ceil((high.y - origin.y) / resolution);
     const double too_many = std::max(std::max(columns, rows) / kMaxMapSide,
                                      std::sqrt(columns * rows / static_cast<double>(kMaxMapCells)));
     if (too_many > 1)

@@ -17,19 +17,8 @@
 
 namespace ispace {
 
-namespace {
-
-std::vector<Box2> boxesOf(std::span<const Segment2> segments) {
-    std::vector<Box2> boxes;
-    boxes.reserve(segments.size());
-    for (const Segment2& segment : segments) boxes.push_back(bounds(segment));
-    return boxes;
-}
-
-}  // namespace
-
 NearSegments::NearSegments(std::span<const Segment2> segments, Budget& work)
-    : tree_(boxesOf(segments)), work_(work) {}
+    : tree_(boundsOfEach(segments)), work_(work) {}
 
 std::vector<std::size_t> NearSegments::near(Point2 p, double reach) const {
     Box2 box;
@@ -38,12 +27,10 @@ std::vector<std::size_t> NearSegments::near(Point2 p, double reach) const {
 }
 
 std::vector<std::size_t> NearSegments::near(const Box2& box, double reach) const {
-    const Vec2 margin{reach, reach};
     constexpr std::size_t kMaxRepeats = 8;
     std::vector<std::size_t> found;
     found.reserve(kMaxRepeats);
-    tree_.search({box.low - margin, box.high + margin},
-                 [&found](std::size_t i) { found.push_back(i); });
+    tree_.search(box.expanded(reach), [&found](std::size_t i) { found.push_back(i); });
     unpaid_ += found.size();
     if (!work_.take(unpaid_ / kFoundPerUnit))
         throw FormatError(Diagnostic{"", 0, 0,

@@ -158,8 +158,7 @@ class Finder {
         for (const PlanShape& shape : symbols) {
             if (shape.is_guess || shape.path.points.empty()) continue;
             const Box2 box = bounds(shape.path.points);
-            const Vec2 reach{kReach, kReach};
-            const Box2 around{box.low - reach, box.high + reach};
+            const Box2 around = box.expanded(kReach);
             const auto near = search.near(box, kReach);
             if (std::none_of(near.begin(), near.end(),
                              [&](std::size_t i) { return bounds(lines[i]).meets(around); })) {

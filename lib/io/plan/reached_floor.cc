@@ -71,13 +71,7 @@ Region normalised(const Region& region, double tolerance) {
 /// Returns the positions that the disc's centre can reach.
 std::vector<Region> centres(std::span<const Region> rooms, std::span<const Segment2> walls,
                             double radius) {
-    Box2 box;
-    for (const Region& room : rooms) {
-        box.add(bounds(room.outline).low);
-        box.add(bounds(room.outline).high);
-    }
-    const Vec2 margin{radius, radius};
-    const Point2 low = box.low - margin, high = box.high + margin;
+    const auto [low, high] = bounds(rooms).expanded(radius);
     std::vector<Polygon> blocked;
     blocked.reserve(walls.size());
     for (const Segment2& wall : walls) blocked.push_back(capsule(wall, radius));

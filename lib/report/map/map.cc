@@ -178,9 +178,7 @@ Picture coverageMap(const Scene& scene, const Coverage& coverage, const MapOptio
     Picture picture(page.width, std::ceil(page.height));
     picture.describe(options.title.empty() ? "coverage" : options.title, "");
     drawPlanSeen(picture, map);
-    const double rim = page.margin - 0.2 * page.em;
-    Box2 frame{{page.plan.low.x - rim, page.plan.low.y - rim},
-               {page.plan.high.x + rim, page.plan.high.y + rim}};
+    Box2 frame = page.plan.expanded(page.margin - 0.2 * page.em);
     if (!options.title.empty())  // not over the head
         frame.low.y = std::max(frame.low.y, page.subtitle_base + 0.4 * page.em);
     picture.pushLayer("places tried");

@@ -174,12 +174,8 @@ void drawComparison(Picture& picture, const MapPicture& map) {
     const Curves before = exact ? exactCurves(map, *map.other->overlay, 1)
                                 : curvesOfCells(map, coveredCells(*map.other));
     const auto outside = [&map](Curves curves) {
-        const double far = map.limits().width() + map.limits().depth();
-        const Point2 low = map.limits().low, high = map.limits().high;
-        curves.push_back({{low.x - far, low.y - far},
-                          {high.x + far, low.y - far},
-                          {high.x + far, high.y + far},
-                          {low.x - far, high.y + far}});
+        const auto [low, high] = map.limits().expanded(map.limits().width() + map.limits().depth());
+        curves.push_back({low, {high.x, low.y}, high, {low.x, high.y}});
         return curves;
     };
     picture.area(now, {palette::kBoth});
@@ -235,8 +231,7 @@ std::optional<Segment2> clipped(const Segment2& segment, const Box2& box) {
 std::vector<Polygon> drawable(const MapPicture& map, std::vector<Polygon> curves) {
     // Far enough outside to hide strokes along the box.
     const double rim = 4 * map.em / map.view.scale, tolerance = 0.03 / map.view.scale;
-    const Box2 box{{map.limits().low.x - rim, map.limits().low.y - rim},
-                   {map.limits().high.x + rim, map.limits().high.y + rim}};
+    const Box2 box = map.limits().expanded(rim);
     for (Polygon& curve : curves) curve = thinnedCurve(clipped(curve, box), tolerance);
     std::erase_if(curves, [](const Polygon& curve) { return curve.size() < 3; });
     return curves;

@@ -357,9 +357,7 @@ void drawTrace(Picture& picture, const MapPicture& map, const Box2& frame) {
     std::vector<Point2> chosen;
     for (const TriedPlace& tried : places) {
         const Point2 page = map.view * tried.place;
-        if (page.x < frame.low.x || page.x > frame.high.x || page.y < frame.low.y ||
-            page.y > frame.high.y)
-            continue;
+        if (!frame.contains(page)) continue;
         const double share = span > 0 ? (tried.value - least) / span : 1;
         Dots& own = levels[static_cast<std::size_t>(std::lround(share * (kLevels - 1)))];
         own.dots.push_back({page, page});  // a line of length 0 has round ends

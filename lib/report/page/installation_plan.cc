@@ -100,8 +100,7 @@ void drawDimensionText(Picture& picture, const Dimension& one, LabelPlacer& labe
             if (off == 0 && way < 2.6 * gap) continue;
             for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8}) {
                 const Point2 middle = one.line.a + share * way * along + off * across;
-                const Box2 box{{middle.x - wide, middle.y - high},
-                               {middle.x + wide, middle.y + high}};
+                const Box2 box = Box2{middle, middle}.expanded(wide, high);
                 if (!labels.take(box, over_lines, one.line)) continue;
                 picture.text({middle.x, middle.y + 0.36 * style.size}, one.text, style);
                 return;

@@ -278,9 +278,7 @@ FloorColors::FloorColors(const Scene& scene) : limits_(scene.environment.limits(
 }
 
 void FloorColors::add(const std::vector<Polygon>& seen, const Color& color) {
-    Box2 box;
-    for (const Polygon& part : seen)
-        for (const Point2 p : part) box.add(p);
+    const Box2 box = bounds(seen);
     if (box.empty()) return;
     // Only the pixels near it: there may be thousands of sensors.
     const auto pixel = [this](double metres, int most) {

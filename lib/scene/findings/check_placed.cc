@@ -126,13 +126,8 @@ const CircleCheck::MeshBand& CircleCheck::bandOf(std::size_t element, double hei
     if (bands_.size() >= kKept) bands_.clear();
     MeshBand& near = bands_[{element, height}];
     bandOfMeshes(context_->element(element).body, 0, height, near.band, element);
-    std::vector<Box2> boxes;
-    boxes.reserve(near.band.solids.size());
-    for (const Polygon& solid : near.band.solids) boxes.push_back(bounds(solid));
-    near.solids = BoxTree(boxes);
-    boxes.clear();
-    for (const Segment2& sheet : near.band.sheets) boxes.push_back(bounds(sheet));
-    near.sheets = BoxTree(boxes);
+    near.solids = BoxTree(boundsOfEach(near.band.solids));
+    near.sheets = BoxTree(boundsOfEach(near.band.sheets));
     return near;
 }
 
