@@ -29,11 +29,18 @@
 /// vectors of any width. The polynomials of logarithm, sine and cosine are from Moshier's Cephes.
 namespace ispace::simd {
 
-/// `a` if `first`, else `b`, without a branch that would keep a loop from being vectorised.
+/// `a` if `first`, else `b`, without a branch: it would keep a loop from being vectorised, as the
+/// compiler assumes that all arithmetic may trap.
 ISPACE_INLINE float choose(bool first, float a, float b) {
     const std::uint32_t mask = 0U - static_cast<std::uint32_t>(first);
     return std::bit_cast<float>((std::bit_cast<std::uint32_t>(a) & mask) |
                                 (std::bit_cast<std::uint32_t>(b) & ~mask));
+}
+
+ISPACE_INLINE double choose(bool first, double a, double b) {
+    const std::uint64_t mask = first ? ~std::uint64_t{0} : 0;
+    return std::bit_cast<double>((std::bit_cast<std::uint64_t>(a) & mask) |
+                                 (std::bit_cast<std::uint64_t>(b) & ~mask));
 }
 
 /// Square root, within 2 ulp (relative 2e-7). \pre 0 or within [1e-30, 1e30]

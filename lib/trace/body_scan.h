@@ -13,68 +13,9 @@
 
 #include "trace/moving_bodies.h"
 #include "trace/rays.h"
+#include "trace/round_body.h"
 
 namespace ispace {
-
-/// The part of a ray inside a closed set, in multiples of its direction, with |slopes| of the
-/// surfaces at its ends: |normal times direction|.
-struct Stretch {
-    double from = -std::numeric_limits<double>::infinity();
-    double to = std::numeric_limits<double>::infinity();
-    double slope_from = 0, slope_to = 0;
-
-    void cut(double near, double far, double slope_near, double slope_far) {
-        if (near > from) {
-            from = near;
-            slope_from = slope_near;
-        }
-        if (far < to) {
-            to = far;
-            slope_to = slope_far;
-        }
-    }
-    void clear() {
-        from = std::numeric_limits<double>::infinity();
-        to = -from;
-    }
-    /// Clips by two planes; a ray parallel to them is kept whole or rejected.
-    void cutSlab(double origin, double direction, double low, double high) {
-        if (direction != 0) {
-            const double a = (low - origin) / direction, b = (high - origin) / direction;
-            cut(std::min(a, b), std::max(a, b), std::fabs(direction), std::fabs(direction));
-        } else if (origin < low || origin > high) {
-            clear();
-        }
-    }
-    /// Clips by a cylinder with level cuts that move along x by `lean` per metre; the ray is given
-    /// in the frame of these cuts.
-    void cutDisc(Vec2 origin, Vec2 direction, double radius, double lean) {
-        const double a = dot(direction, direction), b = dot(origin, direction);
-        const double side = cross(origin, direction);
-        const double root = a * radius * radius - side * side;
-        if (a == 0 ? dot(origin, origin) > radius * radius : root < 0) {
-            clear();
-        } else if (a != 0) {
-            const double half = std::sqrt(root), near = (-b - half) / a, far = (-b + half) / a;
-            const double level = half / radius;
-            if (lean == 0) return cut(near, far, level, level);
-            // The normal of a slanted side is not level.
-            const auto slope = [&](double multiple) {
-                const double rise = lean * (origin.x + multiple * direction.x) / radius;
-                return level / std::sqrt(1 + rise * rise);
-            };
-            cut(near, far, slope(near), slope(far));
-        }
-    }
-    void cutBall(Vec3 origin, Vec3 direction, double radius) {
-        const double a = dot(direction, direction), b = dot(origin, direction);
-        const Vec3 side = cross(origin, direction);
-        const double root = a * radius * radius - dot(side, side);
-        if (root < 0) return clear();
-        const double half = std::sqrt(root);
-        cut((-b - half) / a, (-b + half) / a, half / radius, half / radius);
-    }
-};
 
 /// A body as seen from one origin; stores the values that its rays share.
 class BodyFrame {
@@ -85,30 +26,30 @@ class BodyFrame {
         offset_.x -= body.lean * (height_ - body.middle());
     }
 
-    [[nodiscard]] Stretch within(Vec3 direction) const {
+    [[nodiscard]] RayInterval within(Vec3 direction) const {
         const Vec2 flat = turned({direction.x, direction.y});
-        Stretch stretch;
+        RayInterval inside;
         if (body_.is_ball) {
-            stretch.cutBall({offset_.x, offset_.y, height_ - body_.middle()},
-                            {flat.x, flat.y, direction.z}, body_.radius);
-            return stretch;
+            inside.cutBall({offset_.x, offset_.y, height_ - body_.middle()},
+                           {flat.x, flat.y, direction.z}, body_.radius);
+            return inside;
         }
-        stretch.cutSlab(height_, direction.z, body_.bottom, body_.top);
+        inside.cutSlab(height_, direction.z, body_.bottom, body_.top);
         if (body_.radius > 0) {
-            stretch.cutDisc(offset_, {flat.x - body_.lean * direction.z, flat.y}, body_.radius,
-                            body_.lean);
+            inside.cutDisc(offset_, {flat.x - body_.lean * direction.z, flat.y}, body_.radius,
+                           body_.lean);
         } else {
-            stretch.cutSlab(offset_.x, flat.x, -body_.half_length, body_.half_length);
-            stretch.cutSlab(offset_.y, flat.y, -body_.half_width, body_.half_width);
+            inside.cutSlab(offset_.x, flat.x, -body_.half_length, body_.half_length);
+            inside.cutSlab(offset_.y, flat.y, -body_.half_width, body_.half_width);
         }
-        return stretch;
+        return inside;
     }
     /// Finds the first intersection at a multiple of at least `least`; from inside, the exit.
     [[nodiscard]] RayHit meet(Vec3 direction, double least = 0) const {
-        const Stretch stretch = within(direction);
-        if (stretch.from > stretch.to || stretch.to < least) return {};
-        if (stretch.from >= least) return {stretch.from, stretch.slope_from};
-        return {stretch.to, stretch.slope_to};
+        const RayInterval inside = within(direction);
+        if (inside.enter > inside.exit || inside.exit < least) return {};
+        if (inside.enter >= least) return {inside.enter, inside.enter_slope};
+        return {inside.exit, inside.exit_slope};
     }
 
     [[nodiscard]] const MovingBody& body() const { return body_; }

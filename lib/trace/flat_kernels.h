@@ -43,13 +43,6 @@ template <typename Real>
 ISPACE_INLINE Real flatMax(Real a, Real b) {
     return a > b ? a : b;
 }
-/// Selects one of two computed values without a branch, which would prevent vectorising: the
-/// compiler assumes that all arithmetic may trap.
-ISPACE_INLINE double flatChoice(bool first, double a, double b) {
-    const std::uint64_t mask = first ? ~std::uint64_t{0} : 0;
-    return std::bit_cast<double>((std::bit_cast<std::uint64_t>(a) & mask) |
-                                 (std::bit_cast<std::uint64_t>(b) & ~mask));
-}
 
 /// Computes a lower bound of the distance to a box, 0 if the origin is inside, at most 8 % too
 /// small: that of the octagon about the origin that touches the box. Monotone even with rounding: a
@@ -125,7 +118,7 @@ ISPACE_INLINE double inverseRangeBetween(const FlatLine& line, double x, double 
 ISPACE_INLINE double inverseRangeAlong(const FlatLine& line, double x, double y) {
     const double from_a = line.ax * y - line.ay * x, to_b = x * line.by - y * line.bx;
     const bool is_between = (from_a >= -line.edge) & (to_b >= -line.edge);
-    return flatChoice(is_between, inverseRangeBetween(line, x, y), 0.0);
+    return simd::choose(is_between, inverseRangeBetween(line, x, y), 0.0);
 }
 
 /// True if the straight continuation of a line may pass within `ray_epsilon` of the origin;

@@ -174,7 +174,7 @@ void Walk<kCosines>::visit(const FlatTree::Node& node) {
         const double far = distanceOf(left, right, low, high);
         const bool meets = (right_side >= -slack) & (left_side <= slack) & (ahead >= -slack) &
                            mayBeNearer(far, least);
-        distance[i] = flatChoice(meets, far, -1.0);
+        distance[i] = simd::choose(meets, far, -1.0);
     }
     stack_.push(node, distance);
 }
@@ -225,8 +225,8 @@ double Walk<kCosines>::drawBlock(const FlatTree::Leaf& leaf, int i, int begin) {
         const double old = inverse_range[k];
         if constexpr (kCosines) {
             const double incidence = here * height;
-            const double tied = flatChoice(here == old, flatMax(incidence, cosine[k]), cosine[k]);
-            cosine[k] = flatChoice(here > old, incidence, tied);
+            const double tied = simd::choose(here == old, flatMax(incidence, cosine[k]), cosine[k]);
+            cosine[k] = simd::choose(here > old, incidence, tied);
         }
         least[k] = flatMax(here, old);
         inverse_range[k] = least[k];
@@ -234,7 +234,7 @@ double Walk<kCosines>::drawBlock(const FlatTree::Leaf& leaf, int i, int begin) {
     alignas(64) double all_here[kBlock], heights[kBlock];
     ISPACE_LANES for (int k = 0; k < kBlock; ++k) {
         const FlatLine line = lineFrom(leaf, i, ox[k], oy[k]);
-        const double here = flatChoice(line.stops, inverseRangeAlong(line, x[k], y[k]), 0.0);
+        const double here = simd::choose(line.stops, inverseRangeAlong(line, x[k], y[k]), 0.0);
         if constexpr (kRayEpsilon) {
             all_here[k] = here;
             heights[k] = line.height;
@@ -287,7 +287,7 @@ void Walk<kCosines>::meetLeaf(const FlatTree::Leaf& leaf) {
         const bool meets = (right_side + cone.right_reach >= -slack) &
                            (left_side - cone.left_reach <= slack) &
                            (ahead + cone.ahead_reach >= -slack) & mayBeNearer(distance, least);
-        far[i] = flatChoice(meets, distance, -1.0);
+        far[i] = simd::choose(meets, distance, -1.0);
         // How far its continuation is from any origin and contact, times its length.
         const double ex = leaf.bx[i] - leaf.ax[i], ey = leaf.by[i] - leaf.ay[i];
         const double reach = cone.half_width * std::fabs(ey) + cone.half_height * std::fabs(ex);

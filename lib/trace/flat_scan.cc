@@ -140,8 +140,8 @@ ISPACE_INLINE void drawBlock(FlatScan& scan, int block, const FlatLine& line) {
         const double old = inverse_range[i];
         if constexpr (kCosines) {
             const double incidence = here * line.height;
-            const double tied = flatChoice(here == old, flatMax(incidence, cosine[i]), cosine[i]);
-            cosine[i] = flatChoice(here > old, incidence, tied);
+            const double tied = simd::choose(here == old, flatMax(incidence, cosine[i]), cosine[i]);
+            cosine[i] = simd::choose(here > old, incidence, tied);
         }
         met[i] = here;
         least[i] = flatMax(here, old);

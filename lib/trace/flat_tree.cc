@@ -115,11 +115,7 @@ Box2 boxOf(const FlatTree::Leaf& leaf) {
 }
 
 /// Bounding boxes of round bodies, enlarged by the rounding of intersections.
-Box2 boxOf(const Ellipse& round) {
-    const Box2 box = round.box();
-    const Vec2 margin{kContactTolerance, kContactTolerance};
-    return {box.low - margin, box.high + margin};
-}
+Box2 boxOf(const Ellipse& round) { return round.box().expanded(kContactTolerance); }
 
 FlatTree::Round unitMapOf(const Ellipse& round) {
     const auto [c, s] = round.axis;

@@ -45,7 +45,7 @@ ISPACE_INLINE void visit(const FlatTree::Node& node, const FlatView& view, const
         const double near = distanceOf(left, right, low, high);
         const bool meets = (right_side <= slack) & (left_side >= -slack) & (ahead >= -slack) &
                            mayBeNearer(near, hit.inverse_range);
-        distance[i] = flatChoice(meets, near, -1.0);
+        distance[i] = simd::choose(meets, near, -1.0);
     }
     stack.push(node, distance);
 }

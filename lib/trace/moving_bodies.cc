@@ -106,10 +106,9 @@ void FloorGrid::rebuild(std::span<const Point2> places, double reach) {
 
 FloorGrid::Cells FloorGrid::cellsAbout(const Box2& box) const {
     if (box.empty()) return {};
-    return {cellOf(box.low.x - reach_ - box_.low.x, columns_),
-            cellOf(box.high.x + reach_ - box_.low.x, columns_),
-            cellOf(box.low.y - reach_ - box_.low.y, rows_),
-            cellOf(box.high.y + reach_ - box_.low.y, rows_)};
+    const auto [low, high] = box.expanded(reach_);
+    return {cellOf(low.x - box_.low.x, columns_), cellOf(high.x - box_.low.x, columns_),
+            cellOf(low.y - box_.low.y, rows_), cellOf(high.y - box_.low.y, rows_)};
 }
 
 std::size_t FloorGrid::cellOf(double offset, std::size_t count) const {
@@ -195,8 +194,8 @@ bool MovingBodies::between(Point3 a, Point3 b, std::uint32_t own) const {
     bool is_between = false;
     grid_.forEachNear(box, [&](std::size_t i) {
         if (is_between || bodies_[i].owner == own) return;
-        const Stretch stretch = BodyFrame(bodies_[i], extents_[i].axes, a).within(b - a);
-        is_between = stretch.from <= stretch.to && stretch.from <= 1 && stretch.to >= 0;
+        const RayInterval inside = BodyFrame(bodies_[i], extents_[i].axes, a).within(b - a);
+        is_between = inside.enter <= inside.exit && inside.enter <= 1 && inside.exit >= 0;
     });
     return is_between;
 }

@@ -15,6 +15,13 @@ namespace ispace {
 /// Range of a ray without return.
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
+/// A ray up to `reach` times its direction.
+struct Ray {
+    Point3 origin;
+    Vec3 direction;
+    double reach = 0;
+};
+
 /// Intersection of a ray with a surface, flat or round, standing or moving.
 struct RayHit {
     double multiple = std::numeric_limits<double>::infinity();  ///< multiple of the ray's direction

@@ -11,14 +11,14 @@ namespace ispace {
 
 namespace {
 
-/// Values of a body and the rays' origin, as in meetRound() in triangle_set.cc.
+/// Values of a body and the rays' origin, as in meetRound().
 struct RoundTask {
     Ellipse curve;
     Vec2 q;
     double c, low_end, high_end;
 };
 
-// Omits branches of TriangleSet::meetRound() that matter only for upright or level rays.
+// Omits branches of meetRound() that matter only for upright or level rays.
 ISPACE_SIMD_CLONES bool meetAll(const RoundTask& task, const RayPacket& packet, float* out) {
     const Vec2 axis = task.curve.axis, q = task.q;
     const double wide = task.curve.half_length, deep = task.curve.half_width;
@@ -30,16 +30,11 @@ ISPACE_SIMD_CLONES bool meetAll(const RoundTask& task, const RayPacket& packet, 
         const double dx = (axis.x * x + axis.y * y) / wide, dy = (axis.x * y - axis.y * x) / deep;
         const double a = dx * dx + dy * dy, b = q.x * dx + q.y * dy;
         special |= (a > 0 ? 0 : 1) | (rise != 0 ? 0 : 1);
-        const double side = q.x * dy - q.y * dx;
-        const double root = std::sqrt(a - side * side);  // NaN if the ray misses
-        const bool nears = b > 0;
-        const double right = -b - root, left = root - b, far = flatChoice(nears, right, left);
-        const double one = far / a, two = c / far;
-        const double from = flatChoice(nears, one, two), to = flatChoice(nears, two, one);
+        const auto [from, to] = meetUnitDisc(q, {dx, dy}, a, b, c);
         const double s = low_end / rise, t = high_end / rise;
         const double low = flatMin(t, s), high = flatMax(t, s);
         const double enter = flatMax(low, from), leave = flatMin(high, to);
-        const double multiple = flatChoice(enter >= 0, enter, leave);
+        const double multiple = simd::choose(enter >= 0, enter, leave);
         const bool is_met = (enter <= leave) & (leave >= 0) & (multiple <= packet.reach[lane]);
         multiples[lane] = simd::choose(is_met, static_cast<float>(multiple), kNoReturn);
     }

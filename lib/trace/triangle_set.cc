@@ -161,52 +161,6 @@ RayHit TriangleSet::meetFlat(std::size_t triangle, const Ray& ray) const {
     return {multiple, std::fabs(slope)};
 }
 
-RayHit meetRound(const RoundBody& round, const Ray& ray, double ray_epsilon) {
-    const auto& [curve, bottom, top] = round;
-    const Vec2 q = curve.toUnit(ray.origin.onFloor() - curve.center);
-    const Vec2 d = curve.toUnit({ray.direction.x, ray.direction.y});
-    const double a = dot(d, d), b = dot(q, d), c = dot(q, q) - 1;
-    // The stretch of the ray within the side, and between both ends.
-    double from = -kInfinity, to = kInfinity;
-    if (a > 0) {
-        const double square = a - cross(q, d) * cross(q, d);
-        if (square < 0) return {};
-        // Written so that neither root cancels.
-        const double far = b > 0 ? -b - std::sqrt(square) : std::sqrt(square) - b;
-        from = b > 0 ? far / a : c / far;
-        to = b > 0 ? c / far : far / a;
-    } else if (c > 0) {
-        return {};
-    }
-    double low = -kInfinity, high = kInfinity;
-    const double z = ray.origin.z, rise = ray.direction.z;
-    if (rise != 0) {
-        low = std::min((bottom - z) / rise, (top - z) / rise);
-        high = std::max((bottom - z) / rise, (top - z) / rise);
-    } else if (z < bottom || z > top) {
-        return {};
-    }
-    const double enter = std::max(from, low), leave = std::min(to, high);
-    if (!(enter <= leave && leave >= 0)) return {};
-    bool touches = false;
-    if (!round.isFarOutside(q, z, ray_epsilon)) {
-        const double height = curve.heightOf(ray.origin.onFloor());
-        touches = std::fabs(std::max({height, z - top, bottom - z})) <= ray_epsilon;
-        const bool goes_out = (std::fabs(height) <= ray_epsilon && b >= 0) ||
-                              (std::fabs(z - top) <= ray_epsilon && rise > 0) ||
-                              (std::fabs(bottom - z) <= ray_epsilon && rise < 0);
-        if (touches && (goes_out || leave * length(ray.direction) <= ray_epsilon)) return {};
-    }
-    const bool enters = enter >= 0 && !touches;
-    const double multiple = enters ? enter : leave;
-    if (!(multiple <= ray.reach)) return {};
-    if (multiple == (enters ? low : high)) return {multiple, std::fabs(rise)};
-    const Point2 place = (ray.origin + multiple * ray.direction).onFloor();
-    const Vec2 normal = curve.normalAt(place);
-    const Vec2 flat{ray.direction.x, ray.direction.y};
-    return {multiple, std::fabs(dot(normal, flat)) / length(normal)};
-}
-
 double TriangleSet::distance(std::size_t triangle, Point3 p) const {
     const Plane& plane = planes_[triangle];
     const auto& corners = corners_[triangle];
@@ -256,7 +210,7 @@ ISPACE_INLINE Point3 pointAt(const Vectors& v, std::size_t lane) {
 ISPACE_INLINE double sizeOf(Vec3 v) {
     const double x = std::fabs(v.x), y = std::fabs(v.y), z = std::fabs(v.z);
     const double most = flatMax(flatMax(x, y), z);
-    const double over = flatChoice(most > 0, most, 1.0);
+    const double over = simd::choose(most > 0, most, 1.0);
     return most *
            std::sqrt((x / over) * (x / over) + (y / over) * (y / over) + (z / over) * (z / over));
 }

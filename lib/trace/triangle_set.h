@@ -8,30 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "geom/curve.h"
 #include "geom/point.h"
 #include "trace/rays.h"
+#include "trace/round_body.h"
 
 namespace ispace {
-
-/// An upright round body with closed ends.
-struct RoundBody {
-    Ellipse curve;
-    double bottom = 0, top = 0;
-
-    /// True only if p lies outside by more than `distance`, along the floor or upright: a quick
-    /// bound, which may be false for points slightly farther. `unit`: p in the frame where the
-    /// curve is the unit disc.
-    [[nodiscard]] bool isFarOutside(Vec2 unit, double z, double distance) const {
-        if (z - top > distance || bottom - z > distance) return true;
-        // Ellipse::heightOf() is at least half_width (|u| - 1), where |u| <= 1 + (|u|^2 - 1) / 2.
-        const double over = dot(unit, unit) - 1;
-        const double narrow =
-            curve.half_width < curve.half_length ? curve.half_width : curve.half_length;
-        constexpr double kSlack = 1.001;
-        return over > 0 && over * narrow > kSlack * distance * (2 + over / 2);
-    }
-};
 
 /// Triangles in any order, with or without shared vertices, and round bodies.
 struct TriangleSoup {
@@ -44,13 +25,6 @@ struct TriangleSoup {
         vertices.push_back(corner);
         return static_cast<std::uint32_t>(vertices.size() - 1);
     }
-};
-
-/// A ray up to `reach` times its direction.
-struct Ray {
-    Point3 origin;
-    Vec3 direction;
-    double reach = 0;
 };
 
 /// The plane dot(normal, p) = offset.
@@ -133,10 +107,6 @@ class TriangleSet {
     double tolerance_ = 0;
     std::size_t flats_ = 0;  // number of flat triangles
 };
-
-/// Intersects a ray with a round body. From inside, or going in from within `ray_epsilon` of its
-/// surface, returns the exit; going out from there the ray misses.
-RayHit meetRound(const RoundBody& round, const Ray& ray, double ray_epsilon);
 
 /// Eight triangles, one array per component for vector units.
 struct TriangleLanes {
