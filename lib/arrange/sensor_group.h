@@ -30,7 +30,8 @@ struct SensorGroup {
 
 /// Returns all sensors to be placed: the unplaced ones of the scene, then `added`. `open`: the
 /// search finds the number of added sensors without a count, up to kMaxOpen.
-/// \throws UsageError if an added record has a pose or an id that is taken, FormatError as laserOf
+/// \throws UsageError if an added record has a pose or an id that is taken, FormatError as
+///         withParameters()
 std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const SensorSpec> added,
                                        const DeviceCatalogue& devices, bool open);
 

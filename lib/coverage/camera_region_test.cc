@@ -13,6 +13,7 @@
 #include "coverage/shadow_footprint.h"
 #include "coverage/visible_area.h"
 #include "geom/predicates.h"
+#include "scene/sensor/sensor_keys.h"
 #include "support/test_covering_sensors.h"
 #include "support/test_scenes.h"
 #include "support/test_sensors.h"
@@ -23,7 +24,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 Camera cameraFrom(const std::string& keys) {
-    return cameraOf(testing::sensorRecord("camera id=c " + keys));
+    return parametersOf<Camera>(testing::sensorRecord("camera id=c " + keys), nullptr);
 }
 
 Sensor at(const Camera& camera, const Pose3& pose) { return {"c", camera, pose}; }

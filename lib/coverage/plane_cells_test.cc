@@ -8,6 +8,7 @@
 #include <random>
 
 #include "coverage/visible_area.h"
+#include "scene/sensor/sensor_keys.h"
 #include "sense/scan.h"
 #include "support/test_covering_sensors.h"
 #include "support/test_scenes.h"
@@ -117,7 +118,8 @@ TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
           "projection=omni fov=360 pixels=512,512 range=5",
           "projection=omni fov=220 mirror=0.9 pixels=480,480 range=6",
           "projection=omni mirror=0.6 fx=300 pixels=640,480 range=7"}) {
-        const SensorModel model = cameraOf(testing::sensorRecord(std::string("camera ") + lens));
+        const SensorModel model =
+            parametersOf<Camera>(testing::sensorRecord(std::string("camera ") + lens), nullptr);
         std::size_t held = 0;
         for (const double tilt : {-90.0, -47.0, -3.0, 20.0}) {
             std::vector<FieldOfView> views;

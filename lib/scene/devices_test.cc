@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "scene/sensor/sensor.h"
+#include "scene/sensor/sensor_keys.h"
 #include "support/test_folder.h"
 #include "support/test_layout.h"
 
@@ -68,7 +69,7 @@ TEST(Devices, ProjectsOwnCatalogueLoads) {
 TEST(Devices, ParametersThatWereMisreadOnce) {
     const auto laser = [](const std::string& model) {
         const Record record = readRecord("laser model=" + model, "line", sceneSchemas());
-        return laserOf(record, deviceOf(record, testing::devices()));
+        return parametersOf<Laser>(record, deviceOf(record, testing::devices()));
     };
     // Webots tells noise as a share of the greatest range: 0.0043 of 3.5 m.
     EXPECT_NEAR(laser("lds-01").noise.sigma[0], 0.0043 * 3.5, 1e-4);

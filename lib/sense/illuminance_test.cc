@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/illuminance.h"
+#include "scene/sensor/sensor_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -96,7 +97,7 @@ TEST(Illuminance, HasAConstantFactorAndSteps) {
 TEST(Lux, ReadsItsKeys) {
     const auto read = [](const std::string& keys) {
         const Record record = testing::sensorRecord("lux " + keys);
-        return luxOf(record, testing::deviceFor(record));
+        return parametersOf<Lux>(record, testing::deviceFor(record));
     };
     EXPECT_EQ(read(""), Lux());
     const Lux lux = read("max=500 resolution=0.5 error=10% rate=4");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/inertia.h"
+#include "scene/sensor/sensor_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -83,7 +84,7 @@ TEST(Inertia, HasConstantErrorsAndWhiteNoise) {
 TEST(Imu, ReadsItsKeys) {
     const auto read = [](const std::string& keys) {
         const Record record = testing::sensorRecord("imu " + keys);
-        return imuOf(record, testing::deviceFor(record));
+        return parametersOf<Imu>(record, testing::deviceFor(record));
     };
     EXPECT_EQ(read(""), Imu());
     EXPECT_FALSE(Imu().isNoisy());

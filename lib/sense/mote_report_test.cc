@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/mote_report.h"
+#include "scene/sensor/sensor_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -124,7 +125,7 @@ TEST(MoteReport, MeasuresLightAsAMeterDoes) {
 TEST(Mote, ReadsItsKeys) {
     const auto read = [](const std::string& keys) {
         const Record record = testing::sensorRecord("mote " + keys);
-        return moteOf(record, testing::deviceFor(record));
+        return parametersOf<Mote>(record, testing::deviceFor(record));
     };
     EXPECT_EQ(read(""), Mote());
     EXPECT_FALSE(Mote().isNoisy());

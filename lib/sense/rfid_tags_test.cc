@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/rfid_tags.h"
+#include "scene/sensor/sensor_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -74,7 +75,7 @@ TEST(RfidTags, AreReadInAShareOfTheRounds) {
 TEST(Rfid, ReadsItsKeys) {
     const auto read = [](const std::string& keys) {
         const Record record = testing::sensorRecord("rfid " + keys);
-        return rfidOf(record, testing::deviceFor(record));
+        return parametersOf<Rfid>(record, testing::deviceFor(record));
     };
     EXPECT_EQ(read(""), Rfid());
     const Rfid rfid = read("range=0.2,6 fov=60,40 rate=20 read=90%");

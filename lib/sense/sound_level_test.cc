@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/sound_level.h"
+#include "scene/sensor/sensor_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -71,7 +72,7 @@ TEST(SoundLevel, SpreadsWithNoise) {
 TEST(Microphone, ReadsItsKeys) {
     const auto read = [](const std::string& keys) {
         const Record record = testing::sensorRecord("microphone " + keys);
-        return microphoneOf(record, testing::deviceFor(record));
+        return parametersOf<Microphone>(record, testing::deviceFor(record));
     };
     EXPECT_EQ(read(""), Microphone());
     EXPECT_FALSE(Microphone().isNoisy());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/uwb_ranges.h"
+#include "scene/sensor/sensor_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -183,7 +184,7 @@ TEST(UwbRanges, AllAnchorsComputeThePositionOfTheRangesThatTheyReport) {
 TEST(Uwb, ReadsItsKeys) {
     const auto read = [](const std::string& keys) {
         const Record record = testing::sensorRecord("uwb " + keys);
-        return uwbOf(record, testing::deviceFor(record));
+        return parametersOf<Uwb>(record, testing::deviceFor(record));
     };
     EXPECT_EQ(read(""), Uwb());
     EXPECT_FALSE(Uwb().isNoisy());

@@ -17,7 +17,7 @@ namespace ispace {
 /// Returns the sensor that takes the poses: that of --model, or the only laser, ranger or camera of
 /// the scene, placed or not. It does not see the robot or person that carries it. \param sources
 /// the file that --model names is appended \throws UsageError for a bad --model and for an
-/// ambiguous sensor; FormatError as laserOf
+/// ambiguous sensor; FormatError as withParameters()
 Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
                        const DeviceCatalogue& devices, std::vector<std::string>& sources);
 

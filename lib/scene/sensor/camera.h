@@ -110,11 +110,10 @@ struct Camera {
 /// diagonal from half an inch on, 18 mm below. Empty for other text.
 std::optional<Vec2> imageSensorSize(const std::string& text, int columns, int rows);
 
-/// Reads the parameters of a `camera` record: its explicit keys, else its model's, else the bare
-/// camera's. The focal length follows from `fov` (square pixels without its second number), from
-/// `focal` and `sensor`, or from `fx` (fy defaults to it); `pixels` alone keeps the horizontal
-/// field of view and square pixels, or the whole circle. \throws FormatError with all findings
-Camera cameraOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that a `camera` record writes; the model stays. The focal
+/// length follows from `fov` (square pixels without its second number), from `focal` and `sensor`,
+/// or from `fx` (fy defaults to it); `pixels` alone keeps the horizontal field of view and square
+/// pixels, or the whole circle. \throws FormatError with all findings
 Camera withParameters(Camera base, const Record& record);
 
 /// Pixels per metre that a task requires on a person.

@@ -8,6 +8,7 @@
 #include "base/number.h"
 #include "scene/sensor/camera.h"
 #include "scene/sensor/field_of_view.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/ranger.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
@@ -262,10 +263,6 @@ Camera withParameters(Camera base, const Record& record) {
     return base;
 }
 
-Camera cameraOf(const Record& record, const Record* device) {
-    return parametersOf<Camera>(record, device);
-}
-
 namespace {
 
 void addCameraKeys(std::vector<KeySpec>& keys) {
@@ -354,9 +351,7 @@ const SensorKind Camera::kKind = {
         [] {
             return lensBox({0.07, 0.06, 0.06}, {0}, 0.022);
         },
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return cameraOf(record, device);
-    },
+    .read = readModel<Camera>,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         const Camera& camera = std::get<Camera>(model);
         return {"-", degreesText(camera.fovX()) + "x" + degreesText(camera.fovY()),
@@ -369,8 +364,7 @@ const SensorKind Camera::kKind = {
         const Angle half = 0.5 * camera.fovX();
         return {-half, half, camera.max_range};
     },
-    .field_of_view =
-        [](const Sensor& sensor) { return fieldOfView(sensor.as<Camera>(), sensor.pose); },
+    .field_of_view = fieldOfViewOf<Camera>,
     .is_read = true,
     .is_arranged = true,
     .is_overhead = true,

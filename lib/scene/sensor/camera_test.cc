@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scene/sensor/lens_resolution.h"
+#include "scene/sensor/sensor_keys.h"
 #include "support/test_sensors.h"
 
 namespace ispace {
@@ -18,7 +19,7 @@ namespace ispace {
 namespace {
 
 Camera cameraFrom(const std::string& keys) {
-    return cameraOf(testing::sensorRecord("camera id=c " + keys));
+    return parametersOf<Camera>(testing::sensorRecord("camera id=c " + keys), nullptr);
 }
 
 std::string findingsOf(const std::string& keys) {

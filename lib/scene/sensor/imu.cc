@@ -2,6 +2,7 @@
 #include "scene/sensor/imu.h"
 
 #include "base/number.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -15,8 +16,6 @@ Imu withParameters(Imu base, const Record& record) {
     if (record.has("rate")) base.rate = record.number("rate");
     return base;
 }
-
-Imu imuOf(const Record& record, const Record* device) { return parametersOf<Imu>(record, device); }
 
 namespace {
 
@@ -55,9 +54,7 @@ const SensorKind Imu::kKind = {
     .sign = SensorSign::Square,
     .add_keys = addImuKeys,
     .body = imuBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return imuOf(record, device);
-    },
+    .read = readModel<Imu>,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         return {"-", "-", "-", formatDouble(std::get<Imu>(model).rate)};
     },

@@ -38,9 +38,7 @@ struct Imu {
     friend bool operator==(const Imu&, const Imu&) = default;
 };
 
-/// Reads the parameters of an `imu` record: its explicit keys, else its model's, else those of the
-/// bare unit, which has no noise.
-Imu imuOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that an `imu` record writes; the model stays.
 Imu withParameters(Imu base, const Record& record);
 
 }  // namespace ispace

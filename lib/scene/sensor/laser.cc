@@ -7,6 +7,7 @@
 #include "base/number.h"
 #include "geom/tolerance.h"
 #include "scene/sensor/field_of_view.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -153,10 +154,6 @@ Laser withParameters(Laser base, const Record& record) {
     return base;
 }
 
-Laser laserOf(const Record& record, const Record* device) {
-    return parametersOf<Laser>(record, device);
-}
-
 Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans) {
     const Angle by = scans * laser.sweep_step;
     switch (laser.sweep) {
@@ -286,9 +283,7 @@ const SensorKind Laser::kKind = {
     .device_help = "a planar laser range finder one can buy",
     .add_keys = addLaserKeys,
     .body = laserBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return laserOf(record, device);
-    },
+    .read = readModel<Laser>,
     .summary = laserSummary,
     .view = laserView,
     .bearings = [](const SensorModel& model) -> BearingSpan {

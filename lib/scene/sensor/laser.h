@@ -79,19 +79,14 @@ struct Laser {
 /// Computes the pose of a laser `scans` scans (whole or not) into its sweep.
 Pose3 sweptPose(const Laser& laser, Pose3 pose, double scans);
 
-/// Reads the parameters of a `laser` record: its explicit keys, else its model's, else the bare
-/// laser's. An explicit `fov` recomputes the beams: from -fov/2 (or an explicit `first`) on,
-/// floor(fov/step) + 1 of them, or explicit `beams` spread over it; an explicit `step` alone keeps
-/// the model's first beam and span (or full turn); `first` alone keeps number and step; `beams`
-/// alone keeps first beam and step. One number in `range` is the maximum. An explicit `rate` alone
-/// scales the spin of a model's beam.
-/// \throws FormatError with all findings: an unknown model (with the nearest name), min above max,
-/// a fraction of a beam, too many, more than a full turn, `fov` and `beams` that disagree,
-/// a scan that takes longer than its period
-Laser laserOf(const Record& record, const Record* device = nullptr);
-
-/// Returns `base` with the parameters that a record writes; the model stays.
-/// \throws FormatError as laserOf
+/// Returns `base` with the parameters that a `laser` record writes; the model stays. An explicit
+/// `fov` recomputes the beams: from -fov/2 (or an explicit `first`) on, floor(fov/step) + 1 of
+/// them, or explicit `beams` spread over it; an explicit `step` alone keeps the model's first beam
+/// and span (or full turn); `first` alone keeps number and step; `beams` alone keeps first beam and
+/// step. One number in `range` is the maximum. An explicit `rate` alone scales the spin of a
+/// model's beam. \throws FormatError with all findings: an unknown model (with the nearest name),
+/// min above max, a fraction of a beam, too many, more than a full turn, `fov` and `beams` that
+/// disagree, a scan that takes longer than its period
 Laser withParameters(Laser base, const Record& record);
 
 }  // namespace ispace

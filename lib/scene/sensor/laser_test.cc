@@ -7,6 +7,7 @@
 #include <random>
 
 #include "env/environment.h"
+#include "scene/sensor/sensor_keys.h"
 #include "support/test_sensors.h"
 
 namespace ispace {
@@ -20,7 +21,7 @@ using testing::sensorRecord;
 
 Laser laser(const std::string& keys) {
     const Record record = sensorRecord("laser " + keys);
-    return laserOf(record, deviceFor(record));
+    return parametersOf<Laser>(record, deviceFor(record));
 }
 
 std::string laserFindings(const std::string& keys) {
@@ -90,7 +91,7 @@ TEST(LaserOf, DivisionByStepIsNotLostToRounding) {
             out.set("step", step);
             return out;
         }();
-        EXPECT_EQ(laserOf(made).beams, beams);
+        EXPECT_EQ(parametersOf<Laser>(made, nullptr).beams, beams);
     }
 }
 

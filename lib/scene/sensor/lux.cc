@@ -2,6 +2,7 @@
 #include "scene/sensor/lux.h"
 
 #include "base/number.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -31,8 +32,6 @@ void addLightKeys(std::vector<KeySpec>& keys) {
                     .lower = 0,
                     .upper = 1});
 }
-
-Lux luxOf(const Record& record, const Record* device) { return parametersOf<Lux>(record, device); }
 
 namespace {
 
@@ -89,9 +88,7 @@ const SensorKind Lux::kKind = {
     .sign = SensorSign::Square,
     .add_keys = addLuxKeys,
     .body = luxBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return luxOf(record, device);
-    },
+    .read = readModel<Lux>,
     .look_up = lookUp,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         return {"-", "180", "-", formatDouble(std::get<Lux>(model).rate)};

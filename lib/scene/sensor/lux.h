@@ -43,9 +43,7 @@ struct Lux {
     friend bool operator==(const Lux&, const Lux&) = default;
 };
 
-/// Reads the parameters of a `lux` record, without lights: its explicit keys, else its model's,
-/// else the bare meter's.
-Lux luxOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that a `lux` record writes, without lights; the model stays.
 Lux withParameters(Lux base, const Record& record);
 
 /// Adds the keys `max`, `resolution` and `error`.

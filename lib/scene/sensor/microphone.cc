@@ -2,6 +2,7 @@
 #include "scene/sensor/microphone.h"
 
 #include "base/number.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -21,10 +22,6 @@ Microphone withParameters(Microphone base, const Record& record) {
                                         formatDouble(base.max) + " dB"));
     findings.throwIfAny();
     return base;
-}
-
-Microphone microphoneOf(const Record& record, const Record* device) {
-    return parametersOf<Microphone>(record, device);
 }
 
 namespace {
@@ -79,9 +76,7 @@ const SensorKind Microphone::kKind = {
     .sign = SensorSign::Square,
     .add_keys = addMicrophoneKeys,
     .body = microphoneBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return microphoneOf(record, device);
-    },
+    .read = readModel<Microphone>,
     .look_up = lookUpSpeakers,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         return {"-", "360", "-", formatDouble(std::get<Microphone>(model).rate)};

@@ -40,9 +40,8 @@ struct Microphone {
     friend bool operator==(const Microphone&, const Microphone&) = default;
 };
 
-/// Reads the parameters of a `microphone` record, without sources: its explicit keys, else its
-/// model's, else the bare microphone's. \throws FormatError with all findings
-Microphone microphoneOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that a `microphone` record writes, without sources; the model
+/// stays. \throws FormatError with all findings
 Microphone withParameters(Microphone base, const Record& record);
 
 }  // namespace ispace

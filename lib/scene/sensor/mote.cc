@@ -9,6 +9,7 @@
 #include "base/number.h"
 #include "env/body.h"
 #include "scene/robot.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/pose_on_carrier.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
@@ -21,10 +22,6 @@ Mote withParameters(Mote base, const Record& record) {
     if (record.has("loss")) base.loss = record.number("loss");
     if (record.has("rate")) base.rate = record.number("rate");
     return base;
-}
-
-Mote moteOf(const Record& record, const Record* device) {
-    return parametersOf<Mote>(record, device);
 }
 
 namespace {
@@ -114,9 +111,7 @@ const SensorKind Mote::kKind = {
     .sign = SensorSign::Diamond,
     .add_keys = addMoteKeys,
     .body = moteBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return moteOf(record, device);
-    },
+    .read = readModel<Mote>,
     .look_up = lookUpLightsAndMotes,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         const Mote& mote = std::get<Mote>(model);

@@ -45,9 +45,8 @@ struct Mote {
     friend bool operator==(const Mote&, const Mote&) = default;
 };
 
-/// Reads the parameters of a `mote` record, without lights and motes: its explicit keys, else its
-/// model's, else the bare mote's.
-Mote moteOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that a `mote` record writes, without lights and motes; the
+/// model stays.
 Mote withParameters(Mote base, const Record& record);
 
 }  // namespace ispace

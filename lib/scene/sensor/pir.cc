@@ -2,6 +2,7 @@
 #include "scene/sensor/pir.h"
 
 #include "base/number.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -19,8 +20,6 @@ Pir withParameters(Pir base, const Record& record) {
     findings.throwIfAny();
     return base;
 }
-
-Pir pirOf(const Record& record, const Record* device) { return parametersOf<Pir>(record, device); }
 
 FieldOfView fieldOfView(const Pir& pir, const Pose3& pose) {
     return FieldOfView::window(pose, 0.5 * pir.fov_x, 0.5 * pir.fov_y, pir.max_range);
@@ -79,26 +78,15 @@ const SensorKind Pir::kKind = {
     .sign = SensorSign::Square,
     .add_keys = addPirKeys,
     .body = pirBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return pirOf(record, device);
-    },
+    .read = readModel<Pir>,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         const Pir& pir = std::get<Pir>(model);
         return {rangeText(pir.min_range, pir.max_range),
                 degreesText(pir.fov_x) + "x" + degreesText(pir.fov_y), "-", formatDouble(pir.rate)};
     },
-    .view =
-        [](const Sensor& sensor, double reach) {
-            const Pir& pir = sensor.as<Pir>();
-            return windowView(pir.fov_x, pir.fov_y,
-                              viewLimits(pir.min_range, pir.max_range, reach));
-        },
-    .bearings = [](const SensorModel& model) -> BearingSpan {
-        const Pir& pir = std::get<Pir>(model);
-        return {-0.5 * pir.fov_x, 0.5 * pir.fov_x, pir.max_range};
-    },
-    .field_of_view =
-        [](const Sensor& sensor) { return fieldOfView(sensor.as<Pir>(), sensor.pose); },
+    .view = windowViewOf<Pir>,
+    .bearings = windowBearings<Pir>,
+    .field_of_view = fieldOfViewOf<Pir>,
     .stopped_by = Surfaces::Solid,
     .is_read = true,
     .is_arranged = true,

@@ -34,9 +34,8 @@ struct Pir {
     friend bool operator==(const Pir&, const Pir&) = default;
 };
 
-/// Reads the parameters of a `pir` record: its explicit keys, else its model's, else the bare
-/// sensor's. One number in `fov` keeps the other angle. \throws FormatError with all findings
-Pir pirOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that a `pir` record writes; the model stays. One number in
+/// `fov` keeps the other angle. \throws FormatError with all findings
 Pir withParameters(Pir base, const Record& record);
 
 /// Returns the field of view at a pose, without occlusion: intervals of bearings and elevations.

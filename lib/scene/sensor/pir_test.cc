@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/sensor/pir.h"
+#include "scene/sensor/sensor_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ using testing::sensorRecord;
 
 Pir pir(const std::string& keys) {
     const Record record = sensorRecord("pir " + keys);
-    return pirOf(record, testing::deviceFor(record));
+    return parametersOf<Pir>(record, testing::deviceFor(record));
 }
 
 TEST(Pir, ReadsItsKeys) {

@@ -2,6 +2,7 @@
 #include "scene/sensor/radar.h"
 
 #include "base/number.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 
 namespace ispace {
@@ -25,10 +26,6 @@ Radar withParameters(Radar base, const Record& record) {
     applyNoise(record, base.noise, findings);
     findings.throwIfAny();
     return base;
-}
-
-Radar radarOf(const Record& record, const Record* device) {
-    return parametersOf<Radar>(record, device);
 }
 
 FieldOfView fieldOfView(const Radar& radar, const Pose3& pose) {
@@ -79,12 +76,6 @@ void addRadarKeys(std::vector<KeySpec>& keys) {
     addNoiseKeys(keys);
 }
 
-Mesh viewOf(const Sensor& sensor, double reach) {
-    const Radar& radar = sensor.as<Radar>();
-    return windowView(radar.fov_x, radar.fov_y,
-                      viewLimits(radar.min_range, radar.max_range, reach));
-}
-
 /// Builds a board with the antennas' cover in front.
 std::vector<Mesh> body() {
     Mesh board{Material::Sensor, {}, {}}, cover{Material::Metal, {}, {}};
@@ -106,22 +97,16 @@ const SensorKind Radar::kKind = {
     .sign = SensorSign::Square,
     .add_keys = addRadarKeys,
     .body = body,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return radarOf(record, device);
-    },
+    .read = readModel<Radar>,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         const Radar& radar = std::get<Radar>(model);
         return {rangeText(radar.min_range, radar.max_range),
                 degreesText(radar.fov_x) + "x" + degreesText(radar.fov_y),
                 std::to_string(radar.detections), formatDouble(radar.rate)};
     },
-    .view = viewOf,
-    .bearings = [](const SensorModel& model) -> BearingSpan {
-        const Radar& radar = std::get<Radar>(model);
-        return {-0.5 * radar.fov_x, 0.5 * radar.fov_x, radar.max_range};
-    },
-    .field_of_view =
-        [](const Sensor& sensor) { return fieldOfView(sensor.as<Radar>(), sensor.pose); },
+    .view = windowViewOf<Radar>,
+    .bearings = windowBearings<Radar>,
+    .field_of_view = fieldOfViewOf<Radar>,
     .stopped_by = Surfaces::Solid,
     .is_read = true,
     .is_arranged = true,

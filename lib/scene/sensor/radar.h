@@ -44,9 +44,8 @@ struct Radar {
     friend bool operator==(const Radar&, const Radar&) = default;
 };
 
-/// Reads the parameters of a `radar` record: its explicit keys, else its model's, else the bare
-/// radar's. One number in `fov` keeps the other angle. \throws FormatError with all findings
-Radar radarOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that a `radar` record writes; the model stays. One number in
+/// `fov` keeps the other angle. \throws FormatError with all findings
 Radar withParameters(Radar base, const Record& record);
 
 /// Returns the field of view at a pose, without occlusion: intervals of bearings and elevations.

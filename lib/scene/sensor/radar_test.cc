@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/sensor/radar.h"
+#include "scene/sensor/sensor_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ using testing::sensorRecord;
 
 Radar radar(const std::string& keys) {
     const Record record = sensorRecord("radar " + keys);
-    return radarOf(record, testing::deviceFor(record));
+    return parametersOf<Radar>(record, testing::deviceFor(record));
 }
 
 TEST(Radar, ReadsItsKeys) {

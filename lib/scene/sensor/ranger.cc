@@ -5,6 +5,7 @@
 
 #include "base/number.h"
 #include "scene/sensor/field_of_view.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -78,10 +79,6 @@ Ranger withParameters(Ranger base, const Record& record) {
     return base;
 }
 
-Ranger rangerOf(const Record& record, const Record* device) {
-    return parametersOf<Ranger>(record, device);
-}
-
 FieldOfView fieldOfView(const Ranger& ranger, const Pose3& pose) {
     const Angle half_x = 0.5 * ranger.fov_x, half_y = 0.5 * ranger.fov_y;
     if (ranger.projection == Projection::Spherical)
@@ -152,17 +149,11 @@ const SensorKind Ranger::kKind = {
     .sign = SensorSign::Square,
     .add_keys = addRangerKeys,
     .body = rangerBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return rangerOf(record, device);
-    },
+    .read = readModel<Ranger>,
     .summary = rangerSummary,
     .view = rangerView,
-    .bearings = [](const SensorModel& model) -> BearingSpan {
-        const Ranger& ranger = std::get<Ranger>(model);
-        return {-0.5 * ranger.fov_x, 0.5 * ranger.fov_x, ranger.max_range};
-    },
-    .field_of_view =
-        [](const Sensor& sensor) { return fieldOfView(sensor.as<Ranger>(), sensor.pose); },
+    .bearings = windowBearings<Ranger>,
+    .field_of_view = fieldOfViewOf<Ranger>,
     .is_read = true,
     .is_arranged = true,
     .follows_poses = true};

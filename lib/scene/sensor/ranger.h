@@ -70,12 +70,10 @@ struct Ranger {
     friend bool operator==(const Ranger&, const Ranger&) = default;
 };
 
-/// Reads the parameters of a `ranger` record: its explicit keys, else its model's, else the bare
-/// ranger's. A `fov` of one number gives the other by square pixels; one number in `range` is the
-/// maximum.
-/// \throws FormatError with all findings: an unknown model, min above max, a pinhole of 180 degrees
-/// or more, more than kMaxPixels
-Ranger rangerOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that a `ranger` record writes; the model stays. A `fov` of
+/// one number gives the other by square pixels; one number in `range` is the maximum. \throws
+/// FormatError with all findings: an unknown model, min above max, a pinhole of 180 degrees or
+/// more, more than kMaxPixels
 Ranger withParameters(Ranger base, const Record& record);
 constexpr std::size_t kMaxPixels = 1U << 26U;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/sensor/ranger.h"
+#include "scene/sensor/sensor_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -12,14 +13,14 @@ namespace ispace {
 
 namespace {
 
-/// Parameters of a record with these keys, by `read`: rangerOf, receiverOf, tagOf.
-template <typename Read>
-auto parameters(const std::string& line, Read read) {
+/// Reads the parameters of a record with these keys.
+template <typename Parameters>
+Parameters parameters(const std::string& line) {
     const Record record = testing::sensorRecord(line);
-    return read(record, testing::deviceFor(record));
+    return parametersOf<Parameters>(record, testing::deviceFor(record));
 }
 
-Ranger ranger(const std::string& keys) { return parameters("ranger " + keys, rangerOf); }
+Ranger ranger(const std::string& keys) { return parameters<Ranger>("ranger " + keys); }
 
 std::string rangerFindings(const std::string& keys) {
     return testing::findings([&] { return ranger(keys); });
@@ -81,13 +82,13 @@ TEST(Ranger, PixelsLookWhereTheHeaderSays) {
 
 TEST(UltrasoundOf, ReceiversAndTags) {
     const auto receiver = [](const std::string& keys) {
-        return parameters("ultrasound " + keys, receiverOf);
+        return parameters<Receiver>("ultrasound " + keys);
     };
     EXPECT_EQ(receiver(""), Receiver());
     EXPECT_EQ(receiver("model=zps-3d").rate, 20);
     EXPECT_EQ(receiver("range=0.2,4").min_range, 0.2);
     EXPECT_NE(testing::findings([&] { return receiver("range=4,1"); }), "");
-    const auto tag = [](const std::string& keys) { return parameters("tag " + keys, tagOf); };
+    const auto tag = [](const std::string& keys) { return parameters<Tag>("tag " + keys); };
     EXPECT_EQ(tag(""), Tag());
     EXPECT_FALSE(tag("model=zps-3d-tag").is_simple);
     EXPECT_TRUE(tag("locate=simple sigma=0.2").is_simple);

@@ -3,6 +3,7 @@
 
 #include "base/number.h"
 #include "env/body.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -16,10 +17,6 @@ Rfid withParameters(Rfid base, const Record& record) {
     if (record.has("read")) base.read = record.number("read");
     findings.throwIfAny();
     return base;
-}
-
-Rfid rfidOf(const Record& record, const Record* device) {
-    return parametersOf<Rfid>(record, device);
 }
 
 FieldOfView fieldOfView(const Rfid& rfid, const Pose3& pose) {
@@ -92,9 +89,7 @@ const SensorKind Rfid::kKind = {
     .sign = SensorSign::Square,
     .add_keys = addRfidKeys,
     .body = rfidBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return rfidOf(record, device);
-    },
+    .read = readModel<Rfid>,
     .look_up = lookUpTags,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         const Rfid& rfid = std::get<Rfid>(model);
@@ -102,18 +97,9 @@ const SensorKind Rfid::kKind = {
                 degreesText(rfid.fov_x) + "x" + degreesText(rfid.fov_y), "-",
                 formatDouble(rfid.rate)};
     },
-    .view =
-        [](const Sensor& sensor, double reach) {
-            const Rfid& rfid = sensor.as<Rfid>();
-            return windowView(rfid.fov_x, rfid.fov_y,
-                              viewLimits(rfid.min_range, rfid.max_range, reach));
-        },
-    .bearings = [](const SensorModel& model) -> BearingSpan {
-        const Rfid& rfid = std::get<Rfid>(model);
-        return {-0.5 * rfid.fov_x, 0.5 * rfid.fov_x, rfid.max_range};
-    },
-    .field_of_view =
-        [](const Sensor& sensor) { return fieldOfView(sensor.as<Rfid>(), sensor.pose); },
+    .view = windowViewOf<Rfid>,
+    .bearings = windowBearings<Rfid>,
+    .field_of_view = fieldOfViewOf<Rfid>,
     .stopped_by = Surfaces::Solid,
     .is_read = true,
     .is_arranged = true,

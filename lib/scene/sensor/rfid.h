@@ -46,9 +46,8 @@ struct Rfid {
     friend bool operator==(const Rfid&, const Rfid&) = default;
 };
 
-/// Reads the parameters of an `rfid` record, without tags: its explicit keys, else its model's,
-/// else the bare reader's. \throws FormatError with all findings
-Rfid rfidOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that an `rfid` record writes, without tags; the model stays.
+/// \throws FormatError with all findings
 Rfid withParameters(Rfid base, const Record& record);
 
 /// Returns the tags of a room, one list for all its sensors.

@@ -12,6 +12,7 @@
 #include "env/body.h"
 #include "env/walls.h"
 #include "geom/predicates.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -29,10 +30,6 @@ Thermometer withParameters(Thermometer base, const Record& record) {
     if (record.has("error")) base.error = record.number("error");
     if (record.has("rate")) base.rate = record.number("rate");
     return base;
-}
-
-Thermometer thermometerOf(const Record& record, const Record* device) {
-    return parametersOf<Thermometer>(record, device);
 }
 
 namespace {
@@ -305,9 +302,7 @@ const SensorKind Thermometer::kKind = {
     .sign = SensorSign::Square,
     .add_keys = addThermometerKeys,
     .body = thermometerBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return thermometerOf(record, device);
-    },
+    .read = readModel<Thermometer>,
     .look_up = lookUpZone,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         return {"-", "-", "-", formatDouble(std::get<Thermometer>(model).rate)};

@@ -46,9 +46,8 @@ struct Thermometer {
     friend bool operator==(const Thermometer&, const Thermometer&) = default;
 };
 
-/// Reads the parameters of a `thermometer` record, without the heat of its zone: its explicit keys,
-/// else its model's, else the bare thermometer's. \throws FormatError if its limits are not apart
-Thermometer thermometerOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that a `thermometer` record writes, without the heat of its
+/// zone; the model stays. \throws FormatError if its limits are not apart
 Thermometer withParameters(Thermometer base, const Record& record);
 
 }  // namespace ispace

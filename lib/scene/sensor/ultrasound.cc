@@ -3,6 +3,7 @@
 
 #include "base/number.h"
 #include "scene/sensor/field_of_view.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -18,10 +19,6 @@ Receiver withParameters(Receiver base, const Record& record) {
     return base;
 }
 
-Receiver receiverOf(const Record& record, const Record* device) {
-    return parametersOf<Receiver>(record, device);
-}
-
 Tag withParameters(Tag base, const Record& record) {
     if (record.has("rate")) base.rate = record.number("rate");
     if (record.has("fov")) base.fov = record.angle("fov");
@@ -29,8 +26,6 @@ Tag withParameters(Tag base, const Record& record) {
     if (record.has("sigma")) base.simple_sigma = record.number("sigma");
     return base;
 }
-
-Tag tagOf(const Record& record, const Record* device) { return parametersOf<Tag>(record, device); }
 
 bool Receiver::isOmnidirectional(const Pose3& mount) {
     const Frame3 frame(mount);
@@ -114,9 +109,7 @@ const SensorKind Receiver::kKind = {
     .sign = SensorSign::Triangle,
     .add_keys = addUltrasoundKeys,
     .body = receiverBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return receiverOf(record, device);
-    },
+    .read = readModel<Receiver>,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         const Receiver& receiver = std::get<Receiver>(model);
         return {rangeText(receiver.min_range, receiver.max_range), degreesText(receiver.fov), "-",
@@ -127,31 +120,27 @@ const SensorKind Receiver::kKind = {
         const Receiver& receiver = std::get<Receiver>(model);
         return {-0.5 * receiver.fov, 0.5 * receiver.fov, receiver.max_range};
     },
-    .field_of_view =
-        [](const Sensor& sensor) { return fieldOfView(sensor.as<Receiver>(), sensor.pose); },
+    .field_of_view = fieldOfViewOf<Receiver>,
     .stopped_by = Surfaces::Solid,
     .is_read = true,
     .is_arranged = true,
     .together = kMinReceivers};
 
-const SensorKind Tag::kKind = {
-    .keyword = "tag",
-    .noun = "tag",
-    .help = "ultrasonic emitter, to be located",
-    .heading_help = "where it faces, from +x",
-    .device_help = "an ultrasonic emitter one can buy",
-    .sign = SensorSign::Diamond,
-    .add_keys = addTagKeys,
-    .body = tagBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return tagOf(record, device);
-    },
-    .summary = [](const SensorModel& model) -> DeviceSummary {
-        const Tag& tag = std::get<Tag>(model);
-        return {"-", degreesText(tag.fov), "-", formatDouble(tag.rate)};
-    },
-    .stopped_by = Surfaces::Solid,
-    .perceives = false,
-    .is_read = true};
+const SensorKind Tag::kKind = {.keyword = "tag",
+                               .noun = "tag",
+                               .help = "ultrasonic emitter, to be located",
+                               .heading_help = "where it faces, from +x",
+                               .device_help = "an ultrasonic emitter one can buy",
+                               .sign = SensorSign::Diamond,
+                               .add_keys = addTagKeys,
+                               .body = tagBody,
+                               .read = readModel<Tag>,
+                               .summary = [](const SensorModel& model) -> DeviceSummary {
+                                   const Tag& tag = std::get<Tag>(model);
+                                   return {"-", degreesText(tag.fov), "-", formatDouble(tag.rate)};
+                               },
+                               .stopped_by = Surfaces::Solid,
+                               .perceives = false,
+                               .is_read = true};
 
 }  // namespace ispace

@@ -57,13 +57,10 @@ struct Tag {
     friend bool operator==(const Tag&, const Tag&) = default;
 };
 
-/// Reads the parameters of an `ultrasound` record: its explicit keys, else its model's, else the
-/// bare one's.
-/// \throws FormatError with all findings
-Receiver receiverOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that an `ultrasound` record writes; the model stays. \throws
+/// FormatError with all findings
 Receiver withParameters(Receiver base, const Record& record);
-/// Reads those of a `tag` record.
-Tag tagOf(const Record& record, const Record* device = nullptr);
+/// The same for a `tag` record.
 Tag withParameters(Tag base, const Record& record);
 
 /// Returns the cone of hearing at a pose, without occlusion.

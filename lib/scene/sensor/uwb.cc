@@ -5,7 +5,9 @@
 
 #include "base/number.h"
 #include "scene/devices.h"
+#include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
+#include "scene/sensor/sensor_keys.h"
 
 namespace ispace {
 
@@ -25,8 +27,6 @@ Uwb withParameters(Uwb base, const Record& record) {
     findings.throwIfAny();
     return base;
 }
-
-Uwb uwbOf(const Record& record, const Record* device) { return parametersOf<Uwb>(record, device); }
 
 FieldOfView fieldOfView(const Uwb& uwb, const Pose3& pose) {
     return FieldOfView::window(pose, Angle::degrees(180), Angle::degrees(90), uwb.max_range);
@@ -79,8 +79,8 @@ std::vector<UwbAnchor> anchorsOf(const RoomRecords& room) {
     for (std::size_t i = 0; i < room.records.size(); ++i) {
         const Record& record = room.records[i];
         if (record.keyword() != "uwb" || !record.has("at") || record.has("on")) continue;
-        anchors.push_back(
-            {room.ids[i], poseOf(record), uwbOf(record, deviceOf(record, room.devices))});
+        anchors.push_back({room.ids[i], poseOf(record),
+                           parametersOf<Uwb>(record, deviceOf(record, room.devices))});
     }
     return anchors;
 }
@@ -112,9 +112,7 @@ const SensorKind Uwb::kKind = {
     .sign = SensorSign::Triangle,
     .add_keys = addUwbKeys,
     .body = uwbBody,
-    .read = [](const Record& record, const Record* device) -> SensorModel {
-        return uwbOf(record, device);
-    },
+    .read = readModel<Uwb>,
     .look_up = lookUpTagsAndAnchors,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         const Uwb& uwb = std::get<Uwb>(model);
@@ -124,8 +122,7 @@ const SensorKind Uwb::kKind = {
         const Angle half_turn = Angle::degrees(180);
         return {-half_turn, half_turn, std::get<Uwb>(model).max_range};
     },
-    .field_of_view =
-        [](const Sensor& sensor) { return fieldOfView(sensor.as<Uwb>(), sensor.pose); },
+    .field_of_view = fieldOfViewOf<Uwb>,
     .stopped_by = Surfaces::Solid,
     .is_read = true,
     .is_arranged = true,

@@ -56,9 +56,8 @@ struct Uwb : UwbRadio {
     friend bool operator==(const Uwb&, const Uwb&) = default;
 };
 
-/// Reads the parameters of a `uwb` record, without tags and anchors: its explicit keys, else its
-/// model's, else the bare anchor's. \throws FormatError with all findings
-Uwb uwbOf(const Record& record, const Record* device = nullptr);
+/// Returns `base` with the parameters that a `uwb` record writes, without tags and anchors; the
+/// model stays. \throws FormatError with all findings
 Uwb withParameters(Uwb base, const Record& record);
 
 /// Returns the ball in which an anchor measures in line of sight.

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Functions of SensorKind that several kinds share. Private to lib/scene/sensor.
+#pragma once
+
+#include "scene/sensor/field_of_view.h"
+#include "scene/sensor/sensor.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+template <typename Parameters>
+SensorModel readModel(const Record& record, const Record* device) {
+    return parametersOf<Parameters>(record, device);
+}
+
+template <typename Parameters>
+FieldOfView fieldOfViewOf(const Sensor& sensor) {
+    return fieldOfView(sensor.as<Parameters>(), sensor.pose);
+}
+
+/// The bearings of a sensor that sees an interval of `fov_x` about its axis.
+template <typename Parameters>
+BearingSpan windowBearings(const SensorModel& model) {
+    const auto& window = std::get<Parameters>(model);
+    return {-0.5 * window.fov_x, 0.5 * window.fov_x, window.max_range};
+}
+
+/// The surface of such a field of view, with elevations of `fov_y`.
+template <typename Parameters>
+Mesh windowViewOf(const Sensor& sensor, double reach) {
+    const auto& window = sensor.as<Parameters>();
+    return windowView(window.fov_x, window.fov_y,
+                      viewLimits(window.min_range, window.max_range, reach));
+}
+
+}  // namespace ispace
