@@ -37,17 +37,8 @@ PageSection buildingSummary(const BuildingPageInput& input) {
             PageText{"In the run of " + formatFixed(input.run->sum.end - input.run->sum.begin, 2) +
                      " s robots and people on storeys were seen for " +
                      percentText(1 - input.run->sum.all.time_shares.front()) + " of their time."});
-    if (input.requirements.empty()) return section;
-    PageTable table{"each requirement with its measurement, and the margin in points of a per cent",
-                    "llrl",
-                    {"requirement", "result", "margin", "measured"},
-                    {}};
-    for (const JudgedRequirement& one : input.requirements) {
-        table.rows.push_back(
-            {one.requirement, one.is_met ? "met" : "not met", marginText(one), one.finding});
-        table.tones.push_back(one.is_met ? Tone::Good : Tone::Bad);
-    }
-    section.blocks.push_back(std::move(table));
+    if (!input.requirements.empty())
+        section.blocks.push_back(requirementsTable(input.requirements));
     return section;
 }
 

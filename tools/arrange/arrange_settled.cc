@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Conversion and checks of options, once all of them are read.
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <span>
 #include <string>
@@ -262,6 +263,21 @@ void ArrangeCommand::settleStrategy() {
     if (!words_.optimize.empty()) how.search.optimizer = valueOf(words_.optimize, kOptimizers);
 }
 
+namespace {
+
+/// Lists the files beside the layout, each with its option.
+std::array<std::pair<const char*, const std::string*>, 6> sideFiles(
+    const ArrangeToolOptions& options) {
+    return {{{"--curve", &options.curve_file},
+             {"--trace", &options.trace_file},
+             {"--report", &options.report_file},
+             {"--heat", &options.heat_file},
+             {"--certificate", &options.certificate_file},
+             {"--export-mps", &options.mps_file}}};
+}
+
+}  // namespace
+
 void ArrangeCommand::settleFiles() const {
     if (line_.given("--alternatives")) {
         if (options_.how.target)
@@ -271,12 +287,7 @@ void ArrangeCommand::settleFiles() const {
         if (options_.batch.shard)
             throw UsageError("--alternatives needs all of the search: give it to --merge");
     }
-    for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
-                                     {"--trace", &options_.trace_file},
-                                     {"--report", &options_.report_file},
-                                     {"--heat", &options_.heat_file},
-                                     {"--certificate", &options_.certificate_file},
-                                     {"--export-mps", &options_.mps_file}})
+    for (const auto& [name, file] : sideFiles(options_))
         if (isStdout(*file))
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
     if (!options_.curve_file.empty()) (void)outputFormat({}, options_.curve_file, curveFormats());
@@ -285,6 +296,7 @@ void ArrangeCommand::settleFiles() const {
     if (!options_.heat_file.empty())
         (void)outputFormat({}, options_.heat_file, {"png", "svg", "pdf"});
 }
+
 void ArrangeCommand::settleBatch() {
     if (!options_.batch.list.empty()) return;  // its shards share the lines
     const ArrangeOptions& how = options_.how;
@@ -326,12 +338,7 @@ void ArrangeCommand::settleBatch() {
         throw UsageError(
             "--time-limit would leave gaps in what shards share; only parts of a "
             "proof (--optimize exact, --proof poses) are of use when cut short");
-    for (const auto& [name, file] : {std::pair("--curve", &options_.curve_file),
-                                     {"--trace", &options_.trace_file},
-                                     {"--report", &options_.report_file},
-                                     {"--heat", &options_.heat_file},
-                                     {"--certificate", &options_.certificate_file},
-                                     {"--export-mps", &options_.mps_file}})
+    for (const auto& [name, file] : sideFiles(options_))
         if (!file->empty())
             throw UsageError(std::string(name) + " needs all of the search: give it to --merge");
 }

@@ -25,6 +25,12 @@ namespace ispace {
 
 namespace {
 
+std::string marginText(const JudgedRequirement& requirement) {
+    if (!requirement.margin) return "-";
+    const std::string text = formatFixed(100 * *requirement.margin, 2);
+    return (text.front() == '-' ? "" : "+") + text;
+}
+
 std::optional<double> best(const Metric& metric) {
     return metric.exact ? metric.exact : metric.grid;
 }
@@ -211,20 +217,8 @@ void addRequirements(const CoveragePageInput& input, ReportPage& page) {
         "requirements",
         input.requirements.empty() ? "Zones and densities" : "Requirements and zones",
         {}};
-    if (!input.requirements.empty()) {
-        PageTable table{
-            "each requirement with its measurement, and the margin in points of a "
-            "per cent",
-            "llrl",
-            {"requirement", "result", "margin", "measured"},
-            {}};
-        for (const JudgedRequirement& one : input.requirements) {
-            table.rows.push_back(
-                {one.requirement, one.is_met ? "met" : "not met", marginText(one), one.finding});
-            table.tones.push_back(one.is_met ? Tone::Good : Tone::Bad);
-        }
-        section.blocks.push_back(std::move(table));
-    }
+    if (!input.requirements.empty())
+        section.blocks.push_back(requirementsTable(input.requirements));
     if (!report.zones.empty()) section.blocks.push_back(zonesOfReport(report));
     if (has_cameras)
         for (const DensityStandard standard : kStandards)
@@ -408,10 +402,17 @@ PageSection recordsOf(const CoveragePageInput& input) {
 
 }  // namespace
 
-std::string marginText(const JudgedRequirement& requirement) {
-    if (!requirement.margin) return "-";
-    const std::string text = formatFixed(100 * *requirement.margin, 2);
-    return (text.front() == '-' ? "" : "+") + text;
+PageTable requirementsTable(std::span<const JudgedRequirement> requirements) {
+    PageTable table{"each requirement with its measurement, and the margin in points of a per cent",
+                    "llrl",
+                    {"requirement", "result", "margin", "measured"},
+                    {}};
+    for (const JudgedRequirement& one : requirements) {
+        table.rows.push_back(
+            {one.requirement, one.is_met ? "met" : "not met", marginText(one), one.finding});
+        table.tones.push_back(one.is_met ? Tone::Good : Tone::Bad);
+    }
+    return table;
 }
 
 ReportPage coveragePage(const CoveragePageInput& input) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,8 @@ struct CoveragePageInput {
     std::vector<PageSection> more = {};  ///< of the tool that writes the page, after the map
 };
 
-/// Returns a margin in percentage points, "+1.20 points", or "-".
-std::string marginText(const JudgedRequirement& requirement);
+/// Builds the table of requirements, with margins in percentage points.
+PageTable requirementsTable(std::span<const JudgedRequirement> requirements);
 
 /// Builds the section of suggestions, each with its command.
 PageSection adviceSection(const Advice& advice);
