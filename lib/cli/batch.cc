@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/message.h"
 #include "base/packed.h"
 #include "base/part_file.h"
@@ -398,6 +399,7 @@ void runShare(const BatchRun& run, const JobWork& work, JunitFile& junit) {
 }  // namespace
 
 void runBatch(const BatchRun& run, const JobWork& work) {
+    keepFreedMemory();  // of one job for the next
     limitThreads(run.common.threads);
     claimOutputs(run.common);
     claimOutput(run.junit, "--junit");
