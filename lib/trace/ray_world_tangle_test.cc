@@ -50,7 +50,7 @@ TEST(RayWorld, TangleAgreesWithBruteForceAsSliceAndAsMeshOfEveryWidth) {
     for (const double size : {10.0, 300.0}) {
         const std::vector<Segment2> lines = tangle(random, 300, size);
         std::uniform_real_distribution<double> place(0, size);
-        const RayWorld slice = RayWorld::ofSlice({0.15, lines, {}});
+        const RayWorld slice = RayWorld::ofSlice({.sheets = lines, .solids = {}});
         std::vector<EmbreeScene> meshes;
         for (const int width : testing::kWidths)
             meshes.emplace_back(testing::standing(lines), kRayEpsilon, width);
@@ -132,7 +132,7 @@ TEST(RayWorld, SightIsSymmetric) {
 TEST(RayWorld, SeveralThreadsShareAWorld) {
     std::mt19937_64 random(14);
     const std::vector<Segment2> lines = tangle(random, 2000, 10);
-    const RayWorld world = RayWorld::ofSlice({0.15, lines, {}});
+    const RayWorld world = RayWorld::ofSlice({.sheets = lines, .solids = {}});
     const EmbreeScene mesh(testing::standing(lines), kRayEpsilon, 0);
     Directions directions;
     directions.resize(2000);
@@ -162,7 +162,7 @@ TEST(RayWorld, SeveralThreadsShareAWorld) {
         }
     for (const auto& ranges : found) EXPECT_EQ(ranges, found.front());
     // A world built again, and moved, answers the same.
-    RayWorld again = RayWorld::ofSlice({0.15, lines, {}});
+    RayWorld again = RayWorld::ofSlice({.sheets = lines, .solids = {}});
     const RayWorld moved_world = std::move(again);
     moved_world.cast({5, 5, 0.15}, directions, 20, found.back());
     EXPECT_EQ(found.back(), found.front());

@@ -22,7 +22,7 @@ namespace {
 /// Lines where `pose` puts them.
 Slice moved(std::vector<Segment2> sheets, const Pose2& pose) {
     for (Segment2& line : sheets) line = {pose * line.a, pose * line.b};
-    return {0.15, std::move(sheets), {}};
+    return {.sheets = std::move(sheets), .solids = {}};
 }
 
 std::vector<Segment2> rectangleLines(Point2 low, Point2 high) {

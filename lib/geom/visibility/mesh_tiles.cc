@@ -93,10 +93,7 @@ MeshTiles::Tiling MeshTiles::tilingOf(double margin) const {
     const std::size_t tiles = std::size_t{tiling.columns} * tiling.rows;
     if (tiles < 2) return tiling;
     const auto for_each_tile = [&](const LinePiece& piece, auto visit) {
-        Box2 reached{piece.segment.a, piece.segment.a};
-        reached.add(piece.segment.b);
-        const Vec2 reach{margin, margin};
-        reached = {reached.low - reach, reached.high + reach};
+        const Box2 reached = bounds(piece.segment).expanded(margin);
         tilesOf(reached, box_, tiling.columns, tiling.rows).forEach(tiling.columns, visit);
     };
     std::vector<std::size_t> first(tiles + 1);

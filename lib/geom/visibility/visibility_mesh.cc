@@ -74,9 +74,7 @@ Box2 boxAround(const Box2& box) {
     if (box.empty()) return {{-1, -1}, {1, 1}};
     const double farthest = std::max(
         {std::abs(box.low.x), std::abs(box.low.y), std::abs(box.high.x), std::abs(box.high.y)});
-    const double room = std::max({box.width(), box.depth(), 1.0, farthest / 1024});
-    const Vec2 margin{room, room};
-    return {box.low - margin, box.high + margin};
+    return box.expanded(std::max({box.width(), box.depth(), 1.0, farthest / 1024}));
 }
 
 std::array<Point2, 4> cornersOf(const Box2& box) {
