@@ -169,7 +169,7 @@ class Viewer {
             sight_.prepare(sensor);
         }
     }
-    /// Builds the worlds for level sensors at a height; other sensors build theirs on demand.
+    /// Builds the index of views for level sensors at a height; others build theirs on demand.
     void prepareSight(const Level& level, const std::vector<std::size_t>& views) const {
         const bool is_used = std::any_of(views.begin(), views.end(), [&](std::size_t i) {
             return scansSlice(sensorOf(views_[i]));

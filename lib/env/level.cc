@@ -37,9 +37,8 @@ Level::Level(std::shared_ptr<const Environment::Data> room, double height,
     : room_(std::move(room)), height_(height), cuts_(std::move(cuts)) {}
 
 const Level::Cut& Level::cut() const {
-    return *cut_.get([this] {
-        return cuts_->find(uncancelled([this] { return room_->slice(height_); }));
-    });
+    return *cut_.get(
+        [this] { return cuts_->find(uncancelled([this] { return room_->slice(height_); })); });
 }
 
 const Slice& Level::slice() const { return cut().slice; }

@@ -34,9 +34,8 @@ struct Case {
           level(is_level),
           scene(std::move(loaded)),
           sensors(bench::fans(scene, kSensors, level)),
-          raw(level
-                  ? bench::RawEmbree::ofSlice(scene.environment.slice(kScanHeight), kScanHeight)
-                  : bench::RawEmbree::ofEnvironment(scene.environment)),
+          raw(level ? bench::RawEmbree::ofSlice(scene.environment.slice(kScanHeight), kScanHeight)
+                    : bench::RawEmbree::ofEnvironment(scene.environment)),
           worlds(scene.environment) {
         const RangeNoise noise = bench::laserOfModel("utm-30lx").noise;
         raw.prepare(sensors);

@@ -32,13 +32,16 @@ double setsOf(const std::vector<OpenGroup>& groups, bool with_fewer) {
     return all;
 }
 
-/// Enumerates the sets of choices of a node, but for those that reduced costs rule out.
+/// Enumerates the sets of choices of a node, but for those that reduced costs rule out. If progress
+/// says stop, the node stays open.
 class SetSearch {
   public:
     /// \param relaxed evaluated for all candidates; its reduced costs are used
     SetSearch(const Problem& problem, const BranchNode& node, const NodeRelaxation& relaxed,
-              std::uint64_t cut)
+              std::uint64_t cut, const Progress& progress)
         : problem_(problem),
+          node_(node),
+          progress_(progress),
           reduced_(relaxed.problem()),
           relaxed_(relaxed),
           groups_(relaxed.groups()),
@@ -57,6 +60,7 @@ class SetSearch {
             check(valueHere());
         else
             visit(0, 0, groups_[0].count, relaxed_.free());
+        if (is_stopped_) result_.children = {node_};
         return std::move(result_);
     }
 
@@ -79,6 +83,8 @@ class SetSearch {
     }
     /// \param most upper bound of the value of the choices so far, by reduced costs
     void visit(std::size_t group, std::size_t first, std::size_t left, std::uint64_t most) {
+        is_stopped_ = is_stopped_ || progress_.stopped();
+        if (is_stopped_) return;
         if (group == groups_.size()) {
             check(valueHere());
             return;
@@ -153,6 +159,8 @@ class SetSearch {
     }
 
     const Problem& problem_;
+    const BranchNode& node_;
+    const Progress& progress_;
     const ReducedProblem& reduced_;
     const NodeRelaxation& relaxed_;
     std::vector<OpenGroup> groups_;  // lists by reduced cost, highest first
@@ -160,6 +168,7 @@ class SetSearch {
     std::vector<int> multiplicities_;
     std::vector<Choice> chosen_;
     BranchResult result_;
+    bool is_stopped_ = false;
 };
 
 /// Builds the node with its fixed choices, cut down to the remaining problem.
@@ -271,7 +280,7 @@ BranchResult branch(const Problem& problem, const BranchNode& node, std::uint64_
     NodeRelaxation relaxed(node);
     if (setsOf(relaxed.groups(), problem.is_connected) <= kFewSets) {
         relaxed.evaluate(relaxed.start(node));
-        return SetSearch(problem, node, relaxed, cut).search();
+        return SetSearch(problem, node, relaxed, cut, progress).search();
     }
     MultiplierSearch search(relaxed.problem().weights, relaxed.start(node),
                             static_cast<double>(cut), kWarmPace);

@@ -68,7 +68,7 @@ MeshTiles::MeshTiles(std::span<const Segment2> lines) : pieces_(sightPieces(line
 }
 
 const ExpansionMesh& MeshTiles::meshFor(Point2 viewpoint, double range) const {
-    if (pieces_.empty()) return whole();
+    if (!isDivided()) return whole();
     std::size_t k = finest_;
     while (k < kTilings && !(range <= marginOf(k))) ++k;
     if (k == kTilings) return whole();
@@ -97,11 +97,13 @@ MeshTiles::Tiling MeshTiles::tilingOf(double margin) const {
         tilesOf(reached, box_, tiling.columns, tiling.rows).forEach(tiling.columns, visit);
     };
     std::vector<std::size_t> first(tiles + 1);
-    for (const LinePiece& piece : pieces_)
-        for_each_tile(piece, [&](std::size_t tile) { ++first[tile]; });
+    std::size_t sum = 0;
+    for (const LinePiece& piece : pieces_) {
+        for_each_tile(piece, [&](std::size_t tile) { ++first[tile], ++sum; });
+        if (sum > kMaxShared * pieces_.size()) return tiling;
+    }
     std::partial_sum(first.begin(), first.end(), first.begin());
-    if (first.back() > kMaxShared * pieces_.size()) return tiling;
-    tiling.pieces.resize(first.back());
+    tiling.pieces.resize(sum);
     for (std::size_t i = pieces_.size(); i-- > 0;)
         for_each_tile(pieces_[i], [&](std::size_t tile) {
             tiling.pieces[--first[tile]] = static_cast<std::uint32_t>(i);

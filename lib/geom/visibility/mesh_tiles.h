@@ -15,10 +15,10 @@
 
 namespace ispace {
 
-/// The meshes of a plan: one of all its lines and, in a large plan, those of square tiles with a
-/// margin. A bounded view reads the mesh of the tile that it begins in, so that few views in a
-/// large plan pay for their surroundings alone, and threads build several meshes at once. The view
-/// is the same in both, but may be listed from another edge on.
+/// The meshes of a plan: one of all its lines and, in a large plan, those of tiles with a margin. A
+/// bounded view reads the mesh of the tile that it begins in, so that few views in a large plan pay
+/// for their surroundings alone, and threads build several meshes at once. The view is the same in
+/// both, but may be listed from another edge on.
 class MeshTiles {
   public:
     /// Builds the mesh of a small plan; a large one is divided into pieces only.
@@ -28,6 +28,8 @@ class MeshTiles {
     /// Returns a mesh with all lines within `range` of the viewpoint; builds it at the first call.
     /// Thread-safe.
     [[nodiscard]] const ExpansionMesh& meshFor(Point2 viewpoint, double range) const;
+    /// Returns true for a large plan.
+    [[nodiscard]] bool isDivided() const { return !pieces_.empty(); }
 
   private:
     /// Tiles for views of up to some range.

@@ -5,12 +5,12 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <array>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
+#include "geom/visibility/visibility.h"
 #include "geom/visibility/visibility_query.h"
 #include "support/test_plans.h"
 
@@ -43,35 +43,60 @@ VisibleRegion viewIn(const ExpansionMesh& mesh, Point2 p, double range) {
     return view;
 }
 
-/// The edges on lines as numbers, in an order that does not depend on the first one.
-std::vector<std::array<double, 5>> wallsOf(const VisibleRegion& view) {
-    std::vector<std::array<double, 5>> walls;
-    for (const VisibilityEdge& edge : view.edges)
-        if (edge.line != VisibilityEdge::kArc)
-            walls.push_back({static_cast<double>(edge.line), edge.from.x, edge.from.y, edge.to.x,
-                             edge.to.y});
-    std::sort(walls.begin(), walls.end());
-    return walls;
+void mustBeSame(const VisibleRegion& view, const VisibleRegion& wanted) {
+    EXPECT_EQ(view.viewpoint, wanted.viewpoint);
+    ASSERT_EQ(view.edges.size(), wanted.edges.size());
+    for (std::size_t i = 0; i < view.edges.size(); ++i) {
+        EXPECT_EQ(view.edges[i].from, wanted.edges[i].from);
+        EXPECT_EQ(view.edges[i].to, wanted.edges[i].to);
+        EXPECT_EQ(view.edges[i].line, wanted.edges[i].line);
+    }
 }
 
-TEST(MeshTiles, ViewsAreThoseOfTheWholePlan) {
+TEST(MeshTiles, ViewsAreThoseOfTheWholePlanToTheBit) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        const MeshTiles tiles(largePlan(seed));
-        const ExpansionMesh& whole = tiles.meshFor({}, kInfinity);
+        const std::vector<Segment2> lines = largePlan(seed);
+        const std::vector<Ellipse> rounds = {{{100, 200}, 2, 1, Angle::degrees(30)}};
+        const VisibilityMap map(lines, rounds);
         std::mt19937_64 random(seed);
-        for (int i = 0; i < 300; ++i) {
-            const Point2 p = test::randomIn(random, {{-110, 40}, {310, 360}});
-            for (const double range : {0.3, 1.1, 2.5, 4.0, 8.0}) {
-                const ExpansionMesh& tile = tiles.meshFor(p, range);
-                EXPECT_LT(tile.portals.size(), whole.portals.size() / 2);
-                if (!tile.box.contains(p)) continue;
-                const VisibleRegion view = viewIn(tile, p, range), wanted = viewIn(whole, p, range);
+        const auto must_match = [&](Point2 p) {
+            VisibleRegion view, wanted;
+            for (const double range : {0.3, 1.1, 4.0, 8.0}) {
                 SCOPED_TRACE(testing::Message() << p.x << ',' << p.y << " up to " << range);
-                EXPECT_EQ(wallsOf(view), wallsOf(wanted));
-                EXPECT_NEAR(area(view), area(wanted), 1e-9);
+                map.query(p, range, view, range);
+                map.query(p, range, wanted);
+                mustBeSame(view, wanted);
+                EXPECT_NEAR(area(view), area(map.query(p, range)), 1e-9);
             }
+        };
+        for (int i = 0; i < 200; ++i) {
+            must_match(test::randomIn(random, {{-115, 35}, {315, 365}}));
+            // On a line, beside it, and at its end.
+            const auto& [a, b] = lines[random() % lines.size()];
+            must_match(a + 0.3 * (b - a));
+            must_match(a + 0.6 * (b - a) + Vec2{5e-5, 0});
+            must_match(b);
         }
+        must_match({100, 202});
     }
+}
+
+TEST(MeshTiles, ArcsDependOnNoTriangle) {
+    // A whole circle, and one that a wall cuts, far from all else.
+    std::vector<Segment2> lines = largePlan(1);
+    lines.push_back({{300, 1000}, {304, 1000}});
+    const VisibilityMap map(lines);
+    VisibleRegion view;
+    map.query({100, 600}, 2, view, 2);
+    ASSERT_EQ(view.edges.size(), 4U);
+    EXPECT_EQ(view.edges[0].from, (Point2{102, 600}));
+    EXPECT_NEAR(area(view), 4 * M_PI, 1e-12);
+    map.query({302, 999}, 2, view, 2);
+    ASSERT_FALSE(view.edges.empty());
+    EXPECT_EQ(view.edges[0].line, lines.size() - 1);
+    // Two thirds of a turn: two quarters and the rest.
+    EXPECT_EQ(view.edges.size(), 4U);
+    EXPECT_NEAR(area(view), 4 * M_PI * 2 / 3 + std::sqrt(3), 1e-9);
 }
 
 TEST(MeshTiles, SmallPlansAndFarViewsHaveOneMesh) {
@@ -83,6 +108,10 @@ TEST(MeshTiles, SmallPlansAndFarViewsHaveOneMesh) {
     EXPECT_EQ(&large.meshFor({0, 100}, 1e70), &large.meshFor({200, 300}, kInfinity));
     EXPECT_NE(&large.meshFor({0, 100}, 8), &large.meshFor({200, 300}, 8));
     EXPECT_EQ(&large.meshFor({0, 100}, 8), &large.meshFor({0, 100}, 7));
+    EXPECT_LT(large.meshFor({0, 100}, 8).portals.size(),
+              large.meshFor({}, kInfinity).portals.size() / 2);
+    EXPECT_TRUE(large.isDivided());
+    EXPECT_FALSE(small.isDivided());
     // The nearest tile.
     EXPECT_EQ(&large.meshFor({-100, 50}, 8), &large.meshFor({-1e9, -1e75}, 8));
     const MeshTiles empty({});
@@ -100,6 +129,26 @@ TEST(MeshTiles, FlatAndHatchedPlansAreServed) {
     EXPECT_LT(row.meshFor({500, 7}, 4).portals.size(), 30'000U);
     EXPECT_NEAR(area(viewIn(row.meshFor({500, 8}, 0.5), {500, 8}, 0.5)), 0.25 * M_PI, 1e-3);
     EXPECT_EQ(&hatch.meshFor({500, 500}, 4), &hatch.meshFor({}, kInfinity));
+}
+
+TEST(MeshTiles, FarWallsDoNotSlowDownADensePlan) {
+    // All short walls lie in one cell of any even grid over the plan: names of lines are looked up
+    // by their ends, or 20 000 walls would take half a minute.
+    std::vector<Segment2> lines = {{{-2e4, 0}, {-2e4, 1}}, {{2e4, 0}, {2e4, 1}}};
+    for (int i = 0; i < 20'000; ++i) {
+        const Point2 a{0.01 * (i % 200), 0.02 * (i / 200)};
+        lines.push_back({a, a + Vec2{0.004, 0.007}});
+    }
+    const VisibilityMap map(lines);
+    for (const double range : {1.0, kInfinity}) {
+        const VisibleRegion view = map.query({1.0085, 1.009}, range);
+        EXPECT_FALSE(view.edges.empty());
+        for (const VisibilityEdge& edge : view.edges) {
+            if (edge.line == VisibilityEdge::kArc) continue;
+            ASSERT_LT(edge.line, lines.size());
+            EXPECT_LT(distance(edge.from, lines[edge.line]), 1e-6);
+        }
+    }
 }
 
 TEST(MeshTiles, ThreadsShareMeshes) {

@@ -63,7 +63,7 @@ bool holds(const VisibleRegion& region, Point2 p);
 /// side.
 /// Areas err by less than 1e-6 m2 for bodies of up to 1 m radius.
 ///
-/// Memory: some 200 bytes a line. Thread-safe. Coordinates and ranges are clamped to 1e75 m.
+/// Memory: 200 to 600 bytes a line. Thread-safe. Coordinates and ranges are clamped to 1e75 m.
 class VisibilityMap {
   public:
     /// O(n log n + crossings) \throws FormatError (without a line number) for lines that cross by
@@ -80,8 +80,8 @@ class VisibilityMap {
     /// \pre max_range >= 0; 0 gives an empty region. Use +infinity where lines enclose the
     ///      viewpoint: if the view is free after all, it ends beyond all lines, at region.max_range
     /// \param reach of the farthest view that the caller asks for: in a large plan, an index of
-    ///     parts serves short views, where few of them pay for their surroundings alone. It is the
-    ///     same view, but may begin at another edge
+    ///     parts serves short views, where few of them pay for their surroundings alone; the first
+    ///     one in a part builds its index. The view is the same
     void query(Point2 viewpoint, double max_range, VisibleRegion& region,
                double reach = std::numeric_limits<double>::infinity()) const;
     [[nodiscard]] VisibleRegion query(Point2 viewpoint, double max_range) const;

@@ -18,9 +18,11 @@
 #include <numbers>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/simd.h"
+#include "geom/predicates.h"
 #include "geom/visibility/mesh_tiles.h"
 #include "geom/visibility/visibility.h"
 #include "geom/visibility/visibility_breadth.h"
@@ -179,6 +181,48 @@ ISPACE_SIMD_CLONES [[gnu::flatten]] void queryBounded(const Query& query) {
     queryInside<true, false>(query);
 }
 
+/// Divides the free directions from one point of the circle counter-clockwise to another by arcs of
+/// a quarter turn, the last one of less.
+void addArcs(Point2 viewpoint, Point2 from, Point2 to, std::vector<VisibilityEdge>& edges) {
+    const Vec2 end = to - viewpoint;
+    Vec2 begin = from - viewpoint;
+    for (int i = 0; i < 4 && (dot(begin, end) < 0 || !(cross(begin, end) > 0)); ++i) {
+        const Vec2 next = perpendicular(begin);
+        edges.push_back({from, viewpoint + next, VisibilityEdge::kArc});
+        from = viewpoint + next;
+        begin = next;
+    }
+    if (cross(begin, end) > 0) edges.push_back({from, to, VisibilityEdge::kArc});
+}
+
+/// Lists the edges of a view from one on a line on, and divides arcs from there, so that they do
+/// not depend on the triangle in which the view begins. \pre edges all around
+void listFromLine(Point2 viewpoint, double range, std::vector<VisibilityEdge>& edges) {
+    const auto is_before = [](const VisibilityEdge& a, const VisibilityEdge& b) {
+        return a.line != b.line ? a.line < b.line : lexLess(a.from, b.from);
+    };
+    const auto first = std::min_element(edges.begin(), edges.end(), is_before);
+    if (first == edges.end()) return;
+    std::vector<VisibilityEdge> listed;
+    if (first->line == VisibilityEdge::kArc) {
+        const Point2 right = viewpoint + Vec2{range, 0};
+        addArcs(viewpoint, right, right, listed);
+    } else {
+        std::rotate(edges.begin(), first, edges.end());
+        listed.reserve(edges.size());
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            if (edges[i].line != VisibilityEdge::kArc) {
+                listed.push_back(edges[i]);
+                continue;
+            }
+            const Point2 from = edges[i].from;
+            while (i + 1 < edges.size() && edges[i + 1].line == VisibilityEdge::kArc) ++i;
+            addArcs(viewpoint, from, edges[i].to, listed);
+        }
+    }
+    edges = std::move(listed);
+}
+
 }  // namespace
 
 struct VisibilityMap::Data {
@@ -209,6 +253,7 @@ VisibilityMap::~VisibilityMap() = default;
 void VisibilityMap::query(Point2 viewpoint, double max_range, VisibleRegion& region,
                           double reach) const {
     queryLines(viewpoint, max_range, reach, region);
+    if (data_->meshes->isDivided()) listFromLine(region.viewpoint, region.max_range, region.edges);
     if (!data_->rounds->empty()) data_->rounds->cut(region);
 }
 

@@ -17,6 +17,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/parallel.h"
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 
@@ -171,15 +172,25 @@ std::vector<Delaunay::Face_handle> numberedFaces(const Delaunay& net, const Box2
 /// Finds the line piece that contains an edge.
 class LineFinder {
   public:
+    /// \param lines sorted by their ends
     LineFinder(const std::vector<Segment2>& lines, const std::vector<Index>& names)
-        : lines_(lines), names_(names), grid_(lines, 0) {}
+        : lines_(lines), names_(names) {}
 
-    /// The line of the piece nearest to both end points: mostly they are its own.
+    /// Mostly the edge is a whole piece. If not, it is the piece nearest to both end points.
     [[nodiscard]] Index find(Point2 a, Point2 b) const {
+        const Segment2 edge = ordered({a, b});
+        const auto whole = std::lower_bound(
+            lines_.begin(), lines_.end(), edge, [](const Segment2& line, const Segment2& wanted) {
+                const Segment2 own = ordered(line);
+                return own.a != wanted.a ? lexLess(own.a, wanted.a) : lexLess(own.b, wanted.b);
+            });
+        if (whole != lines_.end() && ordered(*whole) == edge)
+            return names_[static_cast<std::size_t>(whole - lines_.begin())];
         const Point2 middle{a.x / 2 + b.x / 2, a.y / 2 + b.y / 2};
         double least = std::numeric_limits<double>::infinity();
         Index found = 0;
-        for (const Index i : grid_.near(middle)) {
+        const SegmentGrid& grid = grid_.get([this] { return SegmentGrid(lines_, 0); });
+        for (const Index i : grid.near(middle)) {
             const double gap = gapTo(lines_[i], a, b);
             if (gap < least) least = gap, found = i;
         }
@@ -193,14 +204,16 @@ class LineFinder {
     }
 
   private:
+    static Segment2 ordered(const Segment2& s) {
+        return lexLess(s.b, s.a) ? Segment2{s.b, s.a} : s;
+    }
     static double gapTo(const Segment2& line, Point2 a, Point2 b) {
-        if ((line.a == a && line.b == b) || (line.a == b && line.b == a)) return 0;
         return std::max(distance(a, line), distance(b, line));
     }
 
     const std::vector<Segment2>& lines_;
     const std::vector<Index>& names_;
-    SegmentGrid grid_;
+    Lazy<SegmentGrid> grid_;
 };
 
 }  // namespace
@@ -230,11 +243,9 @@ ExpansionMesh::ExpansionMesh(std::span<const LinePiece> pieces) : in() {
 void ExpansionMesh::makeTriangles(const std::vector<Segment2>& lines,
                                   const std::vector<Index>& names) {
     const bool are_many = lines.size() >= kMany;
-    std::optional<LineFinder> finder;
-    std::optional<Delaunay> net;
-    runBoth(
-        are_many, [&] { finder.emplace(lines, names); },
-        [&] { triangulate(lines, box, net.emplace()); });
+    const LineFinder finder(lines, names);
+    std::optional<Delaunay> net(std::in_place);
+    triangulate(lines, box, *net);
     std::vector<Delaunay::Face_handle> faces;
     runBoth(
         are_many, [&] { portals.resize(3 * net->number_of_faces()); },
@@ -259,7 +270,7 @@ void ExpansionMesh::makeTriangles(const std::vector<Segment2>& lines,
             portals[edge].corner = pointOf(face->vertex(i));
             portals[edge].behind = target;
             if (face->is_constrained(i)) {
-                if (target > edge) portals[edge].line = finder->find(from, to);
+                if (target > edge) portals[edge].line = finder.find(from, to);
                 target = Portal::kBlocked | edge;
             }
             portals[beforeOf(edge)].right = target;
