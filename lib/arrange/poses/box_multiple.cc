@@ -12,7 +12,7 @@ namespace ispace::poses {
 
 namespace {
 
-constexpr std::size_t kMaxSensors = 4;  // sensors
+constexpr std::size_t kMaxSensors = 4;
 constexpr int kWhole = 12;  // prices are in twelfths: a half, a third and a quarter are whole
 using Weights = std::array<int, kMaxSensors>;
 

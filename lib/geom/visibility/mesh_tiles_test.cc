@@ -99,6 +99,40 @@ TEST(MeshTiles, ArcsDependOnNoTriangle) {
     EXPECT_NEAR(area(view), 4 * M_PI * 2 / 3 + std::sqrt(3), 1e-9);
 }
 
+TEST(MeshTiles, FreeQuarterTurnsAreThoseOfASmallPlan) {
+    // Walls on whole metres, seen from whole and half ones: many free directions span whole
+    // quarter turns, but for rounding.
+    std::mt19937_64 random(7);
+    const auto whole = [&](int most) { return static_cast<double>(random() % most); };
+    for (int plan = 0; plan < 20; ++plan) {
+        std::vector<Segment2> few;
+        for (int i = 0; i < 12; ++i) {
+            const Point2 a{whole(12), whole(12)};
+            const double length = 1 + whole(3);
+            few.push_back({a, a + (i % 2 == 0 ? Vec2{length, 0} : Vec2{0, length})});
+        }
+        std::vector<Segment2> many = few;
+        for (const Segment2& far : largePlan(1))
+            many.push_back({far.a + Vec2{2000, 0}, far.b + Vec2{2000, 0}});
+        const VisibilityMap small(few), large(many);
+        for (int i = 0; i < 100; ++i) {
+            const Point2 p{whole(24) / 2, whole(24) / 2};
+            const double range = 1 + whole(6);
+            SCOPED_TRACE(testing::Message() << p.x << ',' << p.y << " up to " << range);
+            const VisibleRegion wanted = small.query(p, range), view = large.query(p, range);
+            EXPECT_NEAR(area(view), area(wanted), 1e-9);
+            EXPECT_NEAR(signedArea(outlineOf(view)), signedArea(outlineOf(wanted)), 1e-9);
+            for (const VisibilityEdge& edge : view.edges)
+                EXPECT_GT(cross(edge.from - view.viewpoint, edge.to - view.viewpoint), 0);
+            for (int k = 0; k < 8; ++k) {
+                const Angle first = Angle::degrees(45 * k), span = Angle::degrees(30 + whole(300));
+                EXPECT_NEAR(area(sectorOf(view, first, span)), area(sectorOf(wanted, first, span)),
+                            1e-9);
+            }
+        }
+    }
+}
+
 TEST(MeshTiles, SmallPlansAndFarViewsHaveOneMesh) {
     const std::vector<Segment2> few = {{{0, 0}, {900, 0}}, {{0, 900}, {900, 900}}};
     const MeshTiles small(few);

@@ -182,17 +182,28 @@ ISPACE_SIMD_CLONES [[gnu::flatten]] void queryBounded(const Query& query) {
 }
 
 /// Divides the free directions from one point of the circle counter-clockwise to another by arcs of
-/// a quarter turn, the last one of less.
-void addArcs(Point2 viewpoint, Point2 from, Point2 to, std::vector<VisibilityEdge>& edges) {
+/// a quarter turn, the last one of less. \param is_long more than a half turn
+void addArcs(Point2 viewpoint, Point2 from, Point2 to, bool is_long,
+             std::vector<VisibilityEdge>& edges) {
     const Vec2 end = to - viewpoint;
-    Vec2 begin = from - viewpoint;
-    for (int i = 0; i < 4 && (dot(begin, end) < 0 || !(cross(begin, end) > 0)); ++i) {
-        const Vec2 next = perpendicular(begin);
-        edges.push_back({from, viewpoint + next, VisibilityEdge::kArc});
-        from = viewpoint + next;
-        begin = next;
+    const std::size_t first = edges.size();
+    // After a whole number of quarter turns, rounding may lead a little beyond the end: that is no
+    // turn that is left.
+    const auto is_far = [&] {
+        const Vec2 begin = from - viewpoint;
+        const double along = dot(begin, end), left = cross(begin, end);
+        const bool may_be_whole = is_long && edges.size() == first;
+        return along < 0 || (may_be_whole ? !(left > 0) : left < -along / 2);
+    };
+    while (edges.size() < first + 4 && is_far()) {
+        const Point2 next = viewpoint + perpendicular(from - viewpoint);
+        edges.push_back({from, next, VisibilityEdge::kArc});
+        from = next;
     }
-    if (cross(begin, end) > 0) edges.push_back({from, to, VisibilityEdge::kArc});
+    if (cross(from - viewpoint, end) > 0)
+        edges.push_back({from, to, VisibilityEdge::kArc});
+    else if (edges.size() > first)
+        edges.back().to = to;
 }
 
 /// Lists the edges of a view from one on a line on, and divides arcs from there, so that they do
@@ -206,7 +217,7 @@ void listFromLine(Point2 viewpoint, double range, std::vector<VisibilityEdge>& e
     std::vector<VisibilityEdge> listed;
     if (first->line == VisibilityEdge::kArc) {
         const Point2 right = viewpoint + Vec2{range, 0};
-        addArcs(viewpoint, right, right, listed);
+        addArcs(viewpoint, right, right, true, listed);
     } else {
         std::rotate(edges.begin(), first, edges.end());
         listed.reserve(edges.size());
@@ -215,9 +226,9 @@ void listFromLine(Point2 viewpoint, double range, std::vector<VisibilityEdge>& e
                 listed.push_back(edges[i]);
                 continue;
             }
-            const Point2 from = edges[i].from;
+            const std::size_t begin = i;
             while (i + 1 < edges.size() && edges[i + 1].line == VisibilityEdge::kArc) ++i;
-            addArcs(viewpoint, from, edges[i].to, listed);
+            addArcs(viewpoint, edges[begin].from, edges[i].to, i >= begin + 2, listed);
         }
     }
     edges = std::move(listed);
