@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -56,9 +57,31 @@ struct ChordCurves {
             }
         }
         for (const Vertex& vertex : vertices) box.add(vertex.at);
+        putLargestFirst();
     }
 
   private:
+    /// Chords that merge keep the lowest number (lattice::merged): the largest circle, so that a
+    /// union of near circles is not smaller than one of them.
+    void putLargestFirst() {
+        std::vector<Index> order(circles.size()), number(circles.size());
+        std::iota(order.begin(), order.end(), Index{0});
+        std::sort(order.begin(), order.end(), [this](Index i, Index k) {
+            const Circle &a = circles[i], &b = circles[k];
+            if (a.radius != b.radius) return a.radius > b.radius;
+            return a.center != b.center ? lexLess(a.center, b.center) : i < k;
+        });
+        std::vector<Circle> sorted;
+        sorted.reserve(circles.size());
+        for (const Index i : order) {
+            number[i] = static_cast<Index>(sorted.size());
+            sorted.push_back(circles[i]);
+        }
+        circles = std::move(sorted);
+        for (Vertex& vertex : vertices)
+            if (vertex.circle != kNone) vertex.circle = number[vertex.circle];
+    }
+
     /// Inner vertices lie at the same directions for all arcs of a circle, so that arcs of sensors
     /// with the same position become the same chords.
     void addArc(const CurveEdge& edge, Index layer) {
@@ -66,11 +89,7 @@ struct ChordCurves {
         const Index circle = circleOf({edge.center, std::abs(edge.radius)});
         const auto [center, radius] = circles[circle];
         vertices.push_back({edge.from, layer, circle});
-        // A chord over 2x has the sagitta r (1 - cos x) = 2 r sin(x / 2)^2.
-        constexpr double kMin = 16, kMax = 1 << 16;
-        const double half = 2 * std::asin(std::min(1.0, std::sqrt(kChordError / (2 * radius))));
-        const double chords = std::clamp(std::ceil(pi / half), kMin, kMax);
-        const double step = 2 * pi / chords;
+        const double step = 2 * pi / chords_[circle];
         const Vec2 a = edge.from - center, b = edge.to - center;
         const double first = std::atan2(a.y, a.x);
         const double turn = edge.radius > 0 ? 1 : -1;
@@ -87,21 +106,42 @@ struct ChordCurves {
         }
     }
 
-    Index circleOf(const Circle& circle) {
-        const auto first = known_.lower_bound(circle.center.x - kContactTolerance);
-        for (auto it = first;
-             it != known_.end() && it->first <= circle.center.x + kContactTolerance; ++it) {
-            const Circle& other = circles[it->second];
-            if (std::abs(other.center.y - circle.center.y) <= kContactTolerance &&
-                std::abs(other.radius - circle.radius) <= kContactTolerance)
-                return it->second;
-        }
-        known_.emplace(circle.center.x, static_cast<Index>(circles.size()));
-        circles.push_back(circle);
-        return static_cast<Index>(circles.size() - 1);
+    /// Number of chords that are within kChordError of a circle.
+    static double chordsOf(double radius) {
+        // A chord over 2x has the sagitta r (1 - cos x) = 2 r sin(x / 2)^2.
+        constexpr double kMin = 16, kMax = 1 << 16;
+        const double half = 2 * std::asin(std::min(1.0, std::sqrt(kChordError / (2 * radius))));
+        return std::clamp(std::ceil(std::numbers::pi / half), kMin, kMax);
     }
 
+    Index circleOf(const Circle& circle) {
+        double chords = chordsOf(circle.radius);
+        const double own = chords;
+        const auto first = known_.lower_bound(circle.center.x - kNearCircle);
+        for (auto it = first; it != known_.end() && it->first <= circle.center.x + kNearCircle;
+             ++it) {
+            const Circle& other = circles[it->second];
+            const double off = std::max({std::abs(other.center.x - circle.center.x),
+                                         std::abs(other.center.y - circle.center.y),
+                                         std::abs(other.radius - circle.radius)});
+            if (off <= kContactTolerance) return it->second;
+            constexpr double kAlmost = 0.98;  // the chords are within 1.05 * kChordError
+            if (off <= kNearCircle && chords_[it->second] >= kAlmost * own)
+                chords = chords_[it->second];
+        }
+        const auto number = static_cast<Index>(circles.size());
+        known_.emplace(circle.center.x, number);
+        circles.push_back(circle);
+        chords_.push_back(chords);
+        return number;
+    }
+
+    /// Circles that differ by less have as many chords each: of two that differ by less than a
+    /// chord's sagitta, each polygon would else be the outer one in turn.
+    static constexpr double kNearCircle = 20 * kChordError;
+
     std::multimap<double, Index> known_;  // by the x of their middles
+    std::vector<double> chords_;          // of each circle
 };
 
 /// Maps points in a box to integer coordinates.

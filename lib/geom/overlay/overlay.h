@@ -41,7 +41,9 @@ struct Layer {
 /// consistent even in slivers made by rounding. Arcs are replaced by chords (kChordError) and the
 /// area between arc and chord is added in closed form. Areas err by at most 3 * unit() times the
 /// length of all boundaries, plus kChordError squared where an arc is crossed (kChordError times a
-/// chord's length where an edge ends or passes between an arc and its chord). Where input
+/// chord's length where an edge ends or passes between an arc and its chord). Near circles, as of
+/// sensors that stand almost at one point, have chords at the same directions; of chords that
+/// become one, the largest circle remains. Where input
 /// vertices must keep their doubles, as for rooms and walls, use boolean.h or planar_map.h.
 /// Deterministic. O((n + crossings) log n) unless edges crowd at one point. Large overlays are
 /// computed in strips, several in parallel, and take about 130 bytes an edge.

@@ -90,19 +90,16 @@ std::vector<Edge> sorted(const std::vector<Edge>& edges, std::size_t points) {
 /// Merges edges with the same ends.
 Edge joined(std::span<const Edge> same, SetStore& sets, std::vector<Index>& layers) {
     Edge edge = same.front();
-    bool is_first = true;
+    edge.circle = kNone;
     layers.clear();
     for (const Edge& other : same) {
         edge.is_wall = edge.is_wall || other.is_wall;
         const std::span<const Index> set = sets[other.set];
         if (set.empty()) continue;
         layers.insert(layers.end(), set.begin(), set.end());
-        // An arc along another edge, within a chord's error, no longer counts as one.
-        if (is_first)
-            edge.circle = other.circle;
-        else if (edge.circle != other.circle)
-            edge.circle = kNone;
-        is_first = false;
+        // Of arcs with one chord the first circle's remains: without any, the area between chord
+        // and arc would be lost.
+        edge.circle = std::min(edge.circle, other.circle);
     }
     edge.set = sets.addOdd(layers);
     return edge;

@@ -111,7 +111,8 @@ struct Edge {
     bool is_wall = false;
 };
 
-/// Merges equal edges and turns each from its lower end (lexLess). Edges without length, and those
+/// Merges equal edges and turns each from its lower end (lexLess); of their circles the lowest
+/// number remains. Edges without length, and those
 /// that cancel out in the boundary of each layer, are removed unless they are walls. O(n)
 std::vector<Edge> merged(std::vector<Edge> edges, const std::vector<Point>& points, SetStore& sets);
 
