@@ -52,6 +52,39 @@ TEST(BuildingRun, ARobotTakesTheLift) {
     EXPECT_NEAR(distance(poseOf(run, "ground/r1").position, {9, 6}), 0, 0.02);
 }
 
+TEST(Cabin, TheLastRiderInCanAlwaysLeave) {
+    const Cabin cabin{.width = 1.8, .length = 1.6, .door = 1};
+    // Two side by side at the back: the way of the first passes too near to the second.
+    std::vector<Rider> riders = {
+        {.id = "r1", .at = {-0.5, 0.6}, .radius = 0.25, .mass = 9, .stop = 1},
+        {.id = "r2", .at = {-0.5, 0.05}, .radius = 0.25, .mass = 9, .stop = 1}};
+    EXPECT_FALSE(canLeave(cabin, riders, riders[0]));
+    EXPECT_TRUE(canLeave(cabin, riders, riders[1]));
+    // Random cabins that fill up empty again, whatever the radii.
+    for (int k = 0; k < 200; ++k) {
+        const Cabin one{.width = 1 + 0.01 * (k % 100), .length = 1.2 + 0.013 * (k % 77), .door = 1};
+        std::vector<Rider> inside;
+        for (int i = 0; i < 8; ++i) {
+            Rider next{.id = std::to_string(i),
+                       .at = {},
+                       .radius = 0.15 + 0.01 * ((7 * k + 5 * i) % 16),
+                       .mass = 9,
+                       .stop = 1};
+            const auto slot = slotIn(one, inside, next);
+            if (!slot) continue;
+            next.at = *slot;
+            inside.push_back(next);
+        }
+        while (!inside.empty()) {
+            const auto first = std::find_if(inside.begin(), inside.end(), [&](const Rider& rider) {
+                return canLeave(one, inside, rider);
+            });
+            ASSERT_NE(first, inside.end()) << k;
+            inside.erase(first);
+        }
+    }
+}
+
 TEST(BuildingRun, TripsOfRecordsBeginWithTheRun) {
     const BuildingScene building = buildingOf(
         "robot id=ground/r1 at=6,4 trip=\"8,4;upper/9,6\" pause=2\n"

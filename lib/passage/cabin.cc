@@ -79,6 +79,16 @@ std::optional<Point2> slotIn(const Cabin& cabin, const std::vector<Rider>& rider
     return std::nullopt;
 }
 
+bool canLeave(const Cabin& cabin, const std::vector<Rider>& riders, const Rider& rider) {
+    // Less than when they came: riders stand where they stopped, up to rounding.
+    constexpr double kPassing = kGap / 2;
+    const Segment2 way{rider.at, thresholdOf(cabin, rider.radius)};
+    return std::all_of(riders.begin(), riders.end(), [&](const Rider& other) {
+        const double apart = rider.radius + other.radius + kPassing;
+        return other.id == rider.id || squaredDistance(other.at, way) >= apart * apart;
+    });
+}
+
 Document cabinRoom(const Cabin& cabin, const Pose2& building_from_cabin, double lane) {
     const double x = cabin.length / 2, y = cabin.width / 2, end = x + lane;
     const double half = std::min(cabin.door, cabin.width) / 2;

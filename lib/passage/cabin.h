@@ -35,6 +35,10 @@ Point2 thresholdOf(const Cabin& cabin, double radius);
 std::optional<Point2> slotIn(const Cabin& cabin, const std::vector<Rider>& riders,
                              const Rider& rider);
 
+/// Returns true if a rider can leave now: its straight way to the door is clear of all others. Of
+/// riders for one stop at least one can, as the last to enter came past the others.
+bool canLeave(const Cabin& cabin, const std::vector<Rider>& riders, const Rider& rider);
+
 /// Returns the room of a cabin and of the lane before its door, in the building.
 /// \param lane its length
 Document cabinRoom(const Cabin& cabin, const Pose2& building_from_cabin, double lane);

@@ -52,7 +52,7 @@ bool BuildingRun::Data::mayHoldOpen(std::size_t lift) const {
     const std::size_t stop = lifts[lift].stop();
     if (!lifts[lift].isOpenAt(stop)) return false;
     for (const Rider& rider : riders[lift])
-        if (rider.stop == stop) return true;
+        if (rider.stop == stop && canLeave(passages[lift].cabin, riders[lift], rider)) return true;
     const Stop& here = stops[lift][stop];
     if (!here.holder.empty()) {
         const auto trip = trips.find(here.holder);
@@ -229,9 +229,7 @@ void BuildingRun::Data::leaveCabin(Traveller& who, BuildingTrip& trip) {
         Stop& stop = stops[leg.passage][leg.to];
         if (!lifts[leg.passage].isOpenAt(leg.to)) return lifts[leg.passage].call(leg.to);
         if (!stop.holder.empty()) return;
-        // The nearest to the door leaves first.
-        for (const Rider& other : inside)
-            if (other.stop == leg.to && other.at.x > self->at.x) return;
+        if (!canLeave(passage.cabin, inside, *self)) return;
         stop.holder = who.id;
         trip.state = TripState::Leaving;
     }
