@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "trace/render/lights.h"
 
@@ -14,34 +16,81 @@ namespace ispace {
 
 namespace {
 
-constexpr int kAcross = 4;  // points of a panel along a side
+constexpr int kAcross = 4;  // points of a panel along a side, for shadows
 
-/// Computes the illuminance by a lamp at a height.
-double lightOf(const Lux::Light& light, double height, const Moment& now) {
+/// Returns the part of a polygon on the front side of the plane through the origin with this
+/// normal.
+std::vector<Vec3> inFront(std::span<const Vec3> polygon, Vec3 normal) {
+    std::vector<Vec3> part;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vec3 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+        const double before = dot(a, normal), after = dot(b, normal);
+        if (before >= 0) part.push_back(a);
+        if ((before < 0) == (after < 0)) continue;
+        const double share = before / (before - after);
+        part.push_back(
+            {std::lerp(a.x, b.x, share), std::lerp(a.y, b.y, share), std::lerp(a.z, b.z, share)});
+    }
+    return part;
+}
+
+/// Integrates the cosine to a normal over the directions of a polygon that is in front of the
+/// origin, by its contour: J. H. Lambert, Photometria, 1760; D. R. Baum et al., Improving Radiosity
+/// Solutions Through the Use of Analytically Determined Form-Factors, 1989. Corners run either way.
+double projectedSolidAngle(std::span<const Vec3> polygon, Vec3 normal) {
+    double sum = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vec3 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+        const Vec3 across = cross(a, b);
+        const double sine = length(across);
+        if (sine > 0) sum += std::atan2(sine, dot(a, b)) / sine * dot(across, normal);
+    }
+    return std::abs(sum) / 2;
+}
+
+/// Computes the share of the light of a panel that no body holds back.
+double visibleShare(const Lux::Light& light, double height, const Moment& now) {
     const Point3 spot = now.pose.position;
     const Vec3 facing = Frame3(now.pose).forward;
     std::array<Point3, std::size_t{kAcross} * kAcross> points;
     std::array<std::uint8_t, points.size()> is_free{};
     const double half = static_cast<double>(Lamps::kHalf);
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        const auto along = [half](std::size_t i) {
-            return half * (2 * (static_cast<double>(i) + 0.5) / kAcross - 1);
-        };
+    const auto along = [half](std::size_t i) {
+        return half * (2 * (static_cast<double>(i) + 0.5) / kAcross - 1);
+    };
+    for (std::size_t k = 0; k < points.size(); ++k)
         points[k] = {light.at.x + along(k % kAcross), light.at.y + along(k / kAcross), height};
-    }
-    if (spot.z >= height) return 0;
     now.mesh().query(spot, points, is_free);
-    double lux = 0;
+    double seen = 0, all = 0, free = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const Vec3 way = points[k] - spot;
-        const double distance = length(way);
-        const double cosines = dot(way, facing) * way.z / (distance * distance);
-        if (cosines <= 0 || is_free[k] == 0 ||
-            now.bodies.between(spot, points[k], carrierOf(now.sensor)))
-            continue;
-        lux += cosines / (distance * distance);
+        const double square = dot(way, way);
+        const double light_of_part = std::max(0.0, dot(way, facing)) * way.z / (square * square);
+        const bool is_seen =
+            is_free[k] != 0 && !now.bodies.between(spot, points[k], carrierOf(now.sensor));
+        all += light_of_part;
+        if (!is_seen) continue;
+        seen += light_of_part;
+        free += 1;
     }
-    return light.lumens / std::numbers::pi * lux / static_cast<double>(points.size());
+    // Only an edge of the panel may be in front of the spot.
+    return all > 0 ? seen / all : free / static_cast<double>(points.size());
+}
+
+/// Computes the illuminance by a lamp at a height.
+double lightOf(const Lux::Light& light, double height, const Moment& now) {
+    const Point3 spot = now.pose.position;
+    if (spot.z >= height) return 0;
+    const double half = static_cast<double>(Lamps::kHalf);
+    const Vec3 to = Point3{light.at.x, light.at.y, height} - spot;
+    const std::array<Vec3, 4> corners = {
+        Vec3{to.x - half, to.y - half, to.z}, Vec3{to.x + half, to.y - half, to.z},
+        Vec3{to.x + half, to.y + half, to.z}, Vec3{to.x - half, to.y + half, to.z}};
+    const Vec3 facing = Frame3(now.pose).forward;
+    const double angle = projectedSolidAngle(inFront(corners, facing), facing);
+    if (angle == 0) return 0;
+    const double radiance = light.lumens / (std::numbers::pi * 4 * half * half);
+    return radiance * angle * visibleShare(light, height, now);
 }
 
 /// Computes the illuminance by a projector, of a white picture.

@@ -39,8 +39,8 @@ double expectedBelow(double distance) {
 }
 
 TEST(Illuminance, IsThatOfALambertianPanel) {
-    EXPECT_NEAR(luxIn(kLamp, "lux at=0,0,0.5 tilt=90\n") / expectedBelow(1.98), 1, 5e-3);
-    EXPECT_NEAR(luxIn(kLamp, "lux at=0,0,1.5 tilt=90\n") / expectedBelow(0.98), 1, 1e-2);
+    EXPECT_NEAR(luxIn(kLamp, "lux at=0,0,0.5 tilt=90\n") / expectedBelow(1.98), 1, 1e-5);
+    EXPECT_NEAR(luxIn(kLamp, "lux at=0,0,1.5 tilt=90\n") / expectedBelow(0.98), 1, 1e-5);
     const double whole = luxIn(kLamp, "lux at=1,0,0.5 tilt=90\n");
     EXPECT_NEAR(luxIn("lamp at=0,0 on=yes lumens=3000 level=25%\n", "lux at=1,0,0.5 tilt=90\n"),
                 0.25 * whole, 1e-9);
@@ -48,6 +48,39 @@ TEST(Illuminance, IsThatOfALambertianPanel) {
         luxIn(kLamp + std::string("lamp at=2,0 on=yes lumens=3000\n"), "lux at=1,0,0.5 tilt=90\n"),
         2 * whole, 1e-3);
     EXPECT_EQ(luxIn("lamp at=0,0 lumens=3000\n", "lux at=0,0,0.5 tilt=90\n"), 0) << "off";
+}
+
+/// Integrates the light of a lamp of 3000 lm over the origin at a spot, by a fine grid.
+double integrated(Point3 spot, Vec3 facing) {
+    constexpr int kParts = 1600;
+    const double half = static_cast<double>(Lamps::kHalf), height = 2.48;
+    double sum = 0;
+    for (int i = 0; i < kParts; ++i)
+        for (int j = 0; j < kParts; ++j) {
+            const Vec3 way = Point3{half * (2 * (i + 0.5) / kParts - 1),
+                                    half * (2 * (j + 0.5) / kParts - 1), height} -
+                             spot;
+            const double square = dot(way, way);
+            sum += std::max(0.0, dot(way, facing)) * way.z / (square * square);
+        }
+    return 3000 / std::numbers::pi * sum / (kParts * kParts);
+}
+
+TEST(Illuminance, IsExactNearAPanel) {
+    const auto expect_near = [](const std::string& keys, Point3 spot, Vec3 facing) {
+        const double expected = integrated(spot, facing);
+        EXPECT_NEAR(luxIn(kLamp, "lux " + keys + '\n') / expected, 1, 2e-4) << keys;
+    };
+    expect_near("at=0,0,2.38 tilt=90", {0, 0, 2.38}, {0, 0, 1});
+    expect_near("at=0.1,0.2,2.43 tilt=90", {0.1, 0.2, 2.43}, {0, 0, 1});
+    expect_near("at=0.35,0.35,2.4 tilt=90", {0.35, 0.35, 2.4}, {0, 0, 1});
+    // The plane of the spot cuts the panel.
+    expect_near("at=0.1,0,2.3", {0.1, 0, 2.3}, {1, 0, 0});
+    expect_near("at=0.34,0.1,2.3", {0.34, 0.1, 2.3}, {1, 0, 0});
+    expect_near("at=-1,0.3,1 heading=20 tilt=35", {-1, 0.3, 1},
+                {std::cos(0.6108652381980153) * std::cos(0.3490658503988659),
+                 std::cos(0.6108652381980153) * std::sin(0.3490658503988659),
+                 std::sin(0.6108652381980153)});
 }
 
 TEST(Illuminance, DependsOnTheFacing) {
