@@ -51,6 +51,7 @@ SensorReader::SensorReader(SceneResources& setting, const Options& options)
     : scene_(setting.scene.get()),
       options_{.noise_seed = noiseSeedOf(options)},
       taking_{.noise_seed = noiseSeedOf(options)},
+      at_rest_{.noise_seed = noiseSeedOf(options)},
       step_(options.step),
       floor_(*scene_),
       worlds_(&setting.worlds),
@@ -85,6 +86,12 @@ SensorReader::SensorReader(SceneResources& setting, const Options& options)
         if (scene_->records[placed.record].keyword() == "human")
             people_starts_.push_back(
                 {placed.pose.position.onFloor(), wrapped(placed.pose.heading)});
+    for (std::size_t i = 0; i < count; ++i) {
+        const Sensor& sensor = sensors_[i];
+        if (!sensor.is<Imu>() || (!sensor.mount && !sensor.person)) continue;
+        inertial_.add(i, sensor.mount ? std::optional(sensor.mount->robot) : std::nullopt,
+                      sensor.person, mountOf(sensor).position.onFloor());
+    }
 }
 
 void SensorReader::addSensors() {
@@ -117,6 +124,7 @@ void SensorReader::follow(const SensorReader& before,
             continue;
         readings_[i] = before.readings_[found->second];
         due_[i] = before.due_[found->second];
+        inertial_.goOn(i, before.inertial_, found->second);
         // Read in every step, although the reading is of a period.
         if (sensor.is<Gate>())
             floor_.goOn(gateOf(i), before.floor_.gate(before.gateOf(found->second)));
@@ -126,11 +134,13 @@ void SensorReader::follow(const SensorReader& before,
 void SensorReader::jumped() {
     moved();
     floor_.forgetPlaces();
+    inertial_.jumped();
 }
 
 void SensorReader::begin(SimTime time, const Movers& movers) {
     finish();
     floor_.follow(movers);
+    inertial_.step(movers);
     if (trail_.isKept()) trail_.add(time, movers, std::exchange(trail_moved_, false));
     latest_.clear();
     for (std::size_t i = 0; i < due_.size(); ++i) {
@@ -239,6 +249,7 @@ void SensorReader::update(std::span<const std::size_t> due, SimTime time, const 
             reading.pose =
                 sweptPose(*laser, reading.pose, static_cast<double>(reading.seq % laser->scans()));
         if (laser != nullptr) continue;
+        if (sensor.is<Imu>()) inertial_.read(i, time);
         has_others = true;
         if (rayCount(sensor.model) > 0) worlds_->prepareMesh(kindOf(sensor.model).stopped_by);
     }
@@ -303,6 +314,8 @@ void SensorReader::measure(std::size_t sensor, SimTime time) {
         reading.value = floor_.gate(gateOf(sensor));
     else if (placed.is<Mat>())
         reading.value = floor_.mat(matOf(sensor));
+    else if (placed.is<Imu>())
+        integrate(sensor);
     else if (!isHeavy(placed))
         readNow(placed, bodies_, reading);
 }
@@ -316,6 +329,16 @@ void SensorReader::readNow(const Sensor& sensor, const MovingBodies& bodies,
                             *worlds_, bodies, receivers_, taking_}));
     carryOn(reading.value, value);
     reading.value = std::move(value);
+}
+
+/// Reads a unit of which the rates and accelerations are the means since its last reading.
+void SensorReader::integrate(std::size_t sensor) {
+    SensorReading& reading = readings_[sensor];
+    auto inertia = std::get<Inertia>(
+        valueOf(readAtOnce({sensors_[sensor], reading.pose, frameOf(reading.seq),
+                            seconds(reading.time), *worlds_, bodies_, receivers_, at_rest_})));
+    inertial_.addTo(sensor, inertia);
+    reading.value = inertia;
 }
 
 void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime /*time*/) {

@@ -18,6 +18,7 @@
 #include "sense/photo.h"
 #include "sense/scan.h"
 #include "sense/zone_temperatures.h"
+#include "sim/inertial_means.h"
 #include "sim/motion.h"
 #include "sim/mover.h"
 #include "sim/sensor_reading.h"
@@ -59,6 +60,7 @@ class SensorReader {
         finish();
         latest_.clear();
         floor_.follow(movers);
+        inertial_.step(movers);
         trail_.clear();
     }
     /// Call it before the first reading in another scene: unchanged sensors keep their last
@@ -153,13 +155,16 @@ class SensorReader {
     void measure(std::size_t sensor, SimTime time);
     void measure(const Laser& laser, std::size_t sensor, SimTime time);
     void hear(std::size_t sensor, SimTime time);
+    void integrate(std::size_t sensor);
 
     const Scene* scene_;
     ReadingOptions options_;
     TakerOptions taking_;
+    TakerOptions at_rest_;  // the same without velocities
     SimTime step_;
     FloorSensors floor_;
     ZoneTemperatures zones_;
+    InertialMeans inertial_;
     std::vector<Sensor> sensors_;  // at their starts
     Worlds* worlds_;
     std::vector<Periods> periods_;
