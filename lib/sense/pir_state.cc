@@ -32,7 +32,7 @@ PirState castPir(const RayWorld& mesh, const MovingBodies& bodies,
     const Pir& pir = sensor.as<Pir>();
     PirState state{.frame = frame, .pose = pose};
     const auto moves = [](const MoverVelocity& velocity) {
-        return velocity.turn != 0 || velocity.linear.x != 0 || velocity.linear.y != 0;
+        return velocity.linear.x != 0 || velocity.linear.y != 0;
     };
     // Most of a day is without motion.
     if (std::any_of(velocities.people.begin(), velocities.people.end(), moves)) {
@@ -41,8 +41,8 @@ PirState castPir(const RayWorld& mesh, const MovingBodies& bodies,
             return owner >= kFirstPerson && moves(velocities.of(owner));
         };
         for (const Sighting& seen : sightingsOf(observer, mesh, bodies, is_meant)) {
-            const Point3 at = pose.position + seen.range * seen.direction;
-            const Vec2 motion = velocities.of(seen.body->owner).at(at.onFloor());
+            // A turn on the spot moves limbs, but not the person.
+            const Vec2 motion = velocities.of(seen.body->owner).linear;
             if (!senses(pir, motion, seen.direction)) continue;
             const bool is_lost =
                 noise_seed && chance(sensor, seen.number + 1, frame, *noise_seed) < pir.dropout;

@@ -21,8 +21,8 @@ struct PirState {
 };
 
 /// Detects people who move in the sight of the PIR sensor `sensor` at `pose`: sightingsOf()
-/// (sense/sighting.h) finds those in sight. The speed that counts is that of the trunk or limb in
-/// sight, over the floor.
+/// (sense/sighting.h) finds those in sight. The speed that counts is that of the person over the
+/// floor: a turn on the spot has none.
 ///
 /// Noise, if a seed is given, depends on seed, sensor, frame and person alone: detections drop out,
 /// and a reading has a false alarm with the probability false_alarms / 3600 / rate.

@@ -40,5 +40,21 @@ TEST(PirRun, HoldsItsOutputAfterThePersonStands) {
     EXPECT_FALSE(was_on);
 }
 
+TEST(PirRun, ATurnOnTheSpotIsNoMotion) {
+    const Scene room = testing::scene("ispace size=10,6\n",
+                                      "pir id=s1 at=3,0,1.1 heading=180\nhuman id=h1 at=-1,0\n");
+    World world(room, milliseconds(50));
+    world.command(0, {.verb = Verb::Left, .value = 360});
+    bool turned = false;
+    for (int i = 0; i < 100; ++i) {
+        world.step();
+        turned = turned || world.status(0).rotspeed.radians() != 0;
+        if (!world.latestReadings().empty()) {
+            EXPECT_FALSE(hasMotion(world)) << i;
+        }
+    }
+    EXPECT_TRUE(turned);
+}
+
 }  // namespace
 }  // namespace ispace
