@@ -286,6 +286,8 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
             doer.tries = 0;
             doer.until = world.time();
             if (!begin(simulation, doer)) return;
+        } else {
+            watchStay(world, *mover, doer);
         }
         if (doer.walks && doer.command > 0) arrive(world, *mover, doer);
         if (doer.walks && doer.command == 0 && world.time() >= doer.until &&
@@ -363,9 +365,10 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
     const GoalWays& ways = waysOf(world, world.people()[mover - world.robots().size()].height);
     const Point2 from = world.status(mover).pose.position;
     if (doer.tries++ >= kMaxTries) {
-        // A crowd may leave no point of a zone free: in it is there.
-        doer.gave_up = !ways.isIn(from, action.target);
-        if (!doer.gave_up) doer.until = world.time() + action.lasts;
+        // A crowd may leave no point of a zone free, or of the floor beside a thing: whoever is
+        // there has arrived.
+        doer.gave_up = !ways.isAt(from, action.target);
+        if (!doer.gave_up) stay(world, mover, doer);
         return false;
     }
     std::vector<Point2> way = ways.way(from, action.target, spotsOfOthers(world, mover));
@@ -374,8 +377,8 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
         return true;
     }
     constexpr double kThere = 0.05;
-    if (way.size() == 1 && distance(way.front(), from) < kThere) {
-        doer.until = world.time() + action.lasts;
+    if (way.size() == 1 && distance(way.front(), from) < kThere && ways.isAt(from, action.target)) {
+        stay(world, mover, doer);
         return false;
     }
     doer.goal = way.back();
@@ -395,7 +398,7 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
 
 /// Looks whether a walk has ended. One whose end is unknown was cut short between steps, by a
 /// client's command or a change of the world.
-void ActivityDirector::arrive(World& world, std::size_t mover, Doer& doer) const {
+void ActivityDirector::arrive(World& world, std::size_t mover, Doer& doer) {
     if (world.running(mover) == doer.command) return;
     const auto ends = world.ends();
     const bool is_done = std::any_of(ends.begin(), ends.end(), [&](const CommandEnd& end) {
@@ -403,8 +406,37 @@ void ActivityDirector::arrive(World& world, std::size_t mover, Doer& doer) const
     });
     if (is_done && !doer.rest.empty() && goOnWalking(world, mover, doer)) return;
     doer.command = 0;
-    doer.walks = !is_done;
-    doer.until = world.time() + (doer.walks ? kPause : actionOf(doer).lasts);
+    // A noisy walk may end beside its goal, and the thing may have moved.
+    doer.walks = !is_done || !isThere(world, mover, doer);
+    if (doer.walks)
+        doer.until = world.time() + kPause;
+    else
+        stay(world, mover, doer);
+}
+
+bool ActivityDirector::isThere(const World& world, std::size_t mover, const Doer& doer) {
+    const double height = world.people()[mover - world.robots().size()].height;
+    return waysOf(world, height).isAt(world.status(mover).pose.position, actionOf(doer).target);
+}
+
+/// Begins the stay at the target of an action.
+void ActivityDirector::stay(const World& world, std::size_t mover, Doer& doer) const {
+    doer.until = world.time() + actionOf(doer).lasts;
+    doer.stays_at = world.status(mover).pose.position;
+    doer.changes = world.changes();
+}
+
+/// Gives up a stay if the person was led away, or the thing was.
+void ActivityDirector::watchStay(const World& world, std::size_t mover, Doer& doer) {
+    const Point2 at = world.status(mover).pose.position;
+    if (doer.walks || actionOf(doer).verb != DayAction::Verb::Uses ||
+        (at == doer.stays_at && world.changes() == doer.changes))
+        return;
+    doer.stays_at = at;
+    doer.changes = world.changes();
+    if (isThere(world, mover, doer)) return;
+    doer.gave_up = true;
+    doer.until = world.time();
 }
 
 void ActivityDirector::tell(Simulation& simulation, const Doer& doer, int value) const {

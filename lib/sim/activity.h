@@ -61,8 +61,9 @@ DayPlan readDayPlan(std::string_view text, const std::string& file, const World&
 
 /// Makes people follow their days: each does the activities of a plan one after another, each at
 /// its time or once those before it are done. A person on the way finds it round walls, elements
-/// and shut doors; one that is blocked tries again five times, a second apart, and then gives the
-/// action up.
+/// and shut doors, and ends it beside the thing, see GoalWays::isAt(); one that is blocked tries
+/// again five times, a second apart, and then gives the action up. So does a person that is led
+/// away from the thing it uses.
 class ActivityDirector {
   public:
     explicit ActivityDirector(DayPlan plan);
@@ -80,13 +81,18 @@ class ActivityDirector {
         std::vector<Command> rest;  // of it, the next one last
         int tries = 0;
         SimTime until{};
+        Point2 stays_at;           // of a stay that `uses` a thing
+        std::int64_t changes = 0;  // of the world then
     };
     void enqueue(SimTime now);
     void goOn(Simulation& simulation, Doer& doer);
     bool begin(Simulation& simulation, Doer& doer) const;
     static bool goOnWalking(World& world, std::size_t mover, Doer& doer);
     bool depart(Simulation& simulation, std::size_t mover, Doer& doer);
-    void arrive(World& world, std::size_t mover, Doer& doer) const;
+    void arrive(World& world, std::size_t mover, Doer& doer);
+    bool isThere(const World& world, std::size_t mover, const Doer& doer);
+    void stay(const World& world, std::size_t mover, Doer& doer) const;
+    void watchStay(const World& world, std::size_t mover, Doer& doer);
     [[nodiscard]] std::vector<GoalWays::Spot> spotsOfOthers(const World& world,
                                                             std::size_t mover) const;
     const GoalWays& waysOf(const World& world, double height);

@@ -3,14 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
+#include <optional>
+#include <random>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "sim/goal_ways.h"
 #include "sim/simulation.h"
 #include "support/test_layout.h"
@@ -96,6 +101,38 @@ TEST(GoalWays, GoesThroughOpenDoorsAlone) {
     const Point2 there = open.way(from, "box").back();
     EXPECT_LT(distance(there, Point2{4.5, 2.5}), 0.95);
     EXPECT_FALSE(obstacles.overlap(there, 0.25));
+}
+
+/// A sofa in a corner, and a bunk behind a shut door, in the room beside which one may stand
+/// nearer to it than on its own side.
+Scene flat(const std::string& door) {
+    return testing::scene(
+        "ispace size=9,6,2.5\ninside at=-3,0\ninside at=2,2\ninside at=2,-2\n"
+        "wall id=wa from=0,-3 to=0,3\nwall id=wb from=0,0 to=4.5,0\n"
+        "door id=dk wall=wa at=0,1.5 open=yes\ndoor id=db wall=wa at=0,-1.5 " +
+            door +
+            "\ncube id=sofa at=-3.9,1 size=0.9,2,0.6\ncube id=bunk at=3.4,-2.2 size=2,1,0.5\n"
+            "cube id=chest at=1,-0.31 size=0.8,0.6,0.5\nheater id=he at=-4.3,2.8\n",
+        "human id=a at=2,1.5\n");
+}
+
+TEST(GoalWays, EndsBesideThings) {
+    const GoalWays open(flat("open=yes"), 0.25, 1.7), shut(flat(""), 0.25, 1.7);
+    const Point2 from{2, 1.5};
+    const std::vector<Point2> way = open.way(from, "sofa");
+    ASSERT_FALSE(way.empty());
+    EXPECT_LE(way.back().x, -3.45 + GoalWays::kReach);
+    EXPECT_TRUE(open.isAt(way.back(), "sofa"));
+    EXPECT_FALSE(open.isAt({0.15, 1.45}, "sofa"));
+    // The wall wb parts the chest from the kitchen.
+    EXPECT_FALSE(open.isAt({1, 0.3}, "chest"));
+    EXPECT_TRUE(open.isAt({1, -0.9}, "chest"));
+    const std::vector<Point2> round = open.way(from, "chest");
+    ASSERT_FALSE(round.empty());
+    EXPECT_LT(round.back().y, 0);
+    EXPECT_TRUE(shut.way(from, "bunk").empty());
+    EXPECT_TRUE(shut.way(from, "chest").empty());
+    EXPECT_FALSE(shut.way(from, "he").empty());
 }
 
 struct Lived {
@@ -235,6 +272,116 @@ TEST(ActivityDirector, InAFullZoneIsThere) {
     EXPECT_EQ(day.events(),
               (std::vector<std::string>{"+a goes_spot: goes spot", "+c goes_spot: goes spot",
                                         "-a goes_spot: goes spot", "!c goes_spot: goes spot"}));
+}
+
+/// A flat of 8 by 6 m with a wall across, a door in it that is open or shut, and boxes.
+struct RandomFlat {
+    struct Box {
+        Point2 center;
+        Vec2 half;
+    };
+    explicit RandomFlat(unsigned seed) : random(seed) {
+        wall = number(-1.5, 1.5);
+        door = number(-2.2, 2.2);
+        is_open = number(0, 1) < 0.7;
+        for (int i = 0; i < 60 && boxes.size() < 6; ++i) add();
+    }
+    double number(double low, double high) {
+        return low + (high - low) * static_cast<double>(random() % 10'000) / 10'000;
+    }
+    /// Adds a box at a wall, or anywhere, if it keeps out of the wall across and the start.
+    void add() {
+        const Vec2 half{number(0.15, 0.8), number(0.15, 0.8)};
+        Point2 at{number(-4 + half.x, 4 - half.x), number(-3 + half.y, 3 - half.y)};
+        if (number(0, 1) < 0.5) at.y = at.y > 0 ? 3 - half.y : half.y - 3;
+        const bool is_across = std::abs(at.x - wall) < half.x + 0.01;
+        const bool is_at_start =
+            std::abs(at.x + 3.5) < half.x + 0.4 && std::abs(at.y) < half.y + 0.4;
+        const bool is_taken = std::any_of(boxes.begin(), boxes.end(), [&](const Box& other) {
+            return std::abs(at.x - other.center.x) < half.x + other.half.x &&
+                   std::abs(at.y - other.center.y) < half.y + other.half.y;
+        });
+        if (!is_across && !is_at_start && !is_taken) boxes.push_back({at, half});
+    }
+    [[nodiscard]] Scene scene() const {
+        std::string text =
+            "ispace size=8,6,2.5\ninside at=-3.9,0\ninside at=3.9,0\nwall id=w from=" +
+            formatDouble(wall) + ",-3 to=" + formatDouble(wall) +
+            ",3\ndoor id=d wall=w at=" + formatDouble(wall) + ',' + formatDouble(door) +
+            (is_open ? " open=yes\n" : "\n");
+        for (std::size_t i = 0; i < boxes.size(); ++i)
+            text += "cube id=b" + std::to_string(i) + " at=" + formatDouble(boxes[i].center.x) +
+                    ',' + formatDouble(boxes[i].center.y) +
+                    " size=" + formatDouble(2 * boxes[i].half.x) + ',' +
+                    formatDouble(2 * boxes[i].half.y) + ",0.6\n";
+        return testing::scene(text, "human id=a at=-3.5,0\n");
+    }
+    [[nodiscard]] std::string days() const {
+        std::string text;
+        for (std::size_t i = 0; i < boxes.size(); ++i)
+            text += "at 00:00 a use: uses b" + std::to_string(i) + " 5s\n";
+        return text;
+    }
+    /// Returns true at most 0.6 m from the box, on its side of the wall: no box is across it.
+    [[nodiscard]] bool isBeside(Point2 p, const Box& box) const {
+        const double dx = std::max(0.0, std::abs(p.x - box.center.x) - box.half.x);
+        const double dy = std::max(0.0, std::abs(p.y - box.center.y) - box.half.y);
+        if (std::hypot(dx, dy) > 0.6) return false;
+        if ((p.x < wall) == (box.center.x < wall)) return true;
+        // Through the open door.
+        return is_open && std::abs(p.y - door) < 0.5;
+    }
+
+    std::mt19937 random;
+    double wall = 0, door = 0;
+    bool is_open = false;
+    std::vector<Box> boxes;
+};
+
+TEST(ActivityDirector, LabelsOfRandomFlatsAreTrue) {
+    int done = 0, given_up = 0;
+    for (unsigned seed = 0; seed < 200; ++seed) {
+        const RandomFlat flat(seed);
+        Lived day(flat.days(), flat.scene(), milliseconds(250));
+        std::int64_t next = 0;
+        std::vector<Point2> ways;
+        for (int step = 0; step < 4 * 240; ++step) {
+            day.run(1);
+            const EventLog& log = day.simulation.events();
+            const Point2 place = day.world.status(0).pose.position;
+            ways.push_back(place);
+            for (; next < log.next(); ++next) {
+                const Event& event = log.at(next);
+                if (event.value == 1) continue;
+                const auto box = static_cast<std::size_t>(event.text[6] - '0');
+                if (event.value == -1) {
+                    ++given_up;
+                    continue;
+                }
+                ++done;
+                // All through the five seconds before the end.
+                for (std::size_t i = ways.size() - 20; i < ways.size(); ++i)
+                    ASSERT_TRUE(flat.isBeside(ways[i], flat.boxes[box]))
+                        << "flat " << seed << ", " << event.text << " at " << ways[i].x << ','
+                        << ways[i].y;
+            }
+        }
+        EXPECT_EQ(next, static_cast<std::int64_t>(2 * flat.boxes.size())) << "flat " << seed;
+    }
+    EXPECT_GT(done, 600);
+    EXPECT_GT(given_up, 50);
+}
+
+TEST(ActivityDirector, WhoIsLedAwayDoesNotUse) {
+    Lived day("at 00:00 a uses sofa 1h\n", flat("open=yes"));
+    day.run(60);
+    ASSERT_EQ(day.events().size(), 1U);
+    MotionPlan away;
+    away.path = {{-2, 0}};
+    day.world.command(0, pathCommand(away));
+    day.run(20);
+    EXPECT_EQ(day.events(), (std::vector<std::string>{"+a uses_sofa_1h: uses sofa 1h",
+                                                      "!a uses_sofa_1h: uses sofa 1h"}));
 }
 
 TEST(ActivityDirector, AsksForChanges) {

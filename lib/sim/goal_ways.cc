@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "env/body.h"
 #include "geom/polygon.h"
@@ -18,12 +19,100 @@ constexpr double kWideSpare = 0.1;
 /// Room between people who stand beside each other, so that one can steer there.
 constexpr double kApart = 0.2;
 
+/// A walk may end as far from its goal.
+constexpr double kSlack = 0.06;
+
 /// Returns the middle of an element, of which a person may stand in front.
 std::optional<Point2> middleOf(const Element& element) {
     if (element.record.keyword() != "zone") return placeOf(element.record);
     const Box2 box = bounds(zoneOutline(element.record));
     return Point2{(box.low.x + box.high.x) / 2, (box.low.y + box.high.y) / 2};
 }
+
+/// Returns true for records that divide rooms.
+bool isDivider(const Record& record) {
+    const std::string& keyword = record.keyword();
+    return keyword == "wall" || keyword == "fence" || keyword == "ispace" || keyword == "door" ||
+           keyword == "window";
+}
+
+/// Returns the band of all dividers up to a height.
+Slice dividersOf(const Environment& environment, double height) {
+    std::vector<std::size_t> dividers;
+    for (std::size_t i = 0; i < environment.elements().size(); ++i)
+        if (isDivider(environment.elements()[i].record)) dividers.push_back(i);
+    return environment.band(0, height, dividers);
+}
+
+/// A part of an outline, and a point within it. Two corners: a line; one: a point.
+struct OutlinePart {
+    Polygon corners;
+    Point2 middle;
+
+    explicit OutlinePart(Polygon outline) : corners(std::move(outline)) {
+        const Box2 box = bounds(corners);
+        middle = {(box.low.x + box.high.x) / 2, (box.low.y + box.high.y) / 2};
+    }
+    /// Returns its point nearest to p.
+    [[nodiscard]] Point2 nearest(Point2 p) const {
+        if (corners.size() > 2 && locate(corners, p) != Side::Outside) return p;
+        Point2 best = corners.front();
+        forEachEdge(corners, [&](const Segment2& edge) {
+            const Point2 q = nearestPoint(edge, p);
+            if (distance(p, q) < distance(p, best)) best = q;
+        });
+        return best;
+    }
+};
+
+/// Returns the outline of an element as seen from above, in parts.
+std::vector<OutlinePart> outlineOf(const Element& element, Point2 place) {
+    std::vector<OutlinePart> parts;
+    for (const Prism& prism : element.body.prisms) parts.emplace_back(prism.footprint);
+    for (const Sheet& sheet : element.body.sheets)
+        parts.emplace_back(Polygon{sheet.line.a, sheet.line.b});
+    for (const Plate& plate : element.body.plates) parts.emplace_back(plate.outline);
+    Slice meshes;
+    bandOfMeshes(element.body, 0, topOf(element.body), meshes, 0);
+    for (const Polygon& solid : meshes.solids) parts.emplace_back(solid);
+    for (const Segment2& sheet : meshes.sheets) parts.emplace_back(Polygon{sheet.a, sheet.b});
+    if (parts.empty()) parts.emplace_back(Polygon{place});
+    return parts;
+}
+
+/// Tests points for being beside one element.
+class BesideTest {
+  public:
+    BesideTest(const Element& element, const Obstacles& walls)
+        : parts_(outlineOf(element, *middleOf(element))),
+          walls_(&walls),
+          is_divider_(isDivider(element.record)) {}
+
+    [[nodiscard]] bool isBeside(Point2 p, double reach) const {
+        return std::any_of(parts_.begin(), parts_.end(), [&](const OutlinePart& part) {
+            const Point2 q = part.nearest(p);
+            if (distance(p, q) > reach || isParted(p, q)) return false;
+            // A thing that sticks out through a wall is on the side of its middle.
+            return is_divider_ || walls_->near({part.middle, part.middle}, kTouches) ||
+                   !isParted(q, part.middle);
+        });
+    }
+
+  private:
+    static constexpr double kTouches = 0.01;
+
+    /// Returns true if a divider crosses the way between two points; one that `to` touches does
+    /// not.
+    [[nodiscard]] bool isParted(Point2 from, Point2 to) const {
+        const double way = distance(from, to);
+        if (way <= kTouches) return false;
+        return walls_->near({from, to + kTouches / way * (from - to)}, kTouches / 2);
+    }
+
+    std::vector<OutlinePart> parts_;
+    const Obstacles* walls_;
+    bool is_divider_;
+};
 
 }  // namespace
 
@@ -38,6 +127,7 @@ GoalWays::GoalWays(const Scene& scene, double radius, double height)
     : radius_(radius),
       environment_(scene.environment),
       obstacles_(environment_, height, nullptr),
+      walls_(dividersOf(environment_, height)),
       wide_(obstacles_, bounds(environment_.indoor()), radius + kWideSpare),
       narrow_(obstacles_, bounds(environment_.indoor()), radius) {}
 
@@ -53,26 +143,38 @@ std::vector<Point2> GoalWays::way(Point2 from, const std::string& id,
                 return distance(p, other.center) < radius_ + other.radius + kApart;
             });
         };
+        const BesideTest beside(element, walls_);
         const auto is_suitable = [&](Point2 p) {
-            return !(is_zone && locate(zone, p) == Side::Outside) && !is_taken(p);
+            return (is_zone ? locate(zone, p) != Side::Outside
+                            : beside.isBeside(p, kReach - kSlack)) &&
+                   !is_taken(p);
         };
         // Before others rather than behind them.
         const double share = kApart / std::max(kApart, distance(from, *middle));
         const Point2 aim = is_taken(*middle) ? *middle + share * (from - *middle) : *middle;
-        for (const WayFinder* finder : {&wide_, &narrow_}) {
-            const WayFinder::Field field = finder->waysFrom(from);
-            if (const auto goal = finder->nearestReached(field, aim, is_suitable))
-                return finder->way(field, *goal);
-        }
+        const auto search = [&](const WayFinder& finder) {
+            const WayFinder::Field field = finder.waysFrom(from);
+            const auto goal = finder.nearestReached(field, aim, is_suitable);
+            return goal ? finder.way(field, *goal) : std::vector<Point2>();
+        };
+        std::vector<Point2> way;
+        if (!others.empty()) way = search(wide_.around(others));
+        if (way.empty() && !others.empty()) way = search(narrow_.around(others));
+        // Those in the way may leave it.
+        if (way.empty()) way = search(wide_);
+        if (way.empty()) way = search(narrow_);
+        if (!way.empty()) return way;
     }
     return {};
 }
 
-bool GoalWays::isIn(Point2 p, const std::string& id) const {
+bool GoalWays::isAt(Point2 p, const std::string& id) const {
     return std::any_of(environment_.elements().begin(), environment_.elements().end(),
                        [&](const Element& element) {
-                           return element.id == id && element.record.keyword() == "zone" &&
-                                  locate(zoneOutline(element.record), p) != Side::Outside;
+                           if (element.id != id || !middleOf(element)) return false;
+                           if (element.record.keyword() == "zone")
+                               return locate(zoneOutline(element.record), p) != Side::Outside;
+                           return BesideTest(element, walls_).isBeside(p, kReach);
                        });
 }
 

@@ -23,24 +23,24 @@ class GoalWays {
     GoalWays(const GoalWays&) = delete;
     GoalWays& operator=(const GoalWays&) = delete;
 
-    /// A circle on the floor that a person occupies.
-    struct Spot {
-        Point2 center;
-        double radius = 0;
-    };
+    using Spot = WayFinder::Spot;
     /// Returns the points of a way to the zone or element `id`, without the start: to the free
-    /// point of a zone that is nearest to the middle of its limits; to the free point nearest to an
-    /// element's middle. Points that are too near to others are not free. Empty if the
-    /// id is unknown or no way leads there.
+    /// point of a zone that is nearest to the middle of its limits; to the free point beside an
+    /// element, see isAt(), that is nearest to its middle. Points that are too near to others are
+    /// not free, and the way leads round them if it can. Empty if the id is unknown or no way leads
+    /// there.
     [[nodiscard]] std::vector<Point2> way(Point2 from, const std::string& id,
                                           std::span<const Spot> others = {}) const;
-    /// Returns true if a point is in the zone `id`.
-    [[nodiscard]] bool isIn(Point2 p, const std::string& id) const;
+    /// Returns true if a point is in the zone `id`, or beside the element: at most kReach from its
+    /// outline, as seen from above, with no wall or shut door between them.
+    [[nodiscard]] bool isAt(Point2 p, const std::string& id) const;
+    static constexpr double kReach = 0.6;  ///< metres
 
   private:
     double radius_;
     Environment environment_;
     Obstacles obstacles_;
+    Obstacles walls_;  // with doors and windows
     WayFinder wide_, narrow_;
 };
 

@@ -64,12 +64,30 @@ void WayFinder::forEachNeighbour(std::size_t cell, Visit visit) const {
     if (to_south && to_east && free_[south + 1] != 0) visit(south + 1, kCorner);
 }
 
+WayFinder WayFinder::around(std::span<const Spot> spots) const {
+    WayFinder finder = *this;
+    finder.spots_.assign(spots.begin(), spots.end());
+    for (std::size_t cell = 0; cell < free_.size(); ++cell) {
+        const Point2 center = centerOf(cell);
+        if (finder.isInSpot({center, center})) finder.free_[cell] = 0;
+    }
+    return finder;
+}
+
+bool WayFinder::isInSpot(const Segment2& way) const {
+    return std::any_of(spots_.begin(), spots_.end(), [&](const Spot& spot) {
+        const double apart = reach_ + spot.radius;
+        return squaredDistance(spot.center, way) < apart * apart;
+    });
+}
+
 bool WayFinder::isFree(Point2 p) const {
-    return !isOverHole({p, p}) && !obstacles_->overlap(p, reach_);
+    return !isInSpot({p, p}) && !isOverHole({p, p}) && !obstacles_->overlap(p, reach_);
 }
 
 bool WayFinder::isStraight(Point2 from, Point2 to) const {
-    return !isOverHole({from, to}) && !obstacles_->near({from, to}, reach_);
+    return !isInSpot({from, to}) && !isOverHole({from, to}) &&
+           !obstacles_->near({from, to}, reach_);
 }
 
 /// Returns true if the circle with the margin is over a hole somewhere on the way.

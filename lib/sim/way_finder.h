@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "env/point_location.h"
@@ -19,7 +20,7 @@ namespace ispace {
 ///
 /// A way steps from cell to cell across sides, at a cost of 12, or corners, at 17, and is then
 /// straightened where the straight line is free. It keeps the radius and kMargin away from
-/// obstacles and from holes in the floor. Movers are ignored.
+/// obstacles and from holes in the floor. Movers are ignored, but see around().
 class WayFinder {
   public:
     static constexpr double kMargin = 0.05, kCell = 0.1;
@@ -29,6 +30,14 @@ class WayFinder {
     /// \param holes without floor
     WayFinder(const Obstacles& obstacles, const Box2& box, double radius,
               const std::vector<Polygon>& holes = {});
+
+    /// A circle on the floor that somebody occupies.
+    struct Spot {
+        Point2 center;
+        double radius = 0;
+    };
+    /// Returns a finder whose ways lead round these circles, too. O(cells)
+    [[nodiscard]] WayFinder around(std::span<const Spot> spots) const;
 
     /// Ways from one point to all cells.
     struct Field {
@@ -66,9 +75,11 @@ class WayFinder {
     void forEachNeighbour(std::size_t cell, Visit visit) const;
 
     [[nodiscard]] bool isOverHole(const Segment2& way) const;
+    [[nodiscard]] bool isInSpot(const Segment2& way) const;
 
     const Obstacles* obstacles_;
     std::vector<RegionIndex> holes_;
+    std::vector<Spot> spots_;
     double reach_;  // radius and margin
     Grid grid_;
     std::size_t stride_;

@@ -11,8 +11,8 @@ run --script "$home/week.txt" --until 31h --record one --threads 1 || fail "no r
 run --script "$home/week.txt" --until 31h --record two --threads 2 || fail "no run: $(cat err)"
 for file in states activities events people; do cmp "one/$file.csv" "two/$file.csv" || fail "$file differs"; done
 
-python3 - <<'END_OF_CHECK' || fail "activities"
-import csv
+python3 - "$home/flat.env" <<'END_OF_CHECK' || fail "activities"
+import csv, sys
 rows = list(csv.DictReader(open("one/activities.csv", newline="")))
 states = list(csv.DictReader(open("one/states.csv", newline="")))
 by_person = {}
@@ -39,6 +39,36 @@ assert leaves < shuts < leaves + 60
 seen = [t for t, value in changes("m-hall-south", "motion") if value == "1"]
 assert any(leaves - 30 < t < shuts + 5 for t in seen), seen
 assert not [t for t, value in changes("m-kitchen-door", "motion") if t < 23400], "nobody moves at night"
+# Whoever uses a thing is beside it all the time, on its side of the walls.
+import bisect, math
+boxes = {}
+for line in open(sys.argv[1]):
+    words = line.split()
+    keys = dict(word.split("=", 1) for word in words if "=" in word)
+    if words and words[0] in ("cube", "desk", "table") and "at" in keys:
+        size = [float(part) for part in keys.get("size", "1.2,1.2").split(",")]
+        boxes[keys["id"]] = [*map(float, keys["at"].split(",")), size[0] / 2, size[1] / 2]
+def room_of(x, y):
+    if x < 4: return "living" if y < 4.5 else "bedroom"
+    if x < 6: return "hall"
+    return "kitchen" if y < 3 else "bath" if y < 5.5 else "child"
+walks = {}
+for row in csv.DictReader(open("one/people.csv", newline="")):
+    walks.setdefault(row["id"], []).append((float(row["t"]), float(row["x"]), float(row["y"])))
+used = 0
+for row in rows:
+    verb, *rest = row["action"].split()
+    if verb != "uses" or row["done"] != "1": continue
+    used += 1
+    x, y, length, width = boxes[rest[0]]
+    lasts = float(rest[1].rstrip("minh")) * (3600 if rest[1].endswith("h") else 60)
+    walk = walks[row["id"]]
+    first = bisect.bisect_right(walk, (float(row["end"]) - lasts + 1.5,)) - 1
+    last = bisect.bisect_right(walk, (float(row["end"]),)) - 1
+    for t, px, py in walk[max(first, 0):last + 1]:
+        away = math.hypot(max(0, abs(px - x) - length), max(0, abs(py - y) - width))
+        assert away <= 0.6 and room_of(px, py) == room_of(x, y), (row, t, px, py, away)
+assert used >= 25, used
 END_OF_CHECK
 "$home/read_week.py" one >said || fail "the example: $(cat said)"
 grep -q 'actions recognised$' said || fail "the example prints $(cat said)"
