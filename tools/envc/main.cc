@@ -24,6 +24,7 @@
 #include "io/importers.h"
 #include "report/page/room_page.h"
 #include "report/suggestion_report.h"
+#include "scene/devices.h"
 #include "scene/findings/findings.h"
 #include "scene/findings/remedies.h"
 #include "scene/placement_schemas.h"
@@ -197,8 +198,24 @@ void compile(const EnvcOptions& options, Document document, const FoundRooms* fo
     }
 }
 
+/// Rejects models of robots and sensors that the catalogue lacks, which all other tools would do.
+void checkModels(const Document& document) {
+    Diagnostics findings;
+    const DeviceCatalogue& devices = devicesFor({&document});
+    for (const Record& record : document.records) {
+        if (record.keyword() != "robot" && sensorKind(record.keyword()) == nullptr) continue;
+        try {
+            static_cast<void>(deviceOf(record, devices));
+        } catch (const FormatError& error) {
+            findings.add(error);
+        }
+    }
+    findings.throwIfAny();
+}
+
 void convert(const EnvcOptions& options, Document document) {
     const std::string& output = options.common.output;
+    if (!options.edits.empty()) checkModels(document);
     rebaseTo(output, document);
     writeAll(output, options.format->write_records(std::move(document)));
 }

@@ -133,7 +133,7 @@ void pack(Archive& archive, StatedArea& area) {
 }
 template <typename Archive>
 void pack(Archive& archive, BuildingSpace& space) {
-    archive(space.number, space.name, space.storey, space.outline, space.areas);
+    archive(space.number, space.name, space.storey, space.is_part, space.outline, space.areas);
 }
 template <typename Archive>
 void pack(Archive& archive, BuildingWall& wall) {

@@ -52,6 +52,7 @@ struct StatedArea {
 struct BuildingSpace {
     std::string number, name;
     std::uint64_t storey = 0;
+    bool is_part = false;     ///< of another space, whose area has its area, too
     BuildingSection outline;  ///< 1 m above its own floor
     std::vector<StatedArea> areas;
 };

@@ -59,19 +59,25 @@ class BuildingReader {
     Building read() {
         makeStoreys();
         forEach(kWalls, [this](StepId id) { addWall(id, false); });
-        forEach(kMembers, [this](StepId id) {
-            addWall(id, tree_.above(id, "IFCCURTAINWALL") == 0);  // a mullion, else a post or brace
-        });
-        forEach(kColumns, [this](StepId id) { addWall(id, true); });
+        addPartsOfWalls();
+        const auto add_column = [this](StepId id) {
+            if (!tree_.isPartOfWall(id)) addWall(id, true);
+        };
+        forEach(kMembers, add_column);  // posts and braces
+        forEach(kColumns, add_column);
         const std::span<const StepId> spaces = file_.ofType("IFCSPACE");
-        std::set<StepId> wholes;  // their parts are the spaces
-        for (const StepId id : spaces) wholes.insert(tree_.above(id, "IFCSPACE"));
+        // The parts of a whole are the spaces; a PARTIAL one lies in a space that counts itself.
+        std::set<StepId> wholes;
+        for (const StepId id : spaces)
+            if (!isPartial(id)) wholes.insert(tree_.above(id, "IFCSPACE"));
         for (const StepId id : spaces)
             if (!wholes.contains(id)) addSpace(id);
         for (const char* type : {"IFCOPENINGELEMENT", "IFCOPENINGSTANDARDCASE"})
             for (const StepId id : file_.ofType(type)) addHole(id);
         forEach(kDoors, [this](StepId id) { addFiller(id); });
-        forEach(kThings, [this](StepId id) { addThing(id); });
+        forEach(kThings, [this](StepId id) {
+            if (!tree_.isPartOfWall(id)) addThing(id);
+        });
         for (const auto& [type, count] : shapes_.unread()) out_.unread[type] += count;
         return std::move(out_);
     }
@@ -88,6 +94,19 @@ class BuildingReader {
     void forEach(const Types& types, Visit visit) {
         for (const std::string_view type : types)
             for (const StepId id : file_.ofType(type)) visit(id);
+    }
+
+    /// Adds the parts of decomposed walls as walls, whatever their class: mullions, studs, panels.
+    void addPartsOfWalls() {
+        const auto holds = [](const auto& types, std::string_view type) {
+            return std::find(types.begin(), types.end(), type) != types.end();
+        };
+        for (const StepId id : tree_.parts()) {
+            const std::string_view type = file_.typeOf(id);
+            if (holds(kWalls, type) || holds(kDoors, type) || type.starts_with("IFCOPENING"))
+                continue;
+            if (tree_.isPartOfWall(id)) addWall(id, false);
+        }
     }
 
     /// Reads a shape in the building's coordinates; counts it as unread if its placement is bad.
@@ -194,9 +213,21 @@ class BuildingReader {
         return found->second;
     }
 
+    [[nodiscard]] std::uint64_t unreadParts() const {
+        std::uint64_t count = 0;
+        for (const auto* parts : {&out_.unread, &shapes_.unread()})
+            for (const auto& [type, number] : *parts) count += number;
+        return count;
+    }
+
     /// Adds a section for each storey plane that the wall crosses, regardless of its own storey.
     void addWall(StepId id, bool is_column) {
+        const std::uint64_t unread = unreadParts();
         const Product product = productOf(id);
+        // Parts that could not be read are counted already.
+        if (product.shape.empty() && product.instance.type.starts_with("IFCWALL") &&
+            !tree_.isWhole(id) && unreadParts() == unread)
+            ++out_.unread[std::string(product.instance.type) + " without a body"];
         const IfcHeights heights = heightsOf(product.shape);
         const std::optional<std::uint64_t> own = storeyOf(id);
         const auto first = std::partition_point(planes_.begin(), planes_.end(), [&](auto i) {
@@ -221,12 +252,19 @@ class BuildingReader {
         }
     }
 
+    [[nodiscard]] bool isPartial(StepId space) {
+        if (file_.read(space)[8].word() != "PARTIAL") return false;
+        const StepId whole = tree_.above(space, "IFCSPACE");
+        return whole != 0 && !file_.read(whole)[6].isNull();
+    }
+
     void addSpace(StepId id) {
         const Product product = productOf(id);
         const IfcHeights heights = heightsOf(product.shape);
         BuildingSpace space;
         space.number = product.instance[2].text();
         space.name = product.instance[7].text();
+        space.is_part = isPartial(id);
         if (!heights.empty()) {
             const double room = heights.high - heights.low;
             space.outline = sectionOf(product.shape,

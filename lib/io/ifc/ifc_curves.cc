@@ -131,7 +131,7 @@ std::vector<Point3> indexedCurve(const IfcFrames& frames, const StepInstance& cu
 
 std::vector<Point3> ifcArc(const IfcFrame& frame, double half_x, double half_y, double from,
                            double to) {
-    constexpr double kMinCount = 24, kMaxCount = 720;  // chords of a full turn
+    constexpr double kMinCount = 24, kMaxCount = 1440;  // chords of a full turn
     const double radius = std::max({half_x, half_y, kIfcChordError});
     const double fine = std::numbers::pi / std::acos(1 - kIfcChordError / radius / 2);
     const double a_turn = std::clamp(fine, kMinCount, kMaxCount);

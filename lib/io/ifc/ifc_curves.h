@@ -9,7 +9,7 @@
 namespace ispace {
 
 /// Maximum distance of chords from their arcs, in metres.
-constexpr double kIfcChordError = 0.001;
+constexpr double kIfcChordError = 5e-5;
 
 /// Computes the points of a bounded curve, in its own frame; closed ones end at their first point
 /// or one before. Reads polylines, indexed poly-curves, composite curves, circles and ellipses and

@@ -170,7 +170,11 @@ IfcTree::IfcTree(const StepFile& file) : file_(file) {
     const auto add_parent = [this](StepId above, StepId child) {
         parent_.try_emplace(child, above);
     };
-    relate("IFCRELAGGREGATES", 4, 5, add_parent);
+    relate("IFCRELAGGREGATES", 4, 5, [&](StepId above, StepId child) {
+        add_parent(above, child);
+        wholes_.insert(above);
+        if (whole_.try_emplace(child, above).second) parts_.push_back(child);
+    });
     relate("IFCRELNESTS", 4, 5, add_parent);
     relate("IFCRELCONTAINEDINSPATIALSTRUCTURE", 5, 4, add_parent);
     relate("IFCRELVOIDSELEMENT", 4, 5, [&](StepId host, StepId hole) {
@@ -195,6 +199,17 @@ StepId IfcTree::above(StepId id, std::string_view type) const {
         if (file_.typeOf(id) == type) return id;
     }
     return 0;
+}
+
+bool IfcTree::isPartOfWall(StepId id) const {
+    for (int i = 0; i < kMaxHeight; ++i) {
+        const auto whole = whole_.find(id);
+        if (whole == whole_.end()) return false;
+        id = whole->second;
+        const std::string_view type = file_.typeOf(id);
+        if (type.starts_with("IFCWALL") || type.starts_with("IFCCURTAINWALL")) return true;
+    }
+    return false;
 }
 
 std::string IfcTree::nameAbove(StepId id, std::string_view type) const {

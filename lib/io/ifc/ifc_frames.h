@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "geom/point.h"
@@ -95,6 +96,12 @@ class IfcTree {
     [[nodiscard]] StepId above(StepId id, std::string_view type) const;
     /// Returns the ancestor's name, or "".
     [[nodiscard]] std::string nameAbove(StepId id, std::string_view type) const;
+    /// Returns the parts of aggregates, in the order of the file.
+    [[nodiscard]] const std::vector<StepId>& parts() const { return parts_; }
+    /// Returns true for a part of a decomposed wall or curtain wall, also of a part of one.
+    [[nodiscard]] bool isPartOfWall(StepId id) const;
+    /// Returns true if it has parts.
+    [[nodiscard]] bool isWhole(StepId id) const { return wholes_.contains(id); }
     /// Returns the element with this hole; 0 if the file does not say.
     [[nodiscard]] StepId hostOf(StepId hole) const;
     /// Returns the door or window in a hole, or 0.
@@ -109,6 +116,9 @@ class IfcTree {
 
     const StepFile& file_;
     std::unordered_map<StepId, StepId> parent_;
+    std::unordered_map<StepId, StepId> whole_;  // by part
+    std::unordered_set<StepId> wholes_;
+    std::vector<StepId> parts_;
     std::unordered_map<StepId, StepId> host_, filler_, filled_;
     std::unordered_map<StepId, std::vector<StepId>> definitions_;  // of spaces
 };

@@ -38,10 +38,12 @@ std::string nameOf(const BuildingStorey& storey, bool several_buildings) {
     return several_buildings ? storey.building + '/' + name : name;
 }
 
+/// The spaces of a storey; a part of another one has no area of its own.
 std::vector<double> spaceAreas(const Building& building, std::size_t storey) {
     std::vector<double> areas;
     for (const BuildingSpace& space : building.spaces)
-        if (space.storey == storey) areas.push_back(areaOfSection(space.outline));
+        if (space.storey == storey)
+            areas.push_back(space.is_part ? 0 : areaOfSection(space.outline));
     return areas;
 }
 
@@ -113,8 +115,14 @@ std::size_t chosenStorey(const Building& building, const ImportOptions& options)
     if (options.slice_walls)
         for (std::size_t i = count; i-- > 0;)
             if (building.storeys[i].elevation <= *options.slice_walls) return i;
+    // The ground floor, and not the cellar: a storey with doors whose floor is near to 0.
+    std::optional<std::size_t> ground;
+    const auto off = [&](std::size_t i) { return std::abs(building.storeys[i].elevation); };
     for (std::size_t i = 0; i < count; ++i)
-        if (building.storeys[i].doors > 0 || !spaceAreas(building, i).empty()) return i;
+        if (building.storeys[i].doors > 0 && (!ground || off(i) < off(*ground))) ground = i;
+    if (ground) return *ground;
+    for (std::size_t i = 0; i < count; ++i)
+        if (!spaceAreas(building, i).empty()) return i;
     for (std::size_t i = 0; i < count; ++i)
         for (const BuildingWall& wall : building.walls)
             if (wall.storey == i) return i;
@@ -212,7 +220,7 @@ void listRooms(const Building& building, std::size_t first, std::size_t end,
 bool isIfc(std::string_view bytes) {
     bytes = bytes.substr(0, 1 << 16);
     const std::size_t schema = bytes.find("FILE_SCHEMA");
-    return bytes.starts_with("ISO-10303-21") && schema != std::string_view::npos &&
+    return beginsAsStep(bytes) && schema != std::string_view::npos &&
            bytes.substr(schema, bytes.find(';', schema) - schema).find("IFC") !=
                std::string_view::npos;
 }

@@ -46,6 +46,12 @@ constexpr IfcClass kClasses[] = {
     {"pillar", "IFCCOLUMN", ".COLUMN."},
     {"floor", "IFCCOVERING", ".FLOORING."},
     {"camera", "IFCAUDIOVISUALAPPLIANCE", ".CAMERA."},
+    {"lamp", "IFCLIGHTFIXTURE", ".NOTDEFINED."},
+    {"projector", "IFCAUDIOVISUALAPPLIANCE", ".PROJECTOR."},
+    {"speaker", "IFCAUDIOVISUALAPPLIANCE", ".SPEAKER."},
+    {"heater", "IFCSPACEHEATER", ".NOTDEFINED."},
+    {"panel", "IFCELECTRICDISTRIBUTIONBOARD", ".NOTDEFINED."},
+    {"switch", "IFCSWITCHINGDEVICE", ".TOGGLESWITCH."},
 };
 
 IfcClass classOf(std::string_view keyword, std::string_view otherwise) {
@@ -371,7 +377,8 @@ class RoomWriter {
                                        ? sdfParts(element)
                                        : FramedSdfParts{{}, sdfParts(covering, {}, 0, false, "")};
         std::string shape = model_.addShape(parts, element.body.meshes);
-        if (shape == "$") return;
+        // Heaters, speakers and panels have a position, but no body.
+        if (shape == "$" && record.find("at") == nullptr) return;
         const IfcClass row = classOf(record.keyword(), kProxy);
         contain(addProduct(row.type, element.id, record.keyword(),
                            model_.addPlacement(place_, pose), std::move(shape), row.kind));

@@ -78,6 +78,11 @@ std::vector<StepValue> valuesIn(std::string_view text) {
 
 }  // namespace
 
+bool beginsAsStep(std::string_view bytes) {
+    if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+    return bytes.substr(skipBlanks(bytes, 0)).starts_with("ISO-10303-21");
+}
+
 std::vector<StepValue> StepValue::list() const {
     if (type().empty()) return text_.starts_with('(') ? valuesIn(text_) : std::vector<StepValue>();
     return valuesIn(text_.substr(text_.find('(')));

@@ -12,6 +12,9 @@
 
 namespace ispace {
 
+/// Returns true if a STEP file begins with its magic, after blanks, comments and a byte order mark.
+bool beginsAsStep(std::string_view bytes);
+
 /// Number of an instance in a STEP file: 12 for `#12`; 0: no reference.
 using StepId = std::uint64_t;
 

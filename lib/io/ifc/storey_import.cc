@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "base/message.h"
 #include "base/number.h"
 #include "io/ifc/ifc_import.h"
 #include "io/ifc/storey_plan.h"
@@ -20,7 +21,7 @@ namespace {
 constexpr double kStoreyHeight = 1.8;  // metres to the next floor, at least
 constexpr double kBelowFloor = 0.3;    // metres that furniture may begin below its floor
 constexpr double kThinnestThing = 0.01;
-constexpr double kMaxProxy = 5;  // metres: larger proxies are terrain, or a whole building
+constexpr double kMaxProxy = 5;  // metres, both ways: larger proxies are terrain or a building
 constexpr double kMaxRailing = 0.3;
 constexpr double kAreaDiffers = 0.1;  // share
 
@@ -299,15 +300,29 @@ class StoreyImport {
 
     void writeThings() {
         for (const BuildingBox& column : walls_.columns) writeBox(column, "pillar", "column");
+        std::map<std::string, std::size_t> large_proxies;
         for (const BuildingThing& thing : building_.things)
             for (const BuildingBox& box : thing.boxes) {
                 if (thing.type == "IFCBUILDINGELEMENTPROXY" &&
-                    std::max(box.length, box.width) > kMaxProxy)
+                    std::min(box.length, box.width) > kMaxProxy) {
+                    if (stands(box)) ++large_proxies[thing.name];
                     continue;
+                }
                 if (thing.type == "IFCRAILING" && std::min(box.length, box.width) > kMaxRailing)
                     continue;
                 writeBox(box, box.is_round ? "cylinder" : "cube", thing.name);
             }
+        for (const auto& [name, count] : large_proxies)
+            out_.warn(countText(count, "object") + " called " + excerpt(name) +
+                      ", more than 5 m long and wide, in the storey " +
+                      storeyWord(building_, storey_) +
+                      " is left out: if it stands in the room, add it with --add");
+    }
+
+    /// Returns true if some of a box stands on the floor of the storey, where a robot drives.
+    [[nodiscard]] bool stands(const BuildingBox& box) const {
+        return box.top > floor_ + 0.05 && box.top < ceiling_ &&
+               box.bottom >= floor_ - kBelowFloor && box.bottom < floor_ + kBelowFloor;
     }
 
     void writeBox(const BuildingBox& box, const char* keyword, const std::string& name) {

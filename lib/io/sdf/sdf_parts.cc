@@ -179,8 +179,11 @@ FramedSdfParts sdfParts(const Element& element) {
     double bottom = 0;
     const bool is_framed = hasFrame(element.record);
     if (is_framed) {
-        frame = floorPoseOf(element.record);
         const Tuple& at = element.record.tuple("at");
+        frame.position = {at[0], at[1]};
+        // Lamps and other fixtures have no heading.
+        if (element.record.schema().find("heading") != nullptr)
+            frame.heading = element.record.angle("heading");
         if (at.size() > 2) bottom = at[2];
     }
     return {{{frame.position.x, frame.position.y, bottom}, wrapped(frame.heading), {}, {}},

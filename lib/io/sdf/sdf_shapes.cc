@@ -113,6 +113,21 @@ class SdfReader {
         } else if (kind == "cylinder") {
             shape.shape =
                 SdfCylinder{files_.lengthIn(node, "radius"), files_.lengthIn(node, "length")};
+        } else if (kind == "capsule") {
+            const double radius = files_.lengthIn(node, "radius");
+            shape.shape = SdfCylinder{radius, files_.lengthIn(node, "length") + 2 * radius};
+        } else if (kind == "cone") {
+            shape.shape =
+                SdfCylinder{files_.lengthIn(node, "radius"), files_.lengthIn(node, "length")};
+        } else if (kind == "ellipsoid") {
+            const std::vector<double> radii = files_.numbersIn(node, "radii", 3);
+            for (const double radius : radii)
+                if (!(radius > 0))
+                    files_.fail(node, "an ellipsoid with a radius of " + formatDouble(radius));
+            if (radii[0] == radii[1])
+                shape.shape = SdfCylinder{radii[0], 2 * radii[2]};
+            else
+                shape.shape = SdfBox{{2 * radii[0], 2 * radii[1], 2 * radii[2]}};
         } else if (kind == "polyline") {
             SdfPolyline polyline{{}, files_.lengthIn(node, "height")};
             for (const pugi::xml_node point : node.children("point")) {

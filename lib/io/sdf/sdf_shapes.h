@@ -53,7 +53,8 @@ struct SdfWorld {
 };
 
 /// Reads the collision shapes of all links, or the visuals of links without any that every sensor
-/// sees (without `visibility_flags`), in the world and in the models that it includes, with the
+/// sees (without `visibility_flags`); capsules, cones and ellipsoids become the upright cylinders
+/// or boxes around them. Reads them in the world and in the models that it includes, with the
 /// poses of SdfFrames. Entities are not resolved.
 /// \param name the world's file \param model_folders see SdfFiles
 /// \param work of the world; files that it includes raise its bound

@@ -116,6 +116,22 @@ void checkPlyHeader(std::string_view bytes) {
     fail("a PLY header without `end_header`");
 }
 
+/// Rejects extensions that a glTF file requires, unless they leave the triangles as they are.
+void checkExtension(const std::string& name) {
+    for (const std::string_view of :
+         {"KHR_materials_", "KHR_texture_", "KHR_lights_", "KHR_xmp", "EXT_texture_", "EXT_lights_",
+          "MSFT_texture_", "ADOBE_materials_", "KHR_techniques_"})
+        if (name.starts_with(of)) return;
+    std::string hint = "export the mesh without it";
+    if (name == "KHR_mesh_quantization")
+        hint =
+            "write its coordinates as floats, for example with `gltf-transform dequantize IN "
+            "OUT`";
+    else if (name == "EXT_meshopt_compression" || name == "KHR_draco_mesh_compression")
+        hint = "write the mesh uncompressed, for example with `gltf-transform copy IN OUT`";
+    fail("it requires the extension " + excerpt(name) + " of glTF, which is not read: " + hint);
+}
+
 /// Finds `children` of the members of the list `nodes` of glTF 2, and counts how deep it nests.
 /// assimp reports other errors.
 class GltfNodes : public nlohmann::json_sax<nlohmann::json> {
@@ -139,7 +155,10 @@ class GltfNodes : public nlohmann::json_sax<nlohmann::json> {
         return true;
     }
     bool number_float(number_float_t, const string_t&) override { return true; }
-    bool string(string_t&) override { return true; }
+    bool string(string_t& name) override {
+        if (in_required_ && depth_ == 2) checkExtension(name);
+        return true;
+    }
     bool binary(binary_t&) override { return true; }
     bool start_object(std::size_t) override {
         deeper();
@@ -155,6 +174,7 @@ class GltfNodes : public nlohmann::json_sax<nlohmann::json> {
     bool end_array() override { return --depth_, true; }
     bool key(string_t& name) override {
         if (depth_ == 1) in_nodes_ = name == "nodes";
+        if (depth_ == 1) in_required_ = name == "extensionsRequired";
         if (depth_ == 3) in_children_ = name == "children";
         return true;
     }
@@ -169,7 +189,7 @@ class GltfNodes : public nlohmann::json_sax<nlohmann::json> {
     }
 
     std::size_t depth_ = 0;
-    bool in_nodes_ = false, in_children_ = false;
+    bool in_nodes_ = false, in_children_ = false, in_required_ = false;
     std::vector<std::vector<std::uint64_t>> children_;
 };
 

@@ -35,6 +35,7 @@
 #include "geom/planar_map.h"
 #include "io/ifc/building.h"
 #include "io/ifc/ifc_mesh.h"
+#include "io/ifc/step_file.h"
 #include "io/mesh/mesh_parts.h"
 #include "io/mesh/module/handed_files.h"
 
@@ -300,7 +301,7 @@ MeshHead checkedHead(std::size_t size, const std::string& suffix) {
     return head;
 }
 
-bool isStep(std::size_t size) { return MappedInput(size).bytes().starts_with("ISO-10303-21"); }
+bool isStep(std::size_t size) { return beginsAsStep(MappedInput(size).bytes()); }
 
 std::string answer(bool is_building, const std::string& suffix, const std::string& setting,
                    std::size_t size, Budget& work) {
