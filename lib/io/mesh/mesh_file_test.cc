@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/mesh/mesh_file.h"
 
+#include <meshoptimizer.h>
+
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
 
 #include "base/file.h"
+#include "base/message.h"
 #include "io/importers.h"
 #include "io/mesh/mesh_parts.h"
 #include "record/text.h"
@@ -159,6 +163,99 @@ TEST_F(MeshFile, FormatsGiveTheSameBody) {
         EXPECT_NEAR(volumeOf(mesh), 4, 1e-6) << name;
         EXPECT_EQ(extentOf(mesh), (Vertex{2, 3, 4})) << name;
     }
+}
+
+/// The tetrahedron in millimetres as 16-bit integers with a stride of 8 bytes, and its indices.
+std::string quantisedBuffer() {
+    std::string bytes;
+    for (const std::array<std::int16_t, 4>& corner : {std::array<std::int16_t, 4>{0, 0, 0, 0},
+                                                      {2000, 0, 0, 0},
+                                                      {0, 3000, 0, 0},
+                                                      {0, 0, 4000, 0}})
+        bytes.append(reinterpret_cast<const char*>(corner.data()), 8);
+    return bytes + std::string("\0\2\1\0\1\3\0\3\2\1\2\3", 12);
+}
+
+std::string quantisedGltf(const std::string& views, const std::string& buffers,
+                          const std::string& extensions) {
+    return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+ "nodes": [{"mesh": 0, "scale": [0.001, 0.001, 0.001]}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+ "accessors": [{"bufferView": 0, "componentType": 5122, "count": 4, "type": "VEC3"},
+  {"bufferView": 1, "componentType": 5121, "count": 12, "type": "SCALAR"}],
+ "bufferViews": )" +
+           views + R"(, "buffers": )" + buffers + R"(,
+ "extensionsRequired": [)" +
+           extensions + "]}";
+}
+
+TEST_F(MeshFile, GltfWithIntegersForPositions) {
+    const std::string views =
+        R"([{"buffer": 0, "byteLength": 32, "byteStride": 8},
+            {"buffer": 0, "byteOffset": 32, "byteLength": 12}])";
+    const std::string inside =
+        R"([{"byteLength": 44, "uri": "data:application/octet-stream;base64,)" +
+        base64(quantisedBuffer()) + R"("}])";
+    const std::string json = quantisedGltf(views, inside, R"("KHR_mesh_quantization")");
+    const TriangleMesh mesh = load("q.gltf", json);
+    EXPECT_EQ(mesh.triangles.size(), 4U);
+    EXPECT_NEAR(volumeOf(mesh), 4, 1e-6);
+    EXPECT_NEAR(extentOf(mesh)[1], 4, 1e-6);
+
+    writeAll(path("q.bin"), quantisedBuffer());
+    const std::string beside = R"([{"byteLength": 44, "uri": "q.bin"}])";
+    EXPECT_NEAR(
+        volumeOf(load("r.gltf", quantisedGltf(views, beside, R"("KHR_mesh_quantization")"))), 4,
+        1e-6);
+    // A view beyond its buffer, an extension that is not read, and one of materials alone.
+    std::string beyond = json;
+    beyond.replace(beyond.find("\"byteLength\": 32"), 16, "\"byteLength\": 99");
+    EXPECT_NE(errorOf("s.gltf", beyond).find("beyond the end of its buffer"), std::string::npos);
+    EXPECT_NE(errorOf("d.gltf", quantisedGltf(views, inside, R"("KHR_draco_mesh_compression")"))
+                  .find("it requires the glTF extension `KHR_draco_mesh_compression`"),
+              std::string::npos);
+    std::string lit = gltf("[{\"mesh\": 0}]");
+    lit.insert(1, R"("extensionsRequired": ["KHR_materials_unlit"], )");
+    EXPECT_DOUBLE_EQ(volumeOf(load("m.gltf", lit)), 4);
+}
+
+TEST_F(MeshFile, GltfWithPackedBuffers) {
+    const std::string plain = quantisedBuffer();
+    std::string packed(meshopt_encodeVertexBufferBound(4, 8), '\0');
+    packed.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(packed.data()),
+                                             packed.size(), plain.data(), 4, 8));
+    const std::size_t vertices = packed.size();
+    std::array<unsigned, 12> indices{};
+    for (std::size_t i = 0; i < 12; ++i) indices[i] = static_cast<unsigned char>(plain[32 + i]);
+    std::string faces(meshopt_encodeIndexBufferBound(12, 4), '\0');
+    faces.resize(meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(faces.data()),
+                                           faces.size(), indices.data(), 12));
+    packed += faces;
+    const auto view = [](const std::string& packing) {
+        return R"({"buffer": 1, "byteLength": 0, "extensions": {"EXT_meshopt_compression": )" +
+               packing + "}}";
+    };
+    const std::string views = '[' +
+                              view(R"({"buffer": 0, "byteLength": )" + std::to_string(vertices) +
+                                   R"(, "byteStride": 8, "count": 4, "mode": "ATTRIBUTES"})") +
+                              ',' +
+                              view(R"({"buffer": 0, "byteOffset": )" + std::to_string(vertices) +
+                                   R"(, "byteLength": )" + std::to_string(faces.size()) +
+                                   R"(, "byteStride": 4, "count": 12, "mode": "TRIANGLES"})") +
+                              ']';
+    const auto json = [&](const std::string& bytes) {
+        std::string text = quantisedGltf(
+            views,
+            R"([{"byteLength": )" + std::to_string(bytes.size()) + R"(, "uri": "data:;base64,)" +
+                base64(bytes) +
+                R"("}, {"byteLength": 64, "extensions": {"EXT_meshopt_compression": {"fallback": true}}}])",
+            R"("KHR_mesh_quantization", "EXT_meshopt_compression")");
+        return text.replace(text.find("5121"), 4, "5125");
+    };
+    EXPECT_NEAR(volumeOf(load("p.gltf", json(packed))), 4, 1e-6);
+    std::string damaged = packed;
+    damaged[0] = 'x';
+    EXPECT_NE(errorOf("x.gltf", json(damaged)).find("cannot be unpacked"), std::string::npos);
 }
 
 TEST_F(MeshFile, WhatPointsUp) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/mesh/module/handed_files.h"
 
+#include <assimp/MemoryIOWrapper.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -65,11 +66,23 @@ HandedFiles::HandedFiles(std::size_t size, const std::string& format, bool reads
 
 Assimp::IOStream* HandedFiles::Open(const char* file, const char* /*mode*/) {
     std::string_view name = file;
+    const std::size_t folder = name.starts_with(kFolder) && name != name_ ? kFolder.size() : 0;
+    if (const auto held = held_.find(name.substr(folder)); held != held_.end())
+        return new Assimp::MemoryIOStream(
+            reinterpret_cast<const std::uint8_t*>(held->second.data()), held->second.size());
     if (name == name_) return new HandedFile(STDIN_FILENO, size_, false);
     if (name.starts_with(kFolder)) name.remove_prefix(kFolder.size());
     if (name.empty() || name.front() == '\n') return nullptr;
     std::unique_ptr<HandedFile> handed = ask(name);
     return reads_side_files_ ? handed.release() : nullptr;
+}
+
+std::optional<std::string> HandedFiles::read(const std::string& file) {
+    const std::unique_ptr<Assimp::IOStream> stream(Open(file.c_str(), "rb"));
+    if (stream == nullptr) return std::nullopt;
+    std::string bytes(stream->FileSize(), '\0');
+    bytes.resize(stream->Read(bytes.data(), 1, bytes.size()));
+    return bytes;
 }
 
 }  // namespace ispace

@@ -4,8 +4,12 @@
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace ispace {
 
@@ -40,6 +44,12 @@ class HandedFiles : public Assimp::IOSystem {
     /// read
     HandedFiles(std::size_t size, const std::string& format, bool reads_side_files);
 
+    /// Hands over bytes in memory under a name that the mesh may use, or as the mesh itself.
+    void hold(const std::string& name, std::string bytes) { held_[name] = std::move(bytes); }
+
+    /// Reads a whole file that the mesh names; std::nullopt if there is none.
+    std::optional<std::string> read(const std::string& file);
+
     /// The name of the mesh. No file can name it.
     [[nodiscard]] const std::string& name() const { return name_; }
 
@@ -52,6 +62,7 @@ class HandedFiles : public Assimp::IOSystem {
     std::size_t size_;
     std::string name_;
     bool reads_side_files_;
+    std::map<std::string, std::string, std::less<>> held_;
 };
 
 }  // namespace ispace

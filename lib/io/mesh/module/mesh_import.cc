@@ -38,6 +38,7 @@
 #include "io/ifc/step_file.h"
 #include "io/mesh/mesh_parts.h"
 #include "io/mesh/module/handed_files.h"
+#include "io/mesh/module/plain_gltf.h"
 
 // Debian builds assimp with its assertions, which abort the program on some damaged files. This
 // function replaces assimp's own of the same name and throws an error, which assimp catches and
@@ -261,11 +262,22 @@ void leaveOnly(const std::string& suffix, Assimp::Importer& importer) {
 TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up,
                         const std::optional<std::string>& obj_up, Budget& work) {
     Assimp::Importer importer;
-    const std::string suffix = suffixOf(format);
-    leaveOnly(suffix, importer);
     // Materials of OBJ have no say in where triangles are.
     const bool reads_side_files = format == MeshFormat::Gltf || format == MeshFormat::Glb;
+    std::optional<PlainGltf> plain;
+    if (reads_side_files) {
+        HandedFiles buffers(size, suffixOf(format), true);
+        plain = plainGltf(
+            format, MappedInput(size).bytes(),
+            [&buffers](const std::string& uri) { return buffers.read(uri); }, work);
+    }
+    const std::string suffix = suffixOf(plain ? MeshFormat::Gltf : format);
+    leaveOnly(suffix, importer);
     auto files = std::make_unique<HandedFiles>(size, suffix, reads_side_files);
+    if (plain) {
+        files->hold(files->name(), std::move(plain->json));
+        for (auto& [uri, bytes] : plain->buffers) files->hold(uri, std::move(bytes));
+    }
     const std::string name = files->name();
     importer.SetIOHandler(files.release());
     const bool as_is = up != "auto";
