@@ -78,4 +78,20 @@ std::string stateEdit(const Scene& scene, std::string_view id, std::string_view 
     return std::string(id) + '.' + std::string(key) + '=' + value;
 }
 
+std::string stateChange(const Scene& scene, std::string_view id,
+                        std::span<const std::string_view> assignments) {
+    if (assignments.size() == 1) return "SET " + stateEdit(scene, id, assignments.front());
+    std::string change = "ACT " + std::string(id);
+    std::vector<std::string> keys;
+    for (const std::string_view assignment : assignments) {
+        const std::string state = stateEdit(scene, id, assignment).substr(id.size() + 1);
+        std::string key = state.substr(0, state.find('='));
+        if (std::find(keys.begin(), keys.end(), key) != keys.end())
+            throw UsageError("`" + key + "` of " + std::string(id) + " is set twice");
+        keys.push_back(std::move(key));
+        change.append(" ").append(state);
+    }
+    return change;
+}
+
 }  // namespace ispace

@@ -38,4 +38,10 @@ std::vector<RoomState> roomStates(const Scene& scene);
 /// by the edit
 std::string stateEdit(const Scene& scene, std::string_view id, std::string_view assignment);
 
+/// Returns the request of parseEdits() that sets some states of a record at once:
+/// `SET id.key=value`, or `ACT id key=value key=value`. \param assignments at least one
+/// \throws UsageError as stateEdit(), and for a key that is set twice
+std::string stateChange(const Scene& scene, std::string_view id,
+                        std::span<const std::string_view> assignments);
+
 }  // namespace ispace

@@ -59,6 +59,21 @@ TEST(RoomState, EditsAreChecked) {
               "wanted a state of l1 as on=value, found `levle=1`, did you mean `level`?");
 }
 
+TEST(RoomState, SeveralStatesAreOneChange) {
+    const Scene room = testing::scene(kRoom, "robot id=r1\n");
+    const auto change = [&](std::vector<std::string_view> states) {
+        return stateChange(room, "l1", states);
+    };
+    EXPECT_EQ(change({"on=0"}), "SET l1.on=no");
+    EXPECT_EQ(change({"on=1", "level=0.5"}), "ACT l1 on=yes level=0.5");
+    EXPECT_THROW(change({"on=1", "on=0"}), UsageError);
+    EXPECT_THROW(change({"on=1", "levle=1"}), UsageError);
+    const std::vector<Edit> edits = parseEdits(change({"on=0", "level=0.5"}));
+    ASSERT_EQ(edits.size(), 2U);
+    EXPECT_EQ(edits[1].key, "level");
+    EXPECT_EQ(edits[1].value, "0.5");
+}
+
 TEST(RoomState, AContactKnowsItsDoor) {
     const auto is_open = [](const std::string& door) {
         const Scene room =

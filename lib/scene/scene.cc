@@ -352,8 +352,14 @@ std::vector<Edit> parseEdits(std::string_view request) {
     const std::string_view verb = takeWord(rest);
     if (verb == "ADD") return {parseEdit(Edit::Kind::Add, rest)};
     if (verb == "SET") return {parseEdit(Edit::Kind::Set, rest)};
-    if (verb != "DELETE") throw UsageError(excerpt(verb) + " is no change of a world");
     std::vector<Edit> edits;
+    if (verb == "ACT") {
+        const std::string id(takeWord(rest));
+        while (!rest.empty())
+            edits.push_back(parseEdit(Edit::Kind::Set, id + '.' + std::string(takeWord(rest))));
+        return edits;
+    }
+    if (verb != "DELETE") throw UsageError(excerpt(verb) + " is no change of a world");
     while (!rest.empty()) edits.push_back(parseEdit(Edit::Kind::Delete, takeWord(rest)));
     return edits;
 }

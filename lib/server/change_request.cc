@@ -83,6 +83,8 @@ std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_v
         std::vector<Edit> edits;
         if (words[0] == "SET")
             edits.push_back(parseEdit(Edit::Kind::Set, rest));
+        else if (words[0] == "ACT")
+            edits = parseEdits("ACT " + std::string(rest));
         else
             for (const std::string_view id : words.subspan(1))
                 edits.push_back(parseEdit(Edit::Kind::Delete, id));

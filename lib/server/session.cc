@@ -106,7 +106,7 @@ std::span<const Session::Request> Session::requests() {
         {"RESET", "", Role::World, 0, 0, &C::change, true},
         {"SET", "id.key=value", Role::World, 1, kAny, &C::change, true},
         {"STATE", "[id]", Role::World, 0, 1, &C::states},
-        {"ACT", "id key=value", Role::World, 2, 2, &C::act, true},
+        {"ACT", "id key=value...", Role::World, 2, kAny, &C::act, true},
         {"ADD", "record", Role::World, 1, kAny, &C::change, true},
         {"DELETE", "id...", Role::World, 1, kAny, &C::change, true},
         {"LOAD", "env [layout]", Role::World, 1, 2, &C::change, true},

@@ -60,8 +60,8 @@ void Session::act(Words words) {
     if (std::find(ids.begin(), ids.end(), words[1]) == ids.end())
         return error(404, {unknownThing("record", words[1], ids)});
     try {
-        const std::string edit = stateEdit(world().scene(), words[1], words[2]);
-        wanted_ = changeWorld(*state_, "SET " + edit, "ACT");
+        wanted_ =
+            changeWorld(*state_, stateChange(world().scene(), words[1], words.subspan(2)), "ACT");
     } catch (const UsageError& bad) {
         return error(400, {bad.what()});
     }

@@ -69,6 +69,8 @@ TEST(SessionChange, ActsSetStates) {
     talk.step(1);
     EXPECT_EQ(world.take(),
               "EVENT change t=0.000 what=SET lamp.on=yes\nEVENT state t=0.100 id=lamp on=1\n");
+    EXPECT_EQ(talk.answer(world, "ACT lamp on=0 level=0.5"), "OK ACT t=0.000\n");
+    EXPECT_EQ(talk.answer(world, "ACT lamp on=1 on=0").substr(0, 8), "ERR 400 ");
     EXPECT_EQ(talk.answer(world, "ACT lamp level=200%").substr(0, 8), "ERR 400 ");
     EXPECT_EQ(talk.answer(world, "ACT lamp at=1,1").substr(0, 8), "ERR 400 ");
     EXPECT_EQ(talk.answer(world, "ACT nobody on=1").substr(0, 8), "ERR 404 ");

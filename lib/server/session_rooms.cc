@@ -301,8 +301,7 @@ void Session::changeRoom(Words words) {
     if (std::find(scene.ids.begin(), scene.ids.end(), request.id) == scene.ids.end())
         return error(404, {unknownThing("record", request.id, scene.ids)});
     try {
-        const std::string edit = stateEdit(scene, request.id, words[2]);
-        wanted_ = changeWorld(state, "SET " + edit, "ACT");
+        wanted_ = changeWorld(state, stateChange(scene, request.id, words.subspan(2)), "ACT");
     } catch (const UsageError& bad) {
         return error(400, {bad.what()});
     }

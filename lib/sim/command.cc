@@ -255,16 +255,18 @@ std::optional<std::size_t> ScriptReader::readMover(const Piece& word) {
 }
 
 std::optional<std::string> ScriptReader::readAct(std::span<const Piece> words) {
-    if (words.size() != 4) {
-        finding(words.back().column, "ACT wants one state, like 2.5 lamp1 ACT on=yes");
+    if (words.size() < 4) {
+        finding(words.back().column, "ACT wants a state, like 2.5 lamp1 ACT on=yes");
         return std::nullopt;
     }
     try {
-        const std::string edit = stateEdit(world_->scene(), words[1].text, words[3].text);
+        std::vector<std::string_view> states;
+        for (const Piece& word : words.subspan(3)) states.push_back(word.text);
+        std::string change = stateChange(world_->scene(), words[1].text, states);
         // Rejects a bad value, without a change.
-        const std::vector<Edit> edits{parseEdit(Edit::Kind::Set, edit)};
-        editedRecords(world_->scene(), edits, [](const std::string&) { return std::nullopt; });
-        return "SET " + edit;
+        editedRecords(world_->scene(), parseEdits(change),
+                      [](const std::string&) { return std::nullopt; });
+        return change;
     } catch (const FormatError& error) {
         finding(words[3].column, error.diagnostics().front().message);
     } catch (const UsageError& error) {

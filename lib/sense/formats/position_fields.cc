@@ -173,15 +173,16 @@ FieldValue matSize(const View& reading) {
 
 FieldValue countOnMat(const View& reading) { return fieldOf(reading.as<MatState>().on.size()); }
 
-constexpr ReadingField kMatFields[] = {
-    {"x", kInInfo, onFloor<&Point2::x>},
-    {"y", kInInfo, onFloor<&Point2::y>},
-    {"heading", kInInfo, headingOf},
-    {"size", kInInfo, matSize},
-    {"rate", kInInfo, figure<Mat, &Mat::rate>},
-    {"n", kInLine, countOnMat},
-    {"on", kInPage, countOnMat},
-    {"on", kInJson | kInLine, [](const View& r) { return FieldValue(r.as<MatState>().on); }}};
+constexpr ReadingField kMatFields[] = {{"x", kInInfo, onFloor<&Point2::x>},
+                                       {"y", kInInfo, onFloor<&Point2::y>},
+                                       {"heading", kInInfo, headingOf},
+                                       {"size", kInInfo, matSize},
+                                       {"rate", kInInfo, figure<Mat, &Mat::rate>},
+                                       {"n", kInLine | kIsState, countOnMat},
+                                       {"on", kInPage, countOnMat},
+                                       {"on", kInJson | kInLine | kIsState, [](const View& r) {
+                                            return FieldValue(r.as<MatState>().on);
+                                        }}};
 
 FieldValue lastPassage(const View& reading) {
     const GateState& gate = reading.as<GateState>();
@@ -201,11 +202,11 @@ constexpr ReadingField kGateFields[] = {
      [](const View& r) { return FieldValue(2 * r.sensor.as<Gate>().half_width); }},
     {"height", kInInfo, figure<Gate, &Gate::height>},
     {"rate", kInInfo, figure<Gate, &Gate::rate>},
-    {"in", kInJson | kInLine | kInPage, measured<GateState, &GateState::in>},
-    {"out", kInJson | kInLine | kInPage, measured<GateState, &GateState::out>},
+    {"in", kInJson | kInLine | kInPage | kIsState, measured<GateState, &GateState::in>},
+    {"out", kInJson | kInLine | kInPage | kIsState, measured<GateState, &GateState::out>},
     {"last", kInJson | kInLine, lastPassage},
     {"way", kInJson | kInLine, wayOfLast},
-    {"broken", kInJson | kInLine, measured<GateState, &GateState::broken>}};
+    {"broken", kInJson | kInLine | kIsState, measured<GateState, &GateState::broken>}};
 
 }  // namespace
 
