@@ -206,9 +206,25 @@ std::optional<Meeting> overlapOf(const Segment2& s, const Segment2& t) {
     return Meeting{from + 0.5 * (to - from), true};
 }
 
+/// Returns true for lines that share an end and meet nowhere else, as the other end of each is
+/// farther than the weld distance from the other's line: walls of a star, at hardly any cost.
+/// False if unknown.
+bool fanOut(const Segment2& s, const Segment2& t) {
+    const auto fan = [](Point2 from, Point2 a, Point2 b) {
+        constexpr double kFar = 2 * kWeldDistance;  // with room for rounding
+        const Vec2 u = a - from, v = b - from;
+        const double twist = cross(u, v);
+        return twist * twist > kFar * kFar * std::max(dot(u, u), dot(v, v));
+    };
+    if (s.a == t.a) return fan(s.a, s.b, t.b);
+    if (s.a == t.b) return fan(s.a, s.b, t.a);
+    if (s.b == t.a) return fan(s.b, s.a, t.b);
+    return s.b == t.b && fan(s.b, s.a, t.a);
+}
+
 /// Finds the crossing or overlap of two lines.
 std::optional<Meeting> meetingOf(const Segment2& s, const Segment2& t) {
-    if (apart(s, t)) return std::nullopt;
+    if (apart(s, t) || fanOut(s, t)) return std::nullopt;
     if (const auto overlap = overlapOf(s, t)) return overlap;
     if (!intersects(s, t)) return std::nullopt;
     // An end on the other line is no crossing, even if rounding puts it just beyond.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -279,6 +280,23 @@ TEST(WallCrossings, ComeInTheOrderOfElements) {
     ASSERT_EQ(first.size(), 1U);
     EXPECT_EQ(first[0].b, 2U) << "though a later line of the fence crosses it";
     EXPECT_TRUE(wallCrossings(env.elements(), 0).empty());
+}
+
+TEST(WallCrossings, OfStarsAreOverlapsAlone) {
+    // 1000 walls from a common end: none crosses another, two lie on each other.
+    std::string walls = kRoom;
+    for (int i = 0; i < 1000; ++i) {
+        const double turn = 2 * 3.14159265358979 * i / 1000;
+        walls += "wall from=0,0 to=" + std::to_string(3 * std::cos(turn)) + ',' +
+                 std::to_string(3 * std::sin(turn)) + '\n';
+    }
+    EXPECT_TRUE(wallCrossings(environment(walls).elements()).empty());
+    walls += "wall from=2,0 to=0,0\n";
+    const Environment env = environment(walls);
+    const auto found = wallCrossings(env.elements());
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_TRUE(found[0].overlap);
+    EXPECT_EQ(found[0].b, 1001U);
 }
 
 TEST(WallCrossings, ManyAreCutShort) {

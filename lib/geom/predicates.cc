@@ -5,6 +5,7 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ispace {
 
@@ -28,6 +29,12 @@ bool boxesApart(const Segment2& s, const Segment2& t) {
 }  // namespace
 
 Turn orientation(Point2 a, Point2 b, Point2 c) {
+    // Shewchuk's filter (1997): |error| <= (3 + 16 u) u (|left| + |right|), u = 2^-53. A small sum
+    // may have underflown; an infinite one fails the comparison.
+    constexpr double kError = 3.4e-16, kLeast = 1e-280;
+    const double left = (a.x - c.x) * (b.y - c.y), right = (a.y - c.y) * (b.x - c.x);
+    const double turn = left - right, sum = std::abs(left) + std::abs(right);
+    if (sum > kLeast && std::abs(turn) > kError * sum) return turn > 0 ? Turn::Left : Turn::Right;
     const auto sign = CGAL::orientation(Kernel::Point_2(a.x, a.y), Kernel::Point_2(b.x, b.y),
                                         Kernel::Point_2(c.x, c.y));
     return static_cast<Turn>(static_cast<int>(sign));
