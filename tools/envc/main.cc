@@ -92,7 +92,6 @@ Document readModel(const EnvcOptions& options, const std::vector<RawInput>& raw,
         throw UsageError("--storey is about buildings, and no input is one");
     warn(options.common, "envc", other_rooms);
     document.records = edited(std::move(document.records), options.edits, sceneSchemas());
-    if (!options.edits.empty()) checkModels(document);
     if (request.compiles) loadFiles(document, "", request.import);
     if (options.format == nullptr || !options.format->takes_zones) addZones(options, document);
     document.history.push_back(options.history_line);
@@ -100,20 +99,6 @@ Document readModel(const EnvcOptions& options, const std::vector<RawInput>& raw,
     if (!options.check) warn(options.common, "envc", document.warnings);
     for (const std::string& note : document.notes) logInfo(options.common, "envc", note);
     return document;
-}
-
-/// Rejects models that the catalogue lacks, as the next tool would.
-void checkModels(const Document& document) {
-    Diagnostics findings;
-    for (const Record& record : document.records) {
-        if (record.keyword() != "robot" && sensorKind(record.keyword()) == nullptr) continue;
-        try {
-            static_cast<void>(deviceOf(record, devicesFor({&document})));
-        } catch (const FormatError& error) {
-            findings.add(error);
-        }
-    }
-    findings.throwIfAny();
 }
 
 /// Makes names of files in a product relative to its folder.

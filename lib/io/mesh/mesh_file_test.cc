@@ -212,7 +212,7 @@ TEST_F(MeshFile, GltfWithIntegersForPositions) {
     beyond.replace(beyond.find("\"byteLength\": 32"), 16, "\"byteLength\": 99");
     EXPECT_NE(errorOf("s.gltf", beyond).find("beyond the end of its buffer"), std::string::npos);
     EXPECT_NE(errorOf("d.gltf", quantisedGltf(views, inside, R"("KHR_draco_mesh_compression")"))
-                  .find("it requires the glTF extension `KHR_draco_mesh_compression`"),
+                  .find("it requires the extension `KHR_draco_mesh_compression` of glTF"),
               std::string::npos);
     std::string lit = gltf("[{\"mesh\": 0}]");
     lit.insert(1, R"("extensionsRequired": ["KHR_materials_unlit"], )");

@@ -116,20 +116,18 @@ void checkPlyHeader(std::string_view bytes) {
     fail("a PLY header without `end_header`");
 }
 
-/// Rejects extensions that a glTF file requires, unless they leave the triangles as they are.
+/// Rejects extensions that a glTF file requires, unless they leave the triangles as they are or
+/// plainGltf() reads them.
 void checkExtension(const std::string& name) {
+    if (name == "KHR_mesh_quantization" || name == "EXT_meshopt_compression") return;
     for (const std::string_view of :
          {"KHR_materials_", "KHR_texture_", "KHR_lights_", "KHR_xmp", "EXT_texture_", "EXT_lights_",
           "MSFT_texture_", "ADOBE_materials_", "KHR_techniques_"})
         if (name.starts_with(of)) return;
-    std::string hint = "export the mesh without it";
-    if (name == "KHR_mesh_quantization")
-        hint =
-            "write its coordinates as floats, for example with `gltf-transform dequantize IN "
-            "OUT`";
-    else if (name == "EXT_meshopt_compression" || name == "KHR_draco_mesh_compression")
-        hint = "write the mesh uncompressed, for example with `gltf-transform copy IN OUT`";
-    fail("it requires the extension " + excerpt(name) + " of glTF, which is not read: " + hint);
+    const bool is_packed = name == "KHR_draco_mesh_compression";
+    fail("it requires the extension " + excerpt(name) + " of glTF, which is not read: " +
+         (is_packed ? "write the mesh uncompressed, for example with `gltf-transform copy IN OUT`"
+                    : "export the mesh without it"));
 }
 
 /// Finds `children` of the members of the list `nodes` of glTF 2, and counts how deep it nests.

@@ -30,16 +30,6 @@ constexpr const char* kPacked = "EXT_meshopt_compression";
     throw std::runtime_error("bad mesh file: " + message);
 }
 
-/// Returns true for an extension that is read, or that leaves the geometry as it is.
-bool isUnderstood(std::string_view name) {
-    if (name == "KHR_mesh_quantization" || name == kPacked) return true;
-    constexpr std::array<std::string_view, 7> kSurfaces = {
-        "KHR_materials_", "KHR_texture_", "EXT_texture_",  "MSFT_texture_",
-        "KHR_lights_",    "EXT_lights_",  "KHR_animation_"};
-    return std::any_of(kSurfaces.begin(), kSurfaces.end(),
-                       [&](std::string_view prefix) { return name.starts_with(prefix); });
-}
-
 /// The parts of a file in memory: its JSON, and the chunk of a GLB that is its first buffer.
 struct GltfParts {
     std::string_view json, binary;
@@ -355,18 +345,11 @@ std::optional<PlainGltf> plainGltf(MeshFormat format, std::string_view bytes,
     const GltfParts parts = partsOf(format, bytes);
     const bool is_packed = parts.json.find("KHR_mesh_quantization") != std::string_view::npos ||
                            parts.json.find(kPacked) != std::string_view::npos;
-    if (!is_packed && parts.json.find("extensionsRequired") == std::string_view::npos)
-        return std::nullopt;
+    if (!is_packed) return std::nullopt;
     try {
         std::string_view text = parts.json.substr(0, parts.json.find_last_not_of('\0') + 1);
         if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
         const Json root = Json::parse(text);
-        for (const Json& name : root.value("extensionsRequired", Json::array()))
-            if (const auto& extension = name.get_ref<const std::string&>();
-                !isUnderstood(extension))
-                throw std::runtime_error("it requires the glTF extension " + excerpt(extension) +
-                                         ", which is not read; export it without");
-        if (!is_packed) return std::nullopt;
         return GltfReader(root, parts.binary, read_buffer, work).plain();
     } catch (const Json::exception& error) {
         fail("glTF of another structure than its version has (" + std::string(error.what()) + ")");

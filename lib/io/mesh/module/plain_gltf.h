@@ -26,13 +26,13 @@ struct PlainGltf {
 /// floats and indices as 32-bit integers, its nodes, and the names of its materials.
 ///
 /// Reads KHR_mesh_quantization (positions as integers) and EXT_meshopt_compression (buffers packed
-/// by gltfpack, with their filters). Extensions of materials, textures and lights leave geometry as
-/// it is and are ignored. The work is charged before memory is allocated: a unit for 8 numbers.
+/// by gltfpack, with their filters); checkMesh() rejects others. The work is charged before memory
+/// is allocated: a unit for 8 numbers.
 ///
 /// \param format Gltf or Glb \param bytes of the file, see checkMesh()
 /// \return std::nullopt if assimp reads the file as it is
-/// \throws std::runtime_error that names an extension in `extensionsRequired` that is not read, and
-///         for files whose accessors, views or buffers contradict each other; TooMuchWork
+/// \throws std::runtime_error for files whose accessors, views or buffers contradict each other;
+/// TooMuchWork
 ///
 /// Sources: the specifications of glTF 2.0 (3.6.2, 3.11) and of both extensions, Khronos Group.
 std::optional<PlainGltf> plainGltf(MeshFormat format, std::string_view bytes,
