@@ -41,9 +41,12 @@ struct FloorOpening {
 /// that are level have no opening between them.
 std::vector<FloorOpening> floorOpenings(const BuildingScene& building);
 
-/// Returns the scenes without the openings in their floors: the floor that one can stand on, which
-/// coverage and arrange count. The records are those of the storeys. Storeys that share a scene
-/// share the result if their openings are equal; storeys without openings keep their scenes.
+/// Returns the scenes without the openings in their floors, and with the steps that begin on them:
+/// the floor that one can stand on, which coverage and arrange count, and all bodies of the
+/// surroundings that can hide it from sensors of the storey. Floor below steps counts: rays that
+/// come from beside them meet it. The records are those of the storeys. Storeys that share a scene
+/// share the result if their openings and steps are equal; storeys without openings keep their
+/// scenes.
 std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& building);
 
 /// Square metres of a corner that remains of a floor that is all open, see scenesOfFloors().
@@ -56,8 +59,9 @@ bool hasFloor(const Scene& scene);
 std::shared_ptr<const Scene> openedScene(const BuildingScene& building, std::size_t storey);
 
 /// Returns the room of the lowest of some storeys, with the bodies, floors and openings of the
-/// others in their positions above it. Floors and ceilings have no thickness, and openings are
-/// closed at the sides between the storey below and the floor. \pre `storeys` ascend
+/// others in their positions above it. A floor reaches down to the top of the storeys below it,
+/// openings are closed at the sides in between, and outer walls reach up to the underside. Steps
+/// are planes. \pre `storeys` ascend
 Environment joinedRoom(const BuildingScene& building, std::span<const FloorOpening> openings,
                        std::span<const std::size_t> storeys);
 
@@ -67,11 +71,15 @@ std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,
 
 /// Returns the room of a storey in its frame, with openings in its floor and ceiling, and the
 /// storeys above and below that its sensors may see through them, with robots and people or without
-/// them. Its floor ends at the openings, and so does its indoor region. Empty for a storey without
-/// openings.
+/// them, and the undersides of the floors above. Its floor ends at the openings, and so does its
+/// indoor region. Empty for a storey without openings under the roof.
 std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
                                                 std::span<const FloorOpening> openings,
                                                 std::size_t storey, bool with_movers = true);
+
+/// Returns true for a sensor that the surroundings of its room hide floor from: by light. Steps,
+/// slabs and the sides of shafts stop level lasers, too.
+bool meetsSurroundings(const Sensor& sensor);
 
 /// Returns true for a sensor that sees other storeys: by light, in more than its own level plane.
 bool seesOtherStoreys(const Sensor& sensor);
@@ -85,11 +93,12 @@ class RoomsAround {
   public:
     /// \param plane at which sensors of other storeys see robots and people
     explicit RoomsAround(const BuildingScene& building, double plane = 0);
-    /// Returns roomWithSurroundings() of a storey whose scene may have changed. Null for a storey
-    /// without openings, and if no sensor of the scene looks around. Scenes that follow each other
+    /// Returns roomWithSurroundings() of a storey whose scene may have changed. Null if that is
+    /// empty, and if no sensor of the scene meets surroundings. Scenes that follow each other
     /// with equal rooms share it.
     std::shared_ptr<const SurroundedRoom> around(std::size_t storey, const Scene& scene);
-    /// Returns the fixed sensors of other storeys that see the plane of a storey, as in coverage.
+    /// Returns the fixed sensors of other storeys that see the plane of a storey, as in coverage,
+    /// and the room that these and its own sensors see.
     OutsideWatch outside(std::size_t storey, const Scene& scene);
     /// Sets the sensors of a storey to those of its scene after a change.
     void setSensors(std::size_t storey, const Scene& scene);

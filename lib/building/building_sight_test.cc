@@ -15,6 +15,7 @@
 
 #include "building/building_coverage.h"
 #include "record/text.h"
+#include "scene/sensor/field_of_view.h"
 #include "sense/detection.h"
 #include "trace/ray_world.h"
 
@@ -69,7 +70,7 @@ TEST(BuildingSight, OpeningsAreNoFloor) {
     EXPECT_NEAR(coverage.storeys[0].report.indoor_area, 48, 1e-9);
     EXPECT_NEAR(coverage.storeys[1].report.indoor_area, 48 - 4 - 4, 1e-9);
     EXPECT_NEAR(coverage.indoor_area, 88, 1e-9);
-    EXPECT_EQ(coverage.floors[0], building.scenes[0]);
+    EXPECT_NE(coverage.floors[0], building.scenes[0]);
     EXPECT_EQ(coverage.storeys[1].report.digest, building.scenes[1]->digest());
     EXPECT_EQ(coverage.floors[1]->records, building.scenes[1]->records);
 }
@@ -213,6 +214,24 @@ double castTo(const Environment& room, Point3 from, Vec3 way) {
     return static_cast<double>(range[0]);
 }
 
+/// Returns the share of a grid on the floor of a storey that rays of its only sensor, which looks
+/// straight down, reach in the surroundings.
+double coverageByRays(const BuildingScene& building, std::size_t storey) {
+    const Environment room =
+        roomWithSurroundings(building, floorOpenings(building), storey).value();
+    const RayWorld world = RayWorld::ofEnvironment(room);
+    const Sensor& sensor = building.scenes[storey]->sensors.front();
+    const Point3 eye = sensor.pose.position;
+    std::vector<Point3> targets;
+    std::size_t all = 0;
+    for (double x = 0.025; x < 8; x += 0.05)
+        for (double y = 0.025; y < 6; y += 0.05, ++all)
+            if (fieldOfView(sensor)->holds({x, y, 0})) targets.push_back({x, y, 0});
+    std::vector<std::uint8_t> seen(targets.size());
+    world.query(eye, targets, seen);
+    return static_cast<double>(std::count(seen.begin(), seen.end(), 1)) / static_cast<double>(all);
+}
+
 TEST(BuildingSight, RaysPassOpeningsInTheRoomWithItsSurroundings) {
     const BuildingScene building = towerOf("{robot: {id: r, at: [4.6, 3]}}", "", kShaft);
     const std::vector<FloorOpening> openings = floorOpenings(building);
@@ -225,7 +244,64 @@ TEST(BuildingSight, RaysPassOpeningsInTheRoomWithItsSurroundings) {
     EXPECT_NEAR(castTo(ground, {2.5, 3, 1}, {0, 0, 1}), 2, 1e-5);
     EXPECT_EQ(castTo(ground, {3.5, 3, 1}, {0, 0, 1}), std::numeric_limits<double>::infinity());
     EXPECT_NEAR(castTo(ground, {3.5, 2.2, 1}, {0, 3.8, 4.3}), std::hypot(3.8, 4.3), 1e-4);
-    EXPECT_FALSE(roomWithSurroundings(towerOf("", "", ""), {}, 0));
+    EXPECT_FALSE(roomWithSurroundings(towerOf("", "", ""), {}, 1)) << "under the roof";
+}
+
+TEST(BuildingSight, SlabsHaveUndersidesAndWallsReachUpToThem) {
+    // Walls of 2.5 m, and storeys of 2.8 m below floors 3 m apart.
+    for (const std::string& passages : {std::string(), std::string(kShaft)}) {
+        const BuildingScene building = towerOf("", "", passages, "2.8");
+        const Environment ground =
+            roomWithSurroundings(building, floorOpenings(building), 0).value();
+        EXPECT_NEAR(castTo(ground, {1, 1, 2}, {0, 0, 1}), 0.8, 1e-5);
+        EXPECT_NEAR(castTo(ground, {1, 1, 2.7}, {-1, 0, 0}), 1, 1e-5);
+        EXPECT_NEAR(castTo(ground, {1, 1, 2.4}, {-1, 0, 0}), 1, 1e-5);
+    }
+}
+
+const std::string kFlight =
+    "- stairs: {id: s, storeys: 'ground,upper', at: [5, 1], heading: 90, size: [1.2, 3]}\n";
+
+TEST(BuildingSight, StepsHideFloorOfTheirOwnStorey) {
+    const std::string ranger =
+        "{ranger: {id: r, at: [3.5, 2.5, 2.4], tilt: -90, fov: '130,130', pixels: '9,9', "
+        "range: '0,30'}}";
+    const BuildingScene building = towerOf(ranger, "", kFlight);
+    const BuildingCoverage with = measureBuilding(building, {});
+    const BuildingCoverage without = measureBuilding(towerOf(ranger, "", ""), {});
+    const auto exact = [](const BuildingCoverage& coverage) {
+        return coverage.storeys[0].report.coverage.exact.value();
+    };
+    EXPECT_NEAR(coverageByRays(building, 0), exact(with), 0.005);
+    EXPECT_NEAR(with.storeys[0].report.coverage.grid.value(), exact(with), 0.005);
+    EXPECT_LT(exact(with), exact(without) - 0.03);
+    EXPECT_NEAR(with.storeys[0].report.indoor_area, 48, 1e-9) << "there is floor below steps";
+}
+
+TEST(BuildingSight, StepsStopLevelLasers) {
+    const BuildingScene building =
+        towerOf("{laser: {id: l, at: [5, 0.5, 0.5], heading: 90, fov: 10, step: 5}}", "", kFlight);
+    RoomsAround rooms(building);
+    const Scene& scene = *building.scenes[0];
+    Worlds worlds(scene.environment, rooms.around(0, scene));
+    worlds.prepare(scene.sensors[0].pose);
+    Directions ahead;
+    ahead.resize(1);
+    ahead.set(0, {0, 1, 0});
+    std::array<float, 1> range{};
+    worlds.at(scene.sensors[0].pose).cast(scene.sensors[0].pose.position, ahead, 100, range);
+    EXPECT_NEAR(range[0], 1, 1e-6) << "the steps are 0.5 m high at y = 1.5";
+}
+
+TEST(BuildingSight, NoViewPassesOverTheOuterWallsOfOtherStoreys) {
+    // Walls of 2.5 m below a floor at 3 m, seen aslant through a flight at the wall.
+    const std::string camera = "{camera: {id: c, at: [0.1, 0.1, 2.4], heading: 20, tilt: -15}}";
+    const std::string flight =
+        "- stairs: {id: s, storeys: 'ground,upper', at: [7.3, 1], heading: 90, size: [1.2, 4]}\n";
+    const BuildingCoverage coverage = measureBuilding(towerOf("", camera, flight), {});
+    const CoverageReport& ground = coverage.storeys[0].report;
+    EXPECT_NEAR(ground.total_effective_area.exact.value(),
+                ground.coverage.exact.value() * ground.indoor_area, 1e-6);
 }
 
 /// Returns the scene of a storey with its first record of this keyword at another position, or
@@ -257,8 +333,7 @@ TEST(RoomsAround, AreBuiltAnewIfTheRoomOfTheStoreyChanges) {
     EXPECT_EQ(castTo(changed->environment(), {4, 3, 1.5}, {0, 0, 1}),
               std::numeric_limits<double>::infinity());
     EXPECT_EQ(rooms.around(0, cleared), changed);
-    // Level lasers see their storey alone.
-    EXPECT_EQ(rooms.around(1, *building.scenes[1]), nullptr);
+    EXPECT_NE(rooms.around(1, *building.scenes[1]), nullptr) << "sides of shafts stop lasers";
     EXPECT_EQ(rooms.around(0, edited(building, 0, "camera", std::nullopt)), nullptr);
 }
 

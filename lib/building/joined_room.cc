@@ -16,8 +16,10 @@
 #include "env/mesh.h"
 #include "env/walls.h"
 #include "geom/overlay/overlay.h"
+#include "record/text.h"
 #include "scene/bodies.h"
 #include "scene/placement_schemas.h"
+#include "trace/ray_world.h"
 
 namespace ispace {
 
@@ -134,12 +136,78 @@ class Triangles {
         add(a, b, c);
         add(a, c, d);
     }
+    /// Adds the steps of straight stairs, as a plane. \param frame of the triangles
+    void addSteps(const FloorOpening& stairs, const Storey& frame, double bottom, double top) {
+        if (stairs.flight.size() != 2) return;
+        const auto edge = [&](const Segment2& step) {
+            return Segment2{inStorey(frame, step.a), inStorey(frame, step.b)};
+        };
+        addQuad(edge(stairs.flight[0]), bottom, edge(stairs.flight[1]), top);
+    }
     [[nodiscard]] bool empty() const { return mesh_.triangles.empty(); }
-    TriangleMesh take() { return std::move(mesh_); }
+    TriangleMesh take() {
+        const auto* const bytes = reinterpret_cast<const char*>(mesh_.vertices.data());
+        mesh_.digest = sha256({bytes, mesh_.vertices.size() * sizeof(mesh_.vertices[0])});
+        return std::move(mesh_);
+    }
 
   private:
     TriangleMesh mesh_;
 };
+
+/// Returns the record of a mesh that stops light.
+Record meshRecord(Triangles& triangles) {
+    Record mesh(*sceneSchemas().find("mesh"));
+    mesh.set("file", std::string("storeys"));
+    mesh.set("up", std::string("z"));
+    mesh.setMesh(std::make_shared<const TriangleMesh>(triangles.take()));
+    return mesh;
+}
+
+/// Returns the bounds of the wall lines of each storey, in the building.
+std::vector<Box2> boxesOf(const BuildingScene& building) {
+    std::vector<Box2> boxes(building.scenes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const Box2& own = building.scenes[i]->environment.limits();
+        for (const Point2 corner :
+             {own.low, own.high, Point2{own.low.x, own.high.y}, Point2{own.high.x, own.low.y}})
+            boxes[i].add(building.document.storeys[i].building_from_storey * corner);
+    }
+    return boxes;
+}
+
+/// True if storeys lie above each other, by bounds that have area in common.
+bool areStacked(const Box2& a, const Box2& b) {
+    const Box2 both = common(a, b);
+    return !both.empty() && both.low.x < both.high.x && both.low.y < both.high.y;
+}
+
+/// Returns the height of the underside of a storey's floor: the top of the storeys below it. A
+/// floor above no storey has no thickness.
+double undersideOf(const BuildingScene& building, const std::vector<Box2>& boxes,
+                   std::size_t storey) {
+    const std::vector<Storey>& storeys = building.document.storeys;
+    const double floor = storeys[storey].floor;
+    std::optional<double> top;
+    for (std::size_t i = 0; i < storeys.size(); ++i)
+        if (storeys[i].floor < floor && areStacked(boxes[i], boxes[storey]))
+            top = std::max(top.value_or(storeys[i].floor), storeys[i].floor + building.height(i));
+    return std::min(floor, top.value_or(floor));
+}
+
+/// Returns the height of the lowest underside above a storey; empty under the roof.
+std::optional<double> slabAbove(const BuildingScene& building, const std::vector<Box2>& boxes,
+                                std::size_t storey) {
+    const std::vector<Storey>& storeys = building.document.storeys;
+    std::optional<double> lowest;
+    for (std::size_t i = 0; i < storeys.size(); ++i) {
+        if (storeys[i].floor <= storeys[storey].floor || !areStacked(boxes[i], boxes[storey]))
+            continue;
+        const double underside = undersideOf(building, boxes, i);
+        lowest = std::min(lowest.value_or(underside), underside);
+    }
+    return lowest;
+}
 
 /// Builds what stands above and below a storey: other storeys, and its own floor and ceiling with
 /// their openings.
@@ -150,6 +218,7 @@ class Surroundings {
     Surroundings(const BuildingScene& building, std::span<const FloorOpening> openings,
                  std::span<const std::size_t> storeys, std::size_t own, bool with_movers)
         : building_(building),
+          all_(openings),
           storeys_(storeys),
           own_(own),
           with_movers_(with_movers),
@@ -160,7 +229,9 @@ class Surroundings {
                 openings_.push_back(&opening);
     }
 
-    Environment room() {
+    /// \param with_slabs adds the undersides of the floors above, and closes the gaps between
+    /// these and the walls
+    Environment room(bool with_slabs) {
         const Scene& base = *building_.scenes[own_];
         std::vector<Record> records = base.records;
         std::vector<std::string> ids = base.ids;
@@ -177,14 +248,13 @@ class Surroundings {
         for (const std::size_t storey : storeys_)
             if (storey != own_) addStorey(storey);
         addSides();
-        for (const FloorOpening* const opening : openings_)
-            if (isHere(opening->below)) addSteps(*opening);
+        if (with_slabs) addSlabs();
+        // Steps hide what lies beyond them, wherever they lead.
+        for (const FloorOpening& opening : all_)
+            if (isHere(opening.below))
+                triangles_.addSteps(opening, base_, floorOf(opening.below), floorOf(opening.above));
         if (!triangles_.empty()) {
-            Record mesh(*sceneSchemas().find("mesh"));
-            mesh.set("file", std::string("storeys"));
-            mesh.set("up", std::string("z"));
-            mesh.setMesh(std::make_shared<const TriangleMesh>(triangles_.take()));
-            records.push_back(std::move(mesh));
+            records.push_back(meshRecord(triangles_));
             ids.emplace_back("storeys");
         }
         return Environment(records, ids, base.environment);
@@ -285,17 +355,47 @@ class Surroundings {
         }
     }
 
-    /// Adds the steps of stairs, as a plane.
-    void addSteps(const FloorOpening& opening) {
-        if (opening.flight.size() != 2) return;
-        const auto edge = [&](const Segment2& step) {
-            return Segment2{inStorey(base_, step.a), inStorey(base_, step.b)};
+    /// Returns the indoor region of a storey, without the holes in it, in the frame of the room.
+    [[nodiscard]] std::vector<Curve> planOf(std::size_t storey) const {
+        std::vector<Curve> plan;
+        for (Polygon outline : curvesOf(building_.scenes[storey]->environment.indoor())) {
+            for (Point2& p : outline) p = placeOf(storey, p);
+            plan.push_back(curveOf(outline));
+        }
+        return plan;
+    }
+
+    /// Adds the undersides of the floors above, less their openings, and continues the outer walls
+    /// of storeys up to them. Storeys that the room does not hold hide it as well.
+    void addSlabs() {
+        const auto boxes = boxesOf(building_);
+        const auto is_seen = [&](std::size_t i) {
+            return isHere(i) || floorOf(i) <= kSightBetweenStoreys;
         };
-        triangles_.addQuad(edge(opening.flight[0]), floorOf(opening.below), edge(opening.flight[1]),
-                           floorOf(opening.above));
+        for (std::size_t i = 0; i < building_.scenes.size(); ++i) {
+            if (floorOf(i) <= floorOf(storeys_.front()) || !is_seen(i)) continue;
+            const double bottom = undersideOf(building_, boxes, i) - base_.floor;
+            if (isHere(i) && bottom >= floorOf(i)) continue;  // its floor
+            std::vector<Polygon> open;
+            for (const FloorOpening& opening : all_)
+                if (opening.above == i) open.push_back(inBase(opening.outline));
+            triangles_.addLevel(cutOut(planOf(i), open), bottom);
+        }
+        for (const std::size_t i : storeys_) {
+            const double walls = floorOf(i) + building_.scenes[i]->environment.height();
+            const auto slab = slabAbove(building_, boxes, i);
+            if (!slab || *slab - base_.floor <= walls + kRayEpsilon) continue;
+            const Overlay overlay(std::vector<Layer>{{.curves = planOf(i)}});
+            for (const Region& region :
+                 overlay.regions([](const LayerLabel& label) { return label.count > 0; }))
+                region.forEachEdge([&](const Segment2& side) {
+                    triangles_.addSheet(side, walls, *slab - base_.floor);
+                });
+        }
     }
 
     const BuildingScene& building_;
+    std::span<const FloorOpening> all_;
     std::span<const std::size_t> storeys_;
     std::size_t own_;
     bool with_movers_;
@@ -304,36 +404,62 @@ class Surroundings {
     Triangles triangles_;
 };
 
-/// Returns in [i] the outlines of the openings in the floor of storey i, in its frame.
-std::vector<std::vector<Polygon>> outlinesInFloors(const BuildingScene& building) {
-    std::vector<std::vector<Polygon>> outlines(building.scenes.size());
+/// What joins a storey to others, in its frame: openings in its floor, and steps that begin on it.
+struct StoreyJoints {
+    std::vector<Polygon> open;
+    Triangles steps;
+    std::vector<double> numbers;  ///< equal for equal joints
+};
+
+std::vector<StoreyJoints> jointsOf(const BuildingScene& building) {
+    std::vector<StoreyJoints> joints(building.scenes.size());
+    const std::vector<Storey>& storeys = building.document.storeys;
+    const auto add_points = [](const Storey& storey, const Polygon& outline, StoreyJoints& of) {
+        for (const Point2 p : outline) {
+            const Point2 local = inStorey(storey, p);
+            of.numbers.insert(of.numbers.end(), {local.x, local.y});
+        }
+    };
     for (const FloorOpening& opening : floorOpenings(building)) {
-        Polygon& outline = outlines[opening.above].emplace_back(opening.outline);
-        for (Point2& p : outline) p = inStorey(building.document.storeys[opening.above], p);
+        StoreyJoints& above = joints[opening.above];
+        Polygon& outline = above.open.emplace_back(opening.outline);
+        for (Point2& p : outline) p = inStorey(storeys[opening.above], p);
+        add_points(storeys[opening.above], opening.outline, above);
+        above.numbers.push_back(0);  // no rise
+        if (opening.flight.size() != 2) continue;
+        const Storey& below = storeys[opening.below];
+        const double rise = storeys[opening.above].floor - below.floor;
+        joints[opening.below].steps.addSteps(opening, below, 0, rise);
+        add_points(below, opening.outline, joints[opening.below]);
+        joints[opening.below].numbers.push_back(rise);
     }
-    return outlines;
+    return joints;
+}
+
+/// Opens the floor and adds the steps. Returns false if there are neither.
+bool join(const Environment& room, StoreyJoints& joints, std::vector<Record>& records) {
+    if (joints.open.empty() && joints.steps.empty()) return false;
+    if (!joints.open.empty()) openFloor(room, joints.open, records);
+    if (!joints.steps.empty()) records.push_back(meshRecord(joints.steps));
+    return true;
 }
 
 }  // namespace
 
 std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& building) {
     constexpr double kEqualWithin = 1e-9;  // metres
-    const std::vector<std::vector<Polygon>> of_floors = outlinesInFloors(building);
+    std::vector<StoreyJoints> joints = jointsOf(building);
     std::map<std::pair<const Scene*, std::vector<std::int64_t>>, std::shared_ptr<const Scene>> made;
     std::vector<std::shared_ptr<const Scene>> scenes = building.scenes;
     for (std::size_t i = 0; i < scenes.size(); ++i) {
-        const std::vector<Polygon>& outlines = of_floors[i];
-        if (outlines.empty()) continue;
         std::vector<std::int64_t> numbers;
-        for (const Polygon& outline : outlines)
-            for (const Point2 p : outline)
-                for (const double value : {p.x, p.y})
-                    numbers.push_back(std::llround(value / kEqualWithin));
+        for (const double value : joints[i].numbers)
+            numbers.push_back(std::llround(value / kEqualWithin));
         auto& known = made[{scenes[i].get(), std::move(numbers)}];
         if (known == nullptr) {
+            std::vector<Record> records = scenes[i]->records;
+            if (!join(scenes[i]->environment, joints[i], records)) continue;
             Scene scene = *scenes[i];
-            std::vector<Record> records = scene.records;
-            openFloor(scene.environment, outlines, records);
             scene.environment = Environment(records, assignIds(records), scene.environment);
             known = std::make_shared<const Scene>(std::move(scene));
         }
@@ -344,16 +470,15 @@ std::vector<std::shared_ptr<const Scene>> scenesOfFloors(const BuildingScene& bu
 
 std::shared_ptr<const Scene> openedScene(const BuildingScene& building, std::size_t storey) {
     const auto& scene = building.scenes[storey];
-    const std::vector<Polygon> outlines = outlinesInFloors(building)[storey];
-    if (outlines.empty()) return scene;
+    StoreyJoints joints = std::move(jointsOf(building)[storey]);
     std::vector<Record> records = scene->records;
-    openFloor(scene->environment, outlines, records);
+    if (!join(scene->environment, joints, records)) return scene;
     return std::make_shared<const Scene>(makeScene(std::move(records), *scene, building.devices));
 }
 
 Environment joinedRoom(const BuildingScene& building, std::span<const FloorOpening> openings,
                        std::span<const std::size_t> storeys) {
-    return Surroundings(building, openings, storeys, storeys.front(), false).room();
+    return Surroundings(building, openings, storeys, storeys.front(), false).room(true);
 }
 
 std::optional<Environment> roomWithOpenings(const BuildingScene& building,
@@ -364,7 +489,7 @@ std::optional<Environment> roomWithOpenings(const BuildingScene& building,
             return opening.below == storey || opening.above == storey;
         });
     if (!is_open) return std::nullopt;
-    return Surroundings(building, openings, {&storey, 1}, storey, false).room();
+    return Surroundings(building, openings, {&storey, 1}, storey, false).room(false);
 }
 
 std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
@@ -388,9 +513,9 @@ std::optional<Environment> roomWithSurroundings(const BuildingScene& building,
             down.insert(floor_of(i));
             if (down.size() <= kSightThroughFloors) near.push_back(i);
         }
-    if (near.size() == 1) return std::nullopt;
+    if (near.size() == 1 && !slabAbove(building, boxesOf(building), storey)) return std::nullopt;
     std::sort(near.begin(), near.end());
-    return Surroundings(building, openings, near, storey, with_movers).room();
+    return Surroundings(building, openings, near, storey, with_movers).room(true);
 }
 
 }  // namespace ispace

@@ -14,9 +14,12 @@
 
 namespace ispace {
 
+bool meetsSurroundings(const Sensor& sensor) {
+    return kindOf(sensor.model).stopped_by == Surfaces::Opaque;
+}
+
 bool seesOtherStoreys(const Sensor& sensor) {
-    return kindOf(sensor.model).stopped_by == Surfaces::Opaque &&
-           (!sensor.is<Laser>() || !scansSlice(sensor));
+    return meetsSurroundings(sensor) && (!sensor.is<Laser>() || !scansSlice(sensor));
 }
 
 namespace {
@@ -70,8 +73,8 @@ std::shared_ptr<const SurroundedRoom> RoomsAround::room(std::size_t storey, cons
 }
 
 std::shared_ptr<const SurroundedRoom> RoomsAround::around(std::size_t storey, const Scene& scene) {
-    const bool is_seen = std::any_of(scene.sensors.begin(), scene.sensors.end(), seesOtherStoreys);
-    return openings_.empty() || !is_seen ? nullptr : room(storey, scene);
+    const bool is_seen = std::any_of(scene.sensors.begin(), scene.sensors.end(), meetsSurroundings);
+    return is_seen ? room(storey, scene) : nullptr;
 }
 
 RoomsAround::SensorsByStorey RoomsAround::sensorsOutside(const BuildingScene& building) const {
@@ -113,7 +116,6 @@ OutsideWatch RoomsAround::outside(std::size_t storey, const Scene& scene) {
     }
     const std::vector<Sensor>& sensors =
         known->get([&] { return sensorsOutside(*building); })[storey];
-    if (sensors.empty()) return {};
     auto around = room(storey, scene);
     if (around == nullptr) return {};
     return {std::move(around), sensors};

@@ -98,13 +98,15 @@ struct DetectionMonitor::Data {
     [[nodiscard]] bool isClear(const Watcher& watcher, Point3 origin, Point3 target) const;
 
     double plane;
-    Worlds worlds;
     OutsideWatch outside;
+    Worlds worlds;  // with the rooms around, which hide floor from sensors of the room, too
     std::vector<Watcher> watchers;
 };
 
 DetectionMonitor::Data::Data(const Scene& scene, const WatchOptions& options)
-    : plane(options.plane), worlds(scene.environment) {
+    : plane(options.plane),
+      outside(options.outside ? options.outside(scene) : OutsideWatch{}),
+      worlds(scene.environment, outside.room) {
     const std::vector<Pose2> people = peopleOf(scene);
     for (const Sensor& sensor : scene.sensors) {
         if (!kindOf(sensor.model).perceives) continue;
@@ -117,7 +119,6 @@ DetectionMonitor::Data::Data(const Scene& scene, const WatchOptions& options)
         else
             worlds.prepareMesh(kindOf(sensor.model).stopped_by);
     }
-    if (options.outside) outside = options.outside(scene);
     for (const Sensor& sensor : outside.sensors) {
         watchers.push_back(watcherOf(sensor, people, options.density));
         watchers.back().is_outside = true;

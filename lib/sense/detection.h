@@ -17,7 +17,7 @@ class SurroundedRoom;
 
 /// Sensors beyond a room that see into it through openings.
 struct OutsideWatch {
-    std::shared_ptr<const SurroundedRoom> room;  ///< with those around it; null without sensors
+    std::shared_ptr<const SurroundedRoom> room;  ///< with those around it; null: the room alone
     std::vector<Sensor> sensors;                 ///< fixed, with a field of view; in its frame
 };
 

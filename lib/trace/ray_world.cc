@@ -242,8 +242,9 @@ void Worlds::prepare(const Pose3& pose, const Worlds* before) {
     const double height = pose.position.z;
     if (slices_.contains(height)) return;
     if (slices_.size() >= kMaxSlices) return prepareMesh();
-    RayWorld slice = RayWorld::ofLevel(*environment_, height,
-                                       before == nullptr ? nullptr : before->sliceAt(height));
+    const Environment& room = around_ == nullptr ? *environment_ : around_->environment();
+    RayWorld slice =
+        RayWorld::ofLevel(room, height, before == nullptr ? nullptr : before->sliceAt(height));
     const std::unique_lock lock(mutex_);
     slices_.emplace(height, std::move(slice));
 }

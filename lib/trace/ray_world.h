@@ -109,8 +109,8 @@ class Worlds {
         bool opaque = false, solid = false;
     };
 
-    /// \param around the same room with those around it, which light in all directions meets; null:
-    ///        the room alone. Level slices and sound are those of the room
+    /// \param around the same room with those around it, which light meets, in level slices, too;
+    ///        null: the room alone. Sound is that of the room
     explicit Worlds(const Environment& environment,
                     std::shared_ptr<const SurroundedRoom> around = nullptr);
     /// \param before worlds of another environment, which may share its data; see ofLevel()

@@ -118,6 +118,9 @@ bool arrangeInBuilding(const ArrangeCommand& command) {
     claimOutputs(options.common);
     mustBeWritable(options.common.output);
     warn(options.common, "arrange", input.warnings);
+    for (std::size_t i = 0; i < input.building.scenes.size(); ++i)
+        warnOfHeights(options, options.how.mount, input.building.scenes[i]->environment,
+                      input.building.document.storeys[i].id);
     SearchWatch watch(makeProgress("arrange", options.common.progress, options.common.quiet),
                       options.time_limit);
     const BuildingArrangement found =

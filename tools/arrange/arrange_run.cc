@@ -206,16 +206,20 @@ std::string hintAlongWalls(const ArrangeWork& work) {
     return "";
 }
 
-/// Warns of sensors above the room.
-void warnOfHeights(const ArrangeToolOptions& options, const ArrangeWork& work) {
-    const double top = work.input.scene.environment.height();
-    for (const double height : work.how.mount.heights)
+}  // namespace
+
+void warnOfHeights(const ArrangeToolOptions& options, const MountRules& mount,
+                   const Environment& room, const std::string& storey) {
+    const double top = room.height();
+    for (const double height : mount.heights)
         if (height > top)
             warn(options.common, "arrange",
-                 "--z " + formatDouble(height) + ": the room is " +
-                     formatDouble(std::round(1000 * top) / 1000) +
+                 (storey.empty() ? "" : storey + ": ") + "--z " + formatDouble(height) +
+                     ": the room is " + formatDouble(std::round(1000 * top) / 1000) +
                      " m high, and nothing is there to mount a sensor on");
 }
+
+namespace {
 
 /// Warns with a reason if coverage is zero, and of redundant sensors.
 void warnOfNothing(const ArrangeToolOptions& options, const ArrangeWork& work,
@@ -230,7 +234,7 @@ void warnOfNothing(const ArrangeToolOptions& options, const ArrangeWork& work,
 void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work) {
     if (const std::string hint = hintAlongWalls(work); !hint.empty())
         warn(options.common, "arrange", hint);
-    warnOfHeights(options, work);
+    warnOfHeights(options, work.how.mount, work.input.scene.environment);
 }
 
 void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,

@@ -28,6 +28,10 @@ ArrangeWork readWork(const ArrangeToolOptions& options);
 void takeZones(const ArrangeToolOptions& options, const Environment& environment,
                ArrangeOptions& how);
 
+/// Warns of sensors above a room. \param storey of a building; "" for a room alone
+void warnOfHeights(const ArrangeToolOptions& options, const MountRules& mount,
+                   const Environment& room, const std::string& storey = "");
+
 /// Warns, before the search, of heights and strategies that cannot do well.
 void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work);
 

@@ -203,6 +203,11 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
             warn(options.common, "coverage", std::span<const Diagnostic>(&finding, 1));
         }
     const BuildingCoverage coverage = measureBuilding(input.building, options.measure);
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
+        if (const std::string text =
+                largeCellsText(options.measure, coverage.storeys[i].report.grid);
+            !text.empty())
+            warn(options.common, "coverage", input.building.document.storeys[i].id + ": " + text);
     const std::vector<JunitCase> verdicts = judgeBuilding(options, input.building, coverage);
     const std::optional<BuildingRunCoverage> run = measureStoreyRuns(options, input);
     if (options.format != nullptr) {

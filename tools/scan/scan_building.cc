@@ -42,13 +42,12 @@ struct StoreySensors {
     Sensors sensors;
 };
 
-/// Returns the scene of a storey, in which sensors see through openings if they look around.
+/// Returns the scene of a storey in its surroundings, if sensors meet these.
 Scene sceneOf(const BuildingScene& building, std::span<const FloorOpening> openings,
               const StoreySensors& one) {
     Scene scene = *building.scenes[one.storey];
     const std::vector<Sensor>& sensors = one.sensors.read;
-    if (openings.empty() || std::none_of(sensors.begin(), sensors.end(), seesOtherStoreys))
-        return scene;
+    if (std::none_of(sensors.begin(), sensors.end(), meetsSurroundings)) return scene;
     if (auto room = roomWithSurroundings(building, openings, one.storey))
         scene.environment = *std::move(room);
     return scene;

@@ -129,7 +129,7 @@ class BuildingViews {
     /// Returns the scene of a storey; where the viewer is inside, with all that is seen through
     /// openings.
     const Scene& roomFor(std::size_t storey, bool is_within) {
-        if (!is_within || openings_.empty()) return *building_.scenes[storey];
+        if (!is_within) return *building_.scenes[storey];
         auto& room = rooms_[storey];
         if (room == nullptr) {
             Scene scene = *building_.scenes[storey];

@@ -110,7 +110,7 @@ void run(const SimrunCommand& command, JunitFile& junit) {
     if (!options.drawing.format.empty() && replay) warnOfChanges(*replay, options.common);
     if (!options.drawing.format.empty())
         return drawRecord(options, input.scene, titleOf(options, input));
-    if (options.noise) warnOfNoNoise(input.scene, !replay, options.common);
+    if (options.noise && !hasNoise(input.scene, !replay)) warnOfNoNoise(options.common);
     World world(input.scene, replay ? replay->stepLength() : options.step,
                 runOptionsOf(options, replay ? std::optional(replay->info()) : std::nullopt));
     warn(options.common, "simrun", startWarnings(world));

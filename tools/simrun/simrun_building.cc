@@ -2,6 +2,7 @@
 // simrun over the storeys of a building.
 #include "simrun/simrun_building.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -40,6 +41,11 @@ void warnOfScenes(const SimrunOptions& options, const BuildingInput& input) {
             finding.message = input.building.document.storeys[i].id + ": " + finding.message;
             warn(options.common, "simrun", std::span<const Diagnostic>(&finding, 1));
         }
+    const auto& scenes = input.building.scenes;
+    if (options.noise && std::none_of(scenes.begin(), scenes.end(), [&](const auto& scene) {
+            return hasNoise(*scene, options.replay.empty());
+        }))
+        warnOfNoNoise(options.common);
 }
 
 /// Writes the building with its layout. Storeys keep sharing rooms.
@@ -69,6 +75,7 @@ std::vector<std::unique_ptr<RunningRecord>> recordsOf(const SimrunOptions& optio
                                                       const History& history, Server& server) {
     std::vector<std::unique_ptr<RunningRecord>> records;
     if (options.record.empty()) return records;
+    for (const JoinedRoom& room : run.rooms()) checkRecord(options, room.simulation->world());
     if (std::filesystem::exists(RecordedFiles(options.record).robots))
         throw UsageError("--record: " + options.record +
                          " holds the record of one room: give another folder");

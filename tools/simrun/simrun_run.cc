@@ -346,14 +346,16 @@ void CollisionLog::tell() {
     }
 }
 
-void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options) {
+bool hasNoise(const Scene& scene, bool moves) {
     const bool strays = moves && std::any_of(scene.robots.begin(), scene.robots.end(),
                                              [](const PlacedRobot& robot) {
                                                  return robot.model.noise != MotionNoise();
                                              });
-    if (strays || std::any_of(scene.sensors.begin(), scene.sensors.end(),
-                              [](const Sensor& sensor) { return isNoisy(sensor.model); }))
-        return;
+    return strays || std::any_of(scene.sensors.begin(), scene.sensors.end(),
+                                 [](const Sensor& sensor) { return isNoisy(sensor.model); });
+}
+
+void warnOfNoNoise(const CommonOptions& options) {
     warn(options, kTool,
          "--noise changes nothing: no sensor has noise, and no robot has motion_noise, "
          "odometry_noise or start_noise");

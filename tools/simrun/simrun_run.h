@@ -124,8 +124,10 @@ class LagLog {
 /// Warns of movers with a trip over storeys, in the run of one room.
 void warnOfTrips(const Scene& scene, const CommonOptions& options);
 
-/// Warns that no sensor has noise, nor an autonomous robot.
-void warnOfNoNoise(const Scene& scene, bool moves, const CommonOptions& options);
+/// Returns true if --noise changes readings or, in a run that moves them, robots.
+bool hasNoise(const Scene& scene, bool moves);
+/// Warns that no scene of a run has noise.
+void warnOfNoNoise(const CommonOptions& options);
 
 /// Reports once that a change of a recorded run cannot be repeated.
 class FailureLog {
