@@ -154,8 +154,9 @@ struct CandidatePool::Data {
         return levels;
     }
 
-    /// Returns the valid sites at all heights.
-    std::vector<SitesAtHeight> levelsFor(const SensorClass& kind) {
+    /// Returns the valid sites at all heights; a sample of them, and `is_complete` false, once
+    /// progress says stop.
+    std::vector<SitesAtHeight> levelsFor(const SensorClass& kind, bool& is_complete) {
         std::vector<SitesAtHeight> levels;
         if (options.mount.on == MountOn::Frame)
             levels = frameLevels();
@@ -165,13 +166,16 @@ struct CandidatePool::Data {
         std::size_t proposed = 0, valid = 0;
         for (SitesAtHeight& level : levels) {
             proposed += level.sites.size();
-            level.sites = validSites(validityAt(level.height), std::move(level.sites), progress);
+            level.sites =
+                validSites(validityAt(level.height), std::move(level.sites), progress, is_complete);
             std::erase_if(level.sites, [&](const Site& site) {
                 return !isValidElsewhere(level.height, site.place);
             });
             valid += level.sites.size();
         }
-        if (valid == 0) throw UnmetError(noPlaceText(kind, proposed));
+        if (valid == 0)
+            throw UnmetError(is_complete ? noPlaceText(kind, proposed)
+                                         : "stopped before a valid place was found for " + kind.id);
         return levels;
     }
 
@@ -406,9 +410,12 @@ CandidatePool::Made CandidatePool::make(const SensorClass& kind) {
     Made made{std::make_unique<PosedCandidates>(data_->weights.left.size())};
     const bool is_random =
         data_->options.strategy == Strategy::Random && data_->options.mount.on != MountOn::Frame;
-    made.is_complete = is_random
-                           ? data_->addRandom(*made.set, kind)
-                           : data_->addLevels(*made.set, kind, data_->levelsFor(kind), kMinPlaces);
+    if (is_random) {
+        made.is_complete = data_->addRandom(*made.set, kind);
+    } else {
+        const std::vector<SitesAtHeight> levels = data_->levelsFor(kind, made.is_complete);
+        if (!data_->addLevels(*made.set, kind, levels, kMinPlaces)) made.is_complete = false;
+    }
     data_->bytes += made.set->bytes();
     return made;
 }

@@ -298,8 +298,9 @@ TEST(CandidatePool, IndoorTestKeepsTheSensorInTheRoom) {
     for (const Point2 place : gridPlaces(room.limits(), {9, 9}))
         everywhere.push_back({place, headingsAround(8)});
     SilentProgress silent;
+    bool is_complete = true;
     const std::vector<Site> inside =
-        validSites(SiteValidity(room, SiteRules()), everywhere, silent);
+        validSites(SiteValidity(room, SiteRules()), everywhere, silent, is_complete);
     Worlds worlds(room);
     const Target target = makeTarget(room, CellCount{100, 100}, kScanHeight);
     Laser laser;

@@ -138,13 +138,25 @@ std::vector<Site> withoutDoubles(std::vector<Site> sites) {
 }  // namespace
 
 std::vector<Site> validSites(const SiteValidity& validity, std::vector<Site> sites,
-                             Progress& progress) {
+                             Progress& progress, bool& is_complete) {
+    constexpr std::size_t kAtOnce = 4096, kSample = 512;
     std::vector<char> is_valid(sites.size());
-    progress.begin("checking places", static_cast<std::int64_t>(sites.size()));
-    tbb::parallel_for(std::size_t{0}, sites.size(), [&](std::size_t i) {
+    const auto check = [&](std::size_t i) {
         is_valid[i] = validity.isValid(sites[i].place) ? 1 : 0;
         progress.advance(1);
-    });
+    };
+    progress.begin("checking places", static_cast<std::int64_t>(sites.size()));
+    std::size_t done = 0;
+    while (done < sites.size() && !progress.stopped()) {
+        const std::size_t end = std::min(done + kAtOnce, sites.size());
+        tbb::parallel_for(done, end, check);
+        done = end;
+    }
+    if (done < sites.size()) {
+        is_complete = false;
+        const auto sample = sitesSpreadOver(sites, done, std::min(kSample, sites.size() - done));
+        tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t i) { check(sample[i]); });
+    }
     progress.end();
     std::size_t next = 0;
     std::erase_if(sites, [&](const Site& /*site*/) { return is_valid[next++] == 0; });

@@ -161,9 +161,10 @@ class SiteValidity {
 };
 
 /// Returns the valid sites, in order; tests them in parallel. Merges sites at the same point: it
-/// occurs where it came first, with the headings of all.
+/// occurs where it came first, with the headings of all. Once progress says stop, tests only a
+/// sample of the other sites, some hundreds spread over the plan, and sets `is_complete` to false.
 std::vector<Site> validSites(const SiteValidity& validity, std::vector<Site> sites,
-                             Progress& progress);
+                             Progress& progress, bool& is_complete);
 
 /// Reads a list of sites from CSV text: `x,y` or `x,y,heading` per line, in metres and degrees; `#`
 /// begins a comment; skips a header line `x,y…`. Lines without heading get `headings`; lines with

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 
@@ -174,6 +176,7 @@ TEST(ValidSites, KeepOrderAndComeOnce) {
         return angles;
     };
     SilentProgress progress;
+    bool is_complete = true;
     const SiteValidity validity(room, {});
     const auto sites = validSites(validity,
                                   {{{2, 0}, headings({0, 90})},
@@ -182,12 +185,40 @@ TEST(ValidSites, KeepOrderAndComeOnce) {
                                    {{2, 0}, headings({90, 180})},
                                    {{9, 9}, headings({0})},
                                    {{-2, -0.0}, headings({5})}},
-                                  progress);
+                                  progress, is_complete);
     ASSERT_EQ(sites.size(), 2U);
     EXPECT_EQ(sites[0], (Site{{2, 0}, headings({0, 90, 180})}));
     EXPECT_EQ(sites[1], (Site{{-2, 0}, headings({5})}));
-    EXPECT_TRUE(validSites(validity, {}, progress).empty());
-    EXPECT_TRUE(validSites(validity, {{{9, 9}, headings({0})}}, progress).empty());
+    EXPECT_TRUE(validSites(validity, {}, progress, is_complete).empty());
+    EXPECT_TRUE(validSites(validity, {{{9, 9}, headings({0})}}, progress, is_complete).empty());
+}
+
+/// Says stop from the first.
+class Stopped final : public Progress {
+  public:
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
+    void advance(std::int64_t count) override { done += count; }
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return true; }
+    std::atomic<std::int64_t> done = 0;
+};
+
+TEST(ValidSites, AreASampleAfterAStop) {
+    const Environment room = roomOf("ispace size=80,60,2.5\n");
+    std::vector<Site> all;
+    for (int i = 0; i < 200; ++i)
+        for (int k = 0; k < 200; ++k)
+            all.push_back({{-39 + 78 * i / 200.0, -29 + 58 * k / 200.0}, {Angle()}});
+    Stopped stopped;
+    bool is_complete = true;
+    const auto sites = validSites(SiteValidity(room, {}), all, stopped, is_complete);
+    EXPECT_FALSE(is_complete);
+    EXPECT_EQ(stopped.done, 512);
+    EXPECT_EQ(sites.size(), 512U);
+    Box2 box;
+    for (const Site& site : sites) box.add(site.place);
+    EXPECT_GT(box.width(), 70);
+    EXPECT_GT(box.depth(), 50);
 }
 
 std::vector<Site> sitesOf(const std::string& text) {
