@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <optional>
 #include <set>
 #include <utility>
@@ -109,6 +110,27 @@ struct ExactGain::Data {
     };
     std::vector<Surroundings> around = {};
 
+    /// A layer of missing floor with the boxes of its curves.
+    struct Missing {
+        Layer layer;
+        std::vector<Box2> boxes;
+
+        explicit Missing(Layer floor) : layer(std::move(floor)) {
+            for (const Curve& curve : layer.curves) boxes.push_back(boundsOfAll({&curve, 1}));
+        }
+        /// Adds the curves that a box meets: the others do not divide it, and it lies outside them.
+        void addIn(const Box2& box, std::vector<Layer>& layers) const {
+            std::vector<Curve> near;
+            for (std::size_t i = 0; i < boxes.size(); ++i)
+                if (boxes[i].meets(box)) near.push_back(layer.curves[i]);
+            if (!near.empty()) layers.push_back(markLayer(std::move(near), layer.marks));
+        }
+    };
+    /// Of prepareAll(), until put(): floor that no sensor sees, and that one of them alone sees.
+    bool is_prepared = false;
+    std::vector<Missing> unseen = {};
+    std::vector<std::vector<Missing>> alone = {};
+
     [[nodiscard]] View viewOf(const Sensor& sensor) const {
         auto region = sight.regionOf(sensor);
         if (!region)
@@ -182,13 +204,62 @@ struct ExactGain::Data {
         }
     }
 
+    void prepareAll() {
+        std::vector<Layer> layers;
+        addFloors(floors, layers);
+        for (const View& view : standing) layers.push_back(view.layer);
+        for (Layer& layer : layers) layer.number = 0;
+        for (std::size_t i = 0; i < moving.size(); ++i) {
+            layers.push_back(moving[i].layer);
+            layers.back().number = static_cast<std::int64_t>(i) + 1;
+        }
+        // Floor that several see is one face, without the lines of their views.
+        const auto coarse = [](const LayerLabel& label) {
+            return label.marks == 0 || label.count > 1 ? LayerLabel() : label;
+        };
+        const Overlay overlay(layers, {},
+                              {.label = coarse, .add_area = [](const LayerLabel&, double) {}});
+        const auto add_where = [&](std::vector<Missing>& found, auto is_missing) {
+            for (std::size_t i = 0; i < floors.size(); ++i) {
+                const std::uint64_t mark = std::uint64_t{1} << i;
+                std::vector<Curve> curves = overlay.curves([&](const LayerLabel& label) {
+                    return label.marks == mark && is_missing(label);
+                });
+                if (!curves.empty()) found.emplace_back(markLayer(std::move(curves), mark));
+            }
+        };
+        add_where(unseen, [](const LayerLabel& label) { return label.count == 0; });
+        std::vector<char> has_own(moving.size() + 1);
+        for (const Overlay::Edge& edge : overlay.edges())
+            for (const LayerLabel& label : {edge.left, edge.right})
+                if (label.count == 1) has_own[static_cast<std::size_t>(label.numbers)] = 1;
+        alone.resize(moving.size());
+        for (std::size_t i = 0; i < moving.size(); ++i)
+            if (has_own[i + 1] != 0)
+                add_where(alone[i],
+                          [own = static_cast<std::int64_t>(i) + 1](const LayerLabel& label) {
+                              return label.count == 1 && label.numbers == own;
+                          });
+        is_prepared = true;
+    }
+
+    /// Returns the layers of floor in a box that lacks exactly the selected sensor.
+    [[nodiscard]] std::vector<Layer> missingIn(const Box2& box) const {
+        if (!is_prepared) return missing;
+        std::vector<Layer> layers;
+        for (const Missing& floor : unseen) floor.addIn(box, layers);
+        for (const Missing& floor : alone[in_hand]) floor.addIn(box, layers);
+        return layers;
+    }
+
     [[nodiscard]] double weightOf(std::uint64_t marks) const {
         return marks == 0 ? 0 : floors[static_cast<std::size_t>(std::countr_zero(marks))].weight;
     }
 
     [[nodiscard]] double gainOf(const View& view) const {
-        if (view.layer.curves.empty() || missing.empty()) return 0;
-        std::vector<Layer> layers = missing;
+        if (view.layer.curves.empty()) return 0;
+        std::vector<Layer> layers = missingIn(view.box);
+        if (layers.empty()) return 0;
         layers.push_back(view.layer);
         double gain = 0;
         Overlay(layers).addAreas([&](const LayerLabel& label, double area) {
@@ -240,8 +311,18 @@ double ExactGain::value() const {
     return std::max(0.0, value);
 }
 
+bool ExactGain::prepareAll() {
+    if (data_->multiplicity != 1) return false;
+    for (const std::vector<View>& views : {std::cref(data_->standing), std::cref(data_->moving)})
+        for (const View& view : views)
+            if (view.layer.number != kOneSet) return false;
+    data_->prepareAll();
+    return true;
+}
+
 void ExactGain::take(std::size_t sensor) {
     data_->in_hand = sensor;
+    if (data_->is_prepared) return;
     data_->look(common(data_->moving[sensor].box, data_->floor_box));
 }
 
@@ -251,6 +332,7 @@ std::vector<double> ExactGain::gains(std::span<const Pose3> poses) {
                       [&](std::size_t i) { views[i] = data_->viewOf(data_->in_hand, poses[i]); });
     Box2 all;
     for (const auto& view : views) {
+        if (data_->is_prepared) break;
         const Box2 box = common(view->box, data_->floor_box);
         if (data_->near.contains(box)) continue;
         all.add(box.low);
@@ -272,6 +354,10 @@ std::vector<double> ExactGain::gains(std::span<const Pose3> poses) {
 
 void ExactGain::put(const Pose3& pose) {
     data_->moving[data_->in_hand] = data_->viewOf(data_->in_hand, pose);
+    if (!std::exchange(data_->is_prepared, false)) return;
+    data_->unseen.clear();
+    data_->alone.clear();
+    take(data_->in_hand);
 }
 
 bool ExactGain::turns(std::size_t sensor) const {

@@ -87,6 +87,11 @@ class ExactGain {
     /// Returns the weight covered at the current poses. O(n log n) in all regions and walls.
     [[nodiscard]] double value() const;
 
+    /// Computes at once, for all sensors, the floor that lacks exactly the one of them, until put()
+    /// moves one: take() and gains() then read the neighbourhood of views alone, without an overlay
+    /// of the other sensors'. Returns false, without effect, for receivers and several sensors a
+    /// point. O(n log n) in all regions, their crossings and walls.
+    bool prepareAll();
     /// Selects the sensor that moves from here on; all others stay.
     void take(std::size_t sensor);
     /// Computes the gain of the selected sensor over the others at each of these poses, on all

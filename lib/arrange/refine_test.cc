@@ -52,6 +52,42 @@ bool isOnLattice(double value, double per_unit) {
     return std::abs(value * per_unit - std::round(value * per_unit)) < 1e-6;
 }
 
+TEST(ExactGain, OfAllAtOnceIsThatOfEach) {
+    const Scene scene = sceneOf("ispace size=12,9\ncube at=1,1 size=1,2,1\ncube at=-3,-1 size=1\n");
+    const VisibleArea sight(scene.environment, 0);
+    std::vector<Sensor> sensors;
+    for (int i = 0; i < 12; ++i)
+        sensors.push_back({std::to_string(i), laserOfRange(3 + i % 3, i % 2 == 0 ? 360 : 120),
+                           poseAt(-5 + i % 4 * 3.1, -4 + i / 4 * 3.7, 37.0 * i)});
+    FloorWeights weights;
+    weights.weights = {{box(-2, -2, 3, 3), 2.5}};
+    for (const FloorWeights& floor : {FloorWeights(), weights}) {
+        ExactGain each(scene, sight, sensors, floor, 1), at_once(scene, sight, sensors, floor, 1);
+        ASSERT_TRUE(at_once.prepareAll());
+        for (std::size_t i = 0; i < sensors.size(); ++i) {
+            std::vector<Pose3> poses = {sensors[i].pose};
+            for (int turn = 30; turn < 360; turn += 60)
+                poses.push_back(
+                    poseAt(sensors[i].pose.position.x + 0.3, sensors[i].pose.position.y, turn));
+            each.take(i);
+            at_once.take(i);
+            const auto wanted = each.gains(poses), gains = at_once.gains(poses);
+            for (std::size_t k = 0; k < poses.size(); ++k)
+                EXPECT_NEAR(gains[k], wanted[k], 1e-6) << i << ' ' << k;
+        }
+        // One that moves makes the others' gains anew.
+        each.take(3);
+        each.put(poseAt(2, 2, 10));
+        at_once.take(3);
+        at_once.put(poseAt(2, 2, 10));
+        each.take(4);
+        at_once.take(4);
+        EXPECT_NEAR(at_once.gains(std::span(&sensors[4].pose, 1))[0],
+                    each.gains(std::span(&sensors[4].pose, 1))[0], 1e-6);
+    }
+    EXPECT_FALSE(ExactGain(scene, sight, sensors, {}, 2).prepareAll());
+}
+
 TEST(Refine, ADiscComesOutOfItsCorner) {
     const Scene scene = sceneOf("ispace size=8,6\n");
     const SiteValidity validity(scene.environment, {});

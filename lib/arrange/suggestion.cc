@@ -94,6 +94,7 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     });
     const VisibleArea sight(now.scene.environment, options_.measure.plane);
     ExactGain gain(others, sight, sensors, weightsFor(now), 1);
+    gain.prepareAll();
     RuleTrials rules_of_cameras(now, options_, privateFloorOf(now.scene.environment));
     std::optional<Trial> turn, shift;
     const auto attempt = [&](std::vector<Trial> trials, std::optional<Trial>& best) {
@@ -134,7 +135,6 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
             if (validity.isValid(sensors[i].pose.position.onFloor() + by))
                 trials.push_back({i, 0, by});
         if (!trials.empty()) attempt(trials, shift);
-        gain.put(sensors[i].pose);
     }
     std::vector<Suggestion> found;
     if (turn) {
@@ -184,10 +184,10 @@ ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Scene& home,
 std::optional<Suggestion> Adviser::addition(const MeasuredState& now,
                                             const std::vector<SensorGroup>& groups,
                                             const ArrangeOptions& options) {
-    SilentProgress silent;
+    StopsWith stops(progress_);
     Arrangement found;
     try {
-        found = arrange(now.scene, groups, options, silent);
+        found = arrange(now.scene, groups, options, stops);
     } catch (const UnmetError&) {
         return std::nullopt;
     }
@@ -297,8 +297,9 @@ std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& cover
     progress.begin("suggestions", 0);
     std::vector<Suggestion> gains = adviser.moves(now);
     std::optional<Suggestion> whole;
-    if (now.missing > 0) whole = adviser.together(now, gains);
-    if (auto piece = adviser.furniture(now)) gains.push_back(std::move(*piece));
+    if (now.missing > 0 && !progress.stopped()) whole = adviser.together(now, gains);
+    if (auto piece = progress.stopped() ? std::nullopt : adviser.furniture(now))
+        gains.push_back(std::move(*piece));
     const double least = kWorthwhile * coverage.report.indoor_area;
     std::erase_if(gains, [&](const Suggestion& suggestion) {
         // Removals are for `whole`.
@@ -313,7 +314,8 @@ std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& cover
         gains.insert(gains.begin(), std::move(*whole));
     }
     if (auto cheaper = adviser.replacement(now)) gains.push_back(std::move(*cheaper));
-    if (auto useless = adviser.removal(now)) gains.push_back(std::move(*useless));
+    if (auto useless = progress.stopped() ? std::nullopt : adviser.removal(now))
+        gains.push_back(std::move(*useless));
     progress.end();
     if (gains.size() > options.most) gains.resize(options.most);
     return gains;

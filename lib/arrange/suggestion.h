@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +40,20 @@ struct Suggestion {
 
 /// Returns the word of reports: "add".
 std::string_view nameOf(Suggestion::Kind kind);
+
+/// Shows no progress, and says stop when another one does: of searches within a search.
+class StopsWith final : public Progress {
+  public:
+    /// Stores the reference.
+    explicit StopsWith(const Progress& whole) : whole_(whole) {}
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
+    void advance(std::int64_t /*count*/) override {}
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return whole_.stopped(); }
+
+  private:
+    const Progress& whole_;
+};
 
 struct SuggestOptions {
     std::size_t most = 5;          ///< number of suggestions

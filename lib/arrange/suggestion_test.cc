@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string_view>
 
 #include "support/test_arrange.h"
 
@@ -213,6 +215,34 @@ TEST(Suggestions, AddALaserToARoomWithOverAMillionCandidatesAtTheUsualStep) {
 TEST(Suggestions, AreNoneForASceneThatSeesAll) {
     const Advised advised = adviseOn(kHall, "laser id=l at=0,0 fov=360 range=20\n");
     EXPECT_TRUE(advised.suggestions.empty());
+}
+
+/// Says stop after some suggestions were measured.
+class StopsAfter final : public Progress {
+  public:
+    explicit StopsAfter(int most) : most_(most) {}
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
+    void advance(std::int64_t count) override { done_ += count; }
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return done_ >= most_; }
+
+  private:
+    std::int64_t most_, done_ = 0;
+};
+
+TEST(SuggestChanges, EndAtOnceAfterAStop) {
+    const Document placed = layoutFrom("laser at=-3,-2 range=2\nlaser at=2,1 range=2\n");
+    const Scene scene = roomScene("#env 1\nispace size=8,6\ncube at=0,0 size=1\n", &placed);
+    SuggestOptions options;
+    options.measure.cells = CellSize{0.25};
+    const Coverage coverage = coverageOf(scene, options.measure);
+    SilentProgress silent;
+    const auto all = suggestChanges(scene, coverage, options, DeviceCatalogue(), silent);
+    EXPECT_GE(all.size(), 3U);
+    StopsAfter at_once(0), later(2);
+    EXPECT_TRUE(suggestChanges(scene, coverage, options, DeviceCatalogue(), at_once).empty());
+    EXPECT_LT(suggestChanges(scene, coverage, options, DeviceCatalogue(), later).size(),
+              all.size());
 }
 
 }  // namespace
