@@ -12,6 +12,7 @@
 
 #include "arrange/sensor_group.h"
 #include "base/error.h"
+#include "geom/curve_clip.h"
 #include "geom/overlay/overlay.h"
 #include "scene/sensor/ultrasound.h"
 
@@ -135,7 +136,8 @@ struct ExactGain::Data {
         auto region = sight.regionOf(sensor);
         if (!region)
             throw UsageError(sensor.id + " cannot be refined: its exact region is not known");
-        return {std::move(*region), isPartial(sensor.model)};
+        // Far ends of views would coarsen the lattice of overlays.
+        return {cutAlong(*region, floor_box).inside, isPartial(sensor.model)};
     }
     [[nodiscard]] View viewOf(std::size_t sensor, const Pose3& pose) const {
         return viewOf({sensors[sensor].id, sensors[sensor].model, pose});
@@ -308,7 +310,8 @@ double ExactGain::value() const {
         if (Data::setsAt(label) >= data_->multiplicity)
             value += data_->weightOf(label.marks) * area;
     });
-    return std::max(0.0, value);
+    // Floor that is seen as a whole adds up to its area in another order.
+    return std::clamp(value, 0.0, std::max(0.0, total()));
 }
 
 bool ExactGain::prepareAll() {

@@ -181,7 +181,7 @@ class LayoutTrials {
         options.is_valid = [this](std::size_t, Point2 p) { return isValid(p); };
         const Refined refined = refine(model_.scene(), model_.sight(), sensors,
                                        model_.options().weights, options, progress);
-        PosedLayout layout{refined.after};
+        PosedLayout layout{std::min(refined.after, total_)};
         for (const Pose3& pose : refined.poses)
             layout.poses.push_back({pose.position.onFloor(), pose.heading});
         return layout;
@@ -272,6 +272,20 @@ void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
     (void)floorAt(scene, heightOf(options));
 }
 
+namespace {
+
+/// Area times weight of a whole floor.
+double freeWeight(const poses::PoseFloor& floor) {
+    double weight = 0;
+    for (std::size_t i = 0; i < floor.triangles().size(); ++i) {
+        const auto corners = floor.cornersOf(i);
+        weight += floor.weigh({corners.begin(), corners.end()});
+    }
+    return weight;
+}
+
+}  // namespace
+
 void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& progress) {
     const std::vector<Region> floor = floorAt(model.scene(), heightOf(model.options()));
     if (floor.empty()) return;
@@ -308,10 +322,13 @@ void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& prog
         arrangement.sensors = std::move(all);
         arrangement.unplaced = 0;
     }
-    arrangement.refined_after = std::max(arrangement.refined_after, layout.area);
-    const double bound = std::min(found.bound, trials.total());
+    // Cells of the bound reach beyond the free floor, whose area bounds what any layout sees. An
+    // area seen may exceed that by rounding.
+    const double bound = std::min({found.bound, freeWeight(cells), trials.total()});
+    const double seen = std::min(layout.area, bound);
+    arrangement.refined_after = std::max(arrangement.refined_after, seen);
     arrangement.poses_bound =
-        PosesBound{layout.area, bound, trials.total(), found.boxes, found.tuples, nullptr};
+        PosesBound{seen, bound, trials.total(), found.boxes, found.tuples, nullptr};
     if (options.certificate != nullptr)
         arrangement.poses_bound->certificate =
             std::make_shared<const PoseCertificate>(std::move(certificate));
@@ -391,8 +408,9 @@ CheckedPoses checkPoses(const Scene& scene, const FloorWeights& weights, int tim
     Worlds worlds(scene.environment);
     if (times == 1 && weights.isUniform()) {
         checked.floor = totalArea(floor);
+        const CoverageReport report = measureCoverage(scene, worlds, {}).report;
         checked.found =
-            measureCoverage(scene, worlds, {}).report.total_effective_area.exact.value_or(0);
+            std::min(report.free_coverage.exact.value_or(0) * report.free_area, checked.floor);
         return checked;
     }
     const VisibleArea sight(scene.environment, 0, &worlds);

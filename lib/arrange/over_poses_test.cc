@@ -6,6 +6,9 @@
 #include <numbers>
 #include <string>
 
+#include "base/number.h"
+#include "env/level.h"
+#include "geom/arrangement.h"
 #include "scene/placement_schemas.h"
 #include "support/test_arrange.h"
 #include "support/test_problems.h"
@@ -110,6 +113,32 @@ TEST(OverPoses, RefusesSheetsOfWhichAPartStandsOutsideOfBodies) {
                         "cube at=0,-1 size=0.4,0.4,1\n")
                   .find("without thickness"),
               std::string::npos);
+}
+
+// Lasers that see all of an L-shaped room: areas add up to its floor, up to rounding.
+TEST(OverPoses, NoValueOrBoundIsAboveTheFloor) {
+    for (int i = 0; i < 18; ++i) {
+        const double a = 3.9 + 0.5 * (i % 6), b = 2.1 + 0.3 * (i % 5), c = 1.7 + 0.4 * (i % 4);
+        const std::string width = formatDouble(a), depth = formatDouble(b + c),
+                          low = formatDouble(b), inner = formatDouble(a - 1.2 - 0.3 * (i % 3));
+        const Scene scene =
+            roomScene("#env 1\nfence closed=yes path=0,0;" + width + ",0;" + width + ',' + low +
+                      ';' + inner + ',' + low + ';' + inner + ',' + depth + ";0," + depth +
+                      "\ninside at=1,1\n" + (i % 2 == 0 ? "" : "cube at=0.5,0.5 size=0.2,0.2,1\n"));
+        ArrangeOptions options = coarse();
+        options.refine = options.over_poses = true;
+        const auto groups = groupsOf(scene, {"laser,range=9,fov=180:2"});
+        const Arrangement found = arranged(scene, groups, options);
+        ASSERT_TRUE(found.poses_bound);
+        const double floor = totalArea(scene.environment.level(0.15)->freeFloor());
+        EXPECT_LE(found.poses_bound->bound, floor + 1e-9 * floor) << i;
+        EXPECT_LE(found.poses_bound->found, found.poses_bound->bound) << i;
+        EXPECT_LE(found.refined_after, floor + 1e-9 * floor) << i;
+        const Document layout =
+            layoutDocument({{}, "", scene.digest(), "all", "swap"}, nullptr, groups, found);
+        EXPECT_LE(layout.records.back().number("value"), 1) << i;
+        EXPECT_LE(layout.records.back().number("bound"), 1) << i;
+    }
 }
 
 TEST(OverPoses, BoundsTheCoverageOfAnyPoses) {
