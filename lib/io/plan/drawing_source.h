@@ -24,6 +24,9 @@ struct DrawingSource {
     /// Computes the floor area of an import with other options, in square metres; null omits these
     /// messages. \throws FormatError as the import does
     std::function<double(const ImportOptions&)> area = {};
+    /// Receives layers, as globs, that alone enclose more floor than all lines do, see
+    /// warnOfWallNames(); may be null.
+    std::vector<std::string>* better_layers = nullptr;
 };
 
 /// True if a list of words holds this one. O(words)
@@ -55,6 +58,10 @@ std::string otherUnitHint(double extent, const DrawingSource& drawing,
 void checkScale(double extent, const DrawingSource& drawing, const std::string& name,
                 const ImportOptions& options);
 
+/// Lower case of ASCII, Latin, Greek and Cyrillic letters below U+0460 in UTF-8, in any locale;
+/// lower case has as many bytes. Other bytes stay.
+std::string lowerCased(std::string_view text);
+
 /// Returns true if one of the globs matches the name of a layer; letters match in either case.
 bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer);
 
@@ -63,10 +70,23 @@ bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer)
 /// windows of them.
 bool isWallName(std::string_view name);
 
-/// Warns if walls from these layers, blocks and groups alone would enclose another room.
+/// Returns true if a word of the name of a layer means furniture, dimensions, text, hatching, axes,
+/// electrical or plumbing in one of two dozen languages (A-FURN, Möbel, cotas, размеры, 家具), and
+/// it is no isWallName().
+bool isNoWallName(std::string_view name);
+
+/// Compares the room with that of walls from these layers, blocks and groups alone. A larger room,
+/// which other lines clutter, is passed to DrawingSource::better_layers, if there is one; else, and
+/// for a smaller one, warns. Rooms below a square metre are no advice.
 /// \param names with their numbers of lines \param area of the room that was taken
 void warnOfWallNames(const std::map<std::string, std::size_t>& names, double area,
                      const DrawingSource& drawing, const ImportOptions& options,
                      ImportRecords& out);
+
+/// Imports a drawing; if layers with names of walls alone enclose more floor than all lines do,
+/// from these layers, and says so. \param import takes options and DrawingSource::better_layers
+Document importWithNamedWalls(
+    const ImportOptions& options,
+    const std::function<Document(const ImportOptions&, std::vector<std::string>*)>& import);
 
 }  // namespace ispace

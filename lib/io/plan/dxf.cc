@@ -31,6 +31,11 @@ using MissingBlocks = std::map<std::string, std::size_t>;
 /// Beyond these a bulge is a straight line, or a full circle.
 constexpr double kMinBulge = 1e-9, kMaxBulge = 1e4;
 
+/// Widths of lines and of hatches, in metres, that are the thickness of walls.
+constexpr double kThinnestDrawn = 0.04, kThickestDrawn = 0.8;
+/// Metres: hatches with a shorter boundary are no walls.
+constexpr double kLeastAround = 2;
+
 /// Metres: beyond all surveyors' coordinates.
 constexpr double kOffEarth = 1e8;
 
@@ -50,6 +55,15 @@ class Expander {
         shapes_.reserve(drawing_.entities.size());
         add(drawing_.entities, metres, "", 0);
         return std::move(shapes_);
+    }
+
+    /// Entities that may be walls and were not read, on layers that are used.
+    [[nodiscard]] std::vector<UnreadThing> unread() const {
+        std::vector<UnreadThing> all;
+        for (const auto* list : {&drawing_.unread, &unread_})
+            for (const UnreadThing& thing : *list)
+                if (layers_.mayBeWall(thing.layer)) all.push_back(thing);
+        return all;
     }
 
     /// Moves a drawing of which most stands in surveyors' coordinates to the origin. \return by
@@ -140,10 +154,15 @@ class Expander {
     void addInsert(const DxfEntity& entity, const DxfInsert& insert, const Affine& outer,
                    const std::string& layer, int depth) {
         const auto block = drawing_.blocks.find(insert.block);
-        if (block == drawing_.blocks.end()) {
+        if (layers_.isHidden(layer)) return;
+        if (block == drawing_.blocks.end() ||
+            (block->second.is_external && block->second.entities.empty())) {
             ++missing_[insert.block];
+            unread_.push_back(
+                {"external reference " + insert.block, layer, insert.at, entity.line, {}});
             return;
         }
+        for (const UnreadThing& thing : block->second.unread) unread_.push_back(thing);
         if (depth == kMaxBlockDepth)
             fail(entity, "blocks in each other more than " + std::to_string(kMaxBlockDepth) +
                              " deep: does " + excerpt(insert.block) + " contain itself?");
@@ -179,6 +198,8 @@ class Expander {
             addEllipse(entity, *ellipse, frame);
         else if (const auto* spline = std::get_if<DxfSpline>(&entity.shape))
             addSpline(entity, *spline, frame);
+        else if (const auto* hatch = std::get_if<DxfHatch>(&entity.shape))
+            return addHatch(entity, *hatch, frame);
         requireWithin(kOffEarth, shape_);
         if (shape_.path.points.size() >= 2) shapes_.push_back(std::move(shape_));
     }
@@ -197,12 +218,40 @@ class Expander {
         spend(entity, vertices.size());
         Polygon& points = shape_.path.points;
         shape_.path.closed = polyline.closed && vertices.size() > 1;
+        const double width = polyline.width * frame.largestScale() / std::numbers::sqrt2;
+        if (width >= kThinnestDrawn && width <= kThickestDrawn) shape_.path.thickness = width;
         for (std::size_t i = 0; i < vertices.size(); ++i) {
             points.push_back(frame * vertices[i].at);
             const bool is_last = i + 1 == vertices.size();
             if (is_last && !shape_.path.closed) break;
             addPiece(entity, vertices[i], vertices[is_last ? 0 : i + 1].at, frame);
         }
+    }
+
+    /// Adds the rings of a hatch that is as narrow as walls: their filling. Others are patterns of
+    /// floors, which end where walls do, or of furniture.
+    void addHatch(const DxfEntity& entity, const DxfHatch& hatch, const Affine& frame) {
+        const PlanShape blank = shape_;
+        std::vector<PlanShape> rings;
+        for (const DxfPolyline& ring : hatch.rings) {
+            shape_ = blank;
+            addPolyline(entity, ring, frame);
+            requireWithin(kOffEarth, shape_);
+            rings.push_back(std::move(shape_));
+        }
+        double area = 0, around = 0;
+        for (const PlanShape& ring : rings) {
+            const Polygon& points = ring.path.points;
+            const auto depth = std::count_if(rings.begin(), rings.end(), [&](const PlanShape& r) {
+                return &r != &ring && locate(r.path.points, points.front()) == Side::Inside;
+            });
+            area += (depth % 2 == 0 ? 1 : -1) * std::abs(signedArea(points));
+            for (std::size_t i = 0; i < ring.path.pieceCount(); ++i)
+                around += distance(ring.path.piece(i).a, ring.path.piece(i).b);
+        }
+        const double width = around > 0 ? 2 * area / around : 0;
+        if (width < kThinnestDrawn || width > kThickestDrawn || around < kLeastAround) return;
+        for (PlanShape& ring : rings) shapes_.push_back(std::move(ring));
     }
 
     /// Adds the line or arc between a vertex and the next one.
@@ -281,6 +330,7 @@ class Expander {
     MissingBlocks& missing_;
     std::vector<const std::string*> blocks_;  // around the entity, the outermost first
     std::unordered_map<std::string, bool> called_walls_;
+    std::vector<UnreadThing> unread_;  // in inserted blocks
     std::vector<PlanShape> shapes_;
     PlanShape shape_;  // in the making
 };
@@ -315,7 +365,9 @@ class DxfImporter {
         : drawing_(drawing), name_(name), bytes_(bytes), schemas_(schemas) {}
 
     /// \param hints whether the drawing may be imported again to report the effect of other options
-    [[nodiscard]] DxfImport import(const ImportOptions& asked, bool hints) const {
+    /// \param better_layers see DrawingSource
+    [[nodiscard]] DxfImport import(const ImportOptions& asked, bool hints,
+                                   std::vector<std::string>* better_layers = nullptr) const {
         Budget whole(bytes_, asked.max_work);
         ImportOptions options = asked;
         options.max_work.whole = &whole;  // pays for curves and blocks, and for the plan of them
@@ -327,6 +379,7 @@ class DxfImporter {
                 other.max_work = asked.max_work;  // as much again
                 return import(other, false).area;
             };
+        source.better_layers = better_layers;
         MissingBlocks missing;
         const bool is_ours = options.wall_layers.empty() && options.door_layers.empty() &&
                              options.window_layers.empty() && isDrawnRoom(drawing_);
@@ -334,6 +387,7 @@ class DxfImporter {
         LayerSorter sorter(drawing_.hidden_layers, own);
         Expander expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter);
         std::vector<PlanShape> expanded = expander.expand(source.metres_per_unit);
+        if (!is_ours) leaveOutStrays(expanded, out);
         const auto moved = expander.moveHome(expanded);
         if (moved) out.tell(surveyText(*moved, "drawing"));
         const double metres = source.metres_per_unit;
@@ -344,6 +398,10 @@ class DxfImporter {
             out.note("entities left out: " + listText(drawing_.left_out));
         if (!missing.empty())
             out.note("inserts of blocks that the file lacks: " + listText(missing));
+        warnOfUnread(expander.unread(),
+                     "explode it, or bind the reference, in the program that drew it, and export "
+                     "lines; --wall-layer names the layers that count",
+                     out);
         if (is_ours) {
             out.note("a room as envc draws it");
             if (own.inside.empty() && own.known_inside.empty() && own.rooms == RoomChoice::Largest)
@@ -403,7 +461,11 @@ class DxfImporter {
 Document readDxf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
     const DxfDrawing drawing = readDrawing(bytes, name);
-    return DxfImporter(drawing, name, bytes.size(), schemas).import(options, true).document;
+    const DxfImporter importer(drawing, name, bytes.size(), schemas);
+    return importWithNamedWalls(
+        options, [&](const ImportOptions& asked, std::vector<std::string>* better_layers) {
+            return importer.import(asked, true, better_layers).document;
+        });
 }
 
 }  // namespace ispace

@@ -65,9 +65,22 @@ constexpr std::size_t kMaxName = 255;
 constexpr double kMaxDxfNumber = 1e12;  // of any number that counts: drawings end far below
 
 /// Flags of LAYER, of POLYLINE, and of VERTEX: a point of the frame that a curve was fitted to.
-constexpr int kFrozen = 1, kClosed = 1, kPolyline3d = 8, kMesh = 16 + 64, kFrameVertex = 16;
+constexpr int kFrozen = 1, kClosed = 1, kPolyline3d = 8, kGridMesh = 16, kFaceMesh = 64,
+              kMesh = kGridMesh + kFaceMesh, kFrameVertex = 16, kMeshPoint = 64, kMeshFace = 128;
+/// Flags of BLOCK, of MLINE, and of a path of HATCH.
+constexpr int kExternal = 4, kClosedMline = 2, kPolylinePath = 2;
 
-bool isInteger(int code) { return code >= 60 && code < 100; }
+/// Entities that are never walls; all others may be.
+constexpr std::array<std::string_view, 24> kNoWalls{
+    "TEXT",     "MTEXT",  "ATTDEF",    "ATTRIB",      "RTEXT",      "ARCALIGNEDTEXT",
+    "POINT",    "LEADER", "DIMENSION", "MULTILEADER", "MLEADER",    "ARC_DIMENSION",
+    "VIEWPORT", "XLINE",  "RAY",       "TOLERANCE",   "ACAD_TABLE", "LARGE_RADIAL_DIMENSION",
+    "IMAGE",    "LIGHT",  "SUN",       "CAMERA",      "WIPEOUT",    "OLE2FRAME"};
+
+/// Beyond these a hatch is a pattern, not a wall.
+constexpr std::size_t kMaxRings = 100;
+
+bool isInteger(int code) { return (code >= 60 && code < 100) || code == 290; }
 
 /// A vertex of a polyline, or a control point.
 struct Vertex {
@@ -87,6 +100,8 @@ struct Entity {
     std::vector<std::pair<int, double>> numbers;  // by code; of two the later counts
     std::vector<Vertex> vertices;
     std::vector<double> knots, weights;
+    std::vector<std::pair<int, double>> sequence;  // numbers of MLINE and HATCH, in order
+    double width = 0;                              // of a polyline, the least of its vertices
 
     void begin(const Kind* entity_kind, int entity_line) {
         kind = entity_kind;
@@ -97,6 +112,8 @@ struct Entity {
         vertices.clear();
         knots.clear();
         weights.clear();
+        sequence.clear();
+        width = 0;
     }
 
     [[nodiscard]] bool has(int code) const {
@@ -129,7 +146,9 @@ struct Kind {
 };
 
 DxfShape polylineOf(const Entity& entity) {
-    DxfPolyline polyline{{}, (entity.flags() & kClosed) != 0};
+    DxfPolyline polyline{{}, (entity.flags() & kClosed) != 0, entity.width};
+    if (entity.has(40) && entity.has(41))
+        polyline.width = std::min(entity.number(40), entity.number(41));
     polyline.vertices.reserve(entity.vertices.size());
     for (const Vertex& vertex : entity.vertices)
         polyline.vertices.push_back({{*vertex.x, *vertex.y}, vertex.bulge});
@@ -144,7 +163,186 @@ DxfShape ellipseOf(const Entity& entity) {
                       entity.number(42, 2 * std::numbers::pi)};
 }
 
+/// Returns a closed path through four corners; the last two may be equal.
+DxfShape quadrangle(const Entity& entity, const std::array<int, 4>& codes) {
+    DxfPolyline path{{}, true};
+    for (const int code : codes)
+        path.vertices.push_back({entity.has(code) ? entity.point(code) : entity.point(12)});
+    return path;
+}
+
+DxfShape solidOf(const Entity& entity) { return quadrangle(entity, {10, 11, 13, 12}); }
+DxfShape faceOf(const Entity& entity) { return quadrangle(entity, {10, 11, 12, 13}); }
+
+/// MLINE and HATCH: see mlineOf() and hatchOf().
+DxfShape sequenceOf(const Entity& /*entity*/) { return DxfHatch(); }
+
+/// Returns Bézier curves, as a spline of degree 3, through points: the C2 cubic spline with chord
+/// lengths as parameters and straight ends, which CAD programs draw. O(n)
+DxfSpline splineThrough(std::vector<Point2> points) {
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    const std::size_t n = points.size();
+    if (n < 2) return {};
+    std::vector<double> step(n - 1);
+    for (std::size_t i = 0; i + 1 < n; ++i) step[i] = distance(points[i], points[i + 1]);
+    // Thomas' algorithm for the derivatives at the points.
+    std::vector<double> upper(n);
+    std::vector<Vec2> slope(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double before = i == 0 ? 0 : 1 / step[i - 1];
+        const double behind = i + 1 == n ? 0 : 1 / step[i];
+        Vec2 right;
+        if (i > 0) right = right + (3 * before * before) * (points[i] - points[i - 1]);
+        if (i + 1 < n) right = right + (3 * behind * behind) * (points[i + 1] - points[i]);
+        double diagonal = 2 * (before + behind);
+        if (i > 0) {
+            diagonal -= before * upper[i - 1];
+            right = right - before * slope[i - 1];
+        }
+        upper[i] = behind / diagonal;
+        slope[i] = 1 / diagonal * right;
+    }
+    for (std::size_t i = n - 1; i-- > 0;) slope[i] = slope[i] - upper[i] * slope[i + 1];
+    DxfSpline spline{3, {0}, {points.front()}, {}};
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+        spline.knots.insert(spline.knots.end(), 3, static_cast<double>(i));
+        const double third = step[i] / 3;
+        spline.controls.push_back(points[i] + third * slope[i]);
+        spline.controls.push_back(points[i + 1] - third * slope[i + 1]);
+        spline.controls.push_back(points[i + 1]);
+    }
+    spline.knots.insert(spline.knots.end(), 4, static_cast<double>(n - 1));
+    return spline;
+}
+
+/// Returns the lines of an MLINE between its vertices, without the parts cut out of them; and a
+/// line across each of its ends. Numbers along its miters are distances, scaled already.
+std::vector<DxfPolyline> mlineOf(const Entity& entity) {
+    struct Station {
+        Point2 at;
+        Vec2 along, miter;
+        std::vector<std::vector<double>> lines;  // of each: distance along the miter, then cuts
+    };
+    std::vector<Station> stations;
+    bool is_line = false;
+    for (const auto& [code, value] : entity.sequence) {
+        if (code == 11) stations.push_back({{value, 0}, {}, {}, {}});
+        if (stations.empty()) continue;
+        Station& station = stations.back();
+        if (code == 21) station.at.y = value;
+        if (code == 12) station.along.x = value;
+        if (code == 22) station.along.y = value;
+        if (code == 13) station.miter.x = value;
+        if (code == 23) station.miter.y = value;
+        if (code == 74) station.lines.emplace_back();
+        if (code == 74 || code == 75) is_line = code == 74;
+        if (code == 41 && is_line && !station.lines.empty()) station.lines.back().push_back(value);
+    }
+    const auto place = [](const Station& station, std::size_t line) {
+        return station.at + station.lines[line].front() * station.miter;
+    };
+    const auto is_sound = [](const Station& s) {
+        return !s.lines.empty() && std::none_of(s.lines.begin(), s.lines.end(),
+                                                [](const auto& line) { return line.empty(); });
+    };
+    std::vector<DxfPolyline> paths;
+    const std::size_t n = stations.size();
+    if (n < 2 || !std::all_of(stations.begin(), stations.end(), is_sound)) return paths;
+    const std::size_t lines = stations.front().lines.size();
+    for (const Station& s : stations)
+        if (s.lines.size() != lines) return paths;
+    const bool closed = (entity.integer(71) & kClosedMline) != 0;
+    for (std::size_t i = 0; i + (closed ? 0 : 1) < n; ++i) {
+        const Station &from = stations[i], &to = stations[i + 1 == n ? 0 : i + 1];
+        for (std::size_t k = 0; k < lines; ++k) {
+            const Point2 a = place(from, k), b = place(to, k);
+            const double whole = distance(a, b);
+            const std::vector<double>& cuts = from.lines[k];
+            if (!(whole > 0)) continue;
+            // Pairs of distances, where the line begins and ends.
+            for (std::size_t c = 1; c < std::max<std::size_t>(cuts.size(), 2); c += 2) {
+                const double begin = c < cuts.size() ? std::clamp(cuts[c], 0.0, whole) : 0;
+                const double end =
+                    c + 1 < cuts.size() ? std::clamp(cuts[c + 1], 0.0, whole) : whole;
+                if (end > begin)
+                    paths.push_back(
+                        {{{a + (begin / whole) * (b - a)}, {a + (end / whole) * (b - a)}}});
+            }
+        }
+    }
+    if (!closed && lines > 1)
+        for (const Station* end : {&stations.front(), &stations.back()}) {
+            std::size_t low = 0, high = 0;
+            for (std::size_t k = 1; k < lines; ++k) {
+                if (end->lines[k].front() < end->lines[low].front()) low = k;
+                if (end->lines[k].front() > end->lines[high].front()) high = k;
+            }
+            paths.push_back({{{place(*end, low)}, {place(*end, high)}}});
+        }
+    return paths;
+}
+
+/// Returns the rings of a hatch whose boundary consists of polylines, lines and circular arcs;
+/// others are left out.
+std::vector<DxfPolyline> hatchOf(const Entity& entity) {
+    std::vector<DxfPolyline> rings;
+    bool is_path = false, is_polyline = false, is_arc = false, is_straight = false;
+    double center_x = 0, center_y = 0, radius = 0, from = 0, to = 0;
+    for (const auto& [code, value] : entity.sequence) {
+        if (code == 92) {
+            rings.push_back({{}, true});
+            is_path = true;
+            is_polyline = (static_cast<int>(value) & kPolylinePath) != 0;
+            is_arc = is_straight = false;
+        }
+        if (code == 97 || code == 75 || code == 98) is_path = false;
+        if (!is_path) continue;
+        auto& vertices = rings.back().vertices;
+        if (code == 72 && !is_polyline) {
+            is_straight = value == 1;
+            is_arc = value == 2;
+            if (!is_straight && !is_arc) {  // an ellipse or a spline
+                rings.pop_back();
+                is_path = false;
+            }
+        } else if (is_polyline || is_straight) {
+            if (code == 10) vertices.push_back({{value, 0}});
+            if (code == 20 && !vertices.empty()) vertices.back().at.y = value;
+            if (code == 42 && !vertices.empty()) vertices.back().bulge = value;
+        } else if (is_arc) {
+            if (code == 10) center_x = value;
+            if (code == 20) center_y = value;
+            if (code == 40) radius = value;
+            if (code == 50) from = value;
+            if (code == 51) to = value;
+            if (code != 73) continue;
+            const bool left = value != 0;  // else angles are those of its mirror image
+            const double sweep = (to - from) * (left ? 1 : -1);
+            const double start = left ? from : -from;
+            for (const double part : {0.0, 0.5}) {
+                const Vec2 spoke = unitVector(Angle::degrees(start + part * sweep));
+                vertices.push_back({Point2(center_x, center_y) + radius * spoke,
+                                    std::tan(sweep / 8 * std::numbers::pi / 180)});
+            }
+        }
+    }
+    std::erase_if(rings, [](const DxfPolyline& ring) { return ring.vertices.size() < 3; });
+    return rings;
+}
+
 DxfShape splineOf(const Entity& entity) {
+    if (entity.vertices.empty()) {
+        std::vector<Point2> through;
+        for (const auto& [code, value] : entity.sequence)
+            if (code == 11)
+                through.emplace_back(value, 0);
+            else if (code == 21 && !through.empty())
+                through.back().y = value;
+        if ((entity.flags() & kClosed) != 0 && !through.empty() &&
+            through.front() != through.back())
+            through.push_back(through.front());
+        return splineThrough(std::move(through));
+    }
     DxfSpline spline{entity.integer(71, 3), entity.knots, {}, entity.weights};
     for (const Vertex& vertex : entity.vertices) spline.controls.push_back({*vertex.x, *vertex.y});
     return spline;
@@ -162,8 +360,8 @@ DxfShape insertOf(const Entity& entity) {
                      entity.number(45)};
 }
 
-const std::array<Kind, 11>& kinds() {
-    static const std::array<Kind, 11> all{{
+const std::array<Kind, 16>& kinds() {
+    static const std::array<Kind, 16> all{{
         {"LINE",
          {10, 20, 11, 21},
          {},
@@ -184,13 +382,18 @@ const std::array<Kind, 11>& kinds() {
              return DxfArc{e.point(), e.number(40), Angle(), Angle::degrees(360)};
          }},
         {"ELLIPSE", {10, 20, 11, 21, 40}, {41, 42}, ellipseOf, false},
-        {"SPLINE", {}, {71}, splineOf, false},
+        {"SPLINE", {}, {70, 71}, splineOf, false},
+        {"SOLID", {}, {10, 20, 11, 21, 12, 22, 13, 23}, solidOf},
+        {"TRACE", {}, {10, 20, 11, 21, 12, 22, 13, 23}, solidOf},
+        {"3DFACE", {}, {10, 20, 11, 21, 12, 22, 13, 23}, faceOf, false},
+        {"MLINE", {}, {71}, sequenceOf, false},
+        {"HATCH", {}, {}, sequenceOf},
         {"INSERT", {2, 10, 20}, {41, 42, 44, 45, 50, 70, 71}, insertOf},
         {"LWPOLYLINE", {}, {70}, polylineOf},
-        {"POLYLINE", {}, {70}, polylineOf},
-        {"VERTEX", {}, {70}},
-        {"BLOCK", {2}, {10, 20}},
-        {"LAYER", {2}, {62, 70}},
+        {"POLYLINE", {}, {40, 41, 70}, polylineOf},
+        {"VERTEX", {}, {70, 71, 72, 73, 74}},
+        {"BLOCK", {2}, {10, 20, 70}},
+        {"LAYER", {2}, {62, 70, 290}},
     }};
     return all;
 }
@@ -199,13 +402,16 @@ const std::array<Kind, 11>& kinds() {
 constexpr std::array<int, 5> kCommon{60, 67, 210, 220, 230};
 
 template <typename List>
-bool contains(const List& list, int code) {
+bool contains(const List& list, const typename List::value_type& code) {
     return std::find(list.begin(), list.end(), code) != list.end();
 }
 
 class DxfReader {
   public:
-    DxfReader(std::string_view bytes, const std::string& name) : groups_(bytes, name) {}
+    DxfReader(std::string_view bytes, const std::string& name) : groups_(bytes, name) {
+        if (std::any_of(bytes.begin(), bytes.end(), [](char c) { return c < 0; }))
+            collectNames(bytes, name);
+    }
 
     DxfDrawing read() {
         bool ended = false;
@@ -223,20 +429,34 @@ class DxfReader {
                 readSetting(*group);
             } else if (entity_.kind != nullptr) {
                 addGroup(*group);
+            } else if (unread_) {
+                addUnreadGroup(*group);
             }
         }
+        endUnread();
         if (!ended) groups_.fail(groups_.line(), "truncated: the drawing ends without `EOF`");
         if (block_ != nullptr) groups_.fail(groups_.line(), "a BLOCK without ENDBLK");
         return std::move(drawing_);
     }
 
   private:
+    /// Shows all names to the decoder, which decides on one encoding for the file.
+    void collectNames(std::string_view bytes, const std::string& name) {
+        GroupReader groups(bytes, name);
+        while (const auto group = groups.next()) {
+            if (group->code == 0 && group->value == "EOF") break;
+            if ((group->code == 2 || group->code == 8) && group->value.size() <= kMaxName)
+                text_.consider(group->value);
+        }
+    }
+
     void beginEntity(const Group& group) {
+        endUnread();
         const std::string_view type = group.value;
         in_section_name_ = type == "SECTION";
         if (type == "ENDSEC") section_ = {};
         if (section_ == "BLOCKS" && type == "ENDBLK") block_ = nullptr;
-        if (type != "VERTEX") in_polyline_ = false;
+        if (type != "VERTEX") in_polyline_ = in_mesh_ = false;
         const bool drawn = section_ == "ENTITIES" || (section_ == "BLOCKS" && block_ != nullptr);
         const auto kind = std::find_if(kinds().begin(), kinds().end(),
                                        [type](const Kind& k) { return k.name == type; });
@@ -245,7 +465,33 @@ class DxfReader {
                                                                         : drawn);
         entity_.begin(wanted ? &*kind : nullptr, group.line);
         const bool part_of_other = type == "SEQEND" || type == "ATTRIB" || type == "ENDBLK";
-        if (drawn && !wanted && !part_of_other) leaveOut(printable(type.substr(0, 40)));
+        if (!drawn || wanted || part_of_other) return;
+        leaveOut(printable(type.substr(0, 40)));
+        if (!contains(kNoWalls, type))
+            unread_ = UnreadThing{printable(type.substr(0, 40)), {}, {}, group.line, {}};
+    }
+
+    /// Reads the layer and the place of an entity that is left out, whatever else it has.
+    void addUnreadGroup(const Group& group) {
+        if (group.code == 8 && group.value.size() <= kMaxName)
+            unread_->layer = text_.decoded(group.value);
+        const auto number = parseDouble(group.value);
+        if ((group.code == 67 || group.code == 60) && number && *number != 0) unread_.reset();
+        if (!unread_ || !number || std::abs(*number) > kMaxDxfNumber) return;
+        if (group.code == 10 && !unread_->at) unread_->at = Point2(*number, 0);
+        if (group.code == 20 && unread_->at && unread_->at->y == 0) unread_->at->y = *number;
+    }
+
+    void endUnread() {
+        if (unread_) addUnread(std::move(*unread_));
+        unread_.reset();
+    }
+
+    void addUnread(UnreadThing thing) {
+        if (block_ == nullptr) return drawing_.unread.push_back(std::move(thing));
+        thing.block = block_name_;
+        thing.at.reset();
+        block_->unread.push_back(std::move(thing));
     }
 
     void leaveOut(const std::string& what) { ++drawing_.left_out[what]; }
@@ -254,6 +500,7 @@ class DxfReader {
     void readSetting(const Group& group) {
         if (group.code == 9) setting_ = group.value;
         if (group.code == 3 && setting_ == "$DWGCODEPAGE") text_.setCodePage(group.value);
+        if (group.code == 1 && setting_ == "$ACADVER") text_.setVersion(group.value);
         if (group.code == 70 && setting_ == "$INSUNITS")
             drawing_.units = static_cast<int>(integer(group));
     }
@@ -284,10 +531,15 @@ class DxfReader {
         const int code = group.code;
         const bool is_spline = kind.shape == splineOf, is_vertex = kind.name == "VERTEX";
         const bool is_path = kind.name == "LWPOLYLINE";
+        const bool is_sequence = kind.shape == sequenceOf;
         if (code == 8) {
             entity_.layer = text(group);
         } else if (code == 1001) {
             entity_.application = group.value;
+        } else if ((is_sequence && code != 71 && code >= 10 && code < 100 &&
+                    !contains(kCommon, code)) ||
+                   (is_spline && (code == 11 || code == 21))) {
+            addToSequence(group);
         } else if ((code == 10 || code == 20 || (code == 42 && !is_spline)) &&
                    (is_spline || is_vertex || is_path)) {
             addVertexGroup(group, is_vertex);
@@ -304,6 +556,13 @@ class DxfReader {
         }
     }
 
+    /// Numbers of MLINE and HATCH: damaged ones count as 0.
+    void addToSequence(const Group& group) {
+        const auto value = parseDouble(group.value);
+        const bool is_sound = value && std::abs(*value) <= kMaxDxfNumber;
+        entity_.sequence.emplace_back(group.code, is_sound ? *value : 0);
+    }
+
     /// Numbers that only drawings of writeDxf() need: others may have any text here.
     void addSize(const Group& group, bool is_path) {
         const auto value = parseDouble(group.value);
@@ -312,7 +571,7 @@ class DxfReader {
         DrawnSize& size = drawing_.sizes[entity_.line];
         if (group.code == 39) size.height = *value;
         if (group.code == (is_path ? 38 : 30)) size.bottom = *value;
-        if (group.code == 43) size.width = *value;
+        if (group.code == 43) size.width = entity_.width = *value;
         if (group.code == 1041 && entity_.application == kDxfApplication) size.depth = *value;
     }
 
@@ -343,9 +602,12 @@ class DxfReader {
         const Kind& kind = *entity_.kind;
         if (entity_.number(67) != 0) return "in paper space";
         if (entity_.number(60) != 0) return "invisible";
-        if (kind.name == "POLYLINE" && (entity_.flags() & kMesh) != 0) return "mesh";
-        if (kind.shape == splineOf && entity_.vertices.empty())
-            return "SPLINE without control points";
+        if (kind.shape == solidOf || kind.shape == faceOf)
+            for (const int code : {10, 20, 11, 21, 12, 22})
+                if (!entity_.has(code)) return kind.name;
+        if (kind.name == "POLYLINE" && (entity_.flags() & kGridMesh) != 0) return "mesh";
+        if (kind.shape == splineOf && entity_.vertices.empty() && entity_.sequence.empty())
+            return "SPLINE without points";
         if (kind.upright_only && !side()) return "not in the plane of the plan";
         return "";
     }
@@ -371,14 +633,16 @@ class DxfReader {
     void addLayer() {
         const std::string name = text_.decoded(*entity_.name);
         drawing_.layers.insert(name);
-        if (entity_.number(62) < 0 || (entity_.flags() & kFrozen) != 0)
+        const bool is_plotted = entity_.integer(290, 1) != 0 && lowerCased(name) != "defpoints";
+        if (entity_.number(62) < 0 || (entity_.flags() & kFrozen) != 0 || !is_plotted)
             drawing_.hidden_layers.insert(name);
     }
 
     /// Of two blocks with one name the later wins.
     void beginBlock() {
-        block_ = &drawing_.blocks[text_.decoded(*entity_.name)];
-        *block_ = {entity_.point(), {}};
+        block_name_ = text_.decoded(*entity_.name);
+        block_ = &drawing_.blocks[block_name_];
+        *block_ = {entity_.point(), {}, (entity_.flags() & kExternal) != 0};
     }
 
     [[nodiscard]] std::vector<DxfEntity>& entities() {
@@ -386,8 +650,18 @@ class DxfReader {
     }
 
     void addShape() {
-        if (const std::string_view reason = reasonToLeaveOut(); !reason.empty())
-            return leaveOut(std::string(reason));
+        if (const std::string_view reason = reasonToLeaveOut(); !reason.empty()) {
+            leaveOut(std::string(reason));
+            if (reason == "mesh") addUnreadEntity("mesh");
+            return;
+        }
+        if (entity_.kind->shape == sequenceOf) return addSequence();
+        if (entity_.kind->name == "POLYLINE" && (entity_.flags() & kFaceMesh) != 0) {
+            in_mesh_ = true;
+            mesh_layer_ = text_.decoded(entity_.layer);
+            mesh_points_.clear();
+            return;
+        }
         const Kind& kind = *entity_.kind;
         checkVertices();
         DxfShape shape = kind.shape(entity_);
@@ -403,8 +677,56 @@ class DxfReader {
             {std::move(shape), text_.decoded(entity_.layer), mirrored, entity_.line});
     }
 
+    void addUnreadEntity(const char* kind) {
+        addUnread({kind, text_.decoded(entity_.layer), {}, entity_.line, {}});
+    }
+
+    /// Adds the lines of an MLINE, or the boundary of a HATCH.
+    void addSequence() {
+        const std::string layer = text_.decoded(entity_.layer);
+        if (entity_.kind->name == "HATCH") {
+            DxfHatch hatch{hatchOf(entity_)};
+            if (hatch.rings.empty() || hatch.rings.size() > kMaxRings) return leaveOut("HATCH");
+            entities().push_back({std::move(hatch), layer, *side() < 0, entity_.line});
+            return;
+        }
+        std::vector<DxfPolyline> paths = mlineOf(entity_);
+        if (paths.empty()) {
+            leaveOut("MLINE");
+            return addUnreadEntity("MLINE");
+        }
+        for (DxfPolyline& path : paths)
+            entities().push_back({std::move(path), layer, false, entity_.line});
+    }
+
+    /// Adds a point of a polyface mesh, or the visible edges of one of its faces.
+    void addMeshVertex() {
+        if ((entity_.flags() & kMeshPoint) != 0) {
+            if (entity_.vertices.empty()) groups_.fail(entity_.line, "VERTEX without group 10");
+            checkVertices();
+            mesh_points_.emplace_back(*entity_.vertices.front().x, *entity_.vertices.front().y);
+            return;
+        }
+        if ((entity_.flags() & kMeshFace) == 0) return;
+        std::vector<std::pair<std::size_t, bool>> corners;  // and whether an edge begins there
+        for (const int code : {71, 72, 73, 74}) {
+            const double index = std::abs(entity_.number(code));
+            if (index < 1 || index > static_cast<double>(mesh_points_.size())) continue;
+            corners.emplace_back(static_cast<std::size_t>(index) - 1, entity_.number(code) > 0);
+        }
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const auto& [from, is_visible] = corners[i];
+            const std::size_t to = corners[i + 1 == corners.size() ? 0 : i + 1].first;
+            if (is_visible && mesh_points_[from] != mesh_points_[to])
+                entities().push_back(
+                    {DxfPolyline{{{mesh_points_[from]}, {mesh_points_[to]}}, false}, mesh_layer_,
+                     false, entity_.line});
+        }
+    }
+
     /// A VERTEX belongs to the POLYLINE before it, unless that is left out.
     void addVertex() {
+        if (in_mesh_) return addMeshVertex();
         if (!in_polyline_ || (entity_.flags() & kFrameVertex) != 0) return;
         if (entity_.vertices.empty()) groups_.fail(entity_.line, "VERTEX without group 10");
         checkVertices();
@@ -424,6 +746,10 @@ class DxfReader {
     DxfText text_;
     DxfDrawing drawing_;
     std::string_view section_, setting_;
+    std::optional<UnreadThing> unread_;  // the entity being left out
+    std::string block_name_, mesh_layer_;
+    std::vector<Point2> mesh_points_;
+    bool in_mesh_ = false;  // the last entity is a polyface mesh
     bool in_section_name_ = false;
     bool in_polyline_ = false;   // the last entity is a POLYLINE that takes the VERTEXes behind it
     DxfBlock* block_ = nullptr;  // between BLOCK and ENDBLK

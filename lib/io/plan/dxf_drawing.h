@@ -13,6 +13,7 @@
 #include "geom/point.h"
 #include "io/plan/curves.h"
 #include "io/plan/line_plan.h"
+#include "io/plan/unread.h"
 
 namespace ispace {
 
@@ -24,6 +25,7 @@ struct DxfPolyline {
     };
     std::vector<Vertex> vertices;
     bool closed = false;
+    double width = 0;  ///< of the line as drawn
 };
 
 /// An arc counter-clockwise from one angle to the other; a whole circle from 0 to 360 degrees.
@@ -53,7 +55,12 @@ struct DxfInsert {
     double column_step = 0, row_step = 0;
 };
 
-using DxfShape = std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfSpline, DxfInsert>;
+/// The boundary of a hatch: rings that its pattern fills by the even-odd rule.
+struct DxfHatch {
+    std::vector<DxfPolyline> rings;
+};
+
+using DxfShape = std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfSpline, DxfInsert, DxfHatch>;
 
 struct DxfEntity {
     DxfShape shape;
@@ -65,16 +72,19 @@ struct DxfEntity {
 struct DxfBlock {
     Point2 base;
     std::vector<DxfEntity> entities;
+    bool is_external = false;              ///< an external reference
+    std::vector<UnreadThing> unread = {};  ///< of each insert
 };
 
 /// A DXF file, in its own units.
 struct DxfDrawing {
     int units = 0;                        ///< $INSUNITS; 0: unitless
     std::set<std::string> layers;         ///< in its table
-    std::set<std::string> hidden_layers;  ///< off or frozen
+    std::set<std::string> hidden_layers;  ///< off, frozen, or never plotted
     std::map<std::string, DxfBlock> blocks;
     std::vector<DxfEntity> entities;
     std::map<std::string, std::size_t> left_out;  ///< entities, by type or reason
+    std::vector<UnreadThing> unread;              ///< of these, those that may be walls
     std::map<int, DrawnSize> sizes;  ///< of polylines and circles that have any, by their lines
 };
 

@@ -78,13 +78,35 @@ void DxfText::setCodePage(std::string_view name) {
     }
 }
 
+void DxfText::setVersion(std::string_view name) {
+    is_old_ = name.starts_with("AC") && name < "AC1021";
+}
+
+void DxfText::consider(std::string_view name) {
+    for (std::size_t i = 0; i < name.size();) {
+        const std::size_t length = utf8Length(name.substr(i));
+        all_utf8_ = all_utf8_ && length > 0;
+        has_long_ = has_long_ || length > 2;
+        i += std::max<std::size_t>(length, 1);
+    }
+}
+
+bool DxfText::isUtf8() const {
+    constexpr std::array<std::string_view, 8> kEastAsian{"GBK",   "BIG5",  "JOHAB", "CP932",
+                                                         "CP936", "CP949", "CP950", "CP1361"};
+    const bool may_look_alike =
+        is_old_ && std::find(kEastAsian.begin(), kEastAsian.end(), charset_) != kEastAsian.end();
+    return all_utf8_ && (has_long_ || !may_look_alike);
+}
+
 std::string DxfText::decoded(std::string_view name) {
     const bool is_plain = std::all_of(name.begin(), name.end(),
                                       [](char c) { return c >= ' ' && c <= '~' && c != '\\'; });
     if (is_plain) return std::string(name);
     const auto known = known_.find(name);
     if (known != known_.end()) return known->second;
-    const std::string text = printable(name) == name ? std::string(name) : toUtf8(name, charset_);
+    const bool is_text = isUtf8() && printable(name) == name;
+    const std::string text = is_text ? std::string(name) : toUtf8(name, charset_);
     return known_.emplace(name, printable(withoutEscapes(text))).first->second;
 }
 

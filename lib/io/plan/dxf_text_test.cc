@@ -54,14 +54,13 @@ TEST(DxfText, NamesAreDecoded) {
         options.wall_layers = {walls};
         EXPECT_DOUBLE_EQ(environmentOf(read(named(layer, page), options)).indoor().area(), 24)
             << page;
-        EXPECT_NE(warningsOf(read(named(layer, page))).find("--wall-layer Wände it would have"),
-                  std::string::npos)
+        EXPECT_NE(notesOf(read(named(layer, page))).find("--wall-layer Wände;"), std::string::npos)
             << page;
     }
     for (const auto& [layer, page] : std::vector<std::pair<std::string, std::string>>{
              {"\xd1\xd2\xc5\xcd\xdb", "ANSI_1251"}, {"\xc7\xbd\xcc\xe5", "GB2312"}})
-        EXPECT_NE(warningsOf(read(named(layer, page)))
-                      .find(page == "GB2312" ? "--wall-layer 墙体 it" : "--wall-layer СТЕНЫ it"),
+        EXPECT_NE(notesOf(read(named(layer, page)))
+                      .find(page == "GB2312" ? "--wall-layer 墙体;" : "--wall-layer СТЕНЫ;"),
                   std::string::npos);
     // Of no character set.
     EXPECT_NE(notesOf(read(named("W\xff\xff", "ANSI_932"))).find("W??"), std::string::npos);

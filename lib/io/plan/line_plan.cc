@@ -108,6 +108,8 @@ class LinePlan {
                 ids[fence] = out.freeId("f" + std::to_string(fence + 1), "f");
         for (std::size_t i = 0; i < fences.size(); ++i) {
             out.fence(fences[i], ids[i]);
+            if (fences[i].thickness > 0 && !sizes_)
+                out.last().set("thickness", wholeMicrometres(fences[i].thickness));
             if (const DrawnSize* size = sizeOf(fences[i].line)) {
                 out.last().set("height", size->height);
                 out.last().set("thickness", size->width);
@@ -322,21 +324,25 @@ LayerSorter::Use LayerSorter::useOf(const std::string& layer) {
     const auto [it, is_new] = uses_.try_emplace(layer, Others);
     if (!is_new) return it->second;
     Use& use = it->second;
-    if (hidden_.count(layer) != 0)
+    if (hidden_.count(layer) != 0 || lowerCased(layer) == "defpoints")  // never plotted
         use = Hidden;
     else if (matchesLayer(options_.door_layers, layer))
         use = Doors;
     else if (matchesLayer(options_.window_layers, layer))
         use = Windows;
-    else if (options_.wall_layers.empty() || matchesLayer(options_.wall_layers, layer))
+    else if (options_.wall_layers.empty())
+        use = isNoWallName(layer) ? Things : Walls;
+    else if (matchesLayer(options_.wall_layers, layer))
         use = Walls;
     return use;
 }
 
 bool LayerSorter::isUsed(const std::string& layer) {
     const Use use = useOf(layer);
-    return use == Walls || use == Doors || use == Windows;
+    return use == Walls || use == Doors || use == Windows || use == Things;
 }
+
+bool LayerSorter::mayBeWall(const std::string& layer) { return useOf(layer) == Walls; }
 
 bool LayerSorter::isNamed(const std::string& name) const {
     return matchesLayer(options_.door_layers, name) || matchesLayer(options_.window_layers, name) ||
@@ -345,6 +351,11 @@ bool LayerSorter::isNamed(const std::string& name) const {
 
 LayerSorter::Sorted LayerSorter::sort(std::vector<PlanShape> shapes) {
     Sorted sorted;
+    // A drawing may have other names for all of its lines.
+    if (std::none_of(shapes.begin(), shapes.end(),
+                     [this](const PlanShape& shape) { return useOf(shape.layer) == Walls; }))
+        for (auto& [layer, use] : uses_)
+            if (use == Things) use = Walls;
     for (PlanShape& shape : shapes) {
         const Use use = useOf(shape.layer);
         ++counts_[use][shape.layer];
@@ -361,10 +372,17 @@ LayerSorter::Sorted LayerSorter::sort(std::vector<PlanShape> shapes) {
 
 void LayerSorter::note(ImportRecords& out) const {
     constexpr std::array<const char*, kUses> kTitles{
-        "layers of walls: ", "layers of doors: ", "layers of windows: ", "layers left out: ",
-        "layers left out because they are off or frozen: "};
-    for (std::size_t use = 0; use < kUses; ++use)
+        "layers of walls: ",
+        "layers of doors: ",
+        "layers of windows: ",
+        "layers left out: ",
+        "layers left out because they are off or frozen: ",
+        ""};
+    for (std::size_t use = 0; use < Things; ++use)
         if (!counts_[use].empty()) out.note(kTitles[use] + listText(counts_[use]));
+    if (!counts_[Things].empty())
+        out.tell("layers left out because their names are not those of walls: " +
+                 listText(counts_[Things]) + "; --wall-layer takes others");
 }
 
 void LayerSorter::warnOfGlobs(ImportRecords& out) const {
@@ -418,12 +436,95 @@ double writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter, cons
         drawing == nullptr ? std::map<std::string, std::size_t>() : drawing->left_out);
     if (drawing != nullptr) sorter.warnOfGlobs(out);
     return withFileName(name, [&] {
+        std::set<double> thick;
+        for (const PlanPath& path : shapes.walls)
+            if (path.thickness > 0 && !shapes.sizes) thick.insert(wholeMicrometres(path.thickness));
+        if (!thick.empty())
+            out.tell(
+                "lines with a width are walls of that thickness: " + formatDouble(*thick.begin()) +
+                (thick.size() == 1 ? "" : " to " + formatDouble(*thick.rbegin())) + " m");
         LinePlan plan(std::move(shapes), name, options, drawing, out);
         plan.write(out, options);
         if (drawing != nullptr)
             warnOfWallNames(sorter.unusedWallNames(), plan.area(), *drawing, options, out);
         return plan.area();
     });
+}
+
+void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords& out) {
+    constexpr double kFar = 5;      // of the gap to strays, as a share of the plan's extent
+    constexpr double kBulk = 0.9;   // of the length of all lines, which the plan has
+    constexpr int kMaxRounds = 64;  // groups of strays
+    struct Span {
+        double low, high, length;
+        std::size_t shape;
+    };
+    const auto lengthOf = [](const PlanPath& path) {
+        double length = 0;
+        for (std::size_t i = 0; i < path.pieceCount(); ++i)
+            length += distance(path.piece(i).a, path.piece(i).b);
+        return length;
+    };
+    std::vector<bool> is_stray(shapes.size(), false);
+    double whole = 0;
+    std::vector<Span> all;
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+        if (shapes[i].path.points.size() >= 2) {
+            all.push_back({0, 0, lengthOf(shapes[i].path), i});
+            whole += all.back().length;
+        }
+    const double least = kBulk * whole;
+    // Splits off what lies behind the widest gap, along either axis, while it is far and short.
+    for (int round = 0, idle = 0; round < kMaxRounds && idle < 2; ++round) {
+        const bool along_x = round % 2 == 0;
+        for (Span& span : all) {
+            const Box2 box = bounds(shapes[span.shape].path.points);
+            span.low = along_x ? box.low.x : box.low.y;
+            span.high = along_x ? box.high.x : box.high.y;
+        }
+        std::sort(all.begin(), all.end(), [](const Span& a, const Span& b) {
+            return a.low == b.low ? a.shape < b.shape : a.low < b.low;
+        });
+        ++idle;
+        std::size_t cut = 0;
+        double widest = 0, low_end = 0, reach = 0, before = 0, passed = 0, total = 0, last = 0;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            total += all[i].length;
+            if (i > 0 && all[i].low - reach > widest) {
+                widest = all[i].low - reach;
+                cut = i;
+                low_end = reach;
+                before = passed;
+            }
+            reach = i == 0 ? all[i].high : std::max(reach, all[i].high);
+            passed += all[i].length;
+            last = reach;
+        }
+        if (cut == 0) continue;
+        const bool first_stays = before >= total - before;
+        const double extent = first_stays ? low_end - all.front().low : last - all[cut].low;
+        if (widest < kFar * extent || (first_stays ? before : total - before) < least) continue;
+        idle = 0;
+        const auto middle = all.begin() + static_cast<std::ptrdiff_t>(cut);
+        const auto [from, to] =
+            first_stays ? std::pair{middle, all.end()} : std::pair{all.begin(), middle};
+        for (auto span = from; span != to; ++span) is_stray[span->shape] = true;
+        all.erase(from, to);
+    }
+    const auto first = std::find(is_stray.begin(), is_stray.end(), true);
+    if (first == is_stray.end()) return;
+    const PlanShape& stray = shapes[static_cast<std::size_t>(first - is_stray.begin())];
+    const Point2 at = stray.path.points.front();
+    const auto count = static_cast<std::size_t>(std::count(is_stray.begin(), is_stray.end(), true));
+    out.warn("left out " + countText(count, "line") + " far from all others, " +
+                 (count == 1 ? "at " : "the first at ") + formatFixed(at.x, 1) + ',' +
+                 formatFixed(at.y, 1) + " m on the layer " + stray.layer +
+                 ": delete it in the drawing",
+             stray.path.line);
+    std::vector<PlanShape> kept;
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+        if (!is_stray[i]) kept.push_back(std::move(shapes[i]));
+    shapes = std::move(kept);
 }
 
 double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,

@@ -121,6 +121,9 @@ class LayerSorter {
     [[nodiscard]] bool isHidden(const std::string& layer) const {
         return hidden_.count(layer) != 0;
     }
+    /// Returns true for layers of walls.
+    [[nodiscard]] bool mayBeWall(const std::string& layer);
+    /// Layers that isNoWallName() close no room, unless no other has a line.
     Sorted sort(std::vector<PlanShape> shapes);
     /// Notes the use of each layer.
     void note(ImportRecords& out) const;
@@ -135,7 +138,7 @@ class LayerSorter {
     [[nodiscard]] std::map<std::string, std::size_t> unusedWallNames() const;
 
   private:
-    enum Use : std::size_t { Walls, Doors, Windows, Others, Hidden, kUses };
+    enum Use : std::size_t { Walls, Doors, Windows, Others, Hidden, Things, kUses };
     Use useOf(const std::string& layer);
     [[nodiscard]] bool hasLines(const std::string& glob) const;
     /// Returns all layers with lines, for a message, those that are hidden behind the others.
@@ -157,6 +160,11 @@ class LayerSorter {
 double writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter, const std::string& name,
                      const ImportOptions& options, const DrawingSource* drawing,
                      ImportRecords& out);
+
+/// Leaves out shapes that lie far from the bulk of the lines, by five times its extent: what a slip
+/// of the mouse leaves behind, or an origin in a plan of surveyors' coordinates. Warns of them.
+/// \param shapes in metres. O(n log n)
+void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords& out);
 
 /// Sorts the shapes of a drawing without hidden layers, and writes them. \return as above
 double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,

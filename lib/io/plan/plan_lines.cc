@@ -251,7 +251,7 @@ class Joiner {
             const Ends& meeting = *ends_.find(chain.points.back());
             if (meeting.count != 2) return;
             const std::size_t next = meeting.paths[used_[meeting.paths[0]] ? 1 : 0];
-            if (used_[next]) return;
+            if (used_[next] || paths_[next].thickness != chain.thickness) return;
             used_[next] = true;
             append(chain, paths_[next]);
         }
@@ -323,14 +323,14 @@ std::vector<PlanPath> withPieces(std::vector<PlanPath> paths, const std::vector<
         } else {
             // A closed path is walked from its first gap on, so that no run is cut in two.
             if (!path.closed) begin = 0;
-            PlanPath run{{}, false, path.line};
+            PlanPath run{{}, false, path.line, path.thickness};
             for (std::size_t i = begin; i < begin + count; ++i) {
                 const auto [a, b] = path.piece(i % count);
                 if (!is_kept(i)) continue;
                 if (run.points.empty()) run.points.push_back(a);
                 run.points.push_back(b);
                 if (i + 1 < begin + count && is_kept(i + 1)) continue;
-                all.push_back(std::exchange(run, {{}, false, path.line}));
+                all.push_back(std::exchange(run, {{}, false, path.line, path.thickness}));
             }
         }
         first += count;

@@ -36,9 +36,10 @@ class NearSegments {
 
 /// A drawn line of straight pieces, in metres.
 struct PlanPath {
-    Polygon points;       ///< two or more; a closed path does not repeat its first point
-    bool closed = false;  ///< the last point joins the first
-    int line = 0;         ///< in the file it was read from; 0: unknown
+    Polygon points;        ///< two or more; a closed path does not repeat its first point
+    bool closed = false;   ///< the last point joins the first
+    int line = 0;          ///< in the file it was read from; 0: unknown
+    double thickness = 0;  ///< of the wall, as drawn; 0: the line is a face, or unknown
 
     [[nodiscard]] std::size_t pieceCount() const { return points.size() - (closed ? 0 : 1); }
     [[nodiscard]] Segment2 piece(std::size_t i) const {
@@ -86,8 +87,8 @@ std::vector<PlanPath> withPieces(std::vector<PlanPath> paths, const std::vector<
 /// Removes pieces that repeat an earlier one, in either direction.
 std::vector<PlanPath> withoutRepeats(std::vector<PlanPath> paths);
 
-/// Joins open paths where exactly two ends meet, so that a room drawn line by line is one closed
-/// path, at the index and with the `line` of its first part. O(n log n).
+/// Joins open paths of one thickness where exactly two ends meet, so that a room drawn line by line
+/// is one closed path, at the index and with the `line` of its first part. O(n log n).
 std::vector<PlanPath> joinedAtEnds(std::vector<PlanPath> paths);
 
 /// Joins open paths as above, and drops corners where a path runs straight on and no other has

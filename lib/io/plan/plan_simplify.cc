@@ -75,7 +75,7 @@ class Simplifier {
         if (path.closed && stops.size() == 1) stops.push_back(farthestFromStart());
         stops.push_back(count);
 
-        PlanPath result{{point(0)}, path.closed, path.line};
+        PlanPath result{{point(0)}, path.closed, path.line, path.thickness};
         for (std::size_t i = 0; i + 1 < stops.size(); ++i)
             addRun(stops[i], stops[i + 1], result.points);
         if (path.closed) result.points.pop_back();  // the first point again

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Walls in all entities that draw them, on the layers that hold them. Areas are sums of rectangles,
+// checked with another reader of DXF.
+#include <string>
+#include <string_view>
+
+#include "io/importers.h"
+#include "support/test_dxf.h"
+#include "support/test_import.h"
+
+namespace ispace {
+namespace {
+
+Document read(const std::string& dxf, const ImportOptions& options = {}) {
+    return readDxf(dxf, "plan.dxf", options, sceneSchemas());
+}
+double areaOf(const std::string& dxf, const ImportOptions& options = {}) {
+    return environmentOf(read(dxf, options)).indoor().area();
+}
+/// Groups from text, as "0 LINE 8 W": a code and a value each.
+std::string groups(std::string_view text) {
+    std::string lines(text);
+    for (char& c : lines)
+        if (c == ' ') c = '\n';
+    return lines + '\n';
+}
+
+const std::string kRoom = rectangle("W", 0, 0, 8, 6);
+
+TEST(DxfWalls, Mline) {
+    const std::string mline = groups(
+        "0 MLINE 8 W 2 STANDARD 40 0.2 70 1 71 1 72 2 73 2 10 3 20 0 30 0 210 0 220 0 230 1 11 3 "
+        "21 "
+        "0 31 0 12 0 22 1 32 0 13 -1 23 0 33 0 74 2 41 0.1 41 0 75 0 74 2 41 -0.1 41 0 75 0 11 3 "
+        "21 "
+        "6 31 0 12 0 22 1 32 0 13 -1 23 0 33 0 74 2 41 0.1 41 0 75 0 74 2 41 -0.1 41 0 75 0");
+    EXPECT_NEAR(areaOf(drawing(kRoom + mline, "", 6)), 29.4, 1e-9);
+    // A door cut out of both lines joins the rooms: 8 x 6 less the wall's pieces.
+    std::string cut = mline;
+    for (std::size_t at = 0; (at = cut.find("74\n2\n", at)) != std::string::npos; at += 5) {
+        const std::size_t end = cut.find("\n41\n0\n", at);
+        cut.replace(end, 6, "\n41\n0\n41\n2\n41\n2.9\n");
+    }
+    ImportOptions open;
+    open.close_gaps = 0;
+    EXPECT_GT(areaOf(drawing(kRoom + cut, "", 6), open), 46);
+    // Without vertices it cannot be read.
+    const Document damaged = read(drawing(kRoom + groups("0 MLINE 8 W 71 1 11 3 21 0"), "", 6));
+    EXPECT_NE(warningsOf(damaged).find("MLINE (1), on the layer W"), std::string::npos);
+}
+
+TEST(DxfWalls, SplineThroughPoints) {
+    const std::string spline = groups(
+        "0 SPLINE 8 W 70 8 71 3 72 0 73 0 74 3 11 3 21 0 31 0 11 3.5 21 3 31 0 11 3 21 6 31 0");
+    // The natural cubic spline through symmetric points: 18 + 6 * 0.5 * 5 / 8.
+    EXPECT_NEAR(areaOf(drawing(kRoom + spline, "", 6)), 48 - 18 - 1.875, 0.01);
+    EXPECT_NEAR(
+        areaOf(drawing(kRoom + groups("0 SPLINE 8 W 70 8 71 3 11 3 21 0 11 3 21 6"), "", 6)), 30,
+        1e-9);
+}
+
+TEST(DxfWalls, SolidsTracesAndFaces) {
+    for (const char* kind : {"SOLID", "TRACE"})
+        EXPECT_NEAR(
+            areaOf(drawing(kRoom + groups(std::string("0 ") + kind +
+                                          " 8 W 10 3 20 0 11 3.2 21 0 12 3 22 6 13 3.2 23 6"),
+                           "", 6)),
+            4.8 * 6, 1e-9)
+            << kind;
+    EXPECT_NEAR(
+        areaOf(drawing(kRoom + groups("0 3DFACE 8 W 10 3 20 0 30 0 11 3.2 21 0 31 0 12 3.2 22 6 32 "
+                                      "0 13 3 23 6 33 0"),
+                       "", 6)),
+        4.8 * 6, 1e-9);
+    // An upright face is a line.
+    EXPECT_NEAR(
+        areaOf(drawing(kRoom + groups("0 3DFACE 8 W 10 3 20 0 30 0 11 3 21 6 31 0 12 3 22 6 32 "
+                                      "2.5 13 3 23 0 33 2.5"),
+                       "", 6)),
+        30, 1e-9);
+}
+
+TEST(DxfWalls, PolyfaceMeshes) {
+    const auto vertex = [](const char* x, const char* y) {
+        return groups(std::string("0 VERTEX 8 W 10 ") + x + " 20 " + y + " 30 0 70 192");
+    };
+    const std::string mesh = groups("0 POLYLINE 8 W 66 1 70 64 71 4 72 1") + vertex("3", "0") +
+                             vertex("3.2", "0") + vertex("3.2", "6") + vertex("3", "6") +
+                             groups("0 VERTEX 8 W 10 0 20 0 30 0 70 128 71 1 72 2 73 3 74 4") +
+                             groups("0 SEQEND 8 W");
+    EXPECT_NEAR(areaOf(drawing(kRoom + mesh, "", 6)), 4.8 * 6, 1e-9);
+}
+
+TEST(DxfWalls, HatchesAsNarrowAsWalls) {
+    const auto hatch = [](const std::string& x0, const std::string& x1) {
+        return groups(
+            "0 HATCH 8 W 10 0 20 0 30 0 210 0 220 0 230 1 2 SOLID 70 1 71 0 91 1 92 3 72 0 "
+            "73 1 93 4 10 " +
+            x0 + " 20 0 10 " + x1 + " 20 0 10 " + x1 + " 20 6 10 " + x0 +
+            " 20 6 97 0 75 1 76 1 98 0");
+    };
+    EXPECT_NEAR(areaOf(drawing(kRoom + hatch("3", "3.2"), "", 6)), 4.8 * 6, 1e-9);
+    EXPECT_NEAR(areaOf(drawing(kRoom + hatch("3", "6"), "", 6)), 48, 1e-9);  // a floor
+    const std::string edges = groups(
+        "0 HATCH 8 W 10 0 20 0 30 0 2 SOLID 70 1 71 0 91 1 92 1 93 4 72 1 10 3 20 0 11 3.2 21 "
+        "0 72 1 10 3.2 20 0 11 3.2 21 6 72 1 10 3.2 20 6 11 3 21 6 72 1 10 3 20 6 11 3 21 0 "
+        "97 0 75 1 76 1 98 0");
+    EXPECT_NEAR(areaOf(drawing(kRoom + edges, "", 6)), 4.8 * 6, 1e-9);
+}
+
+TEST(DxfWalls, UnreadEntitiesWarn) {
+    const auto of = [](const std::string& entity) {
+        return warningsOf(read(drawing(kRoom + groups(entity), "", 6)));
+    };
+    EXPECT_EQ(
+        of("0 AEC_WALL 5 F1 8 A-WALL"),
+        "plan.dxf:40: warning: not read, though it may be a wall: AEC_WALL (1), on the layer "
+        "A-WALL: explode it, or "
+        "bind the reference, in the program that drew it, and export lines; --wall-layer names "
+        "the layers that count\n");
+    EXPECT_NE(of("0 3DSOLID 8 W").find("3DSOLID (1)"), std::string::npos);
+    EXPECT_NE(of("0 REGION 8 W").find("REGION (1)"), std::string::npos);
+    EXPECT_NE(of("0 ACAD_PROXY_ENTITY 8 W").find("ACAD_PROXY_ENTITY (1)"), std::string::npos);
+    EXPECT_NE(of("0 INSERT 8 W 2 shell 10 0 20 0").find("external reference shell (1)"),
+              std::string::npos);
+    EXPECT_EQ(of("0 3DSOLID 8 W 67 1"), "");  // in paper space
+    EXPECT_EQ(of("0 3DSOLID 8 A-FURN"), "");  // furniture
+    EXPECT_EQ(of("0 MTEXT 8 W 10 1 20 1"), "");
+}
+
+TEST(DxfWalls, LayersThatAreNotPlotted) {
+    const std::string line_at_3 = line("Defpoints", 3, 0, 3, 6);
+    EXPECT_NEAR(areaOf(drawing(kRoom + line_at_3, "", 6)), 48, 1e-9);
+    const std::string unplotted = groups("0 LAYER 2 Hilf 70 0 62 7 290 0");
+    EXPECT_NEAR(areaOf(drawing(kRoom + line("Hilf", 3, 0, 3, 6), "", 6, unplotted)), 48, 1e-9);
+}
+
+TEST(DxfWalls, LayersThatHoldNoWallsByName) {
+    for (const char* name :
+         {"A-FURN",   "Furniture", "Möbel",       "MOEBEL",     "Mobiliario",  "mobilier",
+          "Arredi",   "meubilair", "Мебель",      "家具",       "Bemaßung",    "DIMENSIONES",
+          "Cotas",    "quote",     "Размеры",     "尺寸标注",   "A-ANNO-TEXT", "Beschriftung",
+          "Texte",    "Schraffur", "A-WALL-PATT", "hachures",   "Achsen",      "S-GRID",
+          "ejes",     "E-LITE",    "Elektro",     "Electrical", "P-FIXT",      "Sanitär",
+          "Plumbing", "给排水",    "HVAC",        "Nábytek",    "Meble",       "Bútor",
+          "kalusteet"})
+        EXPECT_NEAR(areaOf(drawing(kRoom + line(name, 3, 0, 3, 6), "", 6)), 48, 1e-9) << name;
+    for (const char* name :
+         {"W", "0", "Partitions", "Wände", "A-WALL", "Plan", "Cloison", "Layer1"})
+        EXPECT_NEAR(areaOf(drawing(rectangle(name, 0, 0, 8, 6) + line(name, 3, 0, 3, 6), "", 6)),
+                    30, 1e-9)
+            << name;
+    // No other layer: the names lie.
+    EXPECT_NEAR(areaOf(drawing(rectangle("text", 0, 0, 8, 6), "", 6)), 48, 1e-9);
+    ImportOptions all;
+    all.wall_layers = {"*"};
+    EXPECT_NEAR(areaOf(drawing(kRoom + line("A-FURN", 3, 0, 3, 6), "", 6), all), 30, 1e-9);
+}
+
+TEST(DxfWalls, NamedWallsThatTheRestClutters) {
+    const std::string walls = rectangle("Wand", 0, 0, 8, 6);
+    const Document document = read(drawing(walls + line("0", 3, 0, 3, 6), "", 6));
+    EXPECT_NEAR(environmentOf(document).indoor().area(), 48, 1e-9);
+    EXPECT_NE(notesOf(document).find("--wall-layer Wand"), std::string::npos);
+    // Advice never has no floor.
+    EXPECT_EQ(warningsOf(read(drawing(kRoom + line("Wand", 3, 0, 3, 6), "", 6))), "");
+}
+
+TEST(DxfWalls, WidthsAreThickness) {
+    const auto wall = [](const std::string& ends) {
+        return groups("0 LWPOLYLINE 8 W 90 2 70 0 43 0.2 " + ends);
+    };
+    const Document document =
+        read(drawing(wall("10 0 20 0 10 8 20 0") + wall("10 8 20 0 10 8 20 6") +
+                         wall("10 8 20 6 10 0 20 6") + wall("10 0 20 6 10 0 20 0"),
+                     "", 6));
+    EXPECT_NE(writeRecordText(document).find("closed=yes thickness=0.2"), std::string::npos);
+    EXPECT_NE(notesOf(document).find("walls of that thickness: 0.2 m"), std::string::npos);
+}
+
+TEST(DxfWalls, StraysAreLeftOut) {
+    const std::string stray = line("W", 3000, 3000, 3001, 3001);
+    const Document document = read(drawing(kRoom + rectangle("W", 8, 0, 16, 6) + stray, "", 6));
+    EXPECT_NEAR(environmentOf(document).indoor().area(), 48, 1e-9);
+    EXPECT_NE(warningsOf(document).find("left out 1 line far from all others, at 3000.0,3000.0 m"),
+              std::string::npos);
+    // At the origin of a plan in surveyors' coordinates.
+    const Document utm = read(
+        drawing(rectangle("W", 448262, 5428611, 448270, 5428617) + line("W", 0, 0, 1, 1), "", 6));
+    EXPECT_NEAR(environmentOf(utm).indoor().area(), 48, 1e-6);
+    // Half of the lines are no stray.
+    const Document two = read(drawing(kRoom + rectangle("W", 500, 0, 508, 6), "", 6));
+    EXPECT_EQ(warningsOf(two).find("far from all others"), std::string::npos);
+}
+
+TEST(DxfWalls, OneEncodingForAFile) {
+    const auto of = [](const std::string& version, const std::string& page,
+                       const std::string& layer) {
+        std::string dxf = drawing(rectangle(layer, 0, 0, 8, 6), "", 6);
+        dxf.insert(dxf.find("9\n$INSUNITS"),
+                   "9\n$ACADVER\n1\n" + version + "\n9\n$DWGCODEPAGE\n3\n" + page + "\n");
+        return notesOf(read(dxf));
+    };
+    EXPECT_NE(of("AC1015", "ANSI_936", "\xC7\xBD").find("墙 (1)"), std::string::npos);
+    EXPECT_NE(of("AC1015", "ANSI_936", "墙").find("墙 (1)"), std::string::npos);
+    EXPECT_NE(of("AC1027", "ANSI_936", "墙").find("墙 (1)"), std::string::npos);
+    EXPECT_NE(of("AC1015", "ANSI_1252", "W\xE4nde").find("Wände (1)"), std::string::npos);
+    EXPECT_NE(of("AC1032", "ANSI_1252", "Wände").find("Wände (1)"), std::string::npos);
+    EXPECT_NE(of("AC1015", "ANSI_932", "\x95\xC7").find("壁 (1)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ispace
