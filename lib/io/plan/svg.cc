@@ -21,6 +21,7 @@
 #include "io/import_records.h"
 #include "io/plan/line_plan.h"
 #include "io/plan/svg.h"
+#include "io/plan/unread.h"
 #include "io/sdf/sdf_files.h"
 
 namespace ispace {
@@ -33,6 +34,7 @@ struct SvgDrawing {
     std::string scale;  ///< length of a unit and its source, for a note
     double metres_per_unit = 0;
     std::map<std::string, std::size_t> left_out;  ///< elements, by type or reason
+    std::vector<UnreadThing> unread;              ///< rules that may hide lines
 };
 
 constexpr int kMaxElementDepth = 200;  // elements in elements, by `use` or not
@@ -81,6 +83,9 @@ class SvgReader {
             page_frame_ = pageOf(root);
             addChildren(root, {page_frame_, svgStyle({}, svgProperties(root, sheet_)), {}});
         });
+        for (const auto& [selector, count] : sheet_.unread())
+            for (std::size_t i = 0; i < count; ++i)
+                drawing_.unread.push_back({"the CSS rule `" + printable(selector) + '`'});
         return std::move(drawing_);
     }
 
@@ -103,7 +108,6 @@ class SvgReader {
             if (svgName(node) == "style") styles.push_back(node);
         });
         if (styles.empty()) return;
-        forEachElement(root, [this](pugi::xml_node node) { sheet_.announce(node); });
         for (const pugi::xml_node style : styles)
             for (const pugi::xml_node text : style.children()) sheet_.add(text.value());
     }
@@ -179,7 +183,8 @@ class SvgReader {
         if (!is_group && !is_shape && kind != "use") return;
         const SvgElement& element = elementOf(node, around.is_used);
         spend(element.units);
-        if (element.properties[SvgProperty::Display] == "none") {
+        if (element.properties[SvgProperty::Display] == "none" ||
+            isSvgClear(element.properties[SvgProperty::Opacity])) {
             ++drawing_.left_out["elements that are not displayed"];
             return;
         }
@@ -204,14 +209,25 @@ class SvgReader {
     }
 
     /// The frame of the view box of an inner `svg` or a `symbol` at `placed`.
-    static Affine viewportOf(pugi::xml_node node, pugi::xml_node placed) {
+    [[nodiscard]] Affine viewportOf(pugi::xml_node node, pugi::xml_node placed) const {
         const bool is_use = node != placed;
         const Affine corner{
             {1, 0}, {0, 1}, is_use ? Vec2{} : Vec2{svgNumber(placed, "x"), svgNumber(placed, "y")}};
         const auto box = svgViewBox(node);
         if (!box) return corner;
-        const double width = svgNumber(placed, "width", svgNumber(node, "width", box->width));
-        const double height = svgNumber(placed, "height", svgNumber(node, "height", box->height));
+        const auto size = [&](const char* key, double own, double around) {
+            for (const pugi::xml_node element : {placed, node}) {
+                std::string_view text = trimmed(element.attribute(key).value());
+                if (text.empty()) continue;
+                if (!text.ends_with('%')) return svgNumber(element, key);
+                text.remove_suffix(1);
+                const auto share = parseDouble(text);
+                if (share && *share > 0) return around * *share / 100;
+            }
+            return is_use ? own : around;
+        };
+        const double width = size("width", box->width, page_.width);
+        const double height = size("height", box->height, page_.height);
         Vec2 scale{width / box->width, height / box->height};
         if (!isStretched(node)) scale.x = scale.y = std::min(scale.x, scale.y);
         const Vec2 rest{(width - scale.x * box->width) / 2, (height - scale.y * box->height) / 2};
@@ -261,7 +277,8 @@ class SvgReader {
 
     void addShape(pugi::xml_node node, std::string_view kind, const Around& around) {
         const SvgStyle& style = around.style;
-        if (!style.visible || (style.no_fill && style.no_stroke)) {
+        if (!style.visible ||
+            ((style.no_fill || style.clear_fill) && (style.no_stroke || style.clear_stroke))) {
             ++drawing_.left_out["elements that show nothing"];
             return;
         }
@@ -368,7 +385,8 @@ SvgDrawing readDrawing(std::string_view bytes, const std::string& name,
 
 /// \param hints whether the drawing may be imported again to report the effect of other options
 SvgImport importSvg(std::string_view bytes, const std::string& name, const ImportOptions& asked,
-                    const Schemas& schemas, bool hints) {
+                    const Schemas& schemas, bool hints,
+                    std::vector<std::string>* better_layers = nullptr) {
     Budget whole(bytes.size(), asked.max_work);
     ImportOptions options = asked;
     options.max_work.whole = &whole;  // pays for uses and curves, and for the plan of them
@@ -387,6 +405,9 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
             other.max_work = asked.max_work;  // as much again
             return importSvg(bytes, name, other, schemas, false).area;
         };
+    source.better_layers = better_layers;
+    warnOfUnread(drawing.unread, "save it as plain SVG, with attributes instead of rules", out);
+    leaveOutStrays(drawing.shapes, out);
     LayerSorter sorter({}, options);
     LayerSorter::Sorted shapes = sorter.sort(std::move(drawing.shapes));
     sorter.note(out);
@@ -400,7 +421,10 @@ bool isSvg(std::string_view bytes) { return xmlRootName(bytes) == "svg"; }
 
 Document readSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
-    return importSvg(bytes, name, options, schemas, true).document;
+    return importWithNamedWalls(
+        options, [&](const ImportOptions& asked, std::vector<std::string>* better_layers) {
+            return importSvg(bytes, name, asked, schemas, true, better_layers).document;
+        });
 }
 
 }  // namespace ispace

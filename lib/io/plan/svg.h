@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <deque>
-#include <functional>
+#include <map>
 #include <optional>
 #include <pugixml.hpp>
 #include <stdexcept>
@@ -71,30 +71,44 @@ SvgSubpath svgEllipse(Point2 center, double radius_x, double radius_y);
 SvgSubpath svgRectangle(Point2 corner, double width, double height, double radius_x,
                         double radius_y);
 
-/// Properties that decide the visibility of lines, as an element or a rule sets them.
-enum class SvgProperty : std::size_t { Display, Visibility, Fill, Stroke };
+/// Properties that decide the visibility and the place of lines, as an element or a rule sets them.
+enum class SvgProperty : std::size_t {
+    Display,
+    Visibility,
+    Fill,
+    Stroke,
+    Opacity,
+    FillOpacity,
+    StrokeOpacity,
+    Transform,
+    TransformOrigin
+};
 class SvgProperties {
   public:
     /// Returns the value; "" if unset.
     std::string_view operator[](SvgProperty key) const {
         return values_[static_cast<std::size_t>(key)];
     }
-    /// Parses `a: b; c: d`; the last declaration of a key wins. O(length)
+    /// Parses `a: b; c: d !important`; of two declarations of a key the important one wins, else
+    /// the last. O(length)
     void declare(std::string_view declarations);
     /// Returns true if no value is set.
     [[nodiscard]] bool isEmpty() const { return values_ == decltype(values_){}; }
-    /// Copies values that are unset here.
-    void addWeaker(const SvgProperties& others);
-    /// Copies values that are set in `others`.
+    /// Copies values that are set in `others`, unless an important one here faces one that is not.
     void addStronger(const SvgProperties& others);
     void setIfUnset(SvgProperty key, std::string_view value) {
         std::string_view& own = values_[static_cast<std::size_t>(key)];
         if (own.empty()) own = value;
     }
-    static constexpr std::array<const char*, 4> kNames{"display", "visibility", "fill", "stroke"};
+    static constexpr std::array<const char*, 9> kNames{
+        "display",      "visibility",     "fill",      "stroke",          "opacity",
+        "fill-opacity", "stroke-opacity", "transform", "transform-origin"};
 
   private:
+    void set(std::size_t key, std::string_view value, bool is_important);
+
     std::array<std::string_view, kNames.size()> values_;
+    std::array<bool, kNames.size()> important_{};
 };
 
 /// The visible parts of an element, including inherited properties.
@@ -102,32 +116,55 @@ struct SvgStyle {
     bool visible = true;
     bool no_fill = false, no_stroke = false;  ///< set explicitly: unset means drawn
     bool has_stroke = false;
+    bool clear_fill = false, clear_stroke = false;  ///< their opacity is 0
 };
 
-/// Rules of `style` elements with one plain selector: an element's name, .class or #id.
+/// Rules of `style` elements, as browsers cascade them: selectors of names, classes, ids,
+/// attributes and :root, with the combinators descendant, `>`, `+` and `~`. Rules of @media for the
+/// screen count. Selectors with other parts are left out and listed.
+///
+/// Written for this reader: Debian's libraries of CSS (libcroco, which its own authors gave up;
+/// NetSurf's libcss, which needs a handler of forty callbacks for its document) are larger than the
+/// part of CSS that draws lines.
 class SvgSheet {
   public:
-    /// Announces an element: only rules for elements announced before add() are kept.
-    void announce(pugi::xml_node node);
-    /// Adds the rules of a style element, ignoring other selectors. O(length)
+    /// Adds the rules of a style element. O(length)
     void add(std::string_view css);
-    /// Sets the unset `properties` by these rules. Ids win over classes, these over names, later
-    /// rules over earlier ones.
+    /// Sets `properties`, those of the attribute `style`, by these rules: the attribute wins over
+    /// rules, important rules over it; the more specific rule over others, and the later of two.
     void apply(pugi::xml_node node, SvgProperties& properties) const;
+    /// Selectors and at-rules that are not understood, as written, with their numbers of rules.
+    [[nodiscard]] const std::map<std::string, std::size_t>& unread() const { return unread_; }
 
   private:
-    struct Hash : std::hash<std::string_view> {
-        using is_transparent = void;  // NOLINT: as std::unordered_map looks for it
+    /// A part of a compound selector: an element's name, .class, #id, or [attribute].
+    struct Simple {
+        enum class Kind { Name, Class, Id, Attribute, Root } kind = Kind::Name;
+        std::string_view name, value;
+        char relation = ' ';  ///< of an attribute: ' ' has it, '=', or the letter before '='
     };
-    std::size_t slot(std::string_view selector) const {
-        return Hash()(selector) % announced_.size();
-    }
+    /// A compound selector, and the combinator to the one before it.
+    struct Compound {
+        std::vector<Simple> parts;
+        char combinator = ' ';
+    };
+    struct Rule {
+        std::vector<Compound> selector;  ///< the subject last
+        std::array<int, 3> specificity{};
+        SvgProperties declared;
+    };
+    void addRules(std::string_view css, int depth);
+    void addRule(std::string_view selector, const SvgProperties& declared);
+    static std::optional<std::vector<Compound>> parse(std::string_view selector);
+    static bool matches(pugi::xml_node node, const Compound& compound);
+    static bool matches(pugi::xml_node node, const std::vector<Compound>& selector,
+                        std::size_t last, int& steps);
 
     std::deque<std::string> texts_;  // without comments
-    // By the selector's hash: those that share one keep a rule without use.
-    std::vector<bool> announced_ = std::vector<bool>(std::size_t{1} << 20);
-    // By announced selector, views of the texts.
-    std::unordered_map<std::string, SvgProperties, Hash, std::equal_to<>> rules_;
+    // By the subject's id, class or name, as "#a", ".b" and "c"; "" for others.
+    std::unordered_map<std::string, std::vector<std::size_t>> by_subject_;
+    std::vector<Rule> rules_;
+    std::map<std::string, std::size_t> unread_;
 };
 
 /// Returns the name without the prefix of a namespace.
@@ -136,6 +173,9 @@ std::string_view svgName(pugi::xml_node node);
 /// Returns the properties of an element: from `style`, else rules, else attributes. Views of the
 /// document.
 SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet);
+
+/// Returns true for an opacity of 0.
+bool isSvgClear(std::string_view opacity);
 
 /// Computes the style of an element with these properties within one of this style.
 SvgStyle svgStyle(SvgStyle style, const SvgProperties& properties);

@@ -29,16 +29,29 @@ double radius(pugi::xml_node node, const char* key) {
     return value;
 }
 
-std::string withoutComments(std::string_view css) {
-    std::string text;
-    while (!css.empty()) {
-        const std::size_t begin = css.find("/*");
-        text += css.substr(0, begin);
-        if (begin == std::string_view::npos) break;
-        const std::size_t end = css.find("*/", begin + 2);
-        css.remove_prefix(end == std::string_view::npos ? css.size() : end + 2);
+/// Returns the value of `transform` as the attribute has it: without units, which CSS requires.
+std::string cssTransform(std::string_view text) {
+    std::string plain;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool follows_number =
+            i > 0 && ((text[i - 1] >= '0' && text[i - 1] <= '9') || text[i - 1] == '.');
+        const auto skips = [&](std::string_view unit) {
+            if (!follows_number || !text.substr(i).starts_with(unit)) return false;
+            i += unit.size() - 1;
+            return true;
+        };
+        if (!skips("px") && !skips("deg")) plain += text[i];
     }
-    return text;
+    return plain;
+}
+
+/// Returns the point of `transform-origin` in pixels; std::nullopt for the default, and for shares
+/// of boxes.
+std::optional<Vec2> originOf(std::string_view text) {
+    if (text.empty()) return std::nullopt;
+    const auto numbers = tryNumbers(cssTransform(text));
+    if (!numbers || numbers->size() < 2) return std::nullopt;
+    return Vec2{(*numbers)[0], (*numbers)[1]};
 }
 
 /// Returns true if an option names layers like this.
@@ -46,22 +59,6 @@ bool isNamed(const char* text, const ImportOptions& options) {
     return *text != '\0' &&
            (matchesLayer(options.door_layers, text) || matchesLayer(options.window_layers, text) ||
             matchesLayer(options.wall_layers, text));
-}
-
-/// Removes and returns the text before the mark, which is removed, too.
-std::string_view takeUntil(std::string_view& rest, char mark) {
-    const std::string_view part = rest.substr(0, rest.find(mark));
-    rest.remove_prefix(std::min(part.size() + 1, rest.size()));
-    return part;
-}
-
-/// Calls visit(std::string) for the selectors that match an element, the strongest first.
-template <typename Visit>
-void forEachSelector(pugi::xml_node node, Visit visit) {
-    visit('#' + std::string(node.attribute("id").value()));
-    for (std::string_view names = node.attribute("class").value(); !names.empty();)
-        visit('.' + std::string(takeUntil(names, ' ')));
-    visit(std::string(svgName(node)));
 }
 
 }  // namespace
@@ -72,55 +69,6 @@ std::string_view svgName(pugi::xml_node node) {
     return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
-void SvgProperties::declare(std::string_view declarations) {
-    while (!declarations.empty()) {
-        const std::string_view part = takeUntil(declarations, ';');
-        const std::size_t colon = part.find(':');
-        if (colon == std::string_view::npos) continue;
-        const auto name = std::find(kNames.begin(), kNames.end(), trimmed(part.substr(0, colon)));
-        if (name != kNames.end())
-            values_[static_cast<std::size_t>(name - kNames.begin())] =
-                trimmed(part.substr(colon + 1));
-    }
-}
-
-void SvgProperties::addWeaker(const SvgProperties& others) {
-    for (std::size_t i = 0; i < values_.size(); ++i)
-        if (values_[i].empty()) values_[i] = others.values_[i];
-}
-
-void SvgProperties::addStronger(const SvgProperties& others) {
-    SvgProperties both = others;
-    both.addWeaker(*this);
-    *this = both;
-}
-
-void SvgSheet::announce(pugi::xml_node node) {
-    forEachSelector(node, [this](const std::string& name) { announced_[slot(name)] = true; });
-}
-
-void SvgSheet::add(std::string_view css) {
-    std::string_view rest = texts_.emplace_back(withoutComments(css));
-    while (!rest.empty()) {
-        std::string_view selectors = takeUntil(rest, '{');
-        SvgProperties declared;
-        declared.declare(takeUntil(rest, '}'));
-        if (declared.isEmpty()) continue;
-        while (!selectors.empty())
-            if (const std::string_view name = trimmed(takeUntil(selectors, ','));
-                announced_[slot(name)])
-                rules_[std::string(name)].addStronger(declared);
-    }
-}
-
-void SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) const {
-    if (rules_.empty()) return;
-    forEachSelector(node, [&](const std::string& name) {
-        if (const auto rule = rules_.find(name); rule != rules_.end())
-            properties.addWeaker(rule->second);
-    });
-}
-
 SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet) {
     SvgProperties properties;
     properties.declare(node.attribute("style").value());
@@ -129,6 +77,12 @@ SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet) {
         properties.setIfUnset(static_cast<SvgProperty>(i),
                               trimmed(node.attribute(SvgProperties::kNames[i]).value()));
     return properties;
+}
+
+bool isSvgClear(std::string_view opacity) {
+    if (opacity.ends_with('%')) opacity.remove_suffix(1);
+    const auto value = parseDouble(opacity);
+    return value && *value <= 0;
 }
 
 SvgStyle svgStyle(SvgStyle style, const SvgProperties& properties) {
@@ -147,6 +101,10 @@ SvgStyle svgStyle(SvgStyle style, const SvgProperties& properties) {
         style.no_stroke = is_none(value);
         style.has_stroke = !style.no_stroke;
     }
+    if (const auto value = stated(SvgProperty::FillOpacity); !value.empty())
+        style.clear_fill = isSvgClear(value);
+    if (const auto value = stated(SvgProperty::StrokeOpacity); !value.empty())
+        style.clear_stroke = isSvgClear(value);
     return style;
 }
 
@@ -165,7 +123,12 @@ SvgElement readSvgElement(pugi::xml_node node, const SvgSheet& sheet,
                           const ImportOptions& options) {
     SvgElement element;
     element.properties = svgProperties(node, sheet);
-    element.transform = parseSvgTransform(node.attribute("transform").value());
+    const std::string_view transform = element.properties[SvgProperty::Transform];
+    element.transform = transform == "none" ? Affine() : parseSvgTransform(cssTransform(transform));
+    if (const auto origin = originOf(element.properties[SvgProperty::TransformOrigin])) {
+        const Affine there{{1, 0}, {0, 1}, *origin}, back{{1, 0}, {0, 1}, -1 * *origin};
+        element.transform = there * element.transform * back;
+    }
     SvgNames& names = element.names;
     const pugi::xml_attribute label = node.attribute("inkscape:label"), id = node.attribute("id");
     for (const char* text : {label.value(), id.value()}) {

@@ -209,11 +209,13 @@ TEST(Svg, NamesOfWalls) {
     // A room of 8 m x 4 m, and a cupboard that parts it.
     const std::string walls = "<path d='M0 0H8V4H0Z'/>", rest = "<path d='M5 0V4'/>";
     const auto warned = [](const std::string& svg) { return warningsOf(read(page(svg))); };
-    EXPECT_EQ(warned("<g id='plan'><g id='Walls'>" + walls + "</g>" + rest + "</g>"),
-              "plan.svg: warning: the drawing names its walls: with --wall-layer Walls it would "
-              "have 32.0 m2 of floor, not 20.0 m2\n");
-    EXPECT_NE(warned("<g id='g1' inkscape:label='W\u00c4NDE 1'>" + walls + "</g>" + rest)
-                  .find("--wall-layer 'W\u00c4NDE 1' "),
+    const auto noted = [](const std::string& svg) { return notesOf(read(page(svg))); };
+    EXPECT_NE(noted("<g id='plan'><g id='Walls'>" + walls + "</g>" + rest + "</g>")
+                  .find("only lines named as walls are taken, the others clutter their room: "
+                        "--wall-layer Walls; --wall-layer '*' takes all\n"),
+              std::string::npos);
+    EXPECT_NE(noted("<g id='g1' inkscape:label='W\u00c4NDE 1'>" + walls + "</g>" + rest)
+                  .find("--wall-layer 'W\u00c4NDE 1';"),
               std::string::npos);
     EXPECT_EQ(warned("<g id='Walls'>" + walls + rest + "</g>"), "") << "all are";
     EXPECT_EQ(warned("<g id='Walls'>" + walls + "</g><path d='M1 1H2'/>"), "") << "the same room";
@@ -226,7 +228,7 @@ TEST(Svg, Layers) {
         "height='3'/></g></g>"
         "<g id='Furniture'><g id='g2'><path d='M1 0V3'/></g></g><rect id='odd' x='8' width='9' "
         "height='9'/>");
-    EXPECT_NE(notesOf(read(svg)).find("layers of walls: (none) (1), Furniture (1), Walls (1)\n"),
+    EXPECT_NE(notesOf(read(svg)).find("layers of walls: (none) (1), Walls (1)\n"),
               std::string::npos);
     ImportOptions options;
     for (const char* glob : {"walls", "a", "g1"}) {
@@ -352,6 +354,72 @@ TEST(Svg, SurvivesDamage) {
             options.max_work.max = 2000;
             read(bytes, options);
         });
+}
+
+/// The floor of a room of 8 x 6 m with more elements.
+double areaWith(const std::string& more) {
+    const std::string svg =
+        "<svg xmlns='http://www.w3.org/2000/svg' width='10000mm' height='10000mm' viewBox='0 0 10 "
+        "10'>"
+        "<rect x='1' y='1' width='8' height='6'/>" +
+        more + "</svg>";
+    return environmentOf(readSvg(svg, "plan.svg", {}, sceneSchemas())).indoor().area();
+}
+
+TEST(SvgCss, AsBrowsersApplyIt) {
+    const std::string line = " d='M5 1v6'/>";
+    for (const std::string hidden : {
+             "<style>svg .q{display:none}</style><path class='q'",
+             "<style>.a.b{display:none}</style><path class='a b'",
+             "<style>path[id='p']{display:none}</style><path id='p'",
+             "<style>style + path{display:none}</style><path",
+             "<style>rect ~ path{display:none}</style><path",
+             "<style>:root > path{display:none}</style><path",
+             "<style>@media screen{path{display:none}}</style><path",
+             "<style>.a{display:none!important} #p{display:inline}</style><path id='p' class='a'",
+             "<style>.a{display:none !important}</style><path style='display:inline' class='a'",
+             "<style>.b{display:inline} .a{display:none}</style><path class='a b'",
+             "<style>#p{display:none} path.a{display:inline}</style><path id='p' class='a'",
+             "<path style='display:none!important'",
+             "<path opacity='0'",
+             "<path style='opacity:0%'",
+             "<path fill='none' stroke='#000' stroke-opacity='0'",
+             "<path style='fill-opacity:0;stroke:none'",
+         })
+        EXPECT_NEAR(areaWith(hidden + line), 48, 1e-9) << hidden;
+    for (const std::string shown : {
+             "<style>g path{display:none}</style><path",
+             "<style>path > path{display:none}</style><path",
+             "<style>@media print{path{display:none}}</style><path",
+             "<style>.a.b{display:none}</style><path class='a'",
+             "<style>#p{display:inline} .a{display:none}</style><path id='p' class='a'",
+             "<style>.a{display:none}</style><path style='display:inline' class='a'",
+             "<path opacity='0.5'",
+             "<path style='display:none!x'",
+         })
+        EXPECT_NEAR(areaWith(shown + line), 24, 1e-9) << shown;
+}
+
+TEST(SvgCss, UnreadSelectorsWarn) {
+    const std::string svg =
+        "<svg xmlns='http://www.w3.org/2000/svg' width='10000mm' height='10000mm' viewBox='0 0 10 "
+        "10'>"
+        "<style>path:nth-child(2){display:none}</style><rect x='1' y='1' width='8' "
+        "height='6'/></svg>";
+    const Document document = readSvg(svg, "plan.svg", {}, sceneSchemas());
+    EXPECT_NE(warningsOf(document).find("the CSS rule `path:nth-child(2)`"), std::string::npos);
+}
+
+TEST(SvgCss, Transforms) {
+    // A quarter turn about 5,4 of a line that lies level.
+    EXPECT_NEAR(areaWith("<path style='transform:rotate(90deg);transform-origin:5px 4px' "
+                         "d='M2 4h6'/>"),
+                24, 1e-9);
+    EXPECT_NEAR(areaWith("<path transform='rotate(90)' transform-origin='5 4' d='M2 4h6'/>"), 24,
+                1e-9);
+    EXPECT_NEAR(areaWith("<svg width='100%' height='100%' viewBox='0 0 20 20'>"
+                         "<path d='M10 2v12'/></svg>"),
+                24, 1e-9);
 }
 
 }  // namespace

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "io/plan/drawing_source.h"
+#include "io/plan/svg.h"
+
+namespace ispace {
+
+namespace {
+
+/// At-rules in each other.
+constexpr int kMaxRuleDepth = 8;
+/// Elements compared with one selector.
+constexpr int kMaxSelectorSteps = 1000;
+
+std::string withoutComments(std::string_view css) {
+    std::string text;
+    while (!css.empty()) {
+        const std::size_t begin = css.find("/*");
+        text += css.substr(0, begin);
+        if (begin == std::string_view::npos) break;
+        const std::size_t end = css.find("*/", begin + 2);
+        css.remove_prefix(end == std::string_view::npos ? css.size() : end + 2);
+    }
+    return text;
+}
+
+/// Removes and returns the text before the mark, which is removed, too.
+std::string_view takeUntil(std::string_view& rest, char mark) {
+    const std::string_view part = rest.substr(0, rest.find(mark));
+    rest.remove_prefix(std::min(part.size() + 1, rest.size()));
+    return part;
+}
+
+/// Removes and returns a block up to its closing brace, which is removed, too.
+std::string_view takeBlock(std::string_view& rest) {
+    int depth = 1;
+    std::size_t end = 0;
+    for (; end < rest.size(); ++end) {
+        if (rest[end] == '{') ++depth;
+        if (rest[end] == '}' && --depth == 0) break;
+    }
+    const std::string_view block = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    return block;
+}
+
+bool isCssBlank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
+
+/// True if a list of words, separated by blanks, has this one.
+bool hasWord(std::string_view list, std::string_view word) {
+    while (!list.empty()) {
+        std::size_t end = 0;
+        while (end < list.size() && !isCssBlank(list[end])) ++end;
+        if (list.substr(0, end) == word && end > 0) return true;
+        list.remove_prefix(std::min(end + 1, list.size()));
+    }
+    return false;
+}
+
+/// Removes and returns a name at the beginning; "" for none, or for one with escapes.
+std::string_view takeName(std::string_view& rest) {
+    std::size_t end = 0;
+    while (end < rest.size() &&
+           ((rest[end] >= 'a' && rest[end] <= 'z') || (rest[end] >= 'A' && rest[end] <= 'Z') ||
+            (rest[end] >= '0' && rest[end] <= '9') || rest[end] == '-' || rest[end] == '_' ||
+            static_cast<unsigned char>(rest[end]) >= 0x80))
+        ++end;
+    const std::string_view name = rest.substr(0, end);
+    rest.remove_prefix(end);
+    return name;
+}
+
+pugi::xml_node parentOf(pugi::xml_node node) {
+    const pugi::xml_node parent = node.parent();
+    return parent.type() == pugi::node_element ? parent : pugi::xml_node();
+}
+
+pugi::xml_node elementBefore(pugi::xml_node node) {
+    do node = node.previous_sibling();
+    while (node && node.type() != pugi::node_element);
+    return node;
+}
+
+/// True if rules for this list of media count on a screen.
+bool isForScreen(std::string_view media) {
+    media = trimmed(media);
+    return media.empty() || media.starts_with("screen") || media.starts_with("all") ||
+           media.starts_with("only screen");
+}
+
+}  // namespace
+
+void SvgProperties::set(std::size_t key, std::string_view value, bool is_important) {
+    if (value.empty() || (important_[key] && !is_important)) return;
+    values_[key] = value;
+    important_[key] = is_important;
+}
+
+void SvgProperties::declare(std::string_view declarations) {
+    while (!declarations.empty()) {
+        const std::string_view part = takeUntil(declarations, ';');
+        const std::size_t colon = part.find(':');
+        if (colon == std::string_view::npos) continue;
+        const auto name = std::find(kNames.begin(), kNames.end(), trimmed(part.substr(0, colon)));
+        if (name == kNames.end()) continue;
+        std::string_view value = trimmed(part.substr(colon + 1));
+        const std::size_t mark = value.find('!');
+        const bool is_important = mark != std::string_view::npos &&
+                                  lowerCased(trimmed(value.substr(mark + 1))) == "important";
+        if (mark != std::string_view::npos && !is_important) continue;  // invalid, as in browsers
+        value = trimmed(value.substr(0, mark));
+        set(static_cast<std::size_t>(name - kNames.begin()), value, is_important);
+    }
+}
+
+void SvgProperties::addStronger(const SvgProperties& others) {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+        set(i, others.values_[i], others.important_[i]);
+}
+
+void SvgSheet::add(std::string_view css) { addRules(texts_.emplace_back(withoutComments(css)), 0); }
+
+void SvgSheet::addRules(std::string_view css, int depth) {
+    while (!trimmed(css).empty()) {
+        const std::size_t open = css.find('{'), end = css.find(';');
+        std::string_view head = trimmed(css.substr(0, open));
+        if (head.starts_with('@') && end < open) {  // @import, @charset, @namespace
+            head = trimmed(css.substr(0, end));
+            if (head.starts_with("@import")) ++unread_["@import"];
+            css.remove_prefix(end + 1);
+            continue;
+        }
+        if (open == std::string_view::npos) return;
+        css.remove_prefix(open + 1);
+        const std::string_view block = takeBlock(css);
+        if (head.starts_with("@media")) {
+            if (depth < kMaxRuleDepth && isForScreen(head.substr(6))) addRules(block, depth + 1);
+            continue;
+        }
+        if (head.starts_with('@')) continue;  // of fonts, pages, animations
+        SvgProperties declared;
+        declared.declare(block);
+        if (declared.isEmpty()) continue;
+        while (!head.empty()) addRule(trimmed(takeUntil(head, ',')), declared);
+    }
+}
+
+void SvgSheet::addRule(std::string_view selector, const SvgProperties& declared) {
+    auto parsed = parse(selector);
+    if (!parsed) {
+        ++unread_[std::string(selector.substr(0, 40))];
+        return;
+    }
+    Rule rule{std::move(*parsed), {}, declared};
+    for (const Compound& compound : rule.selector)
+        for (const Simple& part : compound.parts)
+            ++rule.specificity[part.kind == Simple::Kind::Id     ? 0
+                               : part.kind == Simple::Kind::Name ? 2
+                                                                 : 1];
+    std::string subject;
+    for (const Simple& part : rule.selector.back().parts) {
+        if (part.kind == Simple::Kind::Id) subject = '#' + std::string(part.name);
+        if (part.kind == Simple::Kind::Class && !subject.starts_with('#'))
+            subject = '.' + std::string(part.name);
+        if (part.kind == Simple::Kind::Name && subject.empty()) subject = part.name;
+    }
+    by_subject_[subject].push_back(rules_.size());
+    rules_.push_back(std::move(rule));
+}
+
+std::optional<std::vector<SvgSheet::Compound>> SvgSheet::parse(std::string_view selector) {
+    std::vector<Compound> compounds;
+    Compound compound;
+    bool has_star = false;
+    while (!selector.empty()) {
+        const char c = selector.front();
+        if (isCssBlank(c) || c == '>' || c == '+' || c == '~') {
+            char combinator = ' ';
+            while (!selector.empty() &&
+                   (isCssBlank(selector.front()) ||
+                    std::string_view(">+~").find(selector.front()) != std::string_view::npos)) {
+                if (!isCssBlank(selector.front())) {
+                    if (combinator != ' ') return std::nullopt;
+                    combinator = selector.front();
+                }
+                selector.remove_prefix(1);
+            }
+            if (compound.parts.empty() && !has_star) return std::nullopt;
+            compounds.push_back(std::exchange(compound, Compound{{}, combinator}));
+            has_star = false;
+            continue;
+        }
+        if (c == '*') {
+            has_star = true;
+            selector.remove_prefix(1);
+        } else if (c == '[') {
+            const std::size_t end = selector.find(']');
+            if (end == std::string_view::npos) return std::nullopt;
+            std::string_view inner = trimmed(selector.substr(1, end - 1));
+            selector.remove_prefix(end + 1);
+            Simple part{Simple::Kind::Attribute, takeName(inner), {}, ' '};
+            inner = trimmed(inner);
+            if (part.name.empty()) return std::nullopt;
+            if (!inner.empty()) {
+                const std::size_t equals = inner.find('=');
+                if (equals > 1) return std::nullopt;
+                part.relation = inner.front();
+                part.value = trimmed(inner.substr(equals + 1));
+                if (part.value.size() >= 2 && part.value.front() == part.value.back() &&
+                    (part.value.front() == '"' || part.value.front() == '\''))
+                    part.value = part.value.substr(1, part.value.size() - 2);
+                if (std::string_view("=~^$*|").find(part.relation) == std::string_view::npos)
+                    return std::nullopt;
+            }
+            compound.parts.push_back(part);
+        } else {
+            const bool has_mark = c == '.' || c == '#' || c == ':';
+            if (has_mark) selector.remove_prefix(1);
+            const std::string_view name = takeName(selector);
+            if (name.empty() || (c == ':' && name != "root")) return std::nullopt;
+            if (!has_mark && !compound.parts.empty()) return std::nullopt;
+            compound.parts.push_back({c == '.'   ? Simple::Kind::Class
+                                      : c == '#' ? Simple::Kind::Id
+                                      : c == ':' ? Simple::Kind::Root
+                                                 : Simple::Kind::Name,
+                                      name,
+                                      {},
+                                      ' '});
+        }
+    }
+    if (compound.parts.empty() && !has_star) return std::nullopt;
+    compounds.push_back(std::move(compound));
+    return compounds;
+}
+
+bool SvgSheet::matches(pugi::xml_node node, const Compound& compound) {
+    return std::all_of(compound.parts.begin(), compound.parts.end(), [node](const Simple& part) {
+        switch (part.kind) {
+            case Simple::Kind::Name:
+                return svgName(node) == part.name;
+            case Simple::Kind::Class:
+                return hasWord(node.attribute("class").value(), part.name);
+            case Simple::Kind::Id:
+                return std::string_view(node.attribute("id").value()) == part.name;
+            case Simple::Kind::Root:
+                return !parentOf(node);
+            case Simple::Kind::Attribute:
+                break;
+        }
+        const pugi::xml_attribute attribute = node.attribute(std::string(part.name).c_str());
+        const std::string_view value = attribute.value();
+        if (!attribute) return false;
+        switch (part.relation) {
+            case '=':
+                return value == part.value;
+            case '~':
+                return hasWord(value, part.value);
+            case '^':
+                return !part.value.empty() && value.starts_with(part.value);
+            case '$':
+                return !part.value.empty() && value.ends_with(part.value);
+            case '*':
+                return !part.value.empty() && value.find(part.value) != std::string_view::npos;
+            case '|':
+                return value == part.value || value.starts_with(std::string(part.value) + '-');
+            default:
+                return true;
+        }
+    });
+}
+
+/// Matches the compounds up to `last` against the node and those around it, backtracking.
+bool SvgSheet::matches(pugi::xml_node node, const std::vector<Compound>& selector, std::size_t last,
+                       int& steps) {
+    if (--steps < 0 || !node || !matches(node, selector[last])) return false;
+    if (last == 0) return true;
+    const char combinator = selector[last].combinator;
+    const bool is_upward = combinator == ' ' || combinator == '>';
+    const bool is_direct = combinator == '>' || combinator == '+';
+    for (node = is_upward ? parentOf(node) : elementBefore(node); node && steps >= 0;
+         node = is_upward ? parentOf(node) : elementBefore(node)) {
+        if (matches(node, selector, last - 1, steps)) return true;
+        if (is_direct) return false;
+    }
+    return false;
+}
+
+void SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) const {
+    if (rules_.empty()) return;
+    std::vector<std::size_t> found;
+    const auto collect = [&](const std::string& subject) {
+        const auto rules = by_subject_.find(subject);
+        if (rules == by_subject_.end()) return;
+        for (const std::size_t i : rules->second) {
+            int steps = kMaxSelectorSteps;
+            if (matches(node, rules_[i].selector, rules_[i].selector.size() - 1, steps))
+                found.push_back(i);
+        }
+    };
+    collect("");
+    collect(std::string(svgName(node)));
+    if (const pugi::xml_attribute id = node.attribute("id")) collect('#' + std::string(id.value()));
+    std::string_view classes = node.attribute("class").value();
+    std::vector<std::string_view> seen;
+    while (!classes.empty()) {
+        std::size_t end = 0;
+        while (end < classes.size() && !isCssBlank(classes[end])) ++end;
+        const std::string_view name = classes.substr(0, end);
+        classes.remove_prefix(std::min(end + 1, classes.size()));
+        if (name.empty() || isOneOf(seen, name)) continue;
+        seen.push_back(name);
+        collect('.' + std::string(name));
+    }
+    std::sort(found.begin(), found.end(), [this](std::size_t a, std::size_t b) {
+        return std::pair(rules_[a].specificity, a) < std::pair(rules_[b].specificity, b);
+    });
+    SvgProperties all;
+    for (const std::size_t i : found) all.addStronger(rules_[i].declared);
+    all.addStronger(properties);
+    properties = all;
+}
+
+}  // namespace ispace
