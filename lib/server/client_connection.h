@@ -21,6 +21,13 @@ namespace ispace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
+/// Returns the address of the other side, without its port; "" once it has gone.
+inline std::string peerOf(const asio::ip::tcp::socket& socket) {
+    error_code error;
+    const auto peer = socket.remote_endpoint(error);
+    return error ? "" : peer.address().to_string();
+}
+
 /// Splits a byte stream into lines that end in LF or CRLF. Holds at most one line of the maximum
 /// length and one block, provided that lines are taken before more bytes are appended.
 class LineBuffer {
@@ -82,7 +89,7 @@ class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
           lines_(limits.line) {}
 
     void serve(ServerState& state) {
-        session_.emplace(state);
+        session_.emplace(state, peerOf(socket_));
         out_.append(Session::greeting());
         heard_ = std::chrono::steady_clock::now();
         expectRole();

@@ -23,6 +23,34 @@ bool TokenBucket::has(WallTime now) {
     return left_ >= 1;
 }
 
+WrongTokens::Address& WrongTokens::at(const std::string& address, WallTime now) {
+    constexpr std::size_t kMaxAddresses = 1024;
+    if (addresses_.size() >= kMaxAddresses && !addresses_.contains(address)) {
+        // Trusted addresses are forgotten last.
+        const auto before = [](const auto& a, const auto& b) {
+            return std::pair(a.second.is_trusted, a.second.last) <
+                   std::pair(b.second.is_trusted, b.second.last);
+        };
+        addresses_.erase(std::min_element(addresses_.begin(), addresses_.end(), before));
+    }
+    Address& found = addresses_.try_emplace(address, Address{TokenBucket(limits_)}).first->second;
+    found.last = ++uses_;
+    found.bucket.has(now);
+    return found;
+}
+
+bool WrongTokens::count(const std::string& address, WallTime now) {
+    Address& from = at(address, now);
+    if (!from.bucket.has(now) || (!from.is_trusted && !strangers_.has(now))) return false;
+    from.bucket.take();
+    if (!from.is_trusted) strangers_.take();
+    return true;
+}
+
+void WrongTokens::trust(const std::string& address, WallTime now) {
+    at(address, now).is_trusted = true;
+}
+
 StepQueue::StepQueue(Simulation& simulation)
     : simulation_(&simulation), seen_(simulation.world().steps()) {}
 

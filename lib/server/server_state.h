@@ -73,6 +73,31 @@ class TokenBucket {
     WallTime filled_{};  // time at which left_ was computed
 };
 
+/// Wrong tokens, counted for each address of clients and in sum over addresses that have never
+/// shown the right one. Beyond a limit further wrong ones are answered 429; the right one always
+/// passes. Memory is bounded: among very many addresses the oldest is forgotten.
+class WrongTokens {
+  public:
+    explicit WrongTokens(const RateLimit& limits) : limits_(limits), strangers_(limits) {}
+    /// Counts a wrong token. \returns false if there were too many before it
+    bool count(const std::string& address, WallTime now);
+    /// Notes that a client at this address has the token.
+    void trust(const std::string& address, WallTime now);
+
+  private:
+    struct Address {
+        TokenBucket bucket;
+        bool is_trusted = false;
+        std::int64_t last = 0;  // order of use
+    };
+    Address& at(const std::string& address, WallTime now);
+
+    RateLimit limits_;
+    TokenBucket strangers_;
+    std::map<std::string, Address> addresses_;
+    std::int64_t uses_ = 0;
+};
+
 /// Steps of a paused world requested by clients, taken in order of request.
 class StepQueue {
   public:
@@ -202,7 +227,7 @@ class ServerState {
     [[nodiscard]] StepQueue& steps() { return steps_; }
     /// The common limit on pauses.
     [[nodiscard]] TokenBucket& pauses() { return pauses_; }
-    [[nodiscard]] TokenBucket& wrongTokens() { return wrong_tokens_; }
+    [[nodiscard]] WrongTokens& wrongTokens() { return wrong_tokens_; }
 
     /// Returns the newest reading of a sensor as scanText writes it; computes a missing reading of
     /// a heavy sensor. All readers share one string. \throws FormatError as scanText does
@@ -292,7 +317,8 @@ class ServerState {
     ChangeBudget changes_;
     std::int64_t seen_changes_ = 0;                   // change count of the world
     std::int64_t told_changes_ = 0, told_event_ = 0;  // at the last hasUpdates()
-    TokenBucket pauses_, wrong_tokens_;
+    TokenBucket pauses_;
+    WrongTokens wrong_tokens_;
     std::vector<std::vector<Text>> texts_;  // of each sensor, one for each requested form
     std::size_t kept_ = 0;                  // bytes in texts_
     // Bytes of all texts still referenced; shared, since texts may outlive the state.

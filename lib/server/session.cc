@@ -119,9 +119,10 @@ std::span<const Session::Request> Session::requests() {
     return kRequests;
 }
 
-Session::Session(ServerState& state)
+Session::Session(ServerState& state, std::string peer)
     : state_(&state),
       changes_(state.simulation().world().changes()),
+      peer_(std::move(peer)),
       pauses_(state.limits().pauses),
       spare_pauses_(state.limits().spare_pauses, std::chrono::steady_clock::now()) {}
 

@@ -56,7 +56,8 @@ std::string unknownThing(std::string_view kind, std::string_view id,
 /// transport: it reads lines and writes bytes. ispace-protocol(7) describes the language.
 class Session {
   public:
-    explicit Session(ServerState& state);
+    /// \param peer address of the client, without its port; "" if unknown
+    explicit Session(ServerState& state, std::string peer = {});
     /// Releases the robot or person it holds.
     ~Session();
     Session(const Session&) = delete;
@@ -98,6 +99,8 @@ class Session {
         const ServerLimits& limits = state_->limits();
         return has_token_ || !limits.token_first || limits.token.empty();
     }
+    /// False if changes of the world require a token that the client has not given.
+    [[nodiscard]] bool hasToken() const { return has_token_ || state_->limits().token.empty(); }
     /// True after QUIT and after errors that close the connection: no more input is read.
     [[nodiscard]] bool closing() const { return closing_; }
     /// Returns and clears the output, in order.
@@ -221,6 +224,7 @@ class Session {
     Condition may_go_on_ = nullptr;
     EventKinds events_;                      // subscribed events
     std::vector<std::int64_t> next_events_;  // in each world
+    std::string peer_;
     bool has_token_ = false;
     int wrong_tokens_ = 0;
     TokenBucket pauses_, spare_pauses_;

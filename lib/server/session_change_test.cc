@@ -316,6 +316,20 @@ TEST(SessionChange, GuessesAreLimited) {
     Changing talk(limits);
     for (int i = 0; i < 4; ++i) talk.ask(talk.client(), "TOKEN x");
     EXPECT_EQ(talk.ask(talk.client(), "TOKEN x").substr(0, 8), "ERR 429 ");
+    EXPECT_EQ(talk.ask(talk.client(), "TOKEN s3cret"), "OK TOKEN\n") << "the owner gets in";
+}
+
+TEST(WrongTokens, AreCountedByAddressAndInSumOverStrangers) {
+    WrongTokens wrong({0.001, 4});
+    const WallTime now = std::chrono::steady_clock::now();
+    wrong.trust("192.168.1.2", now);
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(wrong.count("192.168.1.7", now));
+    EXPECT_FALSE(wrong.count("192.168.1.7", now));
+    EXPECT_FALSE(wrong.count("192.168.1.8", now)) << "strangers share a sum";
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(wrong.count("192.168.1.2", now));
+    EXPECT_FALSE(wrong.count("192.168.1.2", now));
+    for (int i = 0; i < 5000; ++i) wrong.count("10.0.0." + std::to_string(i), now);
+    EXPECT_FALSE(wrong.count("192.168.1.2", now)) << "not forgotten among many";
 }
 
 TEST(SessionChange, EventsAreTold) {

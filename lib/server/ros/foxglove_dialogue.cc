@@ -59,8 +59,8 @@ std::string binary(FoxgloveOpcode opcode) { return std::string(1, static_cast<ch
 }  // namespace
 
 FoxgloveDialogue::FoxgloveDialogue(ServerState& state, RosFeed& feed, const std::string& title,
-                                   const std::string& session_id)
-    : RosDialogue(state, feed) {
+                                   const std::string& session_id, std::string peer)
+    : RosDialogue(state, feed, std::move(peer)) {
     greet(title, session_id);
     advertise();
     advertiseServices();
@@ -342,6 +342,12 @@ void FoxgloveDialogue::setParameters(const Json& request) {
             requestToSet(state().simulation(), feed().isOfOneRoom(), name, member(one, "value"));
         if (!line) {
             tell(Level::Error, excerpt(name) + " cannot be set to this");
+            if (!id.empty()) sendParameters({name}, id);
+            continue;
+        }
+        // PAUSE and RESUME themselves do not need it.
+        if (!orders().hasToken()) {
+            tell(Level::Error, excerpt(name) + " needs the token of this run: ?token=x");
             if (!id.empty()) sendParameters({name}, id);
             continue;
         }

@@ -25,7 +25,7 @@ class FoxgloveDialogue final : public RosDialogue {
   public:
     /// \param title name of the server \param session_id differs from run to run
     FoxgloveDialogue(ServerState& state, RosFeed& feed, const std::string& title,
-                     const std::string& session_id);
+                     const std::string& session_id, std::string peer = {});
 
     void receive(std::string_view message, bool is_text) override;
     void stepped() override;

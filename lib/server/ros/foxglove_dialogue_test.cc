@@ -249,6 +249,20 @@ TEST(Foxglove, ParametersAreReadAndSet) {
     EXPECT_EQ(values["parameters"][0]["value"], true) << "a clock in steps";
 }
 
+TEST(Foxglove, ParametersNeedTheToken) {
+    ServerLimits limits = RosTalk<FoxgloveDialogue>::limits();
+    limits.token = "secret";
+    FoxgloveTalk talk(limits);
+    const json paused = json::parse(R"([{"name":"clock.paused","value":true}])");
+    talk.send({{"op", "setParameters"}, {"parameters", paused}});
+    const json refusal = talk.ask("status");
+    EXPECT_NE(refusal.value("message", "").find("token"), std::string::npos) << refusal;
+    EXPECT_EQ(talk.dialogue->present("secret"), 0U);
+    talk.send({{"op", "setParameters"}, {"parameters", paused}, {"id", "t"}});
+    talk.settle();
+    EXPECT_EQ(talk.ask("parameterValues")["id"], "t");
+}
+
 TEST(Foxglove, WatchesAllParametersOfAnEmptyList) {
     FoxgloveTalk talk;
     talk.send({{"op", "subscribeParameterUpdates"}, {"parameterNames", json::array()}});

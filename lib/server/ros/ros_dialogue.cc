@@ -16,10 +16,11 @@ constexpr std::size_t kMaxQueue = std::size_t{1} << 23U, kMaxAnswers = std::size
 
 }  // namespace
 
-RosDialogue::RosDialogue(ServerState& state, RosFeed& feed)
+RosDialogue::RosDialogue(ServerState& state, RosFeed& feed, std::string peer)
     : state_(&state),
       feed_(&feed),
-      orders_(state, [this](const std::string& error) { tell(Level::Error, error); }) {
+      orders_(
+          state, [this](const std::string& error) { tell(Level::Error, error); }, std::move(peer)) {
     feed.enter();
     version_ = feed.version();
 }

@@ -25,11 +25,12 @@ namespace ispace {
 /// requests wait while it leaves answers unread.
 class RosDialogue : public WebDialogue {
   public:
-    RosDialogue(ServerState& state, RosFeed& feed);
+    /// \param peer address of the client
+    RosDialogue(ServerState& state, RosFeed& feed, std::string peer);
     ~RosDialogue() override;
 
-    /// Presents a token. \returns false if it is wrong
-    bool present(std::string_view token) { return orders_.present(token); }
+    /// Presents a token. \returns 0 if it is right, 401 if it is wrong, 429 after too many of them
+    unsigned present(std::string_view token) { return orders_.present(token); }
 
     [[nodiscard]] std::size_t longest() const override { return std::size_t{1} << 18U; }
     [[nodiscard]] bool hasRoom() const override;

@@ -24,8 +24,9 @@ std::span<const RosService> rosServices() {
     return kServices;
 }
 
-RosOrders::RosOrders(ServerState& state, std::function<void(const std::string&)> tell)
-    : state_(&state), tell_(std::move(tell)), session_(state) {}
+RosOrders::RosOrders(ServerState& state, std::function<void(const std::string&)> tell,
+                     std::string peer)
+    : state_(&state), tell_(std::move(tell)), session_(state, std::move(peer)) {}
 
 RosOrders::~RosOrders() {
     for (const auto& [robot, driven] : driven_) release(robot, driven.hold);
@@ -45,11 +46,14 @@ void RosOrders::release(const std::string& robot, std::int64_t hold) {
     state.release(robot, hold);
 }
 
-bool RosOrders::present(std::string_view token) {
+unsigned RosOrders::present(std::string_view token) {
+    constexpr unsigned kWrong = 401, kTooMany = 429;
+    // A token has no blanks: others are as wrong as any, and count as one.
     const bool is_word = token.find_first_of(" \t\r\n") == std::string_view::npos;
-    if (!is_word || token.empty()) return false;
-    session_.request("TOKEN " + std::string(token));
-    return session_.take().starts_with("OK");
+    session_.request("TOKEN " + (is_word && !token.empty() ? std::string(token) : "\x7f"));
+    const std::string answer = session_.take();
+    if (answer.starts_with("OK")) return 0;
+    return answer.starts_with("ERR 429") ? kTooMany : kWrong;
 }
 
 bool RosOrders::mayRequest() const { return requests_.size() < kMaxRequests; }

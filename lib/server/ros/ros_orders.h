@@ -37,14 +37,17 @@ inline constexpr SimTime kRosSilence = std::chrono::milliseconds(1500);
 /// kRosSilence. Among several worlds, orders find it in whichever it is.
 class RosOrders {
   public:
-    /// \param tell reports a failure that answers no request
-    RosOrders(ServerState& state, std::function<void(const std::string& error)> tell);
+    /// \param tell reports a failure that answers no request \param peer address of the client
+    RosOrders(ServerState& state, std::function<void(const std::string& error)> tell,
+              std::string peer = {});
     RosOrders(const RosOrders&) = delete;
     RosOrders& operator=(const RosOrders&) = delete;
     ~RosOrders();
 
-    /// Presents a token. \returns false if it is wrong
-    bool present(std::string_view token);
+    /// Presents a token. \returns 0 if it is right, 401 if it is wrong, 429 after too many of them
+    unsigned present(std::string_view token);
+    /// False if changes of the world require a token that the client has not given.
+    [[nodiscard]] bool hasToken() const { return session_.hasToken(); }
     /// Carries out a message to a topic. \throws FormatError if it cannot be read
     void obey(const RosChannel& channel, std::string_view message);
 

@@ -80,20 +80,26 @@ void RosSite::settle(const std::string& host, std::uint16_t port) { origin_.empl
 
 WebAdmission RosSite::open(const WebRequest& request) {
     std::string_view protocol;
+    const std::string peer(request.peer);
     std::unique_ptr<RosDialogue> dialogue;
     if (language_ == RosLanguage::Foxglove) {
         protocol = foxgloveProtocol(request.protocols);
         if (protocol.empty())
             return {.status = 400,
                     .why = "the subprotocol is foxglove.sdk.v1 or foxglove.websocket.v1"};
-        dialogue = std::make_unique<FoxgloveDialogue>(*state_, *feed_, title_, session_);
+        dialogue = std::make_unique<FoxgloveDialogue>(*state_, *feed_, title_, session_, peer);
     } else {
-        dialogue = std::make_unique<RosbridgeDialogue>(*state_, *feed_);
+        dialogue = std::make_unique<RosbridgeDialogue>(*state_, *feed_, peer);
     }
     const ServerLimits& limits = state_->limits();
     const auto token = tokenOf(request.target);
-    if (token && !dialogue->present(*token))
-        return {.status = 401, .why = "this is not the token of this run"};
+    if (token) {
+        constexpr unsigned kTooMany = 429;
+        const unsigned status = dialogue->present(*token);
+        if (status == kTooMany)
+            return {.status = status, .why = "too many wrong tokens: try again in a second"};
+        if (status != 0) return {.status = status, .why = "this is not the token of this run"};
+    }
     if (!token || limits.token.empty()) {
         if (!is_loopback_ || limits.token_first)
             return {.status = 401, .why = "the address needs the token of this run: ?token=x"};

@@ -70,6 +70,25 @@ TEST_F(RosSites, OtherPagesNeedTheToken) {
     EXPECT_EQ(open(limits, {.target = "/", .origin = "", .protocols = kBoth}), 101U);
 }
 
+TEST_F(RosSites, TooManyWrongTokensAreToldAndTheRightOnePasses) {
+    ServerLimits limits;
+    limits.token = "x";
+    limits.wrong_tokens = {0.001, 2};
+    testing::TestWorld room;
+    ServerState state(room.simulation, limits);
+    RosFeed feed(state, {});
+    RosSite site(state, feed, RosLanguage::Foxglove, "room", true);
+    const auto open = [&site](const char* target) {
+        const WebAdmission admission =
+            site.open({.target = target, .origin = "", .protocols = kBoth});
+        return admission.dialogue ? 101 : admission.status;
+    };
+    EXPECT_EQ(open("/?token=y"), 401U);
+    EXPECT_EQ(open("/?token="), 401U);
+    EXPECT_EQ(open("/?token=y"), 429U);
+    EXPECT_EQ(open("/?token=x"), 101U);
+}
+
 TEST_F(RosSites, OtherMachinesNeedTheToken) {
     ServerLimits limits;
     limits.token = "x";

@@ -16,7 +16,8 @@ namespace ispace {
 /// or as raw CDR within CBOR, as the subscriber chooses.
 class RosbridgeDialogue final : public RosDialogue {
   public:
-    RosbridgeDialogue(ServerState& state, RosFeed& feed) : RosDialogue(state, feed) {}
+    RosbridgeDialogue(ServerState& state, RosFeed& feed, std::string peer = {})
+        : RosDialogue(state, feed, std::move(peer)) {}
 
     void receive(std::string_view message, bool is_text) override;
 

@@ -129,8 +129,8 @@ TEST(Rosbridge, ChangesNeedTheirRight) {
     limits.token = "secret";
     BridgeTalk talk(limits);
     EXPECT_EQ(talk.call("/reset")["result"], false);
-    EXPECT_FALSE(talk.dialogue->present("wrong"));
-    EXPECT_TRUE(talk.dialogue->present("secret"));
+    EXPECT_EQ(talk.dialogue->present("wrong"), 401U);
+    EXPECT_EQ(talk.dialogue->present("secret"), 0U);
     EXPECT_EQ(talk.call("/reset")["result"], true);
 }
 

@@ -153,9 +153,13 @@ void Browser::requested(error_code error) {
     // Beast would read them as the beginning of the first message.
     if (in_.size() > 0)
         return refuse(http::status::bad_request, "frames follow the answer to the upgrade");
+    error_code gone;
+    const auto peer = stream_.socket().remote_endpoint(gone);
+    const std::string address = gone ? std::string() : peer.address().to_string();
     WebAdmission admission = site_->open({.target = view(request.target()),
                                           .origin = view(request[http::field::origin]),
-                                          .protocols = view(request[kProtocols])});
+                                          .protocols = view(request[kProtocols]),
+                                          .peer = address});
     if (!admission.dialogue) return refuse(http::int_to_status(admission.status), admission.why);
     upgrade(request, std::move(admission));
 }

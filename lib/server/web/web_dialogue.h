@@ -68,13 +68,14 @@ class WebDialogue {
 struct WebRequest {
     std::string_view target, origin;
     std::string_view protocols;  ///< the client offers these, separated by commas
+    std::string_view peer = {};  ///< address of the client
 };
 
 /// The answer to a WebRequest.
 struct WebAdmission {
     std::unique_ptr<WebDialogue> dialogue = {};  ///< null: rejected
     std::string_view protocol = {};              ///< the chosen one, "" without
-    unsigned status = 0;                         ///< of a rejection: 401, 403, 404
+    unsigned status = 0;                         ///< of a rejection: 401, 403, 404, 429
     std::string_view why = {};                   ///< valid for the whole run
 };
 

@@ -31,8 +31,8 @@ bool isText(std::string_view bytes) {
 /// Memory is bounded: one message each way, replies up to a limit, one frame.
 class PageDialogue final : public WebDialogue {
   public:
-    PageDialogue(ServerState& state, WebFrames& frames)
-        : state_(&state), frames_(&frames), session_(std::in_place, state) {
+    PageDialogue(ServerState& state, WebFrames& frames, std::string_view peer)
+        : state_(&state), frames_(&frames), session_(std::in_place, state, std::string(peer)) {
         out_ = Session::greeting();
     }
 
@@ -180,7 +180,7 @@ WebAdmission WebPage::open(const WebRequest& request) {
     if (!origin_->mayConnect(request.origin))
         return {.status = 403, .why = "only the page of this server may connect"};
     Room& chosen = rooms_[static_cast<std::size_t>(*room)];
-    return {.dialogue = std::make_unique<PageDialogue>(*chosen.state, chosen.frames)};
+    return {.dialogue = std::make_unique<PageDialogue>(*chosen.state, chosen.frames, request.peer)};
 }
 
 void WebPage::lookAtEnd() {
