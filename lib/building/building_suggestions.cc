@@ -54,7 +54,7 @@ std::vector<std::shared_ptr<const Scene>> wholeScenes(const BuildingScene& build
 
 std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::size_t storey,
                                          std::span<const std::shared_ptr<const Scene>> whole,
-                                         const SuggestOptions& options) {
+                                         const SuggestOptions& options, Progress& progress) {
     BuildingScene named = building;
     named.scenes[storey] = whole[storey];
     const std::shared_ptr<const Scene> opened = openedScene(named, storey);
@@ -66,8 +66,8 @@ std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::siz
         if (other != nullptr && other != whole[storey]) own.others.push_back(other.get());
     Worlds worlds(scene.environment);
     const Coverage coverage = measureCoverage(scene, worlds, own.measure);
-    SilentProgress silent;
-    std::vector<Suggestion> found = suggestChanges(scene, coverage, own, building.devices, silent);
+    std::vector<Suggestion> found =
+        suggestChanges(scene, coverage, own, building.devices, progress);
     for (Suggestion& one : found)
         if (one.kind == Suggestion::Kind::Add)
             nameAdded(one, building.document.storeys[storey], scene.ids);
@@ -96,7 +96,8 @@ std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
         progress.advance(1);
         if (whole[i] == nullptr) continue;
         const double floor = coverage.storeys[i].report.indoor_area;
-        for (Suggestion& one : suggestForStorey(building, i, whole, options)) {
+        StopsWith stops(progress);
+        for (Suggestion& one : suggestForStorey(building, i, whole, options, stops)) {
             const bool saves =
                 one.kind == Suggestion::Kind::Replace || one.kind == Suggestion::Kind::Remove;
             one.share = seenShare(

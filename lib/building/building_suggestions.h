@@ -22,7 +22,7 @@ std::vector<std::shared_ptr<const Scene>> wholeScenes(const BuildingScene& build
 /// wholeScenes() \pre that of the storey is not null
 std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::size_t storey,
                                          std::span<const std::shared_ptr<const Scene>> whole,
-                                         const SuggestOptions& options);
+                                         const SuggestOptions& options, Progress& progress);
 
 /// Returns the building after edits of one storey, see suggestForStorey().
 BuildingScene editedStorey(const BuildingScene& building, std::size_t storey, const Scene& whole,

@@ -23,7 +23,8 @@ TEST(BuildingSuggestions, AddNoSensorInAShaft) {
     const auto whole = wholeScenes(building);
     const auto floors = scenesOfFloors(building);
     int added = 0;
-    for (const Suggestion& one : suggestForStorey(building, 1, whole, {})) {
+    SilentProgress silent;
+    for (const Suggestion& one : suggestForStorey(building, 1, whole, {}, silent)) {
         const BuildingScene changed = editedStorey(building, 1, *whole[1], one.edits);
         for (const Sensor& sensor : changed.scenes[1]->sensors)
             EXPECT_EQ(floors[1]->environment.indoor().locate(sensor.pose.position.onFloor()),
@@ -55,7 +56,8 @@ TEST(BuildingSuggestions, AreForTheLowestOfEqualStoreys) {
     ASSERT_NE(whole[2], nullptr);
     EXPECT_EQ(whole[2]->ids, (std::vector<std::string>{"c/ispace1", "c/l"}));
     EXPECT_EQ(whole[3], nullptr);
-    EXPECT_FALSE(suggestForStorey(building, 2, whole, {}).empty());
+    SilentProgress silent;
+    EXPECT_FALSE(suggestForStorey(building, 2, whole, {}, silent).empty());
 }
 
 }  // namespace

@@ -40,16 +40,19 @@ void writeSuggestions(JsonWriter& json, const Advice& advice) {
         json.endObject();
     }
     json.endArray();
+    if (advice.is_cut) json.key("suggestions_complete").value(false);
 }
 
 std::string suggestionsText(const Advice& advice) {
-    std::string text = advice.suggestions.empty() ? "\nno change of one sensor or piece helps\n"
-                                                  : "\nsuggestions:\n";
+    std::string text = "\nsuggestions:\n";
+    if (advice.suggestions.empty())
+        text = advice.is_cut ? "\n" : "\nno change of one sensor or piece helps\n";
     for (const Suggestion& suggestion : advice.suggestions) {
         text += "  " + printable(suggestion.text) + ": " + gainText(suggestion) + '\n';
         text += "    " + commandOf(advice.command, suggestion.edits) + '\n';
     }
     if (advice.is_short) text.append(kShortAdvice).append("\n");
+    if (advice.is_cut) text.append(kCutAdvice).append("\n");
     return text;
 }
 

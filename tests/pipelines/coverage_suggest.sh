@@ -111,3 +111,13 @@ grep -q '"saved":4000' told.json || fail "the saving is not told"
 
 expect_error 2 coverage barriers.env barriers.3dm --suggest=0
 expect_error 2 coverage --batch list --suggest
+
+# A limit ends the search, and the report says so.
+coverage -q barriers.env barriers.3dm --suggest --time-limit 0s >told
+has 'cut short by --time-limit' <told || fail "a cut is not told: $(cat told)"
+! has 'no change' <told || fail "changes that were not tried do not help"
+coverage -q barriers.env barriers.3dm --suggest --time-limit 0s --json | has '"suggestions_complete":false' ||
+    fail "a cut is not told in JSON"
+coverage -q barriers.env barriers.3dm --suggest --time-limit 1h >told
+! has 'cut short' <told || fail "a whole search counts as cut"
+expect_error 2 coverage barriers.env barriers.3dm --time-limit 1s

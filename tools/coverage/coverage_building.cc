@@ -160,9 +160,12 @@ std::optional<Advice> adviceFor(const CoverageToolOptions& options, const Buildi
     if (!options.suggestions) return std::nullopt;
     const SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
                                 .measure = options.measure};
-    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
-    return Advice{suggestForBuilding(input.building, coverage, wanted, *progress),
+    SearchWatch watch(makeProgress("coverage", options.common.progress, options.common.quiet),
+                      options.time_limit, false);
+    Advice advice{suggestForBuilding(input.building, coverage, wanted, watch),
                   editCommand(input.named, options.rules)};
+    advice.is_cut = watch.stopped();
+    return advice;
 }
 
 /// Returns the bytes of --report.

@@ -132,9 +132,9 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {"--report",  "--suggest",  "--compare", "--run",
-                                       "--perturb", "--failures", "--crowd",   "--facing",
-                                       "--privacy", "--presence", "--path",    "--localise"};
+    std::vector<const char*> single = {
+        "--report", "--suggest", "--time-limit", "--compare",  "--run",  "--perturb", "--failures",
+        "--crowd",  "--facing",  "--privacy",    "--presence", "--path", "--localise"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
@@ -144,6 +144,8 @@ void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string
     for (const char* option : {"--shard", "--resume", "--cache"})
         if (line.given(option))
             throw UsageError(std::string(option) + " is about many scenes: give --batch LIST");
+    if (o.time_limit && !o.suggestions)
+        throw UsageError("--time-limit is about --suggest: give that, too");
     if (o.crowd && o.crowd->of == Robustness::CrowdOf::Run && o.run.empty())
         throw UsageError("--crowd run takes people of a record: give --run DIR");
     checkProduct(line, o, to);
@@ -223,6 +225,11 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         "remove, furniture to move, and with --require, --facing or --privacy the changes that "
         "meet all; each with its gain and its command",
         Enters::Nothing);
+    constexpr double kMaxWait = 1e9;
+    line.duration("--time-limit", o.time_limit, 0, kMaxWait,
+                  "end the search of --suggest with the best so far after this time (500ms, 2s, "
+                  "1min); the report then says so",
+                  Enters::Nothing);
     line.parsed(
         "--perturb", "M,DEG", [&o](const std::string& text) { o.perturb = parseTolerance(text); },
         "report how coverage and requirements fall if sensors are mounted up to M and DEG off "

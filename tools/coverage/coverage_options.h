@@ -36,8 +36,9 @@ struct CoverageToolOptions {
     BatchOptions batch;              ///< a list of scenes to report on
     std::string other;               ///< LAYOUT to compare with; "": no comparison
     bool json = false;
-    std::string report;              ///< file for the report as JSON besides stdout; "": no file
-    std::optional<int> suggestions;  ///< number of changes to suggest
+    std::string report;                ///< file for the report as JSON besides stdout; "": no file
+    std::optional<int> suggestions;    ///< number of changes to suggest
+    std::optional<double> time_limit;  ///< of the search for them, seconds
     std::optional<MountingTolerance> perturb;  ///< of mounting
     int failures = 0;                          ///< number of sensors that fail; 0: not told
     std::optional<CrowdChoice> crowd;

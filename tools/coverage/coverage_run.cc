@@ -99,9 +99,11 @@ std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInp
                           .facing = options.facing,
                           .privacy = options.privacy};
     std::erase_if(wanted.facing, [](const FacingRule& rule) { return !rule.required; });
-    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
-    Advice advice{suggestChanges(input.scene, coverage, wanted, shippedDevices(), *progress),
+    SearchWatch watch(makeProgress("coverage", options.common.progress, options.common.quiet),
+                      options.time_limit, false);
+    Advice advice{suggestChanges(input.scene, coverage, wanted, shippedDevices(), watch),
                   editCommand(input.named, options.rules)};
+    advice.is_cut = watch.stopped();
     advice.is_short = missingFloor(input.scene, coverage, wanted) > 0 &&
                       (advice.suggestions.empty() ||
                        advice.suggestions.front().kind != Suggestion::Kind::Together);

@@ -56,7 +56,8 @@ std::string suggestionsText(const SimrunOptions& options, const BuildingInput& i
     for (std::size_t i = 0; before && i < whole.size() && !progress->stopped(); ++i) {
         progress->advance(1);
         if (whole[i] == nullptr) continue;
-        for (Suggestion& change : suggestForStorey(building, i, whole, {})) {
+        SilentProgress silent;
+        for (Suggestion& change : suggestForStorey(building, i, whole, {}, silent)) {
             using Kind = Suggestion::Kind;
             if (change.kind != Kind::Add && change.kind != Kind::Turn && change.kind != Kind::Shift)
                 continue;

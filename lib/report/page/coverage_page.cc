@@ -266,7 +266,7 @@ void addInstallation(const CoveragePageInput& input, ReportPage& page) {
 
 PageSection adviceSection(const Advice& advice) {
     PageSection section{"advice", "Suggestions", {}};
-    if (advice.suggestions.empty())
+    if (advice.suggestions.empty() && !advice.is_cut)
         section.blocks.push_back(PageText{"No change of one sensor or piece of furniture helps."});
     for (const Suggestion& suggestion : advice.suggestions) {
         section.blocks.push_back(
@@ -276,6 +276,11 @@ PageSection adviceSection(const Advice& advice) {
     if (advice.is_short) {
         std::string text = kShortAdvice;
         text.front() = 'N';
+        section.blocks.push_back(PageText{text + '.'});
+    }
+    if (advice.is_cut) {
+        std::string text = kCutAdvice;
+        text.front() = 'C';
         section.blocks.push_back(PageText{text + '.'});
     }
     return section;
