@@ -12,7 +12,6 @@
 
 #include "arrange/sensor_group.h"
 #include "base/error.h"
-#include "geom/curve_clip.h"
 #include "geom/overlay/overlay.h"
 #include "scene/sensor/ultrasound.h"
 
@@ -136,8 +135,7 @@ struct ExactGain::Data {
         auto region = sight.regionOf(sensor);
         if (!region)
             throw UsageError(sensor.id + " cannot be refined: its exact region is not known");
-        // Far ends of views would coarsen the lattice of overlays.
-        return {cutAlong(*region, floor_box).inside, isPartial(sensor.model)};
+        return {std::move(*region), isPartial(sensor.model)};
     }
     [[nodiscard]] View viewOf(std::size_t sensor, const Pose3& pose) const {
         return viewOf({sensors[sensor].id, sensors[sensor].model, pose});

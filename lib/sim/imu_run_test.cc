@@ -69,8 +69,9 @@ TEST(ImuRun, ReadsMeansInTheAxesOnTheWay) {
             turned += reading.rates.z * (reading.time - last);
             last = reading.time;
             // It speeds up at 100 degrees a second each second, for 0.6 s.
-            if (reading.time > 0.6)
+            if (reading.time > 0.6) {
                 EXPECT_NEAR(turned, rate * (reading.time - 0.3), 2e-3) << keys << reading.time;
+            }
             if (reading.time < 1.4) continue;
             EXPECT_NEAR(reading.accelerations.x, 0, 1e-9) << keys;
             EXPECT_NEAR(reading.accelerations.y, 0.8 * rate, 1e-9) << keys;
@@ -79,8 +80,9 @@ TEST(ImuRun, ReadsMeansInTheAxesOnTheWay) {
     }
     // From 40 to 50 degrees a second between 0.4 and 0.5 s.
     for (const Inertia& reading : readingsOnAnArc("at=0,0,0.2 rate=10"))
-        if (std::abs(reading.time - 0.5) < 1e-9)
+        if (std::abs(reading.time - 0.5) < 1e-9) {
             EXPECT_NEAR(reading.rates.z, Angle::degrees(45).radians(), 5e-3);
+        }
     // Off the axis, turned: v w to the left of the robot, and the centripetal w^2 r.
     const Inertia off = readingsOnAnArc("at=0.2,0.1,0.2 heading=30 rate=50").back();
     const double ahead = -0.2 * rate * rate, left = 0.8 * rate - 0.1 * rate * rate;

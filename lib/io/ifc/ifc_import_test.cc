@@ -162,7 +162,7 @@ TEST(Ifc, BrokenPartsAreNamed) {
     EXPECT_NEAR(environmentOf(document).indoor().area(), 23.95, 1e-4);
     EXPECT_NE(warningsOf(document).find(
                   "8 parts of its geometry cannot be read: IFCSWEPTDISKSOLID (1), "
-                    "IFCWALL without a body (1), a missing "
+                  "IFCWALL without a body (1), a missing "
                   "instance (1), a number that is missing (1), curves in a loop (1), placements in "
                   "a loop (1), shapes in a loop (2)"),
               std::string::npos)

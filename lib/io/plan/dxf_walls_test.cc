@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Walls in all entities that draw them, on the layers that hold them. Areas are sums of rectangles,
-// checked with another reader of DXF.
+// Walls in all entities that draw them, on the layers that hold them. Areas are sums of rectangles.
 #include <string>
 #include <string_view>
 
