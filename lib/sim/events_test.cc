@@ -116,7 +116,16 @@ TEST(Events, MatsAndGates) {
     EXPECT_NE(rows.find(",mat,m1,r1,,,1,\n"), std::string::npos) << rows;
     EXPECT_NE(rows.find(",mat,m1,r1,,,0,\n"), std::string::npos) << rows;
     EXPECT_NE(rows.find(",gate,g1,r1,,,1,\n"), std::string::npos) << rows;
-    EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 3) << rows;
+    // Their states change besides: n and on of the mat twice, in, out and broken of the gate.
+    EXPECT_NE(rows.find(",state,m1,on,,,,r1\n"), std::string::npos) << rows;
+    EXPECT_NE(rows.find(",state,g1,in,,,,1\n"), std::string::npos) << rows;
+    std::size_t others = 0;
+    for (std::size_t at = rows.find('\n'); at != std::string::npos; at = rows.find('\n', at + 1))
+        ++others;
+    for (std::size_t at = rows.find(",state,"); at != std::string::npos;
+         at = rows.find(",state,", at + 1))
+        --others;
+    EXPECT_EQ(others, 3U) << rows;
 }
 
 TEST(Events, OnlyWhatIsWanted) {

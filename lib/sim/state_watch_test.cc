@@ -90,7 +90,7 @@ TEST(Script, ActsAreChecked) {
         return std::string();
     };
     EXPECT_EQ(finding("1 l1 ACT"),
-              "s.txt:1:6: error: ACT wants one state, like 2.5 lamp1 ACT on=yes");
+              "s.txt:1:6: error: ACT wants a state, like 2.5 lamp1 ACT on=yes");
     EXPECT_EQ(finding("1 h1 ACT on=1"), "s.txt:1:3: error: h1 is a human, which has no state");
     EXPECT_NE(finding("1 l1 ACT level=2").find("s.txt:1:10: error: "), std::string::npos);
     EXPECT_NE(finding("1 l1 ACT on=maybe").find("neither yes nor no"), std::string::npos);
