@@ -62,7 +62,9 @@ TEST(Sites, ThatAreValidStandIndoorsAndClear) {
             ASSERT_EQ(validity.isValid(p), is_valid) << seed << ": " << p.x << ' ' << p.y;
             valid += is_valid ? 1 : 0;
         }
-        const std::vector<Site> kept = validSites(validity, sites, progress);
+        bool is_complete = true;
+        const std::vector<Site> kept = validSites(validity, sites, progress, is_complete);
+        EXPECT_TRUE(is_complete);
         EXPECT_LE(kept.size(), valid);
         EXPECT_GE(kept.size(), sites.size() / 3);
     }

@@ -272,8 +272,23 @@ Document importWithNamedWalls(
     FoundRooms rooms;
     if (options.report != nullptr) report = *options.report;
     if (options.found != nullptr) rooms = *options.found;
-    Document document = import(options, &better);
-    if (better.empty()) return document;
+    Document document;
+    if (!options.inside.empty()) {
+        // A drawing has one reading of its layers, whichever of its rooms is kept.
+        ImportOptions largest = options;
+        largest.inside.clear();
+        largest.found = nullptr;
+        largest.report = nullptr;
+        try {
+            import(largest, &better);
+        } catch (const FormatError& /*no room by default*/) {
+            better.clear();
+        }
+        if (better.empty()) return import(options, nullptr);
+    } else {
+        document = import(options, &better);
+        if (better.empty()) return document;
+    }
     if (options.report != nullptr) *options.report = std::move(report);
     if (options.found != nullptr) *options.found = std::move(rooms);
     ImportOptions walls = options;
