@@ -74,7 +74,8 @@ TEST(SessionChange, ActsSetStates) {
     EXPECT_EQ(talk.answer(world, "ACT lamp level=200%").substr(0, 8), "ERR 400 ");
     EXPECT_EQ(talk.answer(world, "ACT lamp at=1,1").substr(0, 8), "ERR 400 ");
     EXPECT_EQ(talk.answer(world, "ACT nobody on=1").substr(0, 8), "ERR 404 ");
-    EXPECT_EQ(talk.answer(world, "ACT lamp"), "ERR 400 ACT wants an argument: ACT id key=value...\n");
+    EXPECT_EQ(talk.answer(world, "ACT lamp"),
+              "ERR 400 ACT wants an argument: ACT id key=value...\n");
 }
 
 TEST(SessionChange, WarnsOfWhatIsOutsideTheRoom) {
