@@ -16,6 +16,7 @@
 #include "env/environment.h"
 #include "geom/arrangement.h"
 #include "io/ifc/building.h"
+#include "io/ifc/step_file.h"
 #include "io/ifc/storey_import.h"
 #include "io/ifc/storey_plan.h"
 #include "io/import_records.h"

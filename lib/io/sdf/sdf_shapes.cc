@@ -110,15 +110,13 @@ class SdfReader {
             for (const double side : size)
                 if (!(side > 0)) files_.fail(node, "a box with a side of " + formatDouble(side));
             shape.shape = SdfBox{{size[0], size[1], size[2]}};
-        } else if (kind == "cylinder") {
+        } else if (kind == "cylinder" || kind == "cone") {
+            // A cone stands on floor that its base covers.
             shape.shape =
                 SdfCylinder{files_.lengthIn(node, "radius"), files_.lengthIn(node, "length")};
         } else if (kind == "capsule") {
             const double radius = files_.lengthIn(node, "radius");
             shape.shape = SdfCylinder{radius, files_.lengthIn(node, "length") + 2 * radius};
-        } else if (kind == "cone") {
-            shape.shape =
-                SdfCylinder{files_.lengthIn(node, "radius"), files_.lengthIn(node, "length")};
         } else if (kind == "ellipsoid") {
             const std::vector<double> radii = files_.numbersIn(node, "radii", 3);
             for (const double radius : radii)
