@@ -66,7 +66,7 @@ constexpr double kMaxDxfNumber = 1e12;  // of any number that counts: drawings e
 
 /// Flags of LAYER, of POLYLINE, and of VERTEX: a point of the frame that a curve was fitted to.
 constexpr int kFrozen = 1, kClosed = 1, kPolyline3d = 8, kGridMesh = 16, kFaceMesh = 64,
-              kMesh = kGridMesh + kFaceMesh, kFrameVertex = 16, kMeshPoint = 64, kMeshFace = 128;
+              kFrameVertex = 16, kMeshPoint = 64, kMeshFace = 128;
 /// Flags of BLOCK, of MLINE, and of a path of HATCH.
 constexpr int kExternal = 4, kClosedMline = 2, kPolylinePath = 2;
 
@@ -321,7 +321,7 @@ std::vector<DxfPolyline> hatchOf(const Entity& entity) {
             const double start = left ? from : -from;
             for (const double part : {0.0, 0.5}) {
                 const Vec2 spoke = unitVector(Angle::degrees(start + part * sweep));
-                vertices.push_back({Point2(center_x, center_y) + radius * spoke,
+                vertices.push_back({Point2{center_x, center_y} + radius * spoke,
                                     std::tan(sweep / 8 * std::numbers::pi / 180)});
             }
         }
@@ -335,7 +335,7 @@ DxfShape splineOf(const Entity& entity) {
         std::vector<Point2> through;
         for (const auto& [code, value] : entity.sequence)
             if (code == 11)
-                through.emplace_back(value, 0);
+                through.push_back({value, 0});
             else if (code == 21 && !through.empty())
                 through.back().y = value;
         if ((entity.flags() & kClosed) != 0 && !through.empty() &&
@@ -478,7 +478,7 @@ class DxfReader {
         const auto number = parseDouble(group.value);
         if ((group.code == 67 || group.code == 60) && number && *number != 0) unread_.reset();
         if (!unread_ || !number || std::abs(*number) > kMaxDxfNumber) return;
-        if (group.code == 10 && !unread_->at) unread_->at = Point2(*number, 0);
+        if (group.code == 10 && !unread_->at) unread_->at = Point2{*number, 0};
         if (group.code == 20 && unread_->at && unread_->at->y == 0) unread_->at->y = *number;
     }
 
@@ -704,7 +704,7 @@ class DxfReader {
         if ((entity_.flags() & kMeshPoint) != 0) {
             if (entity_.vertices.empty()) groups_.fail(entity_.line, "VERTEX without group 10");
             checkVertices();
-            mesh_points_.emplace_back(*entity_.vertices.front().x, *entity_.vertices.front().y);
+            mesh_points_.push_back({*entity_.vertices.front().x, *entity_.vertices.front().y});
             return;
         }
         if ((entity_.flags() & kMeshFace) == 0) return;

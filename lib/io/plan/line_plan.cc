@@ -459,7 +459,7 @@ void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords& out) {
         double low, high, length;
         std::size_t shape;
     };
-    const auto lengthOf = [](const PlanPath& path) {
+    const auto length_of = [](const PlanPath& path) {
         double length = 0;
         for (std::size_t i = 0; i < path.pieceCount(); ++i)
             length += distance(path.piece(i).a, path.piece(i).b);
@@ -470,7 +470,7 @@ void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords& out) {
     std::vector<Span> all;
     for (std::size_t i = 0; i < shapes.size(); ++i)
         if (shapes[i].path.points.size() >= 2) {
-            all.push_back({0, 0, lengthOf(shapes[i].path), i});
+            all.push_back({0, 0, length_of(shapes[i].path), i});
             whole += all.back().length;
         }
     const double least = kBulk * whole;
