@@ -188,15 +188,15 @@ class Search {
         findCandidates();
         std::erase_if(candidates_, [this](const Candidate& one) { return !isHeard(one); });
         if (candidates_.size() == 2) dropTheWorse();
+        if (candidates_.size() == 2 && limits_.admits) dropTheImpossible();
         if (candidates_.empty()) return std::nullopt;
         if (candidates_.size() == 1) return fixOf(candidates_[0], Vector3d::Zero());
         // The receivers' axes decide, unless they point along the plane.
         const double out = std::fabs(towards_.dot(layout_.axes.col(0)));
-        if (out > kAlong * towards_.norm())
-            return fixOf(candidates_[0], ambiguity(candidates_[0], candidates_[1]));
+        if (out > kAlong * towards_.norm()) return fixOfTwo(0);
         if (layout_.spread[0] <= kPlane * kPlane * layout_.spread[2]) return std::nullopt;
         const std::size_t best = candidates_[0].cost <= candidates_[1].cost ? 0 : 1;
-        return fixOf(candidates_[best], ambiguity(candidates_[best], candidates_[1 - best]));
+        return fixOfTwo(best);
     }
 
   private:
@@ -256,10 +256,25 @@ class Search {
             candidates_.pop_back();
     }
 
+    /// Of two candidates, removes the only one that cannot be.
+    void dropTheImpossible() {
+        const auto can_be = [this](const Candidate& one) {
+            return limits_.admits(placeOf(one.x), marginOf(one));
+        };
+        const bool can_first = can_be(candidates_[0]), can_second = can_be(candidates_[1]);
+        if (can_first == can_second) return;
+        candidates_.erase(candidates_.begin() + (can_first ? 1 : 0));
+    }
+
+    /// Five standard deviations of a candidate, with rounding.
+    [[nodiscard]] double marginOf(const Candidate& candidate) const {
+        const double own = error_ > 0 ? error_ * std::sqrt(candidate.variance.sum()) : 0;
+        return kClearly * own + rounding_;
+    }
+
     /// True if all cones and the limits of height contain it, within the errors.
     [[nodiscard]] bool isHeard(const Candidate& candidate) const {
-        const double own = error_ > 0 ? error_ * std::sqrt(candidate.variance.sum()) : 0;
-        return candidate.outside <= kClearly * own + rounding_;
+        return candidate.outside <= marginOf(candidate);
     }
 
     /// Returns the squares of the factors from a distance's error to the offset between the
@@ -281,6 +296,14 @@ class Search {
                 squares > fit_ * fit_ ? share / squares : std::numeric_limits<double>::infinity();
         }
         return result;
+    }
+
+    /// The fix of one of two candidates.
+    [[nodiscard]] PositionFix fixOfTwo(std::size_t taken) const {
+        const Candidate &one = candidates_[taken], &other = candidates_[1 - taken];
+        PositionFix fix = fixOf(one, ambiguity(one, other));
+        fix.is_one_of_two = (other.x - one.x).norm() > 4 * rounding_;
+        return fix;
     }
 
     [[nodiscard]] PositionFix fixOf(const Candidate& candidate, const Vector3d& more) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -20,6 +21,8 @@ struct PositionFix {
     /// distances fit two positions (mirror images), the square of the distance between the two
     /// divided by the difference of their distances is added: +infinity if that difference is 0.
     double pdop = 0, hdop = 0, vdop = 0;
+    /// The distances fit a second position as well, which was not taken: a mirror image.
+    bool is_one_of_two = false;
 };
 
 /// A burst as one receiver heard it.
@@ -37,6 +40,9 @@ struct PositionLimits {
     /// Heights between which it lies, metres; a candidate outside counts as one outside a cone.
     double lowest = -std::numeric_limits<double>::infinity();
     double highest = std::numeric_limits<double>::infinity();
+    /// If set, decides between two candidates: whether one within a distance of `place` is
+    /// possible, e.g. on the plan. Ignored if it rejects both.
+    std::function<bool(Point3 place, double distance)> admits = {};
 };
 
 /// Computes the position that fits the distances to the receivers best: Gauss-Newton
@@ -46,8 +52,10 @@ struct PositionLimits {
 ///   rejected;
 /// - a candidate that fits worse, by more than five standard deviations, is rejected;
 /// - a candidate within all cones is preferred to one that is not;
+/// - a candidate that PositionLimits::admits rejects, within five times its standard deviation, is
+///   rejected if the other is admitted;
 /// - if both remain, the one on the side to which the receivers' axes point on average is returned,
-///   and the dilution of precision includes the ambiguity.
+///   and the dilution of precision includes the ambiguity (PositionFix::is_one_of_two).
 ///
 /// Empty with fewer receivers than `limits` demand, if they do not determine a position (all on one
 /// line), if no candidate is left, or if two are and the axes point along the plane. For a position

@@ -10,6 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "env/point_location.h"
+#include "geom/predicates.h"
 #include "sense/noise.h"
 #include "sense/walls_between.h"
 
@@ -43,13 +45,14 @@ std::optional<Point3> placeOf(const RfidTag& tag, const Moment& now) {
 }
 
 /// Counts the walls between two points, and all movers as one.
-int blocksBetween(Point3 from, Point3 to, std::uint32_t carrier, const Moment& now) {
+int blocksBetween(Point3 from, Point3 to, std::uint32_t carrier, const Moment& now,
+                  bool with_movers = true) {
     if (from == to) return 0;
     std::uint8_t is_free = 0;
     now.mesh().query(from, std::span(&to, 1), std::span(&is_free, 1));
     // A surface that ends touch is none between.
     const int walls = is_free != 0 ? 0 : std::max(1, wallsBetween(from, to, now.mesh()));
-    return walls + (now.bodies.between(from, to, carrier) ? 1 : 0);
+    return walls + (with_movers && now.bodies.between(from, to, carrier) ? 1 : 0);
 }
 
 struct Ranging {
@@ -129,6 +132,32 @@ std::vector<NearAnchor> anchorsAbout(Point3 place, const Uwb& uwb, const Moment&
     return near;
 }
 
+/// Decides on the plan whether a tag in line of sight of these anchors can be within a distance of
+/// a point: some point so near is indoors and in sight of each anchor, standing things only.
+bool canBe(Point3 place, double distance, const std::vector<Hearing>& heard, const Moment& now) {
+    const Environment& environment = now.worlds.environment();
+    const Point2 on_floor = place.onFloor();
+    if (environment.indoorIndex().locate(on_floor) == Side::Outside) {
+        bool is_near = false;
+        environment.indoor().forEachEdge([&](const Segment2& edge) {
+            is_near = is_near || ispace::distance(on_floor, edge) <= distance;
+        });
+        if (!is_near) return false;
+    }
+    const std::array<Vec3, 7> ways = {{{0, 0, 0},
+                                       {distance, 0, 0},
+                                       {-distance, 0, 0},
+                                       {0, distance, 0},
+                                       {0, -distance, 0},
+                                       {0, 0, distance},
+                                       {0, 0, -distance}}};
+    return std::all_of(heard.begin(), heard.end(), [&](const Hearing& one) {
+        return std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) {
+            return blocksBetween(one.place, place + way, MovingBodies::kNoOwner, now, false) == 0;
+        });
+    });
+}
+
 /// Locates a tag by the nearest anchors that have it in line of sight.
 std::optional<PositionFix> fixOf(const Uwb& uwb, const std::string& tag, Point3 place,
                                  const Moment& now) {
@@ -148,7 +177,8 @@ std::optional<PositionFix> fixOf(const Uwb& uwb, const std::string& tag, Point3 
         heard.push_back({pose.position, size > 0 ? (1 / size) * axis : axis, Angle::degrees(360),
                          ranging->range, now.options.noise_seed ? errorOf(anchor.radio) : 0});
     }
-    return locate(heard, {kMinAnchors, 0, now.worlds.environment().height()});
+    const auto admits = [&](Point3 at, double distance) { return canBe(at, distance, heard, now); };
+    return locate(heard, {kMinAnchors, 0, now.worlds.environment().height(), admits});
 }
 
 }  // namespace

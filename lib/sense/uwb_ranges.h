@@ -41,7 +41,9 @@ struct UwbRanges {
 ///
 /// The position comes from the anchors that stand in the room and have the tag in line of sight, at
 /// least kMinAnchors and of more than kMaxAnchors the nearest, by locate() within the height of the
-/// room. Of two candidates in it, the one below or in front of the anchors is taken.
+/// room. Of two candidates (mirror images), one outside of the indoor region or hidden from an
+/// anchor is rejected; if both are possible, the one below or in front of the anchors is taken, and
+/// PositionFix::is_one_of_two is set.
 ///
 /// Noise depends on seed, anchor, tag and frame alone: anchors of one rate compute one position.
 UwbRanges readingOf(const Uwb& uwb, const Moment& now);

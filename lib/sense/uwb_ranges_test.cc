@@ -114,6 +114,37 @@ TEST(UwbRanges, ThreeAnchorsInSightLocateATag) {
     EXPECT_TRUE(tagsIn(thing, three + third + "uwb at=5,5,2 range=1\n")[0].fix);
 }
 
+// Three anchors at the wall x = 4, so mirror images lie beyond it.
+TEST(UwbRanges, ThePlanDecidesBetweenMirrorImages) {
+    const auto fix_of = [](const std::string& room) {
+        const auto tags = tagsIn(room + "cube at=1,0 size=0.2,0.2,0.99 tag=t\n",
+                                 "uwb id=a at=4,-3,1 heading=180\nuwb id=b at=4,3,2 heading=180\n"
+                                 "uwb id=c at=4,0.5,1.5 heading=180\n");
+        return tags.at(0).fix.value();
+    };
+    const auto expect = [](const PositionFix& fix, bool is_one_of_two, const char* why) {
+        EXPECT_LT(length(fix.position - Point3{1, 0, 1}), 1e-5) << why;
+        EXPECT_EQ(fix.is_one_of_two, is_one_of_two) << why;
+        EXPECT_EQ(std::isfinite(fix.pdop), !is_one_of_two) << why;
+    };
+    // The mirror image is (7, 0, 1).
+    expect(fix_of(""), false, "beyond the outer wall");
+    expect(fix_of("wall from=4.4,-6 to=4.4,6\n"), false, "in another region");
+    // From here on the room is larger.
+    const std::string wide = "fence closed=yes path=-8,-8;12,-8;12,8;-8,8\n";
+    const auto wide_fix = [&wide](const std::string& things, const std::string& heading) {
+        const Scene scene = testing::scene(
+            wide + "inside at=0,0\n" + things + "cube at=1,0 size=0.2,0.2,0.99 tag=t\n",
+            "uwb id=a at=4,-3,1" + heading + "\nuwb id=b at=4,3,2" + heading +
+                "\nuwb id=c at=4,0.5,1.5" + heading + "\n");
+        const auto all = testing::readings(scene, {}, 0);
+        return std::get<UwbRanges>(all.front()).tags.at(0).fix.value();
+    };
+    expect(wide_fix("", " heading=180"), true, "both are possible");
+    expect(wide_fix("wall from=5,-4 to=5,4\n", " heading=180"), false, "hidden by a wall");
+    expect(wide_fix("cube at=7,0 size=1,1,2\n", ""), false, "in a thing, and the anchors face it");
+}
+
 TEST(UwbRanges, TheSixteenNearestAnchorsInSightLocateATag) {
     // Sixteen without errors on a circle, and farther ones that err by half a metre.
     const std::string thing = "cube at=0,0 size=0.2,0.2,0.99 tag=t\n";

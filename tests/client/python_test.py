@@ -279,6 +279,7 @@ class Sensors(unittest.TestCase):
                 self.assertEqual((anna.tag, key.tag), ("anna", "key"))
                 self.assertAlmostEqual(key.range, math.dist((1.9, 1.9, 1.8), (1.2, 1.2, 0.11)), delta=0.02)
                 self.assertFalse(key.blocked)
+                self.assertFalse(key.ambiguous)
                 self.assertLess(math.dist(key.position, (1.2, 1.2, 0.11)), 0.02)
                 self.assertEqual(uwb.info.number("loss"), 6)
 

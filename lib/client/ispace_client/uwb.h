@@ -19,6 +19,7 @@ struct TagRange {
     double range = 0;         ///< m
     bool is_blocked = false;  ///< a wall or a mover is between
     bool is_located = false;
+    bool is_ambiguous = false;  ///< its position is one of two, mirror images
     double x = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: not located
     double y = std::numeric_limits<double>::quiet_NaN();
     double z = std::numeric_limits<double>::quiet_NaN();
@@ -37,8 +38,9 @@ struct TagRanges : Reading {
                                        y = fields.list("y"), z = fields.list("z");
         const std::vector<double> ranges = fields.numbers("ranges"),
                                   blocked = fields.numbers("blocked");
-        for (const std::size_t size :
-             {tags.size(), ranges.size(), blocked.size(), x.size(), y.size(), z.size()})
+        const std::vector<std::string> ambiguous = fields.list("ambiguous");
+        for (const std::size_t size : {tags.size(), ranges.size(), blocked.size(), x.size(),
+                                       y.size(), z.size(), ambiguous.size()})
             if (size != count)
                 throw ProtocolError("a reading of " + reading.sensor + " is incomplete");
         for (std::size_t i = 0; i < count; ++i) {
@@ -51,6 +53,7 @@ struct TagRanges : Reading {
                 one.x = numberOf(x[i]);
                 one.y = numberOf(y[i]);
                 one.z = numberOf(z[i]);
+                one.is_ambiguous = ambiguous[i] == "1";
             }
             reading.tags.push_back(one);
         }

@@ -19,8 +19,10 @@ FieldValue rangedTags(const View& reading) {
     std::vector<FieldRecord> tags;
     for (const UwbRange& one : rangesIn(reading)) {
         FieldValue position = Measured{};
+        FieldValue is_ambiguous = Measured{};
         Measured pdop, hdop, vdop;
         if (one.fix) {
+            is_ambiguous = one.fix->is_one_of_two;
             const Point3& at = one.fix->position;
             position = std::vector<Measured>{{at.x}, {at.y}, {at.z}};
             pdop.value = one.fix->pdop;
@@ -31,6 +33,7 @@ FieldValue rangedTags(const View& reading) {
                          {"range", Measured{one.range}},
                          {"blocked", one.is_blocked},
                          {"position", std::move(position)},
+                         {"ambiguous", std::move(is_ambiguous)},
                          {"pdop", pdop},
                          {"hdop", hdop},
                          {"vdop", vdop}}});
@@ -57,6 +60,24 @@ FieldValue blockedOnes(const View& reading) {
     std::vector<std::int64_t> flags;
     for (const UwbRange& one : rangesIn(reading)) flags.push_back(one.is_blocked ? 1 : 0);
     return flags;
+}
+
+FieldValue ambiguousOnes(const View& reading) {
+    std::vector<std::string> flags;
+    for (const UwbRange& one : rangesIn(reading))
+        flags.emplace_back(!one.fix ? "-" : one.fix->is_one_of_two ? "1" : "0");
+    return flags;
+}
+
+/// Lists the tags whose position is one of two, separated by blanks.
+FieldValue ambiguousAsText(const View& reading) {
+    std::string text;
+    for (const UwbRange& one : rangesIn(reading)) {
+        if (!one.fix || !one.fix->is_one_of_two) continue;
+        if (!text.empty()) text += ' ';
+        text += one.tag;
+    }
+    return FieldText(text);
 }
 
 template <double Point3::*kAxis>
@@ -129,6 +150,12 @@ FieldValue positionsByTag(const View& reading) {
     });
 }
 
+FieldValue ambiguousByTag(const View& reading) {
+    return byTag(reading, 1, [](const UwbRange& one, double* to) {
+        if (one.fix) *to = one.fix->is_one_of_two ? 1 : 0;
+    });
+}
+
 constexpr ReadingField kUwbFields[] = {
     {"range_min", kInInfo, figure<Uwb, &Uwb::min_range>},
     {"range_max", kInInfo, figure<Uwb, &Uwb::max_range>},
@@ -142,14 +169,18 @@ constexpr ReadingField kUwbFields[] = {
     {"x", kInLine, shortPositions<&Point3::x>},
     {"y", kInLine, shortPositions<&Point3::y>},
     {"z", kInLine, shortPositions<&Point3::z>},
+    {"ambiguous", kInLine, ambiguousOnes},
     {"ranges", kInColumn, rangesAsText},
     {"positions", kInColumn, positionsAsText},
+    {"ambiguous", kInColumn, ambiguousAsText},
     {"ranges", kInArray, rangesByTag, kFloat64,
      [](const View& r) { return std::vector<std::uint64_t>{tagsOfRoom(r).size()}; }},
     {"positions", kInArray, positionsByTag, kFloat64,
      [](const View& r) {
          return std::vector<std::uint64_t>{tagsOfRoom(r).size(), 3};
      }},
+    {"ambiguous", kInArray, ambiguousByTag, kFloat64,
+     [](const View& r) { return std::vector<std::uint64_t>{tagsOfRoom(r).size()}; }},
     {"tags", kInFixed, [](const View& r) { return FieldValue(tagsOfRoom(r)); }},
     {"limits", kInFixed, limitsOf<Uwb>}};
 

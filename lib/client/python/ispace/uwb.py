@@ -19,6 +19,7 @@ class TagRange:
     range: float  #: m
     blocked: bool  #: a wall or a mover is between
     position: Optional[Tuple[float, float, float]]  #: m; None: not located
+    ambiguous: bool  #: the position is one of two, mirror images
 
 
 @dataclass
@@ -27,15 +28,21 @@ class TagRanges(Reading):
 
     def _check(self) -> None:
         fields = self.fields
-        texts = [fields.list(key) for key in ("tags", "x", "y", "z")]
+        texts = [fields.list(key) for key in ("tags", "x", "y", "z", "ambiguous")]
         numbers = [fields.numbers(key) for key in ("ranges", "blocked")]
         sizes = {len(column) for column in texts} | {len(column) for column in numbers}
         if sizes != {fields.integer("n")}:
             raise ProtocolError(f"a reading of {self.sensor} is incomplete")
         #: sorted
         self.tags: List[TagRange] = [
-            TagRange(tag, range_, bool(blocked), None if x == "-" else (float(x), float(y), float(z)))
-            for tag, x, y, z, range_, blocked in zip(*texts, *numbers)
+            TagRange(
+                tag,
+                range_,
+                bool(blocked),
+                None if x == "-" else (float(x), float(y), float(z)),
+                ambiguous == "1",
+            )
+            for tag, x, y, z, ambiguous, range_, blocked in zip(*texts, *numbers)
         ]
 
 
