@@ -19,7 +19,7 @@ laser id=pending
 END
 
 out="layout.3dm:2:1: laser out stands outside the room at (9.0, 3.0); move it in"
-in="layout.3dm:3:1: laser in stands inside cube c at (2.0, 2.0); move it, or raise it above 1.00 m"
+in="layout.3dm:3:1: laser in stands inside cube c at (2.0, 2.0); move it, or raise it above 1.01 m"
 low="layout.3dm:4:1: laser low stands below the floor at (4.0, 3.0); raise it by 0.10 m"
 robot="layout.3dm:5:1: robot r stands outside the room at (10.0, 3.0); move it in"
 path="layout.3dm:6:1: human h has a path that leaves the room at (9.0, 3.0); move that point in"

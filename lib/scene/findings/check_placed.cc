@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <vector>
 
 #include "base/number.h"
 #include "env/slice.h"
@@ -55,6 +57,61 @@ void checkOutside(CheckContext& context, std::size_t record, std::vector<Finding
                         is_out ? "move it in" : "raise it by " + distanceText(-p.z)));
 }
 
+namespace {
+
+/// The solids over a point, from the floor up.
+class SolidsOver {
+  public:
+    /// \param slack by which a sensor may stand in the top or the bottom of a solid
+    SolidsOver(CheckContext& context, Point2 at, double slack)
+        : context_(context), at_(at), slack_(slack) {
+        context.partsAbout().search({at, at}, [&](const Part& part) {
+            if (!part.isSheet() && containsWithMargin(part.footprint, at, kRayEpsilon))
+                parts_.push_back(&part);
+        });
+    }
+
+    /// Returns the tops of the solids that share heights with this range, by element.
+    [[nodiscard]] std::map<std::size_t, double> topsIn(double low, double high) const {
+        std::map<std::size_t, double> tops;
+        for (const Part* const part : parts_)
+            if (high >= part->bottom + slack_ && low <= part->top - slack_)
+                tops[part->element] = std::max(tops[part->element], part->top);
+        for (auto& [element, mesh] : context_.meshes()) {
+            const HeightRange& heights = mesh.heights();
+            if (!mesh.box().meets({at_, at_}) || high <= heights.bottom || low >= heights.top)
+                continue;
+            for (const double height : {low, high}) {
+                if (height <= heights.bottom || height >= heights.top) continue;
+                for (const Polygon& solid : mesh.at(height).solids)
+                    if (containsWithMargin(solid, at_, kRayEpsilon)) tops[element] = heights.top;
+            }
+        }
+        return tops;
+    }
+
+    /// Returns the lowest hundredth of a metre above a height with some free height over it.
+    [[nodiscard]] double freeAbove(double height) const {
+        constexpr double kGap = 0.1, kStep = 100;
+        double free = height;
+        for (auto tops = topsIn(height, height); !tops.empty(); tops = topsIn(free, free + kGap)) {
+            double top = free;
+            for (const auto& entry : tops) top = std::max(top, entry.second);
+            const double next = std::ceil(kStep * top - kCornerTolerance) / kStep;
+            free = next > free ? next : (std::round(kStep * free) + 1) / kStep;
+        }
+        return free;
+    }
+
+  private:
+    CheckContext& context_;
+    Point2 at_;
+    double slack_;
+    std::vector<const Part*> parts_;
+};
+
+}  // namespace
+
 void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
     const PlacedRecord* const placed = context.placed_of[record];
     if (placed == nullptr || context.scene.records[record].schema().find("on") == nullptr) return;
@@ -62,24 +119,17 @@ void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>
     const Point2 at = p.onFloor();
     // A level laser measures in the plane of its height, where tops and bottoms count as solid.
     const double slack = context.scene.records[record].keyword() == "laser" ? 0 : kCornerTolerance;
-    std::map<std::size_t, double> tops;  // of the solids around it, by element
-    context.partsAbout().search({at, at}, [&](const Part& part) {
-        if (part.isSheet() || p.z < part.bottom + slack || p.z > part.top - slack) return;
-        if (!containsWithMargin(part.footprint, at, kRayEpsilon)) return;
-        tops[part.element] = std::max(tops[part.element], part.top);
-    });
-    for (auto& [element, mesh] : context.meshes()) {
-        if (!mesh.box().meets({at, at}) || p.z <= mesh.heights().bottom ||
-            p.z >= mesh.heights().top)
-            continue;
-        for (const Polygon& solid : mesh.at(p.z).solids)
-            if (containsWithMargin(solid, at, kRayEpsilon)) tops[element] = mesh.heights().top;
-    }
-    for (const auto& [element, top] : tops)
+    const SolidsOver solids(context, at, slack);
+    const std::map<std::size_t, double> tops = solids.topsIn(p.z, p.z);
+    if (tops.empty()) return;
+    const double free = solids.freeAbove(p.z);
+    const std::string advice = free < context.scene.environment.height()
+                                   ? "move it, or raise it above " + formatFixed(free, 2) + " m"
+                                   : "move it";
+    for (const auto& entry : tops)
         findings.push_back(context.finding(
             record, Severity::Error, at,
-            " stands inside " + context.elementName(element) + " at " + placeText(at),
-            "move it, or raise it above " + formatFixed(top, 2) + " m"));
+            " stands inside " + context.elementName(entry.first) + " at " + placeText(at), advice));
 }
 
 void checkPath(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {

@@ -181,7 +181,7 @@ TEST(CheckScene, SensorsInsideSolidsAndOutside) {
     EXPECT_EQ(
         check("cube id=c at=2,2 size=1\n", "laser id=l at=2,2\n"),
         "room.3dm:2:1: error: laser l stands inside cube c at (2.0, 2.0); move it, or raise it "
-        "above 1.00 m\n");
+        "above 1.01 m\n");
     for (const char* line : {"laser at=2,2,1.01", "laser at=1.5,2", "laser at=2,1.50005",
                              "laser on=c", "tag at=2,2,1.5"})
         EXPECT_EQ(check("cube id=c at=2,2 size=1\n", std::string(line) + "\n"), "") << line;
@@ -198,6 +198,36 @@ TEST(CheckScene, SensorsInsideSolidsAndOutside) {
     EXPECT_EQ(text,
               "room.3dm:2:1: error: robot r stands outside the room at (10.0, 3.0); move it "
               "in\n");
+}
+
+// Each advice is followed once, in stacks, under boards, and between storeys of a shelf.
+TEST(CheckScene, TheHeightAdvisedForBuriedSensorsIsFree) {
+    const std::vector<std::string> rooms = {
+        "cube at=2,2 size=1\n",
+        "cube at=2,2 size=1,1,1.004\n",
+        "cube at=2,2 size=1\ncube at=2,2,1 size=1,1,0.5\n",
+        "cube at=2,2 size=1\ncube at=2,2,1.05 size=1,1,0.3\n",
+        "cube at=2,2 size=1\ncube at=2.2,2 size=1,1,1.3\ncube at=2,1.8,1.31 size=1,1,0.4\n",
+        "cube at=2,2 size=1\ntable at=2,2 size=1,1,1.08\n"};
+    for (const std::string& room : rooms)
+        for (const std::string sensor : {"laser", "camera", "ultrasound", "tag"})
+            for (const double height : {0.2, 0.5, 0.999}) {
+                const auto text_at = [&](const std::string& z) {
+                    return check(room, sensor + " at=2,2," + z + '\n');
+                };
+                const std::string text = text_at(formatDouble(height));
+                const std::string before = "raise it above ";
+                const std::size_t begin = text.find(before);
+                ASSERT_NE(begin, std::string::npos) << room << sensor << text;
+                const std::string advised = text.substr(begin + before.size(), 4);
+                EXPECT_EQ(text_at(advised).find("inside"), std::string::npos) << room << text;
+                EXPECT_EQ(text_at(formatDouble(std::stod(advised) + 0.05)).find("inside"),
+                          std::string::npos)
+                    << room << text;
+            }
+    EXPECT_NE(check("cube at=2,2 size=1,1,3\n", "laser at=2,2\n").find("(2.0, 2.0); move it\n"),
+              std::string::npos)
+        << "no height of the room is free";
 }
 
 TEST(CheckScene, PathsThatLeaveTheRoom) {
