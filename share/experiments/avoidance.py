@@ -73,7 +73,8 @@ def rooms_and_layouts(lab):
                    "Sonars measure exactly.")
     lab.tool("envc", "ispace.env", "--slice", "0.1", "--resolution", "0.02", "--to", "ros", "-o", "map.yaml")
     lab.tool("envc", "ispace.env", "--set", "blanket.friction=0.3", "--to", "env", "-o", "slippery.env")
-    lab.tool("envc", "ispace.3dm", "--delete", "l*", "--to", "3dm", "-o", "robot.3dm")
+    lab.tool("envc", "ispace.3dm", "--delete", "l*", "--set", "r1.motion_noise=0,0,0,0",
+             "--set", "r1.odometry_noise=0,0,0,0", "--to", "3dm", "-o", "robot.3dm")
     for cause, keys in CAUSES.items():
         sets = [word for key in keys for word in ("--set", f"r1.{key}")]
         lab.tool("envc", "robot.3dm", *sets, "--to", "3dm", "-o", f"{cause}.3dm")

@@ -17,7 +17,7 @@ SECONDS = 25
 EDGE, KERB = 1.0, 0.15  # m: the kerbs of road.env, to each side of the middle
 CLIENT = ("front", "--height", "0.5", "--tilt", "-30", "-o", "kerbs.csv")
 ON_ROBOT = """#3dm 1
-robot id=r1 model=pioneer-2dx at=-5,0
+robot id=r1 model=pioneer-2dx at=-5,0 motion_noise=0,0,0,0 odometry_noise=0,0,0,0
 laser id=front on=r1 at=0,0,0.5 tilt=-30 range=3 fov=180 step=0.25 sigma=0.01
 """
 

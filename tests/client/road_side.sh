@@ -7,7 +7,7 @@ export PYTHONPATH=$source_dir/lib/client/python PYTHONDONTWRITEBYTECODE=1
 
 cat >drive.3dm <<'END'
 #3dm 1
-robot id=r1 model=pioneer-2dx at=-5,0.1 heading=-3
+robot id=r1 model=pioneer-2dx at=-5,0.1 heading=-3 motion_noise=0,0,0,0 odometry_noise=0,0,0,0
 laser id=front on=r1 at=0,0,0.5 tilt=-30 range=3 fov=180 step=0.25 sigma=0.01
 END
 

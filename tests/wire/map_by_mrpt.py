@@ -15,7 +15,7 @@ START = (-11.95, 1, math.pi / 2)
 # A round of 58 m, with slow turns: icp-slam takes a scan as of one moment, but its beams follow one
 # another. Variances of the odometry as in simrun(1).
 LAYOUT = """#3dm 1
-robot id=r1 model=pioneer-2dx at=-11.95,1 heading=90 rotspeed=20 odometry_noise=0.001,0.0002,0.0005,0.0002 \
+robot id=r1 model=pioneer-2dx at=-11.95,1 heading=90 rotspeed=20 motion_noise=0,0,0,0 odometry_noise=0.001,0.0002,0.0005,0.0002 \
 path=-11.85,3.2;-10.85,5.7;-11.65,14.6;-12.55,17.1;-19.95,16.4;-19.85,7.4;-19.25,-1.5;-18.75,-7.2;\
 -15.85,-6.4;-12.25,-1.2;-11.95,0.4
 laser id=l1 model=utm-30lx on=r1 at=0.1,0,0.3 rate=5
