@@ -14,6 +14,7 @@
 #include "building/storeys.h"
 #include "cli/building_operands.h"
 #include "cli/common_options.h"
+#include "cli/kept_rooms.h"
 #include "cli/outputs.h"
 #include "env/walls.h"
 #include "env/zone.h"
@@ -163,7 +164,8 @@ class OperandReader {
             checkDigest(*layout_, {environment_->records, environment_operand_, is_operand},
                         request_.rules.same_environment, environment_->warnings);
         const Document* const layout = layout_ ? &*layout_ : nullptr;
-        Scene scene = makeScene(*environment_, layout, devicesFor({&*environment_, layout}));
+        Scene scene = makeScene(*environment_, layout, devicesFor({&*environment_, layout}),
+                                kept_ == nullptr ? nullptr : &kept_->scene);
         return {std::move(scene),           std::move(*environment_),
                 std::move(layout_),         std::move(environment_operand_),
                 std::move(layout_operand_), std::move(named_),
@@ -172,6 +174,12 @@ class OperandReader {
 
   private:
     Document readOperand(const std::string& operand) {
+        if (const KeptRoom* const kept = keptRoom(operand, request_.rules)) {
+            kept_ = kept;
+            report_.choices.insert(report_.choices.end(), kept->report.choices.begin(),
+                                   kept->report.choices.end());
+            return kept->document;
+        }
         // A compiled room is read in parts.
         if (operand != "-")
             if (auto room = readGlbFile(operand, sceneSchemas())) {
@@ -245,6 +253,7 @@ class OperandReader {
     std::vector<std::string> named_;
     ImportReport report_;
     std::optional<StoreyedDocument> building_;  // of which the environment is a storey
+    const KeptRoom* kept_ = nullptr;            // the environment, if it was read before
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/run_files.h"
+#include "cli/job_server.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
@@ -248,5 +249,7 @@ void arrangeSensors(const ArrangeCommand& command) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return ispace::runTool("arrange", [&] { arrangeSensors(ispace::ArrangeCommand(argc, argv)); });
+    return ispace::runTool("arrange", argc, argv, [](int count, char** words) {
+        arrangeSensors(ispace::ArrangeCommand(count, words));
+    });
 }

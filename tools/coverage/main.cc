@@ -9,6 +9,7 @@
 #include "base/message.h"
 #include "base/parallel.h"
 #include "base/run_files.h"
+#include "cli/job_server.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
@@ -174,8 +175,8 @@ void coverage(const CoverageToolOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return ispace::runTool("coverage", [&] {
-        const auto options = ispace::parseCoverageOptions(argc, argv);
+    return ispace::runTool("coverage", argc, argv, [](int count, char** words) {
+        const auto options = ispace::parseCoverageOptions(count, words);
         if (options.batch.list.empty())
             coverage(options);
         else

@@ -13,6 +13,7 @@
 #include "base/number.h"
 #include "base/parallel.h"
 #include "base/run_files.h"
+#include "cli/job_server.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
@@ -259,5 +260,7 @@ void envc(const EnvcOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return ispace::runTool("envc", [&] { envc(ispace::parseEnvcOptions(argc, argv)); });
+    return ispace::runTool("envc", argc, argv, [](int count, char** words) {
+        envc(ispace::parseEnvcOptions(count, words));
+    });
 }

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
+#include "cli/job_server.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
@@ -151,5 +152,7 @@ void scan(const ScanCommand& command) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return ispace::runTool("scan", [&] { scan(ispace::ScanCommand(argc, argv)); });
+    return ispace::runTool("scan", argc, argv, [](int count, char** words) {
+        scan(ispace::ScanCommand(count, words));
+    });
 }

@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "base/run_files.h"
+#include "cli/job_server.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "scene/findings/findings.h"
@@ -143,5 +144,7 @@ void simrun(const SimrunCommand& command) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return ispace::runTool("simrun", [&] { simrun(ispace::SimrunCommand(argc, argv)); });
+    return ispace::runTool("simrun", argc, argv, [](int count, char** words) {
+        simrun(ispace::SimrunCommand(count, words));
+    });
 }

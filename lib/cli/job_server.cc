@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/job_server.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstddef>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "base/error.h"
+#include "cli/common_options.h"
+#include "cli/kept_rooms.h"
+#include "cli/run_tool.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::string_view kServe = "--serve-jobs";
+
+[[noreturn]] void fail(const std::string& what) {
+    throw std::system_error(errno, std::generic_category(), what);
+}
+
+/// Reads up to `size` bytes; fewer at the end of stdin.
+std::string readBytes(std::size_t size) {
+    std::string bytes(size, '\0');
+    std::size_t count = 0;
+    while (count < size) {
+        const ssize_t n = ::read(STDIN_FILENO, bytes.data() + count, size - count);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) fail("stdin");
+        if (n == 0) break;
+        count += static_cast<std::size_t>(n);
+    }
+    bytes.resize(count);
+    return bytes;
+}
+
+struct Job {
+    std::string folder, output, errors;
+    std::vector<std::string> words;
+};
+
+/// Returns the next job, none at the end of stdin. \throws UsageError for bytes that are no request
+std::optional<Job> nextJob() {
+    constexpr std::size_t kMostBytes = std::size_t{1} << 24U;
+    std::string number;
+    for (std::string byte = readBytes(1); byte != "\n"; byte = readBytes(1)) {
+        if (byte.empty() && number.empty()) return std::nullopt;
+        number += byte;
+        if (byte.empty() || number.size() > 9) throw UsageError(std::string(kServe) + ": no job");
+    }
+    std::size_t size = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), size);
+    const std::string bytes = size <= kMostBytes ? readBytes(size) : "";
+    if (error != std::errc() || end != number.data() + number.size() || bytes.size() != size ||
+        !bytes.ends_with('\0'))
+        throw UsageError(std::string(kServe) + ": no job");
+    std::vector<std::string> fields;
+    for (std::size_t begin = 0; begin < bytes.size();) {
+        const std::size_t stop = bytes.find('\0', begin);
+        fields.push_back(bytes.substr(begin, stop - begin));
+        begin = stop + 1;
+    }
+    constexpr std::ptrdiff_t kBeforeWords = 3;
+    if (std::ssize(fields) < kBeforeWords)
+        throw UsageError(std::string(kServe) + ": a job has a folder and two files");
+    return Job{fields[0], fields[1], fields[2], {fields.begin() + kBeforeWords, fields.end()}};
+}
+
+/// Replaces a standard stream by a file. \param file "": none
+void redirect(int stream, const std::string& file) {
+    const char* const name = file.empty() ? "/dev/null" : file.c_str();
+    const int flags = stream == STDIN_FILENO ? O_RDONLY : O_WRONLY | O_CREAT | O_TRUNC;
+    constexpr mode_t kMode = 0666;
+    const int fd = ::open(name, flags | O_CLOEXEC, kMode);
+    if (fd < 0 || ::dup2(fd, stream) < 0) fail(name);
+    ::close(fd);
+}
+
+bool hasOneThread() {
+    std::error_code error;
+    const std::filesystem::directory_iterator threads("/proc/self/task", error);
+    return !error && std::distance(begin(threads), end(threads)) == 1;
+}
+
+/// Keeps the rooms among the words of a job. Layouts differ from job to job.
+void keepRooms(const Job& job) {
+    for (const std::string& word : job.words)
+        if (!word.empty() && word.front() != '-' && !word.ends_with(".3dm")) keepRoom(word);
+}
+
+std::vector<char*> argumentsOf(std::string& tool, std::vector<std::string>& words) {
+    std::vector<char*> argv = {tool.data()};
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    return argv;
+}
+
+/// The status of a child that has ended.
+int statusOf(pid_t child) {
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0)
+        if (errno != EINTR) fail("a job");
+    constexpr int kSignalled = 128;
+    return WIFSIGNALED(status) ? kSignalled + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+/// In the child: stands in for a process of its own. \param is_alone false: other threads were
+/// lost by the fork, so the program begins anew
+int work(std::string tool, Job job, const std::function<void(int, char**)>& body, bool is_alone) {
+    std::vector<char*> argv = argumentsOf(tool, job.words);
+    if (!is_alone) {
+        ::execv("/proc/self/exe", argv.data());
+        fail("/proc/self/exe");
+    }
+    return runTool(tool, [&] { body(static_cast<int>(argv.size()) - 1, argv.data()); });
+}
+
+int serve(const std::string& tool, const std::function<void(int, char**)>& body) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    std::signal(SIGCHLD, SIG_DFL);
+    static_cast<void>(shippedDevices());  // which most jobs want
+    bool is_alone = hasOneThread();
+    while (std::optional<Job> job = nextJob()) {
+        if (::chdir(job->folder.c_str()) != 0) fail(job->folder);
+        if (is_alone) {
+            keepRooms(*job);
+            is_alone = hasOneThread();
+        }
+        const pid_t server = ::getpid();
+        const pid_t child = ::fork();
+        if (child < 0) fail("a job");
+        if (child == 0) {
+            ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+            if (::getppid() != server) ::_exit(1);
+            redirect(STDIN_FILENO, "");
+            redirect(STDOUT_FILENO, job->output);
+            redirect(STDERR_FILENO, job->errors);
+            return work(tool, *std::move(job), body, is_alone);
+        }
+        const std::string answer = std::to_string(statusOf(child)) + '\n';
+        if (::write(STDOUT_FILENO, answer.data(), answer.size()) != std::ssize(answer))
+            fail("stdout");
+    }
+    return 0;
+}
+
+}  // namespace
+
+int runTool(const std::string& tool, int argc, char** argv,
+            const std::function<void(int, char**)>& body) {
+    if (argc != 2 || argv[1] != kServe) return runTool(tool, [&] { body(argc, argv); });
+    int status = 0;
+    const int failed = runTool(tool, [&] { status = serve(tool, body); });
+    return failed != 0 ? failed : status;
+}
+
+}  // namespace ispace

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace ispace {
+
+/// Runs a tool as runTool() does, with its command line. As `TOOL --serve-jobs` the process reads
+/// command lines from stdin instead, and works off each in a copy of itself: ispace-sweep runs
+/// thousands of short jobs so, which begin without loading a program and share the rooms that their
+/// operands name (see keepRoom()). A job has its own memory, folder and status, as if it had been
+/// started alone, and its output is the same.
+///
+/// A request is a number and a newline, then that many bytes: the job's folder, its files for
+/// stdout and stderr ("" discards) and its words without the tool, each ended by NUL. The answer on
+/// stdout, once the job has ended, is its status and a newline: the exit status, or 128 plus the
+/// number of the signal that ended it. Ends with stdin; jobs end with it.
+///
+/// \param body reads the command line and does the work; it throws as bodies of runTool() do
+int runTool(const std::string& tool, int argc, char** argv,
+            const std::function<void(int, char**)>& body);
+
+}  // namespace ispace
