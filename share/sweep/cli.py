@@ -14,7 +14,7 @@ import tempfile
 from typing import Iterable, Iterator, NoReturn, Sequence
 
 from .errors import DataError, UsageError, did_you_mean
-from .model import CommandWriter, Job, Sweep
+from .model import CommandWriter, Job, Jobs, Sweep
 
 TOOL = "ispace-sweep"
 # The function of each action, and its options besides the common ones.
@@ -22,12 +22,14 @@ ACTIONS = {
     "commands": ("a line of the shell for each job", {"only", "shard", "missing", "threads", "json"}),
     "names": ("the files that the jobs make", {"only", "shard", "missing", "suffix"}),
     "makefile": ("rules for GNU make", {"only", "threads"}),
+    "run": ("run the jobs, with all results in one file", {"only", "shard", "threads", "retry"}),
+    "status": ("how far the parts of a run are", {"only", "json", "failed"}),
     "join": ("the results of all jobs as one table", {"only", "partial", "to", "raw"}),
     "plot": ("one picture of the results", {"only", "partial", "to", "x", "y", "by", "over"}),
 }
 DEFAULTS: dict[str, object] = {
     "only": [], "shard": None, "missing": False, "threads": None, "json": False, "suffix": None,
-    "partial": False, "raw": False, "to": None, "x": None, "y": None, "by": None, "over": None}
+    "retry": False, "failed": False, "partial": False, "raw": False, "to": None, "x": None, "y": None, "by": None, "over": None}
 
 
 def main(version: str, arguments: Sequence[str] | None = None) -> int:
@@ -112,20 +114,24 @@ class _Parser(argparse.ArgumentParser):
 def _parse(arguments: Sequence[str] | None, version: str) -> argparse.Namespace:
     what = "\n".join(f"  {name:10}{text}" for name, (text, _) in ACTIONS.items())
     parser = _Parser(
-        prog=TOOL, usage=f"{TOOL} ACTION SWEEP [OPTION]...", allow_abbrev=False, add_help=False,
+        prog=TOOL, usage=f"{TOOL} ACTION SWEEP [PART]... [OPTION]...", allow_abbrev=False, add_help=False,
         formatter_class=lambda prog: argparse.RawDescriptionHelpFormatter(prog, max_help_position=28, width=100),
-        description=f"Lists the jobs of a sweep, and joins their results.\n\nactions:\n{what}",
+        description=f"Lists the jobs of a sweep or runs them, and joins their results.\n\nactions:\n{what}",
         epilog="examples:\n  ispace-sweep commands sweep.yaml | sh\n      run all jobs, one after another\n"
-               "  ispace-sweep join sweep.yaml -o results.csv\n      join their reports in a table\n")
+               "  ispace-sweep join sweep.yaml -o results.csv\n      join their reports in a table\n"
+               "  ispace-sweep run sweep.yaml --shard 7/1000 -o part7.jsonl\n      run the seventh of a thousand parts\n")
     parser.add_argument("action", metavar="ACTION", nargs="?", help=argparse.SUPPRESS)
     parser.add_argument("sweep", metavar="SWEEP", nargs="?", help=argparse.SUPPRESS)
+    parser.add_argument("parts", metavar="PART", nargs="*", help=argparse.SUPPRESS)
     add = parser.add_argument
     add("-o", "--output", metavar="FILE", default="-", help="write to FILE, whole or not at all (default: -)")
     add("--only", metavar="AXIS=VALUE", action="append", help="jobs with this choice alone; may be repeated")
     add("--shard", metavar="I/N", help="the I-th of N nearly equal parts of the jobs, 1-based")
     add("--missing", action="store_true", default=None, help="only what is not done yet")
     add("--json", action="store_true", default=None, help="JSON lines that describe the jobs")
-    add("-j", "--threads", metavar="N", help="give the tools this number of threads")
+    add("-j", "--threads", metavar="N", help="give the tools this number of threads; run: jobs at a time")
+    add("--retry", action="store_true", default=None, help="run: do again what failed before")
+    add("--failed", action="store_true", default=None, help="status: a line for each job that failed")
     add("--suffix", metavar="SUFFIX", help="only the files with this suffix")
     add("--partial", action="store_true", default=None, help="do without the jobs that are not done")
     add("--raw", action="store_true", default=None, help="CSV: leave texts that look like formulas")
@@ -162,6 +168,8 @@ def _check(options: argparse.Namespace) -> None:
         raise UsageError(f"unknown action `{options.action}`{did_you_mean(options.action, ACTIONS)}")
     if options.sweep is None:
         raise UsageError("the sweep's file is needed (--help shows how)")
+    if options.parts and options.action not in ("join", "plot", "status"):
+        raise UsageError(f"{options.parts[0]}: `{options.action}` takes one sweep")
     if options.sweep == "-" and sys.stdin.isatty():
         raise UsageError("the sweep would be read from a terminal")
     for name, default in DEFAULTS.items():
@@ -181,18 +189,59 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def _run(options: argparse.Namespace, version: str, say: _Speaker) -> None:
+    from .parts import is_part
     from .reader import read_sweep  # slow imports wait until an action requires them
 
     if options.output != "-" and options.sweep != "-" and _same_file(options.output, options.sweep):
         raise UsageError(f"{options.output} is the sweep itself")
+    for part in options.parts:
+        if options.output != "-" and _same_file(options.output, part):
+            raise UsageError(f"{options.output} is one of the parts")
+    if options.action == "join" and options.sweep != "-" and is_part(options.sweep):
+        options.parts.insert(0, options.sweep)  # parts know their axes
+        return _join(None, options, version, say)
     sweep = read_sweep(options.sweep)
-    jobs = _chosen(sweep, options)
     if options.action in ("commands", "names", "makefile"):
         with _output(options.output) as write:
-            for line in _lines(sweep, jobs, options, version):
+            for line in _lines(sweep, _chosen(sweep, options), options, version):
                 write(line.encode("utf-8", "surrogateescape") + b"\n")
-        return
-    _report(sweep, jobs, options, version, say)
+    elif options.action == "run":
+        _run_jobs(sweep, options, version, say)
+    elif options.action == "status":
+        _status(sweep, options, version)
+    else:
+        _join(sweep, options, version, say)
+    return None
+
+
+def _run_jobs(sweep: Sweep, options: argparse.Namespace, version: str, say: _Speaker) -> None:
+    from . import parts
+    from .run import run
+
+    share = parts.Share(*(_shard(options.shard) if options.shard else (1, 1)), tuple(options.only))
+    size = int(options.threads) if options.threads else _cores()
+    failed = run(sweep, _chosen(sweep, options), share, options.output, version, max(1, size), options.retry, say)
+    if failed:
+        raise DataError([f"error: {failed} {'job' if failed == 1 else 'jobs'} failed: `ispace-sweep status --failed` "
+                         "lists them, --retry runs them again"])
+
+
+def _cores() -> int:
+    """Those of this task on a cluster, else of this process."""
+    given = os.environ.get("SLURM_CPUS_PER_TASK", "")
+    return int(given) if given.isdigit() and int(given) else len(os.sched_getaffinity(0))
+
+
+def _status(sweep: Sweep, options: argparse.Namespace, version: str) -> None:
+    from . import status
+
+    if not options.parts:
+        raise UsageError("status needs the parts: the files of `run -o`")
+    lines = (status.failures(options.parts, options.json) if options.failed
+             else status.lines(options.parts, len(_chosen(sweep, options)), options.json, version))
+    with _output(options.output) as write:
+        for line in lines:
+            write(line.encode("utf-8", "surrogateescape") + b"\n")
 
 
 def _lines(sweep: Sweep, jobs: Iterable[Job], options: argparse.Namespace, version: str) -> Iterator[str]:
@@ -210,9 +259,10 @@ def _lines(sweep: Sweep, jobs: Iterable[Job], options: argparse.Namespace, versi
     return listing.commands(sweep, jobs, writer, options.missing)
 
 
-def _report(sweep: Sweep, jobs: list[Job], options: argparse.Namespace, version: str, say: _Speaker) -> None:
-    from . import tables
-    from .results import join
+def _join(sweep: Sweep | None, options: argparse.Namespace, version: str, say: _Speaker) -> None:
+    """Joins the files of jobs, or the lines of parts, in a table or picture. A join of parts needs no sweep."""
+    from . import parts, tables
+    from .results import Gaps, from_files, from_lines
 
     if options.action == "join":
         form = _format(options, tables.FORMATS, "csv")
@@ -222,21 +272,57 @@ def _report(sweep: Sweep, jobs: list[Job], options: argparse.Namespace, version:
         form = _format(options, picture.FORMATS, "svg")
     if form in ("npz", "png", "pdf") and options.output == "-" and sys.stdout.isatty():
         raise UsageError(f"{form} is not for a terminal: name a file with -o")
-    rows = join(sweep, jobs, options.partial)
-    if not rows:
-        raise DataError(["error: no job is done yet"])
-    if len(rows) < len(jobs) and not options.quiet:
-        say([f"warning: {len(jobs) - len(rows)} of {len(jobs)} jobs are not done"])
-    if options.action == "join":
-        if options.raw and form != "csv":
-            raise UsageError("--raw is for csv")
-        data = (tables.to_csv(sweep, rows, version, raw=True) if options.raw
-                else tables.WRITERS[form](sweep, rows, version))
+    if options.raw and form != "csv":
+        raise UsageError("--raw is for csv")
+    gaps = Gaps()
+    if options.parts:
+        found = parts.in_order(options.parts)
+        head = found[0].head
+        if sweep is not None and head["digest"] != sweep.digest:
+            raise DataError([f"{found[0].path}: error: of another sweep than {sweep.file} (another file)"])
+        wanted = {}
+        if sweep is not None:
+            jobs = len(_chosen(sweep, options))
+            wanted = _wanted(options)
+        elif options.only:
+            raise UsageError("--only: give the sweep before its parts")
+        else:
+            jobs = sum(part.head["jobs"] for part in found)
+        axes, name, digest = head["axes"], head["sweep"], head["digest"]
+        rows = from_lines(parts.rows(found), head["suffixes"], gaps, wanted)
     else:
-        data = picture.draw(sweep, rows, tables.columns(sweep, rows), options.x, options.y, options.by,
-                            options.over, form)
+        assert sweep is not None
+        chosen = _chosen(sweep, options)
+        jobs = len(chosen)
+        axes, name, digest = [axis.name for axis in sweep.axes], sweep.file.rsplit("/", 1)[-1], sweep.digest
+        rows = from_files(sweep, chosen, gaps)
+    table = tables.Table(axes, rows)
+    if options.parts and jobs > table.count + gaps.count:
+        gaps.count += jobs - table.count - gaps.count
+    gaps.check(jobs, options.partial)
+    if not table.count:
+        raise DataError(["error: no job is done yet"])
+    if table.count < jobs and not options.quiet:
+        say([f"warning: {jobs - table.count} of {jobs} jobs are not done"])
+    if options.action == "plot":
+        assert sweep is not None
+        data = picture.draw(sweep, table, options.x, options.y, options.by, options.over, form)
     with _output(options.output) as write:
-        write(data)
+        if options.action == "plot":
+            write(data)
+        elif form == "csv":
+            tables.to_csv(table, write, options.raw)
+        elif form == "jsonl":
+            tables.to_jsonl(table, write, name, digest, version)
+        else:
+            tables.to_npz(table, write)
+
+
+def _wanted(options: argparse.Namespace) -> dict[str, str | float | int]:
+    """The choices of --only, as rows have them."""
+    from .listing import number_or_text
+
+    return {name: number_or_text(value) for name, _, value in (rule.partition("=") for rule in options.only)}
 
 
 def _format(options: argparse.Namespace, known: Sequence[str], usual: str) -> str:
@@ -249,9 +335,9 @@ def _format(options: argparse.Namespace, known: Sequence[str], usual: str) -> st
     return form
 
 
-def _chosen(sweep: Sweep, options: argparse.Namespace) -> list[Job]:
+def _chosen(sweep: Sweep, options: argparse.Namespace) -> Jobs:
     """The jobs of --only and --shard; a shard is a part of all jobs, done or not."""
-    jobs = list(sweep.jobs())
+    only: dict[int, int] = {}
     for rule in options.only:
         name, _, value = rule.partition("=")
         names = [axis.name for axis in sweep.axes]
@@ -259,19 +345,24 @@ def _chosen(sweep: Sweep, options: argparse.Namespace) -> list[Job]:
             raise UsageError(f"--only {rule}: no such axis{did_you_mean(name, names)}; there are "
                              f"{', '.join(names)}")
         place = names.index(name)
-        known = [choice.text for choice in sweep.axes[place].choices]
-        if value not in known:
-            raise UsageError(f"--only {rule}: no such choice{did_you_mean(value, known)}")
-        jobs = [job for job in jobs if job.choices[place].text == value]
-    if options.shard is not None:
-        part = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", options.shard)
-        index, count = (int(part[1]), int(part[2])) if part else (0, 0)
-        if not 1 <= index <= count:
-            raise UsageError(f"--shard {options.shard}: I/N with I from 1 to N")
-        size, more = divmod(len(jobs), count)
-        begin = (index - 1) * size + min(index - 1, more)
-        jobs = jobs[begin:begin + size + (index <= more)]
-    return jobs
+        index = sweep.axes[place].choices.index_of(value)
+        if index is None:
+            raise UsageError(f"--only {rule}: no such choice"
+                             f"{did_you_mean(value, sweep.axes[place].choices.sample())}")
+        if only.setdefault(place, index) != index:
+            raise UsageError(f"--only {rule}: another choice of `{name}` is given already")
+    jobs = sweep.jobs(only)
+    if options.shard is None:
+        return jobs
+    return jobs.share(*_shard(options.shard))
+
+
+def _shard(text: str) -> tuple[int, int]:
+    part = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", text)
+    index, count = (int(part[1]), int(part[2])) if part else (0, 0)
+    if not 1 <= index <= count:
+        raise UsageError(f"--shard {text}: I/N with I from 1 to N")
+    return index, count
 
 
 def _same_file(one: str, other: str) -> bool:

@@ -3,25 +3,18 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import re
 import shlex
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Iterator, Mapping, Sequence
+
+from .choices import Choice, Choices
+from .numbering import Numbering
 
 TOOLS = ("envc", "arrange", "scan", "coverage", "simrun")
 OUT = "out"  # the placeholder of a job's own files
-
-
-@dataclass(frozen=True)
-class Choice:
-    """One value of an axis: its part in the names of files, its text in the table, and the words of the command line
-    that replace it."""
-
-    part: str
-    text: str
-    words: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -29,7 +22,7 @@ class Axis:
     """A name, and the choices over which it varies; choices of files are inputs of the jobs."""
 
     name: str
-    choices: tuple[Choice, ...]
+    choices: Choices
     files: bool
 
 
@@ -82,7 +75,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Sweep:
-    """The content of a sweep's file. `excluded` are combinations to skip: names of axes to the texts of choices;
+    """The content of a sweep's file. `excluded` are combinations to skip: names of axes to the indices of choices;
     `accept` are exit statuses of a step that count as success, besides 0."""
 
     file: str
@@ -90,7 +83,7 @@ class Sweep:
     steps: tuple[Step, ...]
     axes: tuple[Axis, ...]
     folder: str
-    excluded: tuple[Mapping[str, frozenset[str]], ...] = ()
+    excluded: tuple[Mapping[str, tuple[range, ...]], ...] = ()
     accept: tuple[int, ...] = ()
 
     @property
@@ -98,21 +91,33 @@ class Sweep:
         """Of the files that every job makes, in the order of its steps."""
         return tuple(suffix for step in self.steps for suffix in step.files)
 
-    def jobs(self) -> Iterator[Job]:
-        """All jobs; the last axis varies fastest. Depends on the sweep's file alone (and, with patterns, on the names
-        of files that match), not on completed jobs."""
-        names = [axis.name for axis in self.axes]
-        number = 0
-        for choices in itertools.product(*(axis.choices for axis in self.axes)):
-            if self.excluded and self._excludes(names, choices):
-                continue
-            number += 1
-            name = "_".join(choice.part for choice in choices) or "job"
-            yield Job(number, name, os.path.join(self.folder, name), choices)
+    @cached_property
+    def numbering(self) -> Numbering:
+        """Of all jobs."""
+        return self._numbering([])
 
-    def _excludes(self, names: Sequence[str], choices: Sequence[Choice]) -> bool:
-        texts = {name: choice.text for name, choice in zip(names, choices)}
-        return any(all(texts[name] in some for name, some in rule.items()) for rule in self.excluded)
+    def _numbering(self, more: list[dict[int, tuple[range, ...]]]) -> Numbering:
+        places = {axis.name: place for place, axis in enumerate(self.axes)}
+        rules = [{places[name]: ranges for name, ranges in rule.items()} for rule in self.excluded]
+        return Numbering([len(axis.choices) for axis in self.axes], rules + more)
+
+    def jobs(self, only: Mapping[int, int] | None = None) -> Jobs:
+        """All jobs, or with `only` those that have these choices: places of axes to the indices of choices. The last
+        axis varies fastest. They depend on the sweep's file alone (and, with patterns, on the names of files that
+        match), not on completed jobs."""
+        if not only:
+            return Jobs(self, self.numbering, range(self.numbering.count))
+        others: list[dict[int, tuple[range, ...]]] = [
+            {place: (range(index), range(index + 1, len(self.axes[place].choices)))}
+            for place, index in only.items()]
+        chosen = self._numbering(others)
+        return Jobs(self, chosen, range(chosen.count))
+
+    def job(self, number: int, indices: Sequence[int]) -> Job:
+        """The job of this number, which has the choices of these indices."""
+        choices = tuple(axis.choices[index] for axis, index in zip(self.axes, indices))
+        name = "_".join(choice.part for choice in choices) or "job"
+        return Job(number, name, os.path.join(self.folder, name), choices)
 
     def inputs(self, job: Job) -> list[str]:
         """Files that the job reads and no job makes."""
@@ -135,6 +140,47 @@ def _is_there(path: str) -> bool:
         return os.stat(path).st_size > 0
     except OSError:
         return False
+
+
+class Jobs:
+    """Jobs of a sweep in their order. Each is computed when it is asked for: the list takes no memory, and its first
+    job no longer than any other."""
+
+    def __init__(self, sweep: Sweep, numbering: Numbering, places: range) -> None:
+        self._sweep = sweep
+        self._numbering = numbering
+        self._places = places
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+    def __iter__(self) -> Iterator[Job]:
+        every = self._sweep.numbering
+        is_whole = self._numbering is every
+        for place, indices in zip(self._places, self._numbering.walk(self._places.start)):
+            yield self._sweep.job(1 + (place if is_whole else every.place_of(indices)), indices)
+
+    def share(self, index: int, count: int) -> Jobs:
+        """The part `index`, from 1, of `count` parts whose sizes differ by at most one."""
+        size, more = divmod(len(self), count)
+        begin = (index - 1) * size + min(index - 1, more)
+        return Jobs(self._sweep, self._numbering, self._places[begin:begin + size + (index <= more)])
+
+    def behind(self, number: int) -> Jobs:
+        """Those with greater numbers."""
+        low, high = 0, len(self)
+        while low < high:
+            middle = (low + high) // 2
+            if self.number_at(middle) > number:
+                high = middle
+            else:
+                low = middle + 1
+        return Jobs(self._sweep, self._numbering, self._places[low:])
+
+    def number_at(self, place: int) -> int:
+        """The number of the job at a place of this list."""
+        indices = self._numbering.indices_of(self._places[place])
+        return 1 + self._sweep.numbering.place_of(indices)
 
 
 class CommandWriter:
@@ -198,15 +244,3 @@ def _runs_tool(words: Sequence[str]) -> bool:
     """`arrange …`, `/opt/bin/arrange …` or `ispace arrange …`."""
     program = os.path.basename(words[0])
     return program in TOOLS or (program == "ispace" and len(words) > 1 and words[1] in TOOLS)
-
-
-def part_of(text: str, axis: str) -> str:
-    """Converts a value to its part in the names of files: letters, digits, `.`, `+` and `-`. Of a path it is the base
-    name without suffix; numbers get the name of their axis: count3."""
-    if re.fullmatch(r"[+-]?([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][+-]?[0-9]+)?", text):
-        return _clean(axis) + text
-    return _clean(re.sub(r"(?<=.)[.]([A-Za-z][A-Za-z0-9]*|3dm)$", "", os.path.basename(text.rstrip("/"))))
-
-
-def _clean(text: str) -> str:
-    return re.sub(r"-{2,}", "-", re.sub(r"[^A-Za-z0-9.+-]", "-", text)).strip("-.")

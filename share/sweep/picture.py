@@ -4,18 +4,18 @@
 from __future__ import annotations
 
 import io
-from typing import Any, Callable, Sequence
+from typing import Any, Callable
 
+from .choices import Choice
 from .errors import DataError, UsageError, did_you_mean
 from .model import Axis, Sweep
-from .results import Row, Value
+from .tables import Column, Table
 
 FORMATS = ("svg", "png", "pdf")
 USUAL = ("coverage.exact", "result.coverage", "coverage.grid")  # columns drawn by default, the first that exists
 
 
-def draw(sweep: Sweep, rows: Sequence[Row], table: dict[str, list[Value]], x: str, y: str | None,
-         by: str | None, over: str | None, form: str) -> bytes:
+def draw(sweep: Sweep, table: Table, x: str, y: str | None, by: str | None, over: str | None, form: str) -> bytes:
     """Draws the means of column `y` over axis `x`, with least and greatest if several jobs share a point: a curve for
     each choice of `by`, or with `over` a cell for each two choices."""
     axes = {axis.name: axis for axis in sweep.axes}
@@ -24,61 +24,58 @@ def draw(sweep: Sweep, rows: Sequence[Row], table: dict[str, list[Value]], x: st
             raise UsageError(f"{option} {name}: no such axis{did_you_mean(name, axes)}; there are "
                              f"{', '.join(axes)}")
     column = _column(table, y)
-    figures = {row.job.number: value for row, value in zip(rows, table[column])}
-    cells = _Cells(sweep, rows, figures)
+    cells = _Cells(sweep, table, column)
     if over is not None:
-        plot = _heat(cells, axes[x], axes[over], column)
+        plot = _heat(cells, axes[x], axes[over], column.name)
     else:
-        plot = _curves(cells, axes[x], axes[by] if by else None, column)
+        plot = _curves(cells, axes[x], axes[by] if by else None, column.name)
     out = io.BytesIO()
     nothing = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
     plot.figure.savefig(out, format=form, bbox_inches="tight", dpi=144, metadata=nothing[form])
     return out.getvalue()
 
 
-def _column(table: dict[str, list[Value]], y: str | None) -> str:
-    numeric = [name for name, values in table.items()
-               if name != "job" and any(_is_number(value) for value in values)]
+def _column(table: Table, y: str | None) -> Column:
+    numeric = {column.name: column for column in table.columns if column.name != "job" and column.has_number}
     if y is None:
         usual = [name for name in USUAL if name in numeric]
         if not usual:
             raise UsageError(f"--y COLUMN is needed; there are {', '.join(numeric)}")
-        return usual[0]
+        return numeric[usual[0]]
     if y not in numeric:
         raise UsageError(f"--y {y}: no column with numbers{did_you_mean(y, numeric)}; there are "
                          f"{', '.join(numeric)}")
-    return y
-
-
-def _is_number(value: Value) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
+    return numeric[y]
 
 
 class _Cells:
     """Figures by the choices on some axes."""
 
-    def __init__(self, sweep: Sweep, rows: Sequence[Row], figures: dict[int, Value]) -> None:
+    def __init__(self, sweep: Sweep, table: Table, column: Column) -> None:
         self.names = [axis.name for axis in sweep.axes]
-        self.rows = [row for row in rows if _is_number(figures[row.job.number])]
-        self.figures = figures
-        if not self.rows:
+        self.figures: list[tuple[tuple[str, ...], float]] = []
+        for row in table.rows():
+            figure = column.value(row)
+            if isinstance(figure, (int, float)) and not isinstance(figure, bool):
+                indices = sweep.numbering.indices_of(row.number - 1)
+                texts = tuple(choice.text for choice in sweep.job(row.number, indices).choices)
+                self.figures.append((texts, float(figure)))
+        if not self.figures:
             raise DataError(["error: no job has a figure to draw"])
 
     def by(self, *axes: Axis) -> dict[tuple[str, ...], list[float]]:
         """The figures of each combination of choices on these axes, by their texts."""
         places = [self.names.index(axis.name) for axis in axes]
         found: dict[tuple[str, ...], list[float]] = {}
-        for row in self.rows:
-            figure = self.figures[row.job.number]
-            if figure is not None:  # as the rows here are chosen
-                found.setdefault(tuple(row.job.choices[place].text for place in places), []).append(float(figure))
+        for texts, figure in self.figures:
+            found.setdefault(tuple(texts[place] for place in places), []).append(figure)
         return found
 
     def spread(self, *shown: Axis | None) -> str:
         """Describes the values of a mean."""
         names = {axis.name for axis in shown if axis}
         others = [name for index, name in enumerate(self.names) if name not in names
-                  and len({row.job.choices[index].text for row in self.rows}) > 1]
+                  and len({texts[index] for texts, _ in self.figures}) > 1]
         return f"mean over {', '.join(others)}" if others else ""
 
 
@@ -86,7 +83,8 @@ def _curves(cells: _Cells, x: Axis, by: Axis | None, column: str) -> Any:
     place, labels = _places(x)
     cells_by = cells.by(x, by) if by else cells.by(x)
     curves = []
-    for choice in by.choices if by else (None,):
+    shown: list[Choice | None] = [*by.choices] if by else [None]
+    for choice in shown:
         points = []
         for option in x.choices:
             found = cells_by.get((option.text, choice.text) if choice else (option.text,))

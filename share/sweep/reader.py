@@ -11,11 +11,12 @@ import shlex
 from typing import Any, Iterable, Mapping
 
 from .errors import did_you_mean
-from .model import OUT, Axis, Choice, Step, Sweep, Word, part_of
+from .choices import Choice, Choices, part_of
+from .model import OUT, Axis, Step, Sweep, Word
 from .tree import Tree
 
 KEYS = ("run", "axes", "exclude", "folder", "accept")
-MOST_JOBS = 1_000_000
+MOST_JOBS = 100_000_000
 LONGEST_NAME = 200  # characters; with a suffix it must remain a file's name
 # Columns of the table that no axis may be called.
 RESERVED = (OUT, "job", "name", "digest", "version", "history", "commands")
@@ -65,21 +66,22 @@ class _Reader:
 
     def _axis(self, name: str, key_node: Any, node: Any) -> Axis:
         files = False
+        pieces: list[tuple[Any, Choice | range]]
         if self.tree.is_map(node):
             entries = self.tree.entries(node, f"`{name}`")
             files = [key for key, _, _ in entries] == ["files"]
             if files:
-                choices = list(self._files(name, entries[0][2]))
+                pieces = list(self._files(name, entries[0][2]))
             else:
-                choices = [(key_at, self._named(key, key_at, value)) for key, key_at, value in entries]
+                pieces = [(key_at, self._named(key, key_at, value)) for key, key_at, value in entries]
         else:
-            choices = list(self._values(name, node))
-        if not choices:
+            pieces = list(self._values(name, node))
+        if not pieces:
             self.tree.find(key_node, f"axis `{name}` has no choices")
-        self._distinct(name, choices)
-        return Axis(name, tuple(choice for _, choice in choices), files)
+        self._distinct(name, pieces)
+        return Axis(name, Choices(name, tuple(piece for _, piece in pieces)), files)
 
-    def _values(self, name: str, node: Any) -> Iterable[tuple[Any, Choice]]:
+    def _values(self, name: str, node: Any) -> Iterable[tuple[Any, Choice | range]]:
         """Parses values, each one word; 1..8 are the numbers from 1 to 8."""
         for item in self.tree.items(node):
             text = self.tree.scalar(item, f"a choice of `{name}`")
@@ -93,8 +95,7 @@ class _Reader:
             if last < first or last - first >= MOST_JOBS:
                 self.tree.find(item, f"`{text}` is no range of 1 to {MOST_JOBS} numbers")
                 continue
-            for number in range(first, last + 1):
-                yield item, Choice(part_of(str(number), name), str(number), (str(number),))
+            yield item, range(first, last + 1)
 
     def _named(self, key: str, key_node: Any, node: Any) -> Choice:
         """A choice with a name: any number of words, as the shell would split them."""
@@ -126,12 +127,25 @@ class _Reader:
                     word = f"./{path}" if path.startswith("-") else path
                     yield item, Choice(part_of(path, name), path, (word,))
 
-    def _distinct(self, name: str, choices: list[tuple[Any, Choice]]) -> None:
+    def _distinct(self, name: str, pieces: list[tuple[Any, Choice | range]]) -> None:
         seen: dict[str, str] = {}
-        for node, choice in choices:
+        spans: list[range] = []
+        for node, piece in pieces:
+            if isinstance(piece, range):
+                texts = (text for text in seen.values() if re.fullmatch("0|-?[1-9][0-9]*", text))
+                twice = [number for number in map(int, texts) if number in piece]
+                twice += [max(piece[0], span[0]) for span in spans if piece[0] <= span[-1] and span[0] <= piece[-1]]
+                if twice:
+                    self.tree.find(node, f"`{min(twice)}` is twice among the choices of `{name}`")
+                spans.append(piece)
+                continue
+            choice = piece
+            is_number = re.fullmatch("0|-?[1-9][0-9]*", choice.text)
             if not choice.part:
                 self.tree.find(node, f"`{choice.text}` leaves nothing for the names of files: give it a name, "
                                      f"`plain: '{choice.text}'` in a map instead of a list")
+            elif is_number and any(int(choice.text) in span for span in spans):
+                self.tree.find(node, f"`{choice.text}` is twice among the choices of `{name}`")
             elif choice.part not in seen:
                 seen[choice.part] = choice.text
             elif seen[choice.part] == choice.text:
@@ -146,7 +160,7 @@ class _Reader:
             jobs *= len(axis.choices)
         if jobs > MOST_JOBS:
             self.tree.find(node, f"{jobs} jobs, of which a sweep may have {MOST_JOBS}")
-        longest = sum(max(len(choice.part) for choice in axis.choices) + 1 for axis in axes)
+        longest = sum(axis.choices.longest_part + 1 for axis in axes)
         if longest > LONGEST_NAME:
             self.tree.find(node, f"names of files would have {longest} characters: give long values short names "
                                  "in a map")
@@ -212,7 +226,7 @@ class _Reader:
         known = [*axes, OUT]
         if name not in known:
             self.tree.find(node, f"unknown axis {{{name}}}{did_you_mean(name, known)}")
-        elif name != OUT and text != f"{{{name}}}" and any(len(c.words) != 1 for c in axes[name].choices):
+        elif name != OUT and text != f"{{{name}}}" and not axes[name].choices.are_words:
             self.tree.find(node, f"`{text}`: a choice of `{name}` is not one word: {{{name}}} must stand alone")
 
     def _redirect(self, node: Any, words: list[Word]) -> tuple[list[Word], str | None]:
@@ -247,24 +261,31 @@ class _Reader:
                 statuses.append(int(text))
         return statuses
 
-    def _excluded(self, node: Any, axes: list[Axis]) -> list[Mapping[str, frozenset[str]]]:
+    def _excluded(self, node: Any, axes: list[Axis]) -> list[Mapping[str, tuple[range, ...]]]:
         by_name = {axis.name: axis for axis in axes}
-        rules: list[Mapping[str, frozenset[str]]] = []
+        rules: list[Mapping[str, tuple[range, ...]]] = []
         for item in self.tree.items(node):
-            rule: dict[str, frozenset[str]] = {}
+            rule: dict[str, tuple[range, ...]] = {}
             for name, key_node, value in self.tree.entries(item, "an item of `exclude`"):
                 if name not in by_name:
                     self.tree.find(key_node, f"unknown axis `{name}`{did_you_mean(name, by_name)}")
                     continue
-                rule[name] = frozenset(self._texts(by_name[name], value))
+                rule[name] = tuple(self._indices(by_name[name], value))
             if rule:
                 rules.append(rule)
         return rules
 
-    def _texts(self, axis: Axis, node: Any) -> Iterable[str]:
-        known = [choice.text for choice in axis.choices]
-        for chosen, choice in self._values(axis.name, node):
-            if choice.text not in known:
-                self.tree.find(chosen, f"`{choice.text}` is no choice of `{axis.name}`"
-                                       f"{did_you_mean(choice.text, known)}")
-            yield choice.text
+    def _indices(self, axis: Axis, node: Any) -> Iterable[range]:
+        """The indices of choices."""
+        for chosen, piece in self._values(axis.name, node):
+            if isinstance(piece, range) and (indices := axis.choices.indices_of(piece)) is not None:
+                yield indices
+                continue
+            texts = [piece.text] if isinstance(piece, Choice) else map(str, piece)
+            for text in texts:
+                index = axis.choices.index_of(text)
+                if index is None:
+                    self.tree.find(chosen, f"`{text}` is no choice of `{axis.name}`"
+                                           f"{did_you_mean(text, axis.choices.sample())}")
+                    break
+                yield range(index, index + 1)

@@ -9,7 +9,7 @@ import re
 import shlex
 from dataclasses import dataclass, field
 from decimal import Decimal
-from typing import Any, Iterable
+from typing import Any, Iterable, Iterator, Mapping, Sequence
 
 from .errors import MOST_FINDINGS, DataError
 from .listing import number_or_text, values
@@ -24,7 +24,8 @@ class Row:
     """A job and its results. `digest` is that of its room, `history` the commands in its layouts and readings, `seed`
     theirs, `version` that of the tools in its reports."""
 
-    job: Job
+    number: int
+    name: str
     values: dict[str, str | float | int]
     results: dict[str, Value] = field(default_factory=dict)
     digest: str | None = None
@@ -34,61 +35,105 @@ class Row:
     commands: list[str] = field(default_factory=list)
 
 
-def join(sweep: Sweep, jobs: Iterable[Job], partial: bool) -> list[Row]:
-    """Returns the rows of complete jobs. Throws DataError that names the others, unless `partial`, and files of
-    another type than their suffix."""
+class Gaps:
+    """Jobs without results, by the names of what is missing, and files that are damaged."""
+
+    def __init__(self) -> None:
+        self.missing: list[str] = []
+        self.count = 0
+        self.broken: list[str] = []
+
+    def add(self, what: str) -> None:
+        self.count += 1
+        if len(self.missing) < MOST_FINDINGS - 1:
+            self.missing.append(what)
+
+    def check(self, jobs: int, partial: bool) -> None:
+        """Throws DataError for damaged files; for missing results unless `partial`."""
+        if self.broken:
+            raise DataError(self.broken[:MOST_FINDINGS])
+        if self.count and not partial:
+            raise DataError([*self.missing, f"error: {self.count} of {jobs} jobs are not done: `commands --missing` "
+                                            "lists them, --partial does without them"])
+
+
+def from_files(sweep: Sweep, jobs: Iterable[Job], gaps: Gaps) -> Iterator[Row]:
+    """The rows of complete jobs, one at a time, from their files."""
     writer = CommandWriter(sweep, None)
-    rows: list[Row] = []
-    missing: list[str] = []
-    broken: list[str] = []
     for job in jobs:
         left = sweep.left(job)
         if left:
-            missing.append(next(job.path(s) for s in left[0].files))
+            gaps.add(f"{next(job.path(s) for s in left[0].files)}: error: not there")
             continue
-        row = Row(job, values(sweep, job))
+        row = Row(job.number, job.name, values(sweep, job))
         row.commands = [" ".join(map(shlex.quote, writer.words(job, step))) for step in sweep.steps]
         try:
             for suffix in sweep.suffixes:
-                _read(row, job.path(suffix), suffix)
+                _read_file(row, job.path(suffix), suffix)
         except DataError as error:
-            broken += error.findings
-        rows.append(row)
-    if broken:
-        raise DataError(broken[:MOST_FINDINGS])
-    if missing and not partial:
-        raise DataError(_missing(missing, len(missing) + len(rows)))
-    return rows
+            gaps.broken += error.findings
+        yield row
 
 
-def _missing(files: list[str], jobs: int) -> list[str]:
-    told = [f"{file}: error: not there" for file in files[:MOST_FINDINGS - 1]]
-    return [*told, f"error: {len(files)} of {jobs} jobs are not done: `commands --missing` lists them, --partial "
-                   "does without them"]
+def from_lines(found: Iterable[dict[str, Any]], suffixes: Sequence[str], gaps: Gaps,
+               wanted: Mapping[str, Value]) -> Iterator[Row]:
+    """The rows of jobs that did not fail, from the lines of parts. `wanted` are the choices of --only."""
+    for line in found:
+        if any(line["values"].get(name) != value for name, value in wanted.items()):
+            continue
+        if line["status"] != 0:
+            gaps.add(f"error: job {line['job']} ({line['name']}) failed with status {line['status']}")
+            continue
+        row = Row(line["job"], line["name"], line["values"])
+        row.commands = [" ".join(map(shlex.quote, words)) for words in line.get("commands", [])]
+        texts, reports = line.get("files", {}), line.get("reports", {})
+        try:
+            for suffix in suffixes:
+                if suffix in reports or suffix in texts:
+                    _read_content(row, f"job {line['job']}", suffix, reports.get(suffix), texts.get(suffix))
+        except DataError as error:
+            gaps.broken += error.findings
+        yield row
 
 
-def _read(row: Row, path: str, suffix: str) -> None:
-    """Reads the data of a file of the job; skips a file that is neither layout, report nor readings."""
+def _read_file(row: Row, path: str, suffix: str) -> None:
+    kind = os.path.splitext(suffix)[1] or suffix
+    if kind not in (".3dm", ".json", ".jsonl"):
+        return
+    try:
+        with open(path, encoding="utf-8") as file:
+            text = file.readline() if kind == ".jsonl" else file.read()
+    except OSError as error:
+        raise DataError([f"{path}: error: {os.strerror(error.errno or 0)}"]) from None
+    except UnicodeDecodeError:
+        raise _damaged(path, kind) from None
+    _read_content(row, path, suffix, None, text)
+
+
+def _damaged(path: str, kind: str) -> DataError:
+    return DataError([f"{path}: error: not what {kind} files hold; remove it and run the job again"])
+
+
+def _read_content(row: Row, path: str, suffix: str, report: Any, text: str | None) -> None:
+    """Reads the data of a file of the job; skips a file that is neither layout, report nor readings.
+    `report` is the content of a report that is parsed already."""
     stem, kind = os.path.splitext(suffix)
     if not kind:
         stem, kind = "", suffix
     prefix = stem.lstrip(".") + "." if stem else ""
     try:
-        if kind == ".3dm":
-            _read_layout(row, path, prefix)
+        if kind == ".3dm" and text is not None:
+            _read_layout(row, path, prefix, text)
         elif kind == ".json":
-            _read_report(row, path, prefix)
-        elif kind == ".jsonl":
-            _read_header(row, path)
-    except OSError as error:
-        raise DataError([f"{path}: error: {os.strerror(error.errno or 0)}"]) from None
-    except (UnicodeDecodeError, ValueError, RecursionError):
-        raise DataError([f"{path}: error: not what {kind} files hold; remove it and run the job again"]) from None
+            _read_report(row, path, prefix, json.loads(text or "", parse_constant=_no_number)
+                         if report is None else report)
+        elif kind == ".jsonl" and text is not None:
+            _read_header(row, text.partition("\n")[0])
+    except (ValueError, RecursionError):
+        raise _damaged(path, kind) from None
 
 
-def _read_layout(row: Row, path: str, prefix: str) -> None:
-    with open(path, encoding="utf-8") as file:
-        text = file.read()
+def _read_layout(row: Row, path: str, prefix: str, text: str) -> None:
     if not text.startswith("#3dm ") or not text.endswith("\n"):  # cut off
         raise ValueError
     lines = text.splitlines()
@@ -116,9 +161,7 @@ def _figure(text: str) -> Value:
     return number_or_text(text)
 
 
-def _read_report(row: Row, path: str, prefix: str) -> None:
-    with open(path, encoding="utf-8") as file:
-        report = json.load(file, parse_constant=_no_number)
+def _read_report(row: Row, path: str, prefix: str, report: Any) -> None:
     if not isinstance(report, dict):
         raise ValueError
     told = {key: report.pop(key, None) for key in ("schema", "tool", "version", "digest")}
@@ -142,9 +185,8 @@ def _flatten(results: dict[str, Value], name: str, value: Any) -> None:
         results[name] = value
 
 
-def _read_header(row: Row, path: str) -> None:
-    with open(path, encoding="utf-8") as file:
-        header = json.loads(file.readline())
+def _read_header(row: Row, line: str) -> None:
+    header = json.loads(line)
     if not isinstance(header, dict):
         raise ValueError
     history = header.get("history")

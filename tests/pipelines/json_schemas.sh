@@ -68,6 +68,8 @@ cp "$scenes"/hall.* .
 ispace-sweep commands sweep.yaml --json >jobs.jsonl
 ispace-sweep commands sweep.yaml | sh
 ispace-sweep join sweep.yaml -o table.jsonl
+ispace-sweep run sweep.yaml -o ran.jsonl
+ispace-sweep status sweep.yaml ran.jsonl --json >ran.json
 exec 2>&3
 
 python3 "$validate" "$schemas" ./*.json ./*.jsonl ./*.geojson run/scans.jsonl \

@@ -169,6 +169,49 @@ def described(folder):
          (jobs[6]["values"], jobs[6]["inputs"], jobs[6]["outputs"]))
 
 
+def numbers(folder):
+    """Any share equals its part of the whole list, with rules that overlap and pieces of axes of all kinds."""
+    text = """
+run: show {a} {b} {c} {d} -o {out}.json
+axes: {a: [x, 1..3, 9], b: 1..4, c: {p: u, q: v}, d: 5..7}
+exclude:
+- {a: [x, 2..3], b: 2..3}
+- {b: [1, 3], c: q, d: 6..7}
+- {a: 9}
+- {c: p, d: 5, b: 4}
+"""
+    lines = folder.sweep("commands", text=text).splitlines()
+    left = [(a, b, c, d) for a in "x1239" for b in "1234" for c in "pq" for d in "567"
+            if not (a in "x23" and b in "23") and not (b in "13" and c == "q" and d in "67") and a != "9"
+            and not (c == "p" and d == "5" and b == "4")]
+    same("the jobs that no rule excludes", [f"{'a' * (a != 'x')}{a}_b{b}_{c}_d{d}" for a, b, c, d in left],
+         [name[len("results/"):-len(".json")] for name in folder.sweep("names").splitlines()])
+    jobs = list(map(json.loads, folder.sweep("commands", "--json").splitlines()[1:]))
+    same("numbers", list(range(1, len(lines) + 1)), [job["job"] for job in jobs])
+    for count, shares in ((7, range(1, 8)), (len(lines), (1, 2, 30, len(lines)))):
+        for index in shares:
+            part = folder.sweep("commands", "--shard", f"{index}/{count}", "--json").splitlines()[1:]
+            for job in map(json.loads, part):
+                same("a job of a share", jobs[job["job"] - 1], job)
+    only = list(map(json.loads, folder.sweep("commands", "--only", "c=q", "--only", "d=5", "--json").splitlines()[1:]))
+    same("numbers with --only", [job for job in jobs if job["values"]["c"] == "q" and job["values"]["d"] == 5], only)
+
+
+def millions(folder):
+    """A share of a million jobs takes the time and memory of its own jobs."""
+    folder.write("sweep.yaml", "run: a {n} {m} -o {out}.x\naxes: {n: 1..1000, m: 1..1000}\n"
+                 "exclude: {n: 4, m: 5..999}\n")
+    script = ("import resource, subprocess, sys\nsubprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL)\n"
+              "used = resource.getrusage(resource.RUSAGE_CHILDREN)\nprint(used.ru_maxrss, used.ru_utime)\n")
+    run = [sys.executable, "-c", script, PROGRAM, "commands", "sweep.yaml", "--shard"]
+    memory, seconds = map(float, folder.run(*run, "700/1000").split())
+    check(memory < 60000, f"{memory} kB for a share of a thousand")
+    one = float(folder.run(*run, "1/1").split()[1])
+    check(seconds < one / 5, f"a thousandth takes {seconds} s, all take {one} s")
+    last = folder.sweep("names", "--shard", "1000/1000").splitlines()[-1]
+    same("the last of them", "results/n1000_m1000.x", last)
+
+
 def many(folder):
     folder.write("sweep.yaml", "run: arrange {room} --sensor {device}:{count} --seed {seed} -o {out}.3dm\n"
                  "axes: {room: [a, b], device: [x, y], count: 1..25, seed: 1..100}\n")
@@ -201,8 +244,10 @@ ERRORS = [
     ("run: a\naxes:\n  n: ['?']", "sweep.yaml:3:7: error: `?` leaves nothing for the names of files"),
     ("run: a\naxes:\n  n: []", "sweep.yaml:3:3: error: axis `n` has no choices"),
     ("run: a\naxes:\n  n: 3..1", "sweep.yaml:3:6: error: `3..1` is no range"),
-    ("run: a\naxes:\n  n: 1..9999999", "sweep.yaml:3:6: error: `1..9999999` is no range"),
-    ("run: a {n} {m} -o {out}.x\naxes: {n: 1..2000, m: 1..2000}", "sweep.yaml:2:7: error: 4000000 jobs"),
+    ("run: a\naxes:\n  n: 1..999999999", "sweep.yaml:3:6: error: `1..999999999` is no range"),
+    ("run: a\naxes:\n  n: [1..5, 4..8]", "sweep.yaml:3:13: error: `4` is twice among the choices of `n`"),
+    ("run: a\naxes:\n  n: [7, 1..9]", "sweep.yaml:3:10: error: `7` is twice among the choices of `n`"),
+    ("run: a {n} {m} -o {out}.x\naxes: {n: 1..20000, m: 1..20000}", "sweep.yaml:2:7: error: 400000000 jobs"),
     ("run: a\naxes:\n  n: {files: none*.env}", "sweep.yaml:3:14: error: no file matches `none*.env` here in "),
     ("run: a\naxes:\n  n: {files: none.env}", "sweep.yaml:3:14: error: no file `none.env` here in "),
     ("run: a\naxes: {Out: 1}", "sweep.yaml:2:8: error: `Out` is no name for an axis"),
@@ -279,7 +324,7 @@ def outputs(folder):
     same("nothing beside", [], left)
 
 
-for part in (order_and_names, shards, missing, quoting, hostile_names, steps, described, many, errors, outputs):
+for part in (order_and_names, shards, missing, quoting, hostile_names, steps, described, numbers, millions, many, errors, outputs):
     with Folder() as scratch:
         scratch.write("b.env", "#env 1\n")
         scratch.write("a.env", "#env 1\n")

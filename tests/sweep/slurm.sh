@@ -159,4 +159,11 @@ scan ispace.env ispace.3dm --noise --frames 500 -q -o whole.jsonl
 expect_same whole.jsonl merged.jsonl "the merged parts are not the whole scan"
 [ "$(wc -l <whole.jsonl)" -gt 500 ] || fail "a short scan: $(wc -l <whole.jsonl)"
 cd ..
+# The same with one file for each task: share/examples/shares.
+cp -r "$source_dir/share/examples/shares" shares
+cp "$scenes/l-room.env" shares
+sed -i 's/1\.\.400/1..40/' shares/sweep.yaml
+(cd shares && ./slurm.sh 4) >out 2>err || fail "$(cat err; tail -n 20 shares/slurm-*.txt)"
+(cd shares && ispace-sweep run sweep.yaml -q -o whole.jsonl && ispace-sweep join whole.jsonl -o whole.csv)
+expect_same shares/whole.csv shares/table.csv "the shares of an array are not the whole"
 echo "node2 died after $at_death of 100 jobs; requeued: $(awk '$3 > 0 { print $1 }' begun | sort -nu | tr '\n' ' ')"

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files of results: the JSON lines of `ispace-sweep run`, schema ispace-results/1, a header and a line for each job."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+from dataclasses import dataclass
+from typing import Any, BinaryIO, Iterator, Sequence
+
+from .errors import MOST_FINDINGS, DataError
+from .listing import dump, values
+from .model import Job, Sweep
+from .workers import Outcome
+
+SCHEMA = "ispace-results/1"
+LONGEST_HEADER = 1 << 20
+
+
+@dataclass(frozen=True)
+class Share:
+    """Which of a sweep's jobs a part holds: the part `index` of `count`, and the rules of --only."""
+
+    index: int = 1
+    count: int = 1
+    only: tuple[str, ...] = ()
+
+
+def header(sweep: Sweep, share: Share, jobs: int, first: int, version: str) -> str:
+    """The first line of a part. A part that begins with another line is not of the same run."""
+    return dump({"schema": SCHEMA, "tool": "ispace-sweep", "version": version,
+                 "sweep": os.path.basename(sweep.file), "digest": sweep.digest,
+                 "axes": [axis.name for axis in sweep.axes], "suffixes": list(sweep.suffixes), "shard": f"{share.index}/{share.count}",
+                 "only": list(share.only), "first": first, "jobs": jobs})
+
+
+def line(sweep: Sweep, job: Job, outcome: Outcome) -> str:
+    """The line of a job. Layouts and other texts stand in it as they are, reports as JSON."""
+    head = dump({"job": job.number, "name": job.name, "status": outcome.status, "values": values(sweep, job),
+                 "commands": outcome.commands})
+    reports, texts, binary = [], {}, {}
+    for suffix, content in outcome.files.items():
+        report = _one_line(content) if suffix.endswith(".json") else None
+        if report is not None:
+            reports.append(f"{dump(suffix)}:{report}")
+            continue
+        try:
+            texts[suffix] = content.decode()
+        except UnicodeDecodeError:
+            binary[suffix] = base64.b64encode(content).decode()
+    more = dump(({"base64": binary} if binary else {}) | ({"messages": outcome.messages} if outcome.messages else {}))
+    return (f'{head[:-1]},"reports":{{{",".join(reports)}}},"files":{dump(texts)}'
+            + (f",{more[1:-1]}" if len(more) > 2 else "") + "}")
+
+
+def _one_line(content: bytes) -> str | None:
+    """A JSON document in one line, its numbers as they were written; None if it is none."""
+    try:
+        text = content.decode()
+        json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
+        return None
+    return " ".join(text.split("\n")).strip() if "\n" in text.strip() else text.strip()
+
+
+def _refuse(word: str) -> float:
+    raise ValueError(word)
+
+
+@dataclass
+class Part:
+    """A file of results. Lines are read one at a time; a last one without its end was cut off by a kill, and is left
+    out."""
+
+    path: str
+    head: dict[str, Any]
+
+    def lines(self) -> Iterator[dict[str, Any]]:
+        with _open(self.path) as file:
+            file.readline(LONGEST_HEADER)
+            for number, row in enumerate(file, 2):
+                if not row.endswith(b"\n"):
+                    return
+                try:
+                    found = json.loads(row)
+                    found["job"], found["status"], found["values"]
+                except (ValueError, KeyError, TypeError, RecursionError):
+                    raise DataError([f"{self.path}:{number}:1: error: no line of {SCHEMA}"]) from None
+                yield found
+
+
+def read_part(path: str) -> Part:
+    """Opens a file of results. Throws DataError for another file."""
+    with _open(path) as file:
+        row = file.readline(LONGEST_HEADER)
+    try:
+        head = json.loads(row)
+        if head["schema"] != SCHEMA:
+            raise ValueError
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise DataError([f"{path}:1:1: error: no results of `ispace-sweep run`: they begin with a line of "
+                         f"{SCHEMA}"]) from None
+    return Part(path, head)
+
+
+def _open(path: str) -> BinaryIO:
+    try:
+        return open(path, "rb")
+    except OSError as error:
+        raise DataError([f"{path}: error: {os.strerror(error.errno or 0)}"]) from None
+
+
+def is_part(path: str) -> bool:
+    """Whether a file begins as results do."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(64).startswith(b'{"schema":"' + SCHEMA.encode() + b'"')
+    except OSError:
+        return False
+
+
+def in_order(paths: Sequence[str]) -> list[Part]:
+    """The parts of one sweep by their first jobs. Throws DataError for parts of several sweeps."""
+    parts = sorted((read_part(path) for path in paths), key=lambda part: int(part.head.get("first") or 0))
+    wrong = [f"{part.path}: error: of another sweep than {parts[0].path} (the sweeps' files differ)"
+             for part in parts if part.head.get("digest") != parts[0].head.get("digest")]
+    if wrong:
+        raise DataError(wrong[:MOST_FINDINGS])
+    return parts
+
+
+def rows(parts: Sequence[Part]) -> Iterator[dict[str, Any]]:
+    """The lines of all parts in the order of jobs. Throws DataError for a job that is in two parts."""
+    last, where = 0, ""
+    for part in parts:
+        for row in part.lines():
+            if row["job"] <= last:
+                raise DataError([f"{part.path}: error: job {row['job']} comes after job {last} of {where}: give each "
+                                 "part once"])
+            last, where = row["job"], part.path
+            yield row

@@ -1,0 +1,219 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""ispace-sweep run: the lines of a part hold what the jobs' files would, whatever ends it in the middle."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+from sweeping import PROGRAM, Folder, check, same
+
+ROOM = """#env 1
+fence path=-4,-3;4,-3;4,3;-4,3 closed=yes
+table at=0.5,0.5
+inside at=-2,0
+"""
+TENT = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n"
+SWEEP = """
+run:
+  - arrange {room} --sensor laser,range=3,fov=180:{count} --strategy random --seed {seed} -q -o {out}.3dm
+  - coverage {room} {out}.3dm -q --report {out}.json
+axes:
+  room: {files: [rooms/a.env, ../other/b.env]}
+  count: 1..2
+  seed: 1..4
+"""
+
+
+def rooms(folder):
+    folder.write("here/rooms/a.env", ROOM)
+    folder.write("other/b.env", ROOM + "mesh file=more/tent.obj at=-3,-2\n")
+    folder.write("other/more/tent.obj", TENT)
+    folder.path = folder / "here"
+
+
+def sweep(folder, action, *words, status=0, **more):
+    return folder.run(PROGRAM, action, "sweep.yaml", *words, status=status, **more)
+
+
+def lines(text):
+    if isinstance(text, bytes):
+        text = text.decode()
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def by_files(folder):
+    """The results as files, by the shell."""
+    sweep(folder, "commands", "-o", "all.sh")
+    folder.run("sh", "all.sh")
+
+
+def equals_files(folder):
+    """Layouts and reports are those of the shell, byte for byte, with rooms in folders beside and above."""
+    folder.write("sweep.yaml", SWEEP)
+    by_files(folder)
+    table = sweep(folder, "join")
+    shutil.move(folder / "results", folder / "by_files")
+    sweep(folder, "run", "-o", "part.jsonl")
+    check(not os.path.exists(folder / "results"), "files are left")
+    head, *jobs = lines(folder.read("part.jsonl"))
+    same("the header", ("ispace-results/1", "1/1", 16, 1), (head["schema"], head["shard"], head["jobs"], head["first"]))
+    same("the numbers", list(range(1, 17)), [job["job"] for job in jobs])
+    for job in jobs:
+        same("status", 0, job["status"])
+        same(f"the layout of {job['name']}", folder.read(f"by_files/{job['name']}.3dm").decode(), job["files"][".3dm"])
+        same(f"the report of {job['name']}", json.loads(folder.read(f"by_files/{job['name']}.json")),
+             job["reports"][".json"])
+    same("the table", table, sweep(folder, "join", "part.jsonl"))
+    same("the table without the sweep", table, folder.run(PROGRAM, "join", "part.jsonl"))
+    shutil.move(folder / "by_files", folder / "results")
+    for form in ("jsonl", "npz"):
+        sweep(folder, "join", "-o", f"files.{form}")
+        sweep(folder, "join", "part.jsonl", "-o", f"lines.{form}")
+        same(form, folder.read(f"files.{form}"), folder.read(f"lines.{form}"))
+
+
+def shares(folder):
+    """Shares, jobs at a time and standard output make the same lines."""
+    folder.write("sweep.yaml", SWEEP)
+    whole = sweep(folder, "run", "-j", "1").split("\n", 1)[1]
+    same("three at a time", whole, sweep(folder, "run", "-j", "3").split("\n", 1)[1])
+    joined = ""
+    for index in range(1, 6):
+        sweep(folder, "run", "--shard", f"{index}/5", "-o", f"{index}.jsonl")
+        joined += folder.read(f"{index}.jsonl").decode().split("\n", 1)[1]
+    same("shares", whole, joined)
+    parts = [f"{index}.jsonl" for index in (4, 2, 5, 1, 3)]
+    folder.write("part.jsonl", sweep(folder, "run"))
+    same("parts in any order", sweep(folder, "join", "part.jsonl"), sweep(folder, "join", *parts))
+    state = json.loads(sweep(folder, "status", *parts, "--json"))
+    same("their status", (16, 16, 0, 0, 5), tuple(state[key] for key in ("jobs", "done", "failed", "left", "parts")))
+    folder.write("6.jsonl", folder.read("1.jsonl"))
+    sweep(folder, "join", "6.jsonl", *parts, status=1)
+    check("give each part once" in folder.talk, folder.talk)
+    sweep(folder, "join", "2.jsonl", status=1)
+    check("13 of 16 jobs are not done" in folder.talk, folder.talk)
+    same("rows of one", 4, sweep(folder, "join", "2.jsonl", "--partial", "-q").count("\n"))
+    only = sweep(folder, "run", "--only", "count=2", "--only", "seed=3")
+    same("--only keeps numbers", [7, 15], [job["job"] for job in lines(only)[1:]])
+
+
+def ends_in_the_middle(folder):
+    """A kill at any time loses no line and doubles none; what it leaves is removed by the next run."""
+    folder.write("sweep.yaml", SWEEP)
+    scratch = folder / "scratch"
+    os.makedirs(scratch)
+    more = {"env": {**os.environ, "TMPDIR": scratch}}
+    wanted = sweep(folder, "run", **more)
+    for number in (signal.SIGKILL, signal.SIGTERM):
+        kills = 0
+        for _ in range(40):
+            with subprocess.Popen([PROGRAM, "run", "sweep.yaml", "-q", "-o", "part.jsonl", "-j", "2"], cwd=folder.path,
+                                  **more) as running:
+                begin = folder_size(folder, "part.jsonl")
+                for _ in range(2000):
+                    if folder_size(folder, "part.jsonl") > begin + 3000 or running.poll() is not None:
+                        break
+                    time.sleep(0.005)
+                running.send_signal(number)
+                status = running.wait()
+            if status == 0:
+                break
+            same("the status of a kill", -number, status)
+            kills += 1
+        check(kills > 0, "it was never killed in the middle")
+        sweep(folder, "run", "-o", "part.jsonl", **more)
+        check(folder.read("part.jsonl").decode() == wanted, f"other bytes after {kills} kills")
+        same("scratch folders", [], [name for name in os.listdir(scratch) if name.startswith("ispace-sweep.")])
+        os.unlink(folder / "part.jsonl")
+    # Every cut of the file continues to the same bytes.
+    head = wanted.index("\n") + 1
+    for cut in (0, 5, head - 1, head, head + 1, head + 700, len(wanted) - 1):
+        folder.write("part.jsonl", wanted[:cut])
+        sweep(folder, "run", "-o", "part.jsonl", **more)
+        check(folder.read("part.jsonl").decode() == wanted, f"cut at {cut}, the run continues to other bytes")
+    folder.write("part.jsonl", "mine\n")
+    sweep(folder, "run", "-o", "part.jsonl", status=1, **more)
+    same("another file", b"mine\n", folder.read("part.jsonl"))
+
+
+def folder_size(folder, name):
+    try:
+        return os.path.getsize(folder / name)
+    except OSError:
+        return 0
+
+
+FAILING = """
+run:
+  - sh -c 'echo told $0 >&2; test "$0" != 3 || test -e {fixed} || exit 7; echo $0' {n} > {out}.txt
+  - cp {out}.txt {out}.b.txt
+axes: {n: 1..5, fixed: FIXED}
+"""
+
+
+def failures(folder):
+    """A job that fails ends no other, and is listed with its command."""
+    fixed = folder / "fixed"
+    folder.write("sweep.yaml", FAILING.replace("FIXED", "[" + json.dumps(fixed) + "]"))
+    sweep(folder, "run", "-o", "part.jsonl", status=1)
+    same("what is said", 2, folder.talk.count("\n"))
+    check("job 3" in folder.talk and "status 7" in folder.talk and "1 job failed" in folder.talk, folder.talk)
+    jobs = lines(folder.read("part.jsonl"))[1:]
+    same("statuses", [0, 0, 7, 0, 0], [job["status"] for job in jobs])
+    same("texts", "5\n", jobs[4]["files"][".b.txt"])
+    same("messages", "told 3\n", jobs[2]["messages"])
+    listed = sweep(folder, "status", "part.jsonl", "--failed")
+    check(listed.startswith("job 3 ") and "sh -c" in listed and listed.count("\n") == 1, listed)
+    same("as JSON", 3, lines(sweep(folder, "status", "part.jsonl", "--failed", "--json"))[0]["job"])
+    same("rows", 5, sweep(folder, "join", "part.jsonl", "--partial", "-q").count("\n"))
+    sweep(folder, "run", "-o", "part.jsonl", status=1)  # again: nothing to do
+    folder.write("fixed", "")
+    sweep(folder, "run", "-o", "part.jsonl", "--retry")
+    same("after --retry", [0] * 5, [job["status"] for job in lines(folder.read("part.jsonl"))[1:]])
+    folder.write("sweep.yaml", "run: no-such-program {n} -o {out}.x\naxes: {n: 1}\n")
+    sweep(folder, "run", status=1)
+    check("status 127" in folder.talk and "No such file" in folder.talk, folder.talk)
+    folder.write("sweep.yaml", "run: \"true {n} -o {out}.x\"\naxes: {n: 1}\n")
+    sweep(folder, "run", status=1)
+    check("not written by this step" in folder.talk, folder.talk)
+
+
+def errors(folder):
+    folder.write("sweep.yaml", "run: cp rooms/a.env {out}.{n}.env\naxes: {n: 1}\n".replace("{out}.{n}.env", "{out}.env")
+                 .replace("cp", "cp -{n}").replace("axes: {n: 1}", "axes: {n: [f, p]}"))
+    sweep(folder, "run", "-o", "part.jsonl")
+    with subprocess.Popen(["flock", "part.jsonl", "sleep", "30"], cwd=folder.path) as holder:
+        time.sleep(0.5)
+        sweep(folder, "run", "-o", "part.jsonl", status=1)
+        check("another run is writing it" in folder.talk, folder.talk)
+        holder.kill()
+    for words, status, wanted in (
+            (["status"], 2, "status needs the parts"),
+            (["run", "x.jsonl"], 2, "`run` takes one sweep"),
+            (["join", "sweep.yaml.none"], 1, "No such file"),
+            (["join", "sweep.yaml"], 1, "no results of `ispace-sweep run`"),
+            (["run", "-o", "/dev/full"], 2, "a regular file, or standard output"),
+            (["run", "--missing"], 2, "--missing is not for `run`")):
+        folder.run(PROGRAM, words[0], "sweep.yaml", *words[1:], status=status)
+        check(wanted in folder.talk and folder.talk.count("\n") == 1, f"of {words}: {folder.talk}")
+    # Bytes that are no request.
+    for bytes_sent in ("x\n", "3\nab\0", "99999999999\n", "2\na\0", "4\nabc\n", "5"):
+        folder.run("envc", "--serve-jobs", status=2, input=bytes_sent)
+        check("--serve-jobs" in folder.talk and folder.talk.count("\n") == 1, folder.talk)
+    folder.run("sh", "-c", "ispace-sweep run sweep.yaml >/dev/full", status=1)
+    check("stdout: error: No space left" in folder.talk, folder.talk)
+
+
+for part in (equals_files, shares, ends_in_the_middle, failures, errors):
+    with Folder() as scratch_folder:
+        whole = scratch_folder.path
+        rooms(scratch_folder)
+        try:
+            part(scratch_folder)
+        finally:
+            scratch_folder.path = whole
