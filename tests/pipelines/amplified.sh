@@ -47,6 +47,11 @@ refused house_rooms 15000 'r[0-9]*.yaml'
 refused house_inline 15000 house.yaml
 refused rmf_aliases 16000 house.building.yaml
 refused ifc_levels 400000 house.ifc
+for family in curves profiles booleans; do refused ifc_$family 6000 house.ifc; done
+refused ifc_shells 60000 house.ifc
+refused ifc_long_points 200000 house.ifc
+quick ifc_maps 60000
+quick ifc_point_lists 400000
 
 # Done once, or in one pass.
 quick svg_style 89000

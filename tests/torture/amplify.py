@@ -481,6 +481,85 @@ def ifc_clips(size):
     return ifc_elements(size, head, lambda i: f"#{i}=IFCWALL('w',$,'w',$,$,#6,#36,$,$);\n")
 
 
+def ifc_repeated(size, first, rows, item):
+    """Walls of shapes that use one twice that uses one twice, and so on, as deep as readers follow. rows(id, id of the
+    one below) is a level, item(id) what makes a product's shape #45000000 of the topmost."""
+    levels = max(1, min(250, size // 200))
+    body, previous = first, 900
+    for i in range(levels):
+        body += rows(2000 + 10 * i, previous)
+        previous = 2000 + 10 * i
+    head = body + item(previous) + "#36=IFCPRODUCTDEFINITIONSHAPE($,$,(#45000000));\n"
+    return ifc_elements(size, head, lambda i: f"#{i}=IFCWALL('w',$,'w',$,$,#6,#36,$,$);\n")
+
+
+def extrusion_of(profile):
+    return (f"#40000000=IFCEXTRUDEDAREASOLID(#{profile},#5,#23,3.);\n"
+            "#45000000=IFCSHAPEREPRESENTATION($,'Body','SweptSolid',(#40000000));\n")
+
+
+def ifc_curves(size):
+    """Curves of curves, down to one without points."""
+    return ifc_repeated(size, "#900=IFCPOLYLINE(());\n",
+                        lambda i, below: f"#{i + 1}=IFCCOMPOSITECURVESEGMENT(.CONTINUOUS.,.T.,#{below});\n"
+                                         f"#{i}=IFCCOMPOSITECURVE((#{i + 1},#{i + 1}),.F.);\n",
+                        lambda top: f"#40000001=IFCARBITRARYCLOSEDPROFILEDEF(.AREA.,$,#{top});\n" + extrusion_of(40000001))
+
+
+def ifc_profiles(size):
+    """Profiles of profiles."""
+    return ifc_repeated(size, "#900=IFCRECTANGLEPROFILEDEF(.AREA.,$,$,4.,2.);\n",
+                        lambda i, below: f"#{i}=IFCCOMPOSITEPROFILEDEF(.AREA.,$,(#{below},#{below}),$);\n", extrusion_of)
+
+
+def ifc_maps(size):
+    """Maps of maps, down to one without shapes, and in a loop."""
+    return ifc_repeated(size, "#901=IFCSHAPEREPRESENTATION($,'Body','x',(#2002));\n#900=IFCREPRESENTATIONMAP(#5,#901);\n",
+                        lambda i, below: f"#{i + 2}=IFCMAPPEDITEM(#{below},#910);\n"
+                                         f"#{i + 1}=IFCSHAPEREPRESENTATION($,'Body','x',(#{i + 2},#{i + 2}));\n"
+                                         f"#{i}=IFCREPRESENTATIONMAP(#5,#{i + 1});\n",
+                        lambda top: "#910=IFCCARTESIANTRANSFORMATIONOPERATOR3D($,$,#4,$,$);\n"
+                                    f"#40000000=IFCMAPPEDITEM(#{top},#910);\n"
+                                    "#45000000=IFCSHAPEREPRESENTATION($,'Body','x',(#40000000));\n")
+
+
+def ifc_booleans(size):
+    """Unions of a union with itself, down to a missing solid."""
+    return ifc_repeated(size, "#900=IFCCSGSOLID(#901);\n#901=IFCBOOLEANRESULT(.UNION.,#24,#24);\n",
+                        lambda i, below: f"#{i}=IFCBOOLEANRESULT(.UNION.,#{below},#{below});\n",
+                        lambda top: f"#45000000=IFCSHAPEREPRESENTATION($,'Body','x',(#{top}));\n")
+
+
+def ifc_point_lists(size):
+    """Curves of two points each of one long list."""
+    points = ",".join(f"({i}.,0.)" for i in range(max(2, size // 20)))
+    return ifc_elements(size // 2, f"#40=IFCCARTESIANPOINTLIST2D(({points}));\n",
+                        lambda i: f"#{i}=IFCWALL('w',$,'w',$,$,#6,#{i + 5_000_000},$,$);\n"
+                                  f"#{i + 5_000_000}=IFCPRODUCTDEFINITIONSHAPE($,$,(#{i + 6_000_000}));\n"
+                                  f"#{i + 6_000_000}=IFCSHAPEREPRESENTATION($,'FootPrint','x',(#{i + 7_000_000}));\n"
+                                  f"#{i + 7_000_000}=IFCGEOMETRICCURVESET((#{i + 8_000_000}));\n"
+                                  f"#{i + 8_000_000}=IFCINDEXEDPOLYCURVE(#40,(IFCLINEINDEX((1,2))),$);\n")
+
+
+def ifc_shells(size):
+    """Surfaces of one shell, again and again."""
+    uses = ",".join(["#40"] * max(1, size // 10))
+    faces = ",".join(["#41"] * max(1, size // 10))
+    return ifc_elements(400, f"#40=IFCOPENSHELL(({faces}));\n#41=IFCFACE((#42));\n#42=IFCFACEOUTERBOUND(#43,.T.);\n"
+                             f"#43=IFCPOLYLOOP((#4,#4,#4));\n#44=IFCSHELLBASEDSURFACEMODEL(({uses}));\n"
+                             "#35=IFCSHAPEREPRESENTATION($,'Body','x',(#44));\n#36=IFCPRODUCTDEFINITIONSHAPE($,$,(#35));\n",
+                        lambda i: f"#{i}=IFCWALL('w',$,'w',$,$,#6,#36,$,$);\n")
+
+
+def ifc_long_points(size):
+    """A point with a long tail, read by all corners of a line."""
+    corners = ",".join(["#41"] * max(3, size // 10))
+    return ifc_elements(400, f"#40=IFCPOLYLINE(({corners}));\n#41=IFCCARTESIANPOINT((1.,2.),'{'x' * (size // 2)}');\n" +
+                        "#42=IFCARBITRARYCLOSEDPROFILEDEF(.AREA.,$,#40);\n" + extrusion_of(42) +
+                        "#36=IFCPRODUCTDEFINITIONSHAPE($,$,(#45000000));\n",
+                        lambda i: f"#{i}=IFCWALL('w',$,'w',$,$,#6,#36,$,$);\n")
+
+
 def ifc_of_storeys(size, step):
     """Storeys with this much between their heights, each with a wall."""
     def row(i):
@@ -733,7 +812,7 @@ PREFIXES = ("dxf_", "svg_", "sdf_", "env_", "pol_", "house_", "rmf_", "yaml_", "
             "batch_")
 FAMILIES = {name: make for name, make in globals().items()
             if callable(make) and name.startswith(PREFIXES) and name not in
-            ("sdf_box", "sdf_includes", "ifc_box", "ifc_walls_of", "ifc_elements", "ifc_of_storeys", "gltf_mesh", "house_of_storeys",
+            ("sdf_box", "sdf_includes", "ifc_box", "ifc_walls_of", "ifc_elements", "ifc_of_storeys", "ifc_repeated", "gltf_mesh", "house_of_storeys",
                                                                              "rmf_of_walls")}
 
 

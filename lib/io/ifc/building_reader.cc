@@ -382,7 +382,7 @@ class BuildingReader {
 }  // namespace
 
 Building readBuilding(std::string_view bytes, std::optional<double> slice, Budget& work) {
-    const StepFile file(bytes);
+    const StepFile file(bytes, &work);
     if (file.ofType("IFCPROJECT").empty() && file.ofType("IFCBUILDING").empty() &&
         file.ofType("IFCBUILDINGSTOREY").empty())
         throw std::runtime_error("an IFC file without a project, building or storey");

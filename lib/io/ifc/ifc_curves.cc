@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace ispace {
@@ -104,29 +106,6 @@ std::vector<Point3> arcThrough(Point3 a, Point3 b, Point3 c) {
     return ifcArc(frame, radius, radius, 0, to);
 }
 
-std::vector<Point3> indexedCurve(const IfcFrames& frames, const StepInstance& curve) {
-    std::vector<Point3> points;
-    for (const StepValue& value : frames.file().read(curve[0].reference())[0].list())
-        points.push_back(frames.coordinates(value));
-    const std::vector<StepValue> segments = curve[1].list();
-    if (segments.empty()) return points;
-    std::vector<Point3> joined;
-    for (const StepValue& segment : segments) {
-        std::vector<Point3> piece;
-        const std::vector<StepValue> inner = segment.list();
-        for (const StepValue& value : inner.empty() ? inner : inner.front().list()) {
-            const double index = value.number().value_or(0);
-            if (!(index >= 1 && index <= static_cast<double>(points.size())))
-                throw UnreadGeometry("an index out of its list");
-            piece.push_back(points[static_cast<std::size_t>(index) - 1]);
-        }
-        if (segment.type() == "IFCARCINDEX" && piece.size() == 3)
-            piece = arcThrough(piece[0], piece[1], piece[2]);
-        join(joined, piece);
-    }
-    return joined;
-}
-
 }  // namespace
 
 std::vector<Point3> ifcArc(const IfcFrame& frame, double half_x, double half_y, double from,
@@ -143,34 +122,6 @@ std::vector<Point3> ifcArc(const IfcFrame& frame, double half_x, double half_y, 
     for (int i = 0; i <= count; ++i) {
         const double angle = from + (to - from) * i / std::max(count, 1);
         points.push_back(frame.at({half_x * std::cos(angle), half_y * std::sin(angle), 0}));
-    }
-    return points;
-}
-
-std::vector<Point3> ifcCurve(const IfcFrames& frames, StepId id, int depth) {
-    if (depth > kMaxIfcDepth) throw UnreadGeometry("curves in a loop");
-    const StepInstance curve = frames.file().read(id);
-    std::vector<Point3> points;
-    if (curve.type == "IFCPOLYLINE") {
-        for (const StepValue& value : curve[0].list())
-            points.push_back(frames.point(value.reference()));
-    } else if (curve.type == "IFCINDEXEDPOLYCURVE") {
-        points = indexedCurve(frames, curve);
-    } else if (curve.type == "IFCTRIMMEDCURVE") {
-        points = trimmedCurve(frames, curve);
-    } else if (curve.type == "IFCCIRCLE" || curve.type == "IFCELLIPSE") {
-        const double half_x = frames.length(curve[1]);
-        points = ifcArc(frames.axes(curve[0].reference()), half_x,
-                        curve.type == "IFCELLIPSE" ? frames.length(curve[2]) : half_x, 0, kTurn);
-    } else if (curve.type == "IFCCOMPOSITECURVE" || curve.type == "IFC2DCOMPOSITECURVE") {
-        for (const StepValue& value : curve[0].list()) {
-            const StepInstance segment = frames.file().read(value.reference());
-            std::vector<Point3> piece = ifcCurve(frames, segment[2].reference(), depth + 1);
-            if (segment[1].word() == "F") std::reverse(piece.begin(), piece.end());
-            join(points, piece);
-        }
-    } else {
-        throw UnreadGeometry(nameOfMissing(curve.type));
     }
     return points;
 }
@@ -268,40 +219,184 @@ IfcArea band(const std::vector<Point3>& line, double thickness) {
 
 }  // namespace
 
-IfcArea ifcProfile(const IfcFrames& frames, StepId id, int depth) {
-    if (depth > kMaxIfcDepth) throw UnreadGeometry("profiles in a loop");
-    const StepInstance profile = frames.file().read(id);
+namespace {
+
+/// Points of curves and profiles that are kept for the next use.
+constexpr std::size_t kMaxKept = 10'000'000;
+
+std::size_t pointsIn(const IfcCurves::Points& points) { return points.size(); }
+std::size_t pointsIn(const IfcArea& area) {
+    std::size_t points = 0;
+    for (const Polygon& polygon : area) points += polygon.size();
+    return points;
+}
+
+}  // namespace
+
+void IfcCurves::pay(std::uint64_t units, const char* cause) {
+    if (!work_.take(units))
+        throw std::runtime_error(std::string(cause) + " make " + work_.excess());
+}
+
+/// \param compute returns the units that it has paid
+template <typename T>
+IfcCurves::Made<T> IfcCurves::make(Known<T>& known, StepId id, int depth, const char* kind,
+                                   const std::function<std::uint64_t(T&)>& compute) {
+    if (depth > kMaxIfcDepth) throw UnreadGeometry(std::string(kind) + " in a loop");
+    const auto [at, is_new] = known.try_emplace(id);
+    if (!is_new) {
+        Made<T> made = at->second;
+        if (made.result == nullptr) throw UnreadGeometry(std::string(kind) + " in a loop");
+        pay(depth > 0 ? made.units : 1, kind);
+        return made;
+    }
+    try {
+        auto result = std::make_shared<T>();
+        const std::uint64_t units = compute(*result);
+        const std::size_t points = pointsIn(*result);
+        Made<T> made{std::move(result), units};
+        if (kept_ + points <= kMaxKept) {
+            kept_ += points;
+            known[id] = made;
+        } else {
+            known.erase(id);
+        }
+        return made;
+    } catch (...) {
+        known.erase(id);
+        throw;
+    }
+}
+
+std::shared_ptr<const IfcCurves::Points> IfcCurves::points(StepId list) {
+    const auto read = [&](Points& points) {
+        const std::vector<StepValue> values = frames_.file().read(list)[0].list();
+        const std::uint64_t units = 1 + values.size() / kPointsPerUnit;
+        pay(units, "lists of points");
+        points.reserve(values.size());
+        for (const StepValue& value : values) points.push_back(frames_.coordinates(value));
+        return units;
+    };
+    return make<Points>(lists_, list, 0, "lists of points", read).result;
+}
+
+IfcCurves::Points IfcCurves::indexedCurve(const StepInstance& curve) {
+    const std::shared_ptr<const Points> points = this->points(curve[0].reference());
+    const std::vector<StepValue> segments = curve[1].list();
+    if (segments.empty()) return *points;
+    Points joined;
+    for (const StepValue& segment : segments) {
+        Points piece;
+        const std::vector<StepValue> inner = segment.list();
+        for (const StepValue& value : inner.empty() ? inner : inner.front().list()) {
+            const double index = value.number().value_or(0);
+            if (!(index >= 1 && index <= static_cast<double>(points->size())))
+                throw UnreadGeometry("an index out of its list");
+            piece.push_back((*points)[static_cast<std::size_t>(index) - 1]);
+        }
+        if (segment.type() == "IFCARCINDEX" && piece.size() == 3)
+            piece = arcThrough(piece[0], piece[1], piece[2]);
+        join(joined, piece);
+    }
+    return joined;
+}
+
+std::uint64_t IfcCurves::addCurve(StepId id, int depth, Points& points) {
+    const StepInstance curve = frames_.file().read(id);
+    std::uint64_t units = 1;
+    pay(1, "curves");
+    if (curve.type == "IFCCOMPOSITECURVE" || curve.type == "IFC2DCOMPOSITECURVE") {
+        for (const StepValue& value : curve[0].list()) {
+            const StepInstance segment = frames_.file().read(value.reference());
+            const Made<Points> piece = curveAt(segment[2].reference(), depth + 1);
+            units += piece.units;
+            if (segment[1].word() == "F")
+                join(points, Points(piece.result->rbegin(), piece.result->rend()));
+            else
+                join(points, *piece.result);
+        }
+        return units;
+    }
+    if (curve.type == "IFCPOLYLINE") {
+        const std::vector<StepValue> values = curve[0].list();
+        pay(values.size(), "curves");
+        for (const StepValue& value : values) points.push_back(frames_.point(value.reference()));
+        return units + values.size();
+    }
+    if (curve.type == "IFCINDEXEDPOLYCURVE") {
+        points = indexedCurve(curve);
+    } else if (curve.type == "IFCTRIMMEDCURVE") {
+        points = trimmedCurve(frames_, curve);
+    } else if (curve.type == "IFCCIRCLE" || curve.type == "IFCELLIPSE") {
+        const double half_x = frames_.length(curve[1]);
+        points = ifcArc(frames_.axes(curve[0].reference()), half_x,
+                        curve.type == "IFCELLIPSE" ? frames_.length(curve[2]) : half_x, 0, kTurn);
+    } else {
+        throw UnreadGeometry(nameOfMissing(curve.type));
+    }
+    pay(points.size() / kPointsPerUnit, "curves");
+    return units + points.size() / kPointsPerUnit;
+}
+
+IfcCurves::Made<IfcCurves::Points> IfcCurves::curveAt(StepId id, int depth) {
+    return make<Points>(curves_, id, depth, "curves",
+                        [&](Points& points) { return addCurve(id, depth, points); });
+}
+
+std::shared_ptr<const IfcCurves::Points> IfcCurves::curve(StepId id) {
+    return curveAt(id, 0).result;
+}
+
+std::uint64_t IfcCurves::addProfile(StepId id, int depth, IfcArea& area) {
+    const StepInstance profile = frames_.file().read(id);
     const std::string_view type = profile.type;
+    std::uint64_t units = 1;
+    pay(1, "profiles");
+    const auto add_boundary = [&](StepId curve) {
+        area.push_back(ifcPolygon(*this->curve(curve)));
+        const std::uint64_t more = 1 + area.back().size() / kPointsPerUnit;
+        pay(more, "profiles");
+        units += more;
+    };
     if (type.starts_with("IFCARBITRARYCLOSEDPROFILEDEF") ||
         type == "IFCARBITRARYPROFILEDEFWITHVOIDS") {
-        IfcArea area{ifcPolygon(ifcCurve(frames, profile[2].reference()))};
-        for (const StepValue& hole : profile[3].list())
-            area.push_back(ifcPolygon(ifcCurve(frames, hole.reference())));
-        return area;
+        add_boundary(profile[2].reference());
+        for (const StepValue& hole : profile[3].list()) add_boundary(hole.reference());
+        return units;
     }
-    if (type == "IFCCENTERLINEPROFILEDEF")
-        return band(ifcCurve(frames, profile[2].reference()), frames.length(profile[3]));
     if (type == "IFCDERIVEDPROFILEDEF" || type == "IFCMIRROREDPROFILEDEF") {
         IfcFrame map;
         if (type == "IFCDERIVEDPROFILEDEF")
-            map = frames.transformation(profile[3].reference());
+            map = frames_.transformation(profile[3].reference());
         else
             map.x = {-1, 0, 0};
-        IfcArea area = ifcProfile(frames, profile[2].reference(), depth + 1);
+        const Made<IfcArea> inner = profileAt(profile[2].reference(), depth + 1);
+        area = *inner.result;
         for (Polygon& polygon : area)
             for (Point2& p : polygon) p = map.at({p.x, p.y, 0}).onFloor();
-        return area;
+        return units + inner.units;
     }
     if (type == "IFCCOMPOSITEPROFILEDEF") {
-        IfcArea area;
-        for (const StepValue& part : profile[2].list())
-            for (Polygon& polygon : ifcProfile(frames, part.reference(), depth + 1))
-                area.push_back(std::move(polygon));
-        return area;
+        for (const StepValue& part : profile[2].list()) {
+            const Made<IfcArea> inner = profileAt(part.reference(), depth + 1);
+            area.insert(area.end(), inner.result->begin(), inner.result->end());
+            units += inner.units;
+        }
+        return units;
     }
-    IfcArea area = SizedProfile(frames, profile).area();
-    if (area.empty()) throw UnreadGeometry(type.empty() ? "a missing instance" : std::string(type));
-    return area;
+    area = type == "IFCCENTERLINEPROFILEDEF"
+               ? band(*curve(profile[2].reference()), frames_.length(profile[3]))
+               : SizedProfile(frames_, profile).area();
+    if (area.empty()) throw UnreadGeometry(nameOfMissing(type));
+    pay(pointsIn(area) / kPointsPerUnit, "profiles");
+    return units + pointsIn(area) / kPointsPerUnit;
 }
+
+IfcCurves::Made<IfcArea> IfcCurves::profileAt(StepId id, int depth) {
+    return make<IfcArea>(profiles_, id, depth, "profiles",
+                         [&](IfcArea& area) { return addProfile(id, depth, area); });
+}
+
+std::shared_ptr<const IfcArea> IfcCurves::profile(StepId id) { return profileAt(id, 0).result; }
 
 }  // namespace ispace

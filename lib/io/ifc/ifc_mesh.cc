@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -110,7 +111,7 @@ bool isBody(std::string_view type) {
 }  // namespace
 
 TriangleMesh ifcMesh(std::string_view bytes, Budget& work) {
-    const StepFile file(bytes);
+    const StepFile file(bytes, &work);
     IfcFrames frames(file);
     IfcShapes shapes(frames, work);
     TriangleList triangles;
@@ -147,10 +148,17 @@ TriangleMesh ifcMesh(std::string_view bytes, Budget& work) {
 namespace {
 
 constexpr double kFootprintHeight = 2.5;  // metres
+/// Who takes the work: elements may share a shape without a map.
+constexpr const char* kShared = "shared shapes";
 
 /// Builds the surface that a profile sweeps through frames, which map its plane into space; closed
 /// at both ends, or without ends if it returns to the first frame.
-IfcFaces swept(const IfcArea& area, std::span<const IfcFrame> frames, bool comes_back) {
+IfcFaces swept(IfcCurves& curves, const IfcArea& area, std::span<const IfcFrame> frames,
+               bool comes_back) {
+    std::size_t outline = 0;
+    for (const Polygon& polygon : area) outline += polygon.size();
+    // Four corners for each piece of the outline and step, and two ends.
+    curves.pay(area.size() + outline * (4 * frames.size() - 2), kShared);
     IfcFaces faces;
     const auto loop_in = [](const Polygon& polygon, const IfcFrame& frame) {
         std::vector<Point3> loop;
@@ -178,26 +186,28 @@ IfcFaces swept(const IfcArea& area, std::span<const IfcFrame> frames, bool comes
     return faces;
 }
 
-IfcArea checkedArea(const IfcFrames& frames, StepId profile) {
-    IfcArea area = ifcProfile(frames, profile);
+IfcArea checkedArea(IfcCurves& curves, StepId profile) {
+    IfcArea area = *curves.profile(profile);
     std::erase_if(area, [](const Polygon& polygon) { return polygon.empty(); });
     if (area.empty()) throw UnreadGeometry("a profile without area");
     return area;
 }
 
-IfcFaces extruded(const IfcArea& area, const IfcFrame& position, Vec3 by) {
+IfcFaces extruded(IfcCurves& curves, const IfcArea& area, const IfcFrame& position, Vec3 by) {
     IfcFrame end = position;
     end.origin = position.at({by.x, by.y, by.z});
-    return swept(area, std::array{position, end}, false);
+    return swept(curves, area, std::array{position, end}, false);
 }
 
-IfcFaces extrusion(const IfcFrames& frames, const StepInstance& solid) {
+IfcFaces extrusion(IfcCurves& curves, const StepInstance& solid) {
+    const IfcFrames& frames = curves.frames();
     const Vec3 unit = unitOf(frames.direction(solid[2].reference(), {0, 0, 1}));
-    return extruded(checkedArea(frames, solid[0].reference()), frames.axes(solid[1].reference()),
-                    frames.length(solid[3]) * unit);
+    return extruded(curves, checkedArea(curves, solid[0].reference()),
+                    frames.axes(solid[1].reference()), frames.length(solid[3]) * unit);
 }
 
-IfcFaces revolution(const IfcFrames& frames, const StepInstance& solid) {
+IfcFaces revolution(IfcCurves& curves, const StepInstance& solid) {
+    const IfcFrames& frames = curves.frames();
     constexpr int kSteps = 48;  // of a full turn
     const IfcFrame position = frames.axes(solid[1].reference());
     const StepInstance axis = frames.file().read(solid[2].reference());
@@ -217,7 +227,7 @@ IfcFaces revolution(const IfcFrames& frames, const StepInstance& solid) {
         turn.origin = foot + turned({-foot.x, -foot.y, -foot.z});
         stops.push_back(position * turn);
     }
-    return swept(checkedArea(frames, solid[0].reference()), stops, share > 1 - 1e-9);
+    return swept(curves, checkedArea(curves, solid[0].reference()), stops, share > 1 - 1e-9);
 }
 
 Point3 vertexPoint(const IfcFrames& frames, StepId vertex) {
@@ -255,48 +265,57 @@ std::vector<Point3> edgePoints(const IfcFrames& frames, StepId oriented) {
     return points;
 }
 
-std::vector<Point3> loopPoints(const IfcFrames& frames, StepId id) {
+std::vector<Point3> loopPoints(IfcCurves& curves, StepId id) {
+    const IfcFrames& frames = curves.frames();
     const StepInstance loop = frames.file().read(id);
+    const std::vector<StepValue> values = loop[0].list();
+    curves.pay(1 + values.size(), kShared);
     std::vector<Point3> points;
     if (loop.type == "IFCPOLYLOOP") {
-        for (const StepValue& value : loop[0].list())
-            points.push_back(frames.point(value.reference()));
+        for (const StepValue& value : values) points.push_back(frames.point(value.reference()));
     } else if (loop.type == "IFCEDGELOOP") {
-        for (const StepValue& value : loop[0].list())
-            for (const Point3& p : edgePoints(frames, value.reference())) points.push_back(p);
+        for (const StepValue& value : values) {
+            const std::vector<Point3> edge = edgePoints(frames, value.reference());
+            curves.pay(edge.size(), kShared);
+            points.insert(points.end(), edge.begin(), edge.end());
+        }
     } else {
         throw UnreadGeometry(loop.type.empty() ? "a missing instance" : std::string(loop.type));
     }
     return points;
 }
 
-void addShell(const IfcFrames& frames, StepId shell, IfcFaces& faces) {
+void addShell(IfcCurves& curves, StepId shell, IfcFaces& faces) {
+    const IfcFrames& frames = curves.frames();
+    curves.pay(1, kShared);
     for (const StepValue& face : frames.file().read(shell)[0].list()) {
+        curves.pay(1, kShared);
         for (const StepValue& bound : frames.file().read(face.reference())[0].list())
-            faces.addLoop(loopPoints(frames, frames.file().read(bound.reference())[0].reference()));
+            faces.addLoop(loopPoints(curves, frames.file().read(bound.reference())[0].reference()));
         faces.endFace();
     }
 }
 
-IfcFaces shells(const IfcFrames& frames, std::span<const StepValue> ids) {
+IfcFaces shells(IfcCurves& curves, std::span<const StepValue> ids) {
     IfcFaces faces;
-    for (const StepValue& id : ids) addShell(frames, id.reference(), faces);
+    for (const StepValue& id : ids) addShell(curves, id.reference(), faces);
     return faces;
 }
 
 /// Reads IfcTriangulatedFaceSet and IfcPolygonalFaceSet.
-IfcFaces faceSet(const IfcFrames& frames, const StepInstance& set) {
-    std::vector<Point3> points;
-    for (const StepValue& p : frames.file().read(set[0].reference())[0].list())
-        points.push_back(frames.coordinates(p));
+IfcFaces faceSet(IfcCurves& curves, const StepInstance& set) {
+    const IfcFrames& frames = curves.frames();
+    const std::shared_ptr<const std::vector<Point3>> points = curves.points(set[0].reference());
     IfcFaces faces;
     const auto add_loop = [&](const StepValue& indices) {
         std::vector<Point3> loop;
-        for (const StepValue& value : indices.list()) {
+        const std::vector<StepValue> values = indices.list();
+        curves.pay(1 + values.size(), kShared);
+        for (const StepValue& value : values) {
             const double index = value.number().value_or(0);
-            if (!(index >= 1 && index <= static_cast<double>(points.size())))
+            if (!(index >= 1 && index <= static_cast<double>(points->size())))
                 throw UnreadGeometry("an index out of its list");
-            loop.push_back(points[static_cast<std::size_t>(index) - 1]);
+            loop.push_back((*points)[static_cast<std::size_t>(index) - 1]);
         }
         faces.addLoop(loop);
     };
@@ -318,34 +337,36 @@ IfcFaces faceSet(const IfcFrames& frames, const StepInstance& set) {
 
 Polygon rectangleTo(double x, double y) { return {{0, 0}, {x, 0}, {x, y}, {0, y}}; }
 
-IfcFaces primitive(const IfcFrames& frames, const StepInstance& item) {
+IfcFaces primitive(IfcCurves& curves, const StepInstance& item) {
+    const IfcFrames& frames = curves.frames();
     if (item.type == "IFCBOUNDINGBOX") {
         IfcFrame frame;
         frame.origin = frames.point(item[0].reference());
-        return extruded({rectangleTo(frames.length(item[1]), frames.length(item[2]))}, frame,
-                        {0, 0, frames.length(item[3])});
+        return extruded(curves, {rectangleTo(frames.length(item[1]), frames.length(item[2]))},
+                        frame, {0, 0, frames.length(item[3])});
     }
     const IfcFrame frame = frames.axes(item[0].reference());
     if (item.type == "IFCBLOCK")
-        return extruded({rectangleTo(frames.length(item[1]), frames.length(item[2]))}, frame,
-                        {0, 0, frames.length(item[3])});
+        return extruded(curves, {rectangleTo(frames.length(item[1]), frames.length(item[2]))},
+                        frame, {0, 0, frames.length(item[3])});
     const double radius = frames.length(item[2]);
-    return extruded({ifcPolygon(ifcArc({}, radius, radius, 0, 2 * std::numbers::pi))}, frame,
-                    {0, 0, frames.length(item[1])});
+    return extruded(curves, {ifcPolygon(ifcArc({}, radius, radius, 0, 2 * std::numbers::pi))},
+                    frame, {0, 0, frames.length(item[1])});
 }
 
 /// Reads the closed curves of a footprint.
-IfcFaces footprint(const IfcFrames& frames, const StepInstance& set) {
+IfcFaces footprint(IfcCurves& curves, const StepInstance& set) {
     IfcArea area;
     IfcFrame floor;
     for (const StepValue& element : set[0].list()) {
-        const std::vector<Point3> curve = ifcCurve(frames, element.reference());
-        if (curve.empty()) continue;
-        floor.origin.z = curve.front().z;
-        if (Polygon polygon = ifcPolygon(curve); !polygon.empty()) area.push_back(polygon);
+        const auto curve = curves.curve(element.reference());
+        if (curve->empty()) continue;
+        curves.pay(curve->size(), kShared);
+        floor.origin.z = curve->front().z;
+        if (Polygon polygon = ifcPolygon(*curve); !polygon.empty()) area.push_back(polygon);
     }
     if (area.empty()) throw UnreadGeometry(std::string(set.type));
-    return extruded(area, floor, {0, 0, kFootprintHeight});
+    return extruded(curves, area, floor, {0, 0, kFootprintHeight});
 }
 
 }  // namespace
@@ -361,26 +382,26 @@ void IfcFaces::move(const IfcFrame& frame) {
     for (Point3& corner : corners) corner = frame.at(corner);
 }
 
-IfcFaces ifcFaces(const IfcFrames& frames, const StepInstance& item) {
+IfcFaces ifcFaces(IfcCurves& curves, const StepInstance& item) {
     const std::string_view type = item.type;
     if (type == "IFCEXTRUDEDAREASOLID" || type == "IFCEXTRUDEDAREASOLIDTAPERED")
-        return extrusion(frames, item);
-    if (type == "IFCREVOLVEDAREASOLID") return revolution(frames, item);
+        return extrusion(curves, item);
+    if (type == "IFCREVOLVEDAREASOLID") return revolution(curves, item);
     if (type == "IFCSHELLBASEDSURFACEMODEL" || type == "IFCFACEBASEDSURFACEMODEL")
-        return shells(frames, item[0].list());
+        return shells(curves, item[0].list());
     if (type == "IFCFACETEDBREP" || type == "IFCFACETEDBREPWITHVOIDS" ||
         type == "IFCADVANCEDBREP" || type == "IFCADVANCEDBREPWITHVOIDS") {
         IfcFaces faces;
-        addShell(frames, item[0].reference(), faces);
-        for (const StepValue& hollow : item[1].list()) addShell(frames, hollow.reference(), faces);
+        addShell(curves, item[0].reference(), faces);
+        for (const StepValue& hollow : item[1].list()) addShell(curves, hollow.reference(), faces);
         return faces;
     }
     if (type == "IFCTRIANGULATEDFACESET" || type == "IFCTRIANGULATEDIRREGULARNETWORK" ||
         type == "IFCPOLYGONALFACESET")
-        return faceSet(frames, item);
+        return faceSet(curves, item);
     if (type == "IFCBOUNDINGBOX" || type == "IFCBLOCK" || type == "IFCRIGHTCIRCULARCYLINDER")
-        return primitive(frames, item);
-    if (type == "IFCGEOMETRICCURVESET" || type == "IFCGEOMETRICSET") return footprint(frames, item);
+        return primitive(curves, item);
+    if (type == "IFCGEOMETRICCURVESET" || type == "IFCGEOMETRICSET") return footprint(curves, item);
     throw UnreadGeometry(type.empty() ? "a missing instance" : std::string(type));
 }
 

@@ -13,7 +13,6 @@ namespace {
 constexpr std::size_t kMaxKept = 10'000'000;
 /// Corners that are copied and cut in the time of one unit of Budget.
 constexpr std::size_t kCornersPerUnit = 4;
-constexpr std::size_t kReading = 4;  // times the work of copying
 /// Beyond any building, in metres: how far limits of half-spaces are drawn out.
 constexpr double kFar = 10'000;
 
@@ -89,6 +88,7 @@ IfcShape IfcShapes::shapeOf(StepId definition) {
     };
     check(definition, all);
     for (const StepValue& value : all[2].list()) {
+        curves_.pay(1, "shared shapes");
         StepInstance representation = frames_.file().read(value.reference());
         check(value.reference(), representation);
         if (const int rank = rankOf(representation); rank > 0)
@@ -113,13 +113,13 @@ void IfcShapes::addItems(const StepInstance& representation, IfcShape& shape, in
 
 void IfcShapes::addItem(StepId id, IfcShape& shape, int depth) {
     if (depth > kMaxIfcDepth) throw UnreadGeometry("shapes in a loop");
+    curves_.pay(1, "shared shapes");
     const StepInstance item = frames_.file().read(id);
     if (item.type == "IFCMAPPEDITEM") return addMapped(item, shape, depth);
     if (item.type == "IFCBOOLEANRESULT" || item.type == "IFCBOOLEANCLIPPINGRESULT")
         return addBoolean(item, shape, depth);
     if (item.type == "IFCCSGSOLID") return addItem(item[0].reference(), shape, depth + 1);
-    shape.push_back({ifcFaces(frames_, item), {}});
-    pay({&shape.back(), 1}, "shared shapes", kReading);  // products may share one without a map
+    shape.push_back({ifcFaces(curves_, item), {}});
 }
 
 void IfcShapes::addMapped(const StepInstance& item, IfcShape& shape, int depth) {
@@ -130,14 +130,18 @@ void IfcShapes::addMapped(const StepInstance& item, IfcShape& shape, int depth) 
     std::shared_ptr<const IfcShape> part;
     if (const auto known = mapped_.find(source); known != mapped_.end()) {
         part = known->second;
+        if (part == nullptr) throw UnreadGeometry("shapes in a loop");
     } else {
+        mapped_.emplace(source, nullptr);
         IfcShape read;
         addItems(frames_.file().read(map[1].reference()), read, depth + 1);
         const std::size_t corners = cornersOf(read);
         part = std::make_shared<const IfcShape>(std::move(read));
         if (kept_ + corners <= kMaxKept) {
             kept_ += corners;
-            mapped_.emplace(source, part);
+            mapped_[source] = part;
+        } else {
+            mapped_.erase(source);
         }
     }
     append(shape, *part, frame);
@@ -161,7 +165,9 @@ IfcCut IfcShapes::cutBy(StepId operand, bool keeps_inside, int depth) {
     const bool is_below = item[1].word() != "F";
     cut.half_space = {plane.origin, is_below == keeps_inside ? -plane.z : plane.z};
     if (item.type == "IFCPOLYGONALBOUNDEDHALFSPACE") {
-        const Polygon boundary = ifcPolygon(ifcCurve(frames_, item[3].reference()));
+        const auto curve = curves_.curve(item[3].reference());
+        curves_.pay(2 * curve->size(), "half-spaces");  // a prism has six corners for each
+        const Polygon boundary = ifcPolygon(*curve);
         if (boundary.empty() || keeps_inside) throw UnreadGeometry(std::string(item.type));
         cut.limit = prismOver(boundary, frames_.axes(item[2].reference()));
     }
@@ -178,6 +184,8 @@ void IfcShapes::addBoolean(const StepInstance& result, IfcShape& shape, int dept
     }
     try {
         const IfcCut cut = cutBy(result[2].reference(), operation == "INTERSECTION", depth);
+        if (cut.limit)
+            curves_.pay(first.size() * (cut.limit->corners.size() / kCornersPerUnit), "cuts");
         for (IfcSolid& solid : first) solid.cuts.push_back(cut);
     } catch (const UnreadGeometry& part) {
         ++unread_[part.what()];  // the solid stays whole

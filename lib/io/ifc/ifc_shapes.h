@@ -48,8 +48,9 @@ using IfcShape = std::vector<IfcSolid>;
 /// cylinders, clipped and mapped. Edges of advanced Breps are straight or arcs.
 class IfcShapes {
   public:
-    /// \param work pays for mapped shapes; outlives this object
-    IfcShapes(const IfcFrames& frames, Budget& work) : frames_(frames), work_(work) {}
+    /// \param work pays for shapes that are read, mapped and cut; outlives this object
+    IfcShapes(const IfcFrames& frames, Budget& work)
+        : frames_(frames), work_(work), curves_(frames, work) {}
 
     /// Reads the body of a product in its own frame: from its IfcProductDefinitionShape the
     /// representation `Body`, else another one with solids; if there is none, its footprint, 2.5 m
@@ -76,12 +77,14 @@ class IfcShapes {
 
     const IfcFrames& frames_;
     Budget& work_;
+    IfcCurves curves_;
     std::map<std::string, std::size_t> unread_;
-    std::unordered_map<StepId, std::shared_ptr<const IfcShape>> mapped_;
-    std::size_t kept_ = 0;  // corners in mapped_
+    std::unordered_map<StepId, std::shared_ptr<const IfcShape>> mapped_;  // null: being read
+    std::size_t kept_ = 0;                                                // corners in mapped_
 };
 
-/// Reads the faces of an item that is no boolean result and not mapped. \throws UnreadGeometry
-IfcFaces ifcFaces(const IfcFrames& frames, const StepInstance& item);
+/// Reads the faces of an item that is no boolean result and not mapped, and pays for them.
+/// \throws UnreadGeometry
+IfcFaces ifcFaces(IfcCurves& curves, const StepInstance& item);
 
 }  // namespace ispace

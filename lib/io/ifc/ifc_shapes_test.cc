@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
 #include "geom/arrangement.h"
 #include "io/ifc/ifc_sections.h"
@@ -16,16 +19,16 @@ namespace {
 
 /// Items of one shape: `item` is #100; #10 is the origin, #11 to #13 are the axes.
 struct ShapeOf {
-    explicit ShapeOf(const std::string& data)
+    explicit ShapeOf(const std::string& data, Budget& work = ampleWork())
         : bytes(ifcWith("#10=IFCCARTESIANPOINT((0.,0.,0.));\n#11=IFCDIRECTION((1.,0.,0.));\n"
                         "#12=IFCDIRECTION((0.,1.,0.));\n#13=IFCDIRECTION((0.,0.,1.));\n"
                         "#14=IFCAXIS2PLACEMENT3D(#10,$,$);\n#15=IFCAXIS2PLACEMENT2D(#10,$);\n"
                         "#90=IFCPRODUCTDEFINITIONSHAPE($,$,(#91));\n"
                         "#91=IFCSHAPEREPRESENTATION($,'Body','x',(#100));\n" +
                         data)),
-          file(bytes),
+          file(bytes, &work),
           frames(file),
-          shapes(frames, ampleWork()),
+          shapes(frames, work),
           shape(shapes.shapeOf(90)) {}
 
     /// Area of the cut at a height.
@@ -208,6 +211,66 @@ TEST(IfcShapes, RevolvedAndRound) {
     EXPECT_TRUE(box->is_round);
     EXPECT_NEAR(box->length, 0.4, 1e-2);
     EXPECT_FALSE(boxAround(ShapeOf(kUp).shape, {1, 0})->is_round);
+}
+
+/// Levels of elements, each of which uses the one below twice: #901 + 2 k is level k.
+std::string twice(int levels, const std::function<std::string(int own, int below)>& level) {
+    std::string data;
+    for (int k = 1; k <= levels; ++k) data += level(901 + 2 * k, 899 + 2 * k);
+    return data;
+}
+
+std::string reference(int id) { return "#" + std::to_string(id); }
+
+TEST(IfcShapes, ThatDoubleAtEachLevelAreRefusedAtOnce) {
+    const std::string up =
+        "#20=IFCARBITRARYCLOSEDPROFILEDEF(.AREA.,$,#963);\n"
+        "#100=IFCEXTRUDEDAREASOLID(#20,#14,#13,3.);\n";
+    const std::string curves = twice(31, [](int own, int below) {
+        return reference(own - 1) + "=IFCCOMPOSITECURVESEGMENT(.CONTINUOUS.,.T.," +
+               reference(below) + ");\n" + reference(own) + "=IFCCOMPOSITECURVE((" +
+               reference(own - 1) + "," + reference(own - 1) + "),.F.);\n";
+    });
+    const std::string profiles = twice(31, [](int own, int below) {
+        return reference(own) + "=IFCCOMPOSITEPROFILEDEF(.AREA.,$,(" + reference(below) + "," +
+               reference(below) + "),$);\n";
+    });
+    const std::string unions = twice(31, [](int own, int below) {
+        return reference(own) + "=IFCBOOLEANRESULT(.UNION.," + reference(below) + "," +
+               reference(below) + ");\n";
+    });
+    for (const std::string& data :
+         {"#901=IFCPOLYLINE(());\n" + curves + up, "#901=IFCPOLYLINE((#10,#10));\n" + curves + up,
+          "#901=IFCRECTANGLEPROFILEDEF(.AREA.,$,$,4.,2.);\n" + profiles +
+              "#100=IFCEXTRUDEDAREASOLID(#963,#14,#13,3.);\n",
+          "#901=IFCBLOCK(#14,1.,1.,1.);\n" + unions + "#100=IFCCSGSOLID(#963);\n"}) {
+        Budget work(data.size());
+        EXPECT_THROW(ShapeOf(data, work), std::runtime_error);
+        EXPECT_TRUE(work.isExceeded());
+    }
+}
+
+TEST(IfcShapes, ElementsThatShareAPointListReadItOnce) {
+    std::string data = "#20=IFCCARTESIANPOINTLIST2D(((0.,0.),(4.,0.),(4.,2.)";
+    for (int i = 0; i < 10'000; ++i) data += ",(0.,0.)";
+    data += "));\n#100=IFCGEOMETRICCURVESET((";
+    for (int i = 0; i < 1000; ++i) data += reference(1000 + i) + ",";
+    data.back() = ')';
+    data += ");\n";
+    for (int i = 0; i < 1000; ++i)
+        data += reference(1000 + i) + "=IFCINDEXEDPOLYCURVE(#20,(IFCLINEINDEX((1,2,3,1))),$);\n";
+    Budget work(data.size());
+    EXPECT_EQ(ShapeOf(data, work).shape.size(), 1U);
+    EXPECT_LT(work.limit() - work.left(), 100'000U);
+}
+
+TEST(IfcShapes, LoopsOfMapsEnd) {
+    const ShapeOf loop(
+        "#20=IFCREPRESENTATIONMAP(#14,#21);\n"
+        "#21=IFCSHAPEREPRESENTATION($,'Body','x',(#100,#100));\n#100=IFCMAPPEDITEM(#20,#22);\n"
+        "#22=IFCCARTESIANTRANSFORMATIONOPERATOR3D($,$,#10,$,$);\n");
+    EXPECT_TRUE(loop.shape.empty());
+    EXPECT_TRUE(loop.shapes.unread().contains("shapes in a loop"));
 }
 
 }  // namespace

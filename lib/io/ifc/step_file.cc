@@ -50,14 +50,15 @@ std::string_view trimmedValue(std::string_view text) {
 }
 
 /// Returns the values between the parentheses that `text` begins with.
-std::vector<StepValue> valuesIn(std::string_view text) {
+/// \param length null, or set to the bytes up to the last parenthesis
+std::vector<StepValue> valuesIn(std::string_view text, std::size_t* length = nullptr) {
     std::vector<StepValue> values;
-    std::size_t depth = 0, begin = 1;
+    std::size_t depth = 0, begin = 1, at = 0;
     const auto add = [&](std::size_t end) {
         values.emplace_back(trimmedValue(text.substr(begin, end - begin)));
         begin = end + 1;
     };
-    for (std::size_t at = 0; at < text.size();) {
+    while (at < text.size()) {
         const char c = text[at];
         const std::size_t next = mayQuote(c) ? skipQuoted(text, at) : at;
         if (next != at) {
@@ -73,6 +74,7 @@ std::vector<StepValue> valuesIn(std::string_view text) {
         }
         ++at;
     }
+    if (length != nullptr) *length = at;
     return values;
 }
 
@@ -88,7 +90,7 @@ std::vector<StepValue> StepValue::list() const {
     return valuesIn(text_.substr(text_.find('(')));
 }
 
-StepFile::StepFile(std::string_view bytes) : bytes_(bytes) {
+StepFile::StepFile(std::string_view bytes, Budget* work) : bytes_(bytes), work_(work) {
     for (std::size_t begin = 0; begin < bytes.size();) {
         begin = skipBlanks(bytes, begin);
         std::size_t end = begin;
@@ -144,8 +146,12 @@ StepInstance StepFile::read(StepId id) const {
     if (entry == nullptr) return {};
     StepInstance instance{typeAt(entry->offset), {}};
     const std::size_t open = skipBlanks(bytes_, entry->offset + instance.type.size());
-    if (open < bytes_.size() && bytes_[open] == '(')
-        instance.arguments = valuesIn(bytes_.substr(open));
+    if (open >= bytes_.size() || bytes_[open] != '(') return instance;
+    constexpr std::size_t kShort = 256;  // bytes, read within the unit of the element
+    std::size_t length = 0;
+    instance.arguments = valuesIn(bytes_.substr(open), &length);
+    if (work_ != nullptr && length > kShort && !work_->take(Budget::unitsOf(length)))
+        throw std::runtime_error("lists that are read again make " + work_->excess());
     return instance;
 }
 

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/budget.h"
+
 namespace ispace {
 
 /// Returns true if a STEP file begins with its magic, after blanks, comments and a byte order mark.
@@ -63,12 +65,14 @@ struct StepInstance {
 class StepFile {
   public:
     /// Builds the index. O(bytes + instances log instances)
-    explicit StepFile(std::string_view bytes);
+    /// \param work pays for long instances, which many references may have read again; null for
+    /// none; outlives this object
+    explicit StepFile(std::string_view bytes, Budget* work = nullptr);
 
     /// Returns the type of an instance; "" if the id is missing. O(log instances)
     [[nodiscard]] std::string_view typeOf(StepId id) const;
     /// Returns an instance with its arguments; without type and arguments if the id is missing.
-    /// \throws std::runtime_error after kMaxReads calls
+    /// \throws std::runtime_error after kMaxReads calls, and for more work than is left
     [[nodiscard]] StepInstance read(StepId id) const;
     /// Returns ids of all instances of a type, ascending.
     [[nodiscard]] std::span<const StepId> ofType(std::string_view type) const;
@@ -91,6 +95,7 @@ class StepFile {
     void addStatement(std::string_view statement, std::size_t offset);
 
     std::string_view bytes_;
+    Budget* work_;
     std::vector<Entry> entries_;
     std::map<std::string_view, std::vector<StepId>> by_type_;
     mutable std::size_t reads_ = 0;
