@@ -8,14 +8,17 @@
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
+#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/missed_files.h"
 #include "base/packed.h"
 #include "base/run_files.h"
+#include "cli/model_path.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -28,6 +31,7 @@ JobId cacheIdOf(const BatchRun& run) {
     // Messages depend on these two.
     id.history = {run.command + (run.common.quiet ? " -q" : "") +
                   (run.common.verbose > 0 ? " -v" : "")};
+    for (const std::string& folder : modelPath()) id.history.push_back("models in " + folder);
     id.seed = run.common.seed;
     id.form = "cache";
     return id;
@@ -78,10 +82,19 @@ std::optional<std::string> digestOf(const std::string& name, bool is_input,
     return sha256(bytes);
 }
 
+/// Returns what is found by the name of a file that was looked for in vain: "" if nothing is there,
+/// the digest of a file, "/" for a folder or another entry. \param before as for digestOf()
+std::optional<std::string> foundAt(const std::string& name, const timespec* before = nullptr) {
+    struct stat info {};
+    if (::stat(name.c_str(), &info) != 0) return "";
+    if (before != nullptr && !isBefore(info.st_ctim, *before)) return std::nullopt;
+    return S_ISREG(info.st_mode) ? digestOf(name, false, before) : "/";
+}
+
 /// Returns the bytes of an outcome below the digests of its product and files; empty if it cannot
-/// be reused. \param began when the job did
+/// be reused. \param missed files that the job looked for in vain \param began when the job did
 std::optional<std::string> packed(const BatchJob& job, const JobOutcome& outcome,
-                                  const timespec& began) {
+                                  const std::set<std::string>& missed, const timespec& began) {
     if (outcome.files.empty() || (outcome.status != 0 && outcome.status != JobOutcome::kUnmet))
         return std::nullopt;
     std::vector<std::string> files = outcome.files;
@@ -99,6 +112,13 @@ std::optional<std::string> packed(const BatchJob& job, const JobOutcome& outcome
         if (!digest) return std::nullopt;
         to.addText(file);
         to.addText(*digest);
+    }
+    to.add(missed.size());
+    for (const std::string& file : missed) {
+        const auto found = foundAt(file, &began);
+        if (!found) return std::nullopt;
+        to.addText(file);
+        to.addText(*found);
     }
     to.addText(outcome.bytes());
     return to.bytes();
@@ -121,6 +141,10 @@ std::optional<JobOutcome> BatchCache::find(const BatchJob& job, const std::strin
         const std::string file = from.text(), digest = from.text();
         if (digestOf(file, true) != digest) return std::nullopt;
     }
+    for (std::uint64_t left = from.number(); left > 0; --left) {
+        const std::string file = from.text(), before = from.text();
+        if (foundAt(file) != before) return std::nullopt;
+    }
     JobOutcome outcome = JobOutcome::fromBytes(from.text());
     // Names of verdicts begin with that of the job, which has the number of the line.
     for (JunitCase& verdict : outcome.verdicts)
@@ -138,8 +162,9 @@ JobOutcome BatchCache::outcomeOf(const BatchJob& job, const std::function<JobOut
         // Computed as if it were missing.
     }
     const timespec began = fileClock();
+    const MissedFiles missed;
     JobOutcome outcome = compute();
-    if (const auto bytes = packed(job, outcome, began)) results_.store(key, *bytes);
+    if (const auto bytes = packed(job, outcome, missed.names(), began)) results_.store(key, *bytes);
     return outcome;
 }
 

@@ -13,9 +13,9 @@
 namespace ispace {
 
 /// Outcomes of the jobs of a list, stored in the file of --cache from one run to the next. One is
-/// reused if all files that its job read have the same bytes, and its product, if it has one, is
-/// still there. Files that were written while their job ran, or cannot be read again, make it not
-/// reusable; so does a failure.
+/// reused if all files that its job read have the same bytes, those that it looked for in vain are
+/// still missing, and its product, if it has one, is still there. Files that were written while
+/// their job ran, or cannot be read again, make it not reusable; so does a failure.
 class BatchCache {
   public:
     /// Reads the outcomes of earlier runs; those of another version, command or seed count as

@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <thread>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/missed_files.h"
 #include "support/test_folder.h"
 
 namespace ispace {
@@ -61,6 +64,43 @@ TEST_F(BatchCacheTest, ReusesOutcomesOfTheSameBytes) {
     write("two");
     EXPECT_EQ(computed(run_, job(), result()), 1);
     EXPECT_EQ(computed(run_, job(), result()), 0);
+}
+
+TEST_F(BatchCacheTest, ComputesAgainIfAMissingFileAppears) {
+    const std::string model = folder_ / "models";
+    int count = 0;
+    const auto reused = [&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        const int before = count;
+        BatchCache cache(folder_ / "cache", run_);
+        cache.outcomeOf(job(), [&] {
+            ++count;
+            noteMissed(model);
+            return result();
+        });
+        cache.commit();
+        return count == before;
+    };
+    EXPECT_FALSE(reused());
+    EXPECT_TRUE(reused());
+    std::filesystem::create_directory(model);
+    EXPECT_FALSE(reused());
+    EXPECT_TRUE(reused());
+    std::filesystem::remove(model);
+    writeAll(model, "a");
+    EXPECT_FALSE(reused());
+    EXPECT_TRUE(reused());
+    writeAll(model, "b");
+    EXPECT_FALSE(reused());
+}
+
+TEST_F(BatchCacheTest, ComputesAgainForAnotherModelPath) {
+    EXPECT_EQ(computed(run_, job(), result()), 1);
+    ::setenv("GAZEBO_MODEL_PATH", "/models", 1);
+    EXPECT_EQ(computed(run_, job(), result()), 1);
+    EXPECT_EQ(computed(run_, job(), result()), 0);
+    ::unsetenv("GAZEBO_MODEL_PATH");
+    EXPECT_EQ(computed(run_, job(), result()), 1);
 }
 
 TEST_F(BatchCacheTest, ComputesAgainForAnotherRun) {

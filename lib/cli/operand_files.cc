@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that operands and their records name, and stdin.
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
+#include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "cli/model_path.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 
@@ -73,12 +74,7 @@ void rebaseFiles(std::vector<Record>& records, const std::string& from, const st
 }
 
 void addModelFolders(ImportOptions& options) {
-    for (const char* name : {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "SDF_PATH"}) {
-        const char* const value = std::getenv(name);
-        std::istringstream folders(value == nullptr ? "" : value);
-        for (std::string folder; std::getline(folders, folder, ':');)
-            if (!folder.empty()) options.model_folders.push_back(folder);
-    }
+    for (std::string& folder : modelPath()) options.model_folders.push_back(std::move(folder));
 }
 
 }  // namespace ispace

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/message.h"
+#include "base/missed_files.h"
 #include "base/run_files.h"
 #include "drawing/plan/plan.h"
 #include "drawing/plan/plan_json.h"
@@ -227,7 +228,10 @@ std::optional<RegularFile> openSideFile(const std::string& path, const std::stri
                                         bool anywhere, std::span<const std::string> others) {
     std::error_code error;
     const fs::path place = fs::canonical(sideFilePath(path, name), error);
-    if (error || !mayBeRead(place.string())) return std::nullopt;
+    if (error || !mayBeRead(place.string())) {
+        noteMissed(sideFilePath(path, name));
+        return std::nullopt;
+    }
     const bool is_in_others =
         std::any_of(others.begin(), others.end(), [&](const std::string& other) {
             std::error_code missing;

@@ -129,3 +129,38 @@ echo '# edited' >>layouts/near-far-0001.3dm
 grep -q '2 jobs done, 0 of them known' err || fail "lost layouts are known: $(cat err)"
 diff -r first layouts || fail "layouts were not computed again"
 expect_error 1 coverage -q --any-environment --batch whole_list --cache layouts.cache
+
+# A model that appears in a folder that comes earlier, or in another GAZEBO_MODEL_PATH, is read instead.
+model() { # FOLDER HALF-DEPTH
+    local n=0
+    mkdir -p "$1/m"
+    echo '<model><name>m</name><sdf version="1.7">model.sdf</sdf></model>' >"$1/m/model.config"
+    {
+        echo '<sdf version="1.7"><model name="m"><static>true</static>'
+        for box in "0 $2 0.5|8 0.1 1" "0 -$2 0.5|8 0.1 1" "4 0 0.5|0.1 10 1" "-4 0 0.5|0.1 10 1"; do
+            echo "<link name='l$((n += 1))'><pose>${box%|*} 0 0 0</pose><collision name='c'><geometry><box><size>${box#*|}" \
+                '</size></box></geometry></collision></link>'
+        done
+        echo '</model></sdf>'
+    } >"$1/m/model.sdf"
+}
+area() { # of the room, and whether it was known; $1: environment
+    sleep 0.05
+    env "${1:-none=}" coverage -v --batch worlds.list --cache worlds.cache 2>err | sed 's/.*"indoor_area":\([0-9]*\).*/\1/'
+    sed -n 's/.*done, \([01]\) of them known.*/\1/p' err
+}
+mkdir worlds
+model models 3
+echo '<sdf version="1.7"><world name="w"><include><uri>model://m</uri></include></world></sdf>' >worlds/w.sdf
+printf '#3dm 1\nlaser id=l1 at=0.3,0 range=10 fov=360\n' >one.3dm
+echo 'worlds/w.sdf one.3dm' >worlds.list
+expect_area() { [ "$(area "${4:-}" | tr '\n' ' ')" = "$1 $2 " ] || fail "$3: not $1 m2, known $2: $(cat err)"; }
+expect_area 48 0 "first"
+expect_area 48 1 "again"
+model worlds/models 2
+expect_area 32 0 "an earlier folder appears"
+expect_area 32 1 "an earlier folder stays"
+rm -r worlds/models models
+model elsewhere 2.5
+expect_area 40 0 "another path" GAZEBO_MODEL_PATH=elsewhere
+expect_area 40 1 "the same path" GAZEBO_MODEL_PATH=elsewhere

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
+#include "base/missed_files.h"
 #include "base/number.h"
 #include "io/exporters.h"
 #include "io/import_records.h"
@@ -145,6 +146,7 @@ bool SdfFiles::isThere(const std::string& path) const {
     try {
         return openSideFile(name(), path, false, roots_).has_value();
     } catch (const FormatError&) {
+        noteMissed(sideFilePath(name(), path));
         return false;  // elsewhere, or not readable
     }
 }

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <set>
+#include <string>
+
+namespace ispace {
+
+/// The files that readers of this thread look for in vain while this lives: if one appears later,
+/// they may read it instead of another. Scopes may nest; a name belongs to all of them.
+class MissedFiles {
+  public:
+    MissedFiles();
+    ~MissedFiles();
+    MissedFiles(const MissedFiles&) = delete;
+    MissedFiles& operator=(const MissedFiles&) = delete;
+
+    [[nodiscard]] const std::set<std::string>& names() const { return names_; }
+
+  private:
+    friend void noteMissed(const std::string& name);
+    MissedFiles* outer_;
+    std::set<std::string> names_;
+};
+
+/// Records a file that a search expected, and did not find or may not read.
+void noteMissed(const std::string& name);
+
+}  // namespace ispace
