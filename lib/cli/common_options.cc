@@ -20,6 +20,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/parallel.h"
+#include "base/unconfined.h"
 #include "cli/run_tool.h"
 #include "scene/sensor/camera.h"
 #include "scene/sensor/sensor.h"
@@ -87,6 +88,10 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
     line.switchFlag("--progress", "--no-progress", options.progress,
                     "show progress of long work on stderr (default: if that is a terminal)",
                     "do not report it", Enters::Nothing);
+    line.flag("--unconfined", mayReadUnconfined(),
+              "read meshes, buildings and pictures also where the system cannot confine what reads "
+              "them: for trusted files",
+              Enters::Nothing);
 }
 
 void tell(const CommonOptions& options, const std::string& tool, const std::string& sentence) {

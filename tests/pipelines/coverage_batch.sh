@@ -106,7 +106,7 @@ expect_error 2 coverage --batch two -o map.png
 # Each option either works with it, as those do in this file or for any number of scenes, or is refused by name.
 works="--help --version --json --batch --shard --resume --cache --grid --cell --grid-of --height --plane --density --parallax
     --require --junit --same-environment --any-environment --output --quiet --verbose --threads --seed --errors --progress
-    --no-progress --zone --include-files --max-work --storey"
+    --no-progress --unconfined --zone --include-files --max-work --storey"
 refused="--report=r.json --suggest --compare=half.3dm --run=r -MD --to=png --width=300 --color=sensor --fans=beams
     --trace=two --speeds=30% --perturb=5cm,3deg --failures=1 --crowd=1 --facing=door,45,0 --privacy=desk
     --presence=wander:1 --path=a,b --localise=20cm --time-limit=1s"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/module/confine.h"
 
-#include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <signal.h>
@@ -9,7 +8,6 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,6 +20,9 @@
 #include <exception>
 #include <new>
 #include <vector>
+
+#include "base/module/call_filter.h"
+#include "base/unconfined.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 #define ISPACE_SANITIZED 1
@@ -53,66 +54,43 @@ constexpr rlim_t kStack = 64U << 20U;
 constexpr rlim_t kDescriptors = 64;
 
 /// \param most bound up to which the parent may raise the limit
-void limit(__rlimit_resource resource, rlim_t now, rlim_t most) {
+/// \return false if it is refused
+bool limit(__rlimit_resource resource, rlim_t now, rlim_t most) {
     rlimit limits{};
-    if (::getrlimit(resource, &limits) != 0) return;
+    if (::getrlimit(resource, &limits) != 0) return false;
     limits.rlim_max = std::min(limits.rlim_max, most);
     limits.rlim_cur = std::min(limits.rlim_max, now);
-    ::setrlimit(resource, &limits);
+    return ::setrlimit(resource, &limits) == 0;
 }
 
-#if defined(__x86_64__)
-constexpr std::uint32_t kMachine = AUDIT_ARCH_X86_64;
-#elif defined(__aarch64__)
-constexpr std::uint32_t kMachine = AUDIT_ARCH_AARCH64;
-#else
-constexpr std::uint32_t kMachine = 0;
-#endif
-
-/// Allows memory, open files and exit; all other calls fail with EPERM.
-constexpr std::array kAllowed{
-    __NR_read,           __NR_pread64,         __NR_lseek,    __NR_close,      __NR_sendto,
-    __NR_sendmsg,        __NR_recvfrom,        __NR_recvmsg,  __NR_brk,        __NR_mmap,
-    __NR_munmap,         __NR_mremap,          __NR_mprotect, __NR_madvise,    __NR_futex,
-    __NR_clock_gettime,  __NR_getrandom,       __NR_exit,     __NR_exit_group, __NR_rt_sigreturn,
-    __NR_rt_sigprocmask, __NR_restart_syscall,
-};
-
-void filterCalls() {
-    if (kMachine == 0) return;
-    constexpr auto kNumberAt = static_cast<std::uint32_t>(offsetof(seccomp_data, nr));
-    constexpr auto kMachineAt = static_cast<std::uint32_t>(offsetof(seccomp_data, arch));
-    std::vector<sock_filter> program{
-        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kMachineAt),
-        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0),
-        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
-        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kNumberAt),
-    };
-    for (const auto call : kAllowed) {
-        program.push_back(
-            BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call), 0, 1));
-        program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
-    }
-    program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM));
+/// \return false if the system has no such filters or refuses them
+bool filterCalls() {
+    const auto calls = nativeCalls();
+    if (!calls) return false;
+    std::vector<sock_filter> program = callFilter(*calls);
     const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
-    ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter);
+    return ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) == 0;
 }
 
-void confine(const ConfinedLimits& limits, const ConfinedLimits& most, int parent) {
+/// \return false if the process has rights left
+bool confine(const ConfinedLimits& limits, const ConfinedLimits& most, int parent) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);  // the parent ended before
-    ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+    bool is_confined = ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0;
     ::prctl(PR_SET_DUMPABLE, 0, 0, 0,
             0);  // cores piped to a program have no limit
-    limit(RLIMIT_CORE, 0, 0);
-    limit(RLIMIT_FSIZE, 0, 0);
+    const auto bound = [&](__rlimit_resource resource, rlim_t now, rlim_t largest) {
+        is_confined = limit(resource, now, largest) && is_confined;
+    };
+    bound(RLIMIT_CORE, 0, 0);
+    bound(RLIMIT_FSIZE, 0, 0);
     // The system kills at the second limit and reports the reason at the first.
-    limit(RLIMIT_CPU, limits.seconds, std::max(limits.seconds + 1, most.seconds));
-    if (kSanitized) return;
-    limit(RLIMIT_NOFILE, kDescriptors, kDescriptors);
-    limit(RLIMIT_STACK, kStack, kStack);
-    limit(RLIMIT_AS, limits.memory, std::max(limits.memory, most.memory));
-    filterCalls();
+    bound(RLIMIT_CPU, limits.seconds, std::max(limits.seconds + 1, most.seconds));
+    if (kSanitized) return true;
+    bound(RLIMIT_NOFILE, kDescriptors, kDescriptors);
+    bound(RLIMIT_STACK, kStack, kStack);
+    bound(RLIMIT_AS, limits.memory, std::max(limits.memory, most.memory));
+    return filterCalls() && is_confined;
 }
 
 void send(const char* bytes, std::size_t size) {
@@ -185,11 +163,14 @@ MappedInput::~MappedInput() {
 
 int runConfined(int argc, char** argv, const ConfinedLimits& most,
                 const std::function<std::string(std::size_t size, Budget& work)>& answer) {
-    constexpr int kWords = 5;
+    constexpr int kWords = 6;
     if (argc <= kWords) return 2;
     const char* const* const words = argv + argc - kWords;
     std::set_new_handler(outOfMemory);
-    confine({number(words[2]), number(words[3])}, most, std::atoi(words[0]));
+    const bool may_be_unconfined = number(words[5]) != 0;
+    if (!confine({number(words[2]), number(words[3])}, most, std::atoi(words[0])) &&
+        !may_be_unconfined)
+        ::_exit(kNotConfined);
     HandedOver file{STDIN_FILENO, number(words[1])};
     Budget work(0, {number(words[4])});
     try {

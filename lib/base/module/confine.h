@@ -20,16 +20,16 @@ class TooMuchWork : public std::runtime_error {
 };
 
 /// main() of a confined program, whose last arguments are its parent's process number, the size of
-/// the file on standard input, and its limits: memory, seconds and units of work.
+/// the file on standard input, its limits (memory, seconds and units of work), and 1 if it may read
+/// without being confined, else 0.
 ///
 /// First restricts this process to the system calls that a reader requires: no memory or time
 /// beyond the limits, no files but open ones, no programs, network or core dumps; it ends with its
-/// parent. The limits hold even if the system lacks or refuses seccomp. Under sanitizers, which
-/// require more system calls, only time is limited. Then computes one answer for each file that the
-/// parent hands over, until the first error.
-/// \param most bound up to which the parent may raise the limits; if lower, the limits stay
-/// \param answer computes the result of a file of this size, and takes its work; its exceptions are
-/// the errors of the file
+/// parent. If the system lacks or refuses any of that, as without seccomp, it reads nothing unless
+/// it may. Under sanitizers, which require more system calls, only time is limited. Then computes
+/// one answer for each file that the parent hands over, until the first error. \param most bound up
+/// to which the parent may raise the limits; if lower, the limits stay \param answer computes the
+/// result of a file of this size, and takes its work; its exceptions are the errors of the file
 int runConfined(int argc, char** argv, const ConfinedLimits& most,
                 const std::function<std::string(std::size_t size, Budget& work)>& answer);
 

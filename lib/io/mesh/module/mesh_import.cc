@@ -334,7 +334,7 @@ std::string answer(bool is_building, const std::string& suffix, const std::strin
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 9) return 2;
+    if (argc != 10) return 2;
     return runConfined(argc, argv, meshLimits(SIZE_MAX, true), [argv](auto size, Budget& work) {
         return answer(std::string_view(argv[3]) == "building", argv[1], argv[2], size, work);
     });
