@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "env/level.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "sense/scan.h"
 
 namespace ispace {
 
@@ -25,6 +27,10 @@ constexpr std::size_t kMaxChanges = 8;   ///< of Together
 constexpr double kWorthwhile = 1e-3;     ///< share of the indoor floor
 constexpr double kNearWall = 0.1;        ///< of a sensor on a wall, metres
 constexpr double kMaxLattice = 100'000;  ///< sites in the limits: farther apart in large rooms
+/// Cells that the candidates of a search look at by rays, at most: some seconds. Beyond, sites lie
+/// farther apart, and cells are larger.
+constexpr double kMaxLooks = 4e7;
+constexpr double kSearchedCells = 40'000, kLeastCells = 2'500;
 constexpr double kShifts[] = {0.1, 0.25, 0.5, 1};
 constexpr int kDirections = 8;
 constexpr int kTurnStep = 15;  ///< degrees; then single degrees about the best
@@ -154,6 +160,22 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     return found;
 }
 
+/// Widens the steps of a search for a sensor whose views are cast by rays, each cell by its own.
+void bound(ArrangeOptions& options, const Sensor& like, const Box2& limits) {
+    if (scansSlice(like)) return;
+    const double area = limits.width() * limits.depth();
+    const double range = maxRange(like.model);
+    const double seen = std::min(1.0, std::numbers::pi * range * range / area);
+    const double step = options.density.lattice_step;
+    const double looks = area / (step * step) * seen * kSearchedCells;
+    if (looks <= kMaxLooks) return;
+    const double wider = std::pow(looks / kMaxLooks, 0.25);
+    options.density.lattice_step *= wider;
+    options.density.wall_step *= wider;
+    const double cells = std::max(kLeastCells, kSearchedCells / (wider * wider));
+    options.cells = CellSize{std::max(0.1, std::sqrt(area / cells))};
+}
+
 /// Returns the options of a search for one more sensor like this one, with its height and support.
 ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Scene& home,
                                    const Sensor& like) const {
@@ -169,6 +191,7 @@ ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Scene& home,
     density.lattice_step =
         std::max(density.lattice_step, std::sqrt(limits.width() * limits.depth() / kMaxLattice));
     density.wall_step = std::max(density.wall_step, density.lattice_step);
+    bound(options, like, limits);
     const double z = like.pose.position.z;
     SiteRules rules;
     rules.height = z;
