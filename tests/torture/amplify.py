@@ -15,6 +15,8 @@ import subprocess
 import sys
 import tempfile
 
+import layouts
+
 
 def dxf(blocks, entities):
     """A drawing in metres. blocks: {name: entities}"""
@@ -816,8 +818,18 @@ FAMILIES = {name: make for name, make in globals().items()
                                                                              "rmf_of_walls")}
 
 
+def all_families():
+    return [*FAMILIES, *layouts.FAMILIES]
+
+
+def files_of(family, size):
+    return layouts.files(family, size) if family in layouts.FAMILIES else FAMILIES[family](size)
+
+
 def command(envc, family, operand):
     """The command that reads such a file."""
+    if family in layouts.FAMILIES:
+        return layouts.command(os.path.dirname(envc), family, operand)
     if family.startswith("batch_"):
         return [os.path.join(os.path.dirname(envc), "coverage"), "--batch", operand]
     return [envc, "--info", operand, *(["--slice-walls", "1"] if family.startswith("obj_") else [])]
@@ -826,7 +838,7 @@ def command(envc, family, operand):
 def write(name, size, folder):
     """Returns the operand and the size of all files."""
     total, operand = 0, ""
-    for file, text in FAMILIES[name](size).items():
+    for file, text in files_of(name, size).items():
         path = os.path.join(folder, file)
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "w", encoding="utf-8") as out:
@@ -878,13 +890,17 @@ def slope(points):
 class Growth:
     """Time and memory of a family over files of some sizes, beyond those of a small one, as exponents of the size."""
 
-    def __init__(self, envc, family, sizes, seconds):
+    def __init__(self, envc, family, sizes, seconds, most=None):
         self.rows, self.status, self.said = [], 0, ""
+        is_list = family in layouts.FAMILIES
+        most = most or (layouts.MOST_BYTES if is_list else MOST_BYTES)
+        self.steepest = layouts.steepest(family) if is_list else STEEPEST
+        self.right = (0, 1, 3) if is_list else (0, 1)
         _, *start = self.measure(envc, family, START_BYTES, seconds)
         while True:
             self.rows = [self.measure(envc, family, size, seconds) for size in sizes]
             self.seconds = max(row[1] for row in self.rows) - start[0]
-            if self.seconds > CHEAP_SECONDS or 4 * sizes[-1] > MOST_BYTES or self.status not in (0, 1):
+            if self.seconds > CHEAP_SECONDS or 4 * sizes[-1] > most or self.status not in self.right:
                 break
             sizes = [4 * size for size in sizes]
         self.sizes, self.start = sizes, start
@@ -904,13 +920,13 @@ class Growth:
         with tempfile.TemporaryDirectory() as folder:
             operand, total = write(family, size, folder)
             status, spent, memory, said = run(command(envc, family, operand), seconds)
-        if self.status in (0, 1):
+        if self.status in self.right:
             self.status, self.said = status, said
         return total, spent, memory
 
     def is_steep(self):
-        is_slow = self.time > STEEPEST and self.seconds > CHEAP_SECONDS
-        return is_slow or self.space > STEEPEST or self.status not in (0, 1)
+        is_slow = self.time > self.steepest and self.seconds > CHEAP_SECONDS
+        return is_slow or self.space > self.steepest or self.status not in self.right
 
     def text(self, family):
         rows = "".join(f"{n / 1000:7.0f}{spent:7.2f}{memory / 1e6:6.0f}" for n, spent, memory in self.rows)
@@ -918,17 +934,21 @@ class Growth:
                 (f"  TOO STEEP, status {self.status}" if self.is_steep() else ""))
 
 
-def growth_of(envc, family, smallest, seconds):
+def smallest_of(family):
+    return layouts.SMALLEST if family in layouts.FAMILIES else SMALLEST
+
+
+def growth_of(envc, family, smallest, seconds, most=None):
     """Measured again where it is too steep: a busy machine takes time from some sizes and not from others."""
     sizes = [smallest * 2 ** i for i in range(SIZES)]
-    growth = Growth(envc, family, sizes, seconds)
+    growth = Growth(envc, family, sizes, seconds, most)
     for _ in range(REPEATS):
         if growth.is_steep():
             growth.repeat(envc, family, seconds)
     return growth
 
 
-SIZES = 4
+SIZES, SMALLEST = 4, 60_000
 HEAD = f"{'family':24}{'     kB      s    MB' * SIZES}  exponents of time and memory"
 
 
@@ -937,7 +957,8 @@ def measure(options):
     steep = 0
     print(HEAD)
     for family in options.family:
-        growth = growth_of(options.envc, family, options.bytes, options.seconds)
+        most = layouts.LONG_BYTES if options.long and family in layouts.FAMILIES else None
+        growth = growth_of(options.envc, family, options.bytes or smallest_of(family), options.seconds, most)
         print(growth.text(family), flush=True)
         steep += growth.is_steep()
     return steep
@@ -948,17 +969,18 @@ def main():
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("list", help="print the families")
     one = commands.add_parser("write", help="write a family's files and print the operand")
-    one.add_argument("family", choices=FAMILIES)
+    one.add_argument("family", choices=all_families())
     one.add_argument("bytes", type=int)
     one.add_argument("folder")
-    all_ = commands.add_parser("measure", help="print time and memory against size as exponents; over 1.2 fails")
+    all_ = commands.add_parser("measure", help="print time and memory against size as exponents; over 1.2 fails, over 1.3 of lists")
     all_.add_argument("envc")
-    all_.add_argument("family", nargs="*", default=list(FAMILIES))
-    all_.add_argument("--bytes", type=int, default=60_000, help="the smallest of four sizes, each twice the one before")
+    all_.add_argument("family", nargs="*", default=all_families())
+    all_.add_argument("--bytes", type=int, default=None, help="the smallest of four sizes, each twice the one before")
+    all_.add_argument("--long", action="store_true", help="lists of layouts up to 256 kB instead of 32 kB")
     all_.add_argument("--seconds", type=int, default=60, help="of processor time, at most, for each")
     options = parser.parse_args()
     if options.command == "list":
-        print("\n".join(FAMILIES))
+        print("\n".join(all_families()))
     elif options.command == "write":
         print(write(options.family, options.bytes, options.folder)[0])
     else:

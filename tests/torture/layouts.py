@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lists of layouts, rooms, buildings and options through the tools: a row for each kind of record or option, a command
+for each way to read it. A row is a function of a count that returns the records of a room, those of a layout, and
+words to add to the command.
+"""
+import math
+
+# Things beside each other meet: each adds a part that others share. A list may take a little more than its share.
+STEEPEST = 1.3
+# A list of 32 kB is some 1000 records: more than a building has sensors.
+SMALLEST, MOST_BYTES, LONG_BYTES = 2_000, 32_000, 256_000
+WIDTH, DEPTH = 40.0, 30.0
+LASERS = "laser at=-3,-3 range=8\nlaser at=4,4 heading=90 range=8\n"
+
+
+def spread(count):
+    """Points in rows across the floor, apart from its walls."""
+    columns = max(1, math.ceil(math.sqrt(count * WIDTH / DEPTH)))
+    rows = max(1, math.ceil(count / columns))
+    for i in range(count):
+        yield (round(-WIDTH / 2 + WIDTH * (i % columns + 0.5) / columns, 3),
+               round(-DEPTH / 2 + DEPTH * (i // columns + 0.5) / rows, 3))
+
+
+def records(text, count):
+    return "".join(text.format(x=x, y=y, i=i) + "\n" for i, (x, y) in enumerate(spread(count)))
+
+
+def each(text):
+    """A row of records alike in a layout: text with the place and the number of each."""
+    return lambda count: ("", records(text, count), [])
+
+
+def of_room(text, layout=LASERS):
+    """The same in the room, with two lasers."""
+    return lambda count: (records(text, count), layout, [])
+
+
+def heard(sensor, tag):
+    """Every second record a receiver, the others what it hears."""
+    def row(count):
+        places = enumerate(spread(count))
+        return "", "".join((tag if i % 2 else sensor).format(x=x, y=y, i=i) + "\n" for i, (x, y) in places), []
+    return row
+
+
+def zoned(row):
+    """The same in a zone around all."""
+    return lambda count: ("zone id=all at=0,0 size=39,29\n", *row(count)[1:])
+
+
+def star(count):
+    """Walls from one point."""
+    turns = [2.399963 * i for i in range(count)]
+    return ("".join(f"wall from=0,0 to={14 * math.cos(t):.3f},{14 * math.sin(t):.3f}\n" for t in turns),
+            "laser at=-17,-12 range=8\n", [])
+
+
+def of_options(word, text):
+    """Options of a command, one for each zone of the room."""
+    def row(count):
+        zones = records("zone id=z{i} at={x},{y} size=0.2,0.2", count)
+        return zones, LASERS, [part for i in range(count) for part in (word, text.format(i=i))]
+    return row
+
+
+def storeys(count):
+    """A building of a room again and again, with a flight of stairs from each to the next."""
+    floors = [f"storey id=s{i} file=floor.env z={3 * i} height=3\n" for i in range(min(count, 32))]
+    flights = [f"stairs id=t{i} storeys=s{i},s{i + 1} at=3,1 heading=0 size=1.2,4\n" for i in range(len(floors) - 1)]
+    return "".join(floors + flights), "laser id=s0/a at=0,0,0.2 range=8\nlaser id=s1/a at=1,1,0.2 range=8\n", []
+
+
+def lifts(count):
+    """Lifts of two storeys."""
+    return ("storey id=s0 file=floor.env height=3\nstorey id=s1 file=floor.env z=3 height=3\n" +
+            records("lift id=l{i} storeys=s0,s1 at={x},{y} size=0.4,0.4 door=0.3", min(count, 400)),
+            "laser id=s0/a at=0,0,0.2 range=8\nlaser id=s1/a at=1,1,0.2 range=8\n", [])
+
+
+ROWS = {
+    "walls": of_room("wall from={x},{y} to={x},{y}5"),
+    "star": star,
+    "things": of_room("cube at={x},{y} size=0.2"),
+    "zones": of_room("zone id=z{i} at={x},{y} size=0.2,0.2"),
+    "doors": of_room("wall id=w{i} from={x},{y} to={x}9,{y}\ndoor wall=w{i} offset=0.002 size=0.004"),
+    "lamps": of_room("lamp at={x},{y}"),
+    "lux": heard("lux at={x},{y},1", "lamp at={x},{y}"),
+    "lasers": each("laser at={x},{y} range=3"),
+    "far_lasers": each("laser at={x},{y} heading={i} range=30"),
+    "rangers": each("ranger at={x},{y},1 tilt=-30 range=3"),
+    "cameras": each("camera at={x},{y},2.4 tilt=-40 range=4"),
+    "ultrasound": heard("ultrasound at={x},{y},2.4 range=6", "tag at={x},{y},1"),
+    "uwb": heard("uwb at={x},{y},2", "cube at={x},{y} size=0.1 tag=T{i}"),
+    "near_uwb": heard("uwb at={x},{y},2 range=4", "cube at={x},{y} size=0.1 tag=T{i}"),
+    "rfid": heard("rfid at={x},{y},1", "cube at={x},{y} size=0.1 tag=T{i}"),
+    "motes": each("mote at={x},{y},1"),
+    "pir": each("pir at={x},{y},2.2"),
+    "radars": each("radar at={x},{y},1.5"),
+    "microphones": heard("microphone at={x},{y},1", "speaker at={x},{y}"),
+    "thermometers": zoned(heard("thermometer at={x},{y},1", "heater at={x},{y}")),
+    "people": each("human at={x},{y}"),
+    "robots": each("robot at={x},{y} radius=0.05"),
+    "storeys": storeys,
+    "lifts": lifts,
+    "requirements": of_options("--require", "zone:z{i}=1%"),
+    "privacy": of_options("--privacy", "z{i}"),
+    "rules": of_options("--keep-out", "z{i}"),
+    "weights": of_options("--weight", "z{i}=2"),
+}
+BUILDINGS = ("storeys", "lifts")
+# Rows of options go to the command that has them.
+ONLY = {"requirements": ("coverage", "suggest"), "privacy": ("coverage", "arrange"), "rules": ("arrange",),
+        "weights": ("arrange",)}
+
+# Words of the command; {room} and {layout} are the files, {out} is a file to write.
+COMMANDS = {
+    "coverage": ["coverage", "{room}", "{layout}"],
+    "suggest": ["coverage", "{room}", "{layout}", "--suggest", "3"],
+    "report": ["coverage", "{room}", "{layout}", "--report", "{out}.html"],
+    "arrange": ["arrange", "{room}", "--sensor", "laser,range=8:1", "--strategy", "grid", "--optimize", "greedy", "-o",
+                "{out}.3dm"],
+    "scan": ["scan", "{room}", "{layout}", "-o", "{out}.jsonl"],
+    "simrun": ["simrun", "{room}", "{layout}", "--clock", "fast", "--until", "1"],
+    "check": ["envc", "--check", "{room}", "{layout}"],
+}
+NOT_SCANNED = ("people", "robots")  # without a sensor there is nothing to scan
+FAMILIES = {f"{way}_of_{row}": (row, way) for row in ROWS for way in COMMANDS
+            if way in ONLY.get(row, COMMANDS) and not (way == "scan" and row in NOT_SCANNED)}
+
+
+# Rows that grow faster, with bounds of their exponents, which may only fall. Where all views reach across the room and
+# all things stand in them, each pair has pieces of its own in the exact result.
+KNOWN = {"coverage_of_uwb": 2.2, "report_of_uwb": 2.2, "suggest_of_uwb": 2.4, "suggest_of_near_uwb": 2.4,
+         "report_of_far_lasers": 1.8, "report_of_lasers": 1.8, "suggest_of_far_lasers": 1.8, "suggest_of_lasers": 1.8}
+
+
+def steepest(family):
+    return KNOWN.get(family, STEEPEST)
+
+
+def files(family, size):
+    """The files of a family at a size in bytes, the operand first."""
+    row, _ = FAMILIES[family]
+    each_of = 100
+    room, layout, words = ROWS[row](each_of)
+    count = max(1, size * each_of // len(room + layout + " ".join(words)))
+    room, layout, words = ROWS[row](count)
+    floor = f"#env 1\nispace size={WIDTH:g},{DEPTH:g}\n"
+    named = {"floor.env": floor, "layout.3dm": "#3dm 1\n" + layout, "words": "\n".join(words)}
+    return {"room.env": "#env 1\n" + room if row in BUILDINGS else floor + room, **named}
+
+
+def command(tools, family, operand):
+    """The command that reads such a file; tools is their folder."""
+    folder = operand.rsplit("/", 1)[0]
+    tool, *words = COMMANDS[FAMILIES[family][1]]
+    with open(f"{folder}/words", encoding="utf-8") as more:
+        words = [*words, *more.read().split()]
+    return [f"{tools}/{tool}", *(word.format(room=operand, layout=f"{folder}/layout.3dm", out=f"{folder}/out")
+                                 for word in words)]
