@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/missed_files.h"
 #include "building/storeys.h"
 #include "cli/common_options.h"
 #include "io/glb/glb_read.h"
@@ -82,7 +83,10 @@ void keepRoom(const std::string& file) {
     Entry entry{file, {{file, *stamp}}, std::nullopt};
     try {
         const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+        const MissedFiles missed;
         entry.room = roomIn(file);
+        // One that appears later may belong to the room.
+        if (!missed.names().empty()) entry.room = std::nullopt;
     } catch (const std::exception&) {
         entry.room = std::nullopt;
     }

@@ -19,9 +19,10 @@ struct KeptRoom {
 };
 
 /// Reads the room in a file, so that keptRoom() of this process and those that it forks returns it
-/// until one of its files changes. Does nothing for a file that is no room, holds a building, or
-/// cannot be read: who wants it will tell. Keeps the last 16 rooms. In one thread, and starts no
-/// other. \param file an operand, which will have the same name and current folder
+/// until one of its files changes. Does nothing for a file that is no room, holds a building, looks
+/// for files in vain, or cannot be read: who wants it will tell. Keeps the last 16 rooms. In one
+/// thread, and starts no other. \param file an operand, which will have the same name and current
+/// folder
 void keepRoom(const std::string& file);
 
 /// Returns the kept room, or null. Costs a stat() of each of its files.
