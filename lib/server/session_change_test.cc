@@ -105,6 +105,10 @@ TEST(SessionChange, WhatFailsLeavesTheWorldAsItWas) {
     Session& world = talk.client("WORLD");
     EXPECT_EQ(talk.answer(world, "ADD robot at=0,0.1"),
               "ERR 409 robot r1 overlaps robot1 near (0.0, 0.05); move one, e.g. by 0.45 m\n");
+    EXPECT_EQ(talk.answer(world, "ADD human at=2,-1"), "OK ADD id=human1 t=0.000\n");
+    EXPECT_EQ(talk.answer(world, "ADD human at=2,-1.1"),
+              "ERR 409 human1 overlaps human2 near (2.0, -1.05); move one, e.g. by 0.41 m\n");
+    EXPECT_TRUE(talk.answer(world, "DELETE human1").starts_with("OK "));
     EXPECT_EQ(talk.answer(world, "ADD robt at=0,0.1"),
               "ERR 400 unknown keyword `robt`, did you mean `robot`?\n");
     EXPECT_EQ(talk.answer(world, "SET r1.hat=2"),
@@ -124,7 +128,7 @@ TEST(SessionChange, WhatFailsLeavesTheWorldAsItWas) {
     EXPECT_EQ(talk.answer(world, "LOAD missing.env"),
               "ERR 409 missing.env: error: No such file or directory\n");
     EXPECT_EQ(talk.answer(world, "SET"), "ERR 400 SET wants an argument: SET id.key=value\n");
-    EXPECT_EQ(talk.room.world.changes(), 0);
+    EXPECT_EQ(talk.room.world.changes(), 2);
 }
 
 TEST(SessionChange, SumsAreBounded) {

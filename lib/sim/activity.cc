@@ -239,7 +239,16 @@ DayPlan readDayPlan(std::string_view text, const std::string& file, const World&
     return plan;
 }
 
-ActivityDirector::ActivityDirector(DayPlan plan) : plan_(std::move(plan)) {
+namespace {
+
+/// Cells that searches for ways may look at in a simulated second: a tenth of one, roughly. The
+/// allowance of seconds without a search adds up to kMaxWork.
+constexpr double kWorkASecond = 8e6;
+constexpr std::int64_t kMaxWork = 1'000'000;
+
+}  // namespace
+
+ActivityDirector::ActivityDirector(DayPlan plan) : plan_(std::move(plan)), work_left_(kMaxWork) {
     for (const DayLine& line : plan_.lines) {
         next_.push_back(line.time);
         doers_[line.person];
@@ -261,7 +270,15 @@ void ActivityDirector::enqueue(SimTime now) {
 
 void ActivityDirector::stepped(Simulation& simulation) {
     enqueue(simulation.world().time());
-    for (auto& [id, doer] : doers_) goOn(simulation, doer);
+    const double allowance = kWorkASecond * seconds(simulation.world().stepLength());
+    work_left_ = std::min(work_left_ + static_cast<std::int64_t>(std::ceil(allowance)),
+                          std::max(kMaxWork, static_cast<std::int64_t>(allowance)));
+    std::vector<Doer*> first = std::exchange(waiting_, {});
+    for (Doer* const doer : first) goOn(simulation, *doer);
+    for (auto& [id, doer] : doers_)
+        if (!doer.waits) goOn(simulation, doer);
+    for (Doer* const doer : first) doer->waits = false;
+    for (Doer* const doer : waiting_) doer->waits = true;
 }
 
 void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
@@ -290,9 +307,10 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
             watchStay(world, *mover, doer);
         }
         if (doer.walks && doer.command > 0) arrive(world, *mover, doer);
-        if (doer.walks && doer.command == 0 && world.time() >= doer.until &&
-            !depart(simulation, *mover, doer))
-            doer.walks = false;
+        if (doer.walks && doer.command == 0 && world.time() >= doer.until) {
+            if (work_left_ <= 0) return waiting_.push_back(&doer);
+            if (!depart(simulation, *mover, doer)) doer.walks = false;
+        }
         if (doer.walks || world.time() < doer.until) return;
         tell(simulation, doer, doer.gave_up ? -1 : 0);
         doer.is_begun = false;
@@ -371,7 +389,10 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
         if (!doer.gave_up) stay(world, mover, doer);
         return false;
     }
-    std::vector<Point2> way = ways.way(from, action.target, spotsOfOthers(world, mover));
+    // Looking for the others counts as well.
+    std::size_t work = world.movers().size();
+    std::vector<Point2> way = ways.way(from, action.target, spotsOfOthers(world, mover), &work);
+    work_left_ -= static_cast<std::int64_t>(work);
     if (way.empty()) {
         doer.until = world.time() + kPause;
         return true;

@@ -64,9 +64,15 @@ DayPlan readDayPlan(std::string_view text, const std::string& file, const World&
 /// and shut doors, and ends it beside the thing, see GoalWays::isAt(); one that is blocked tries
 /// again five times, a second apart, and then gives the action up. So does a person that is led
 /// away from the thing it uses.
+///
+/// Searches for ways are limited in each step, by the cells that they look at: the others of a
+/// crowd that sets out at once stand until it is their turn, which they get in the order in which
+/// they wanted to go.
 class ActivityDirector {
   public:
     explicit ActivityDirector(DayPlan plan);
+    ActivityDirector(const ActivityDirector&) = delete;
+    ActivityDirector& operator=(const ActivityDirector&) = delete;
     /// Starts and ends actions, and raises their events. Call it after each step.
     void stepped(Simulation& simulation);
 
@@ -83,6 +89,7 @@ class ActivityDirector {
         SimTime until{};
         Point2 stays_at;           // of a stay that `uses` a thing
         std::int64_t changes = 0;  // of the world then
+        bool waits = false;        // for its turn to look for a way
     };
     void enqueue(SimTime now);
     void goOn(Simulation& simulation, Doer& doer);
@@ -105,6 +112,8 @@ class ActivityDirector {
     std::vector<SimTime> next_;  // of each line; kMaxTime: never again
     SimTime due_{};              // the earliest of them
     std::map<std::string, Doer> doers_;
+    std::vector<Doer*> waiting_;  // for their turn, the first one longest
+    std::int64_t work_left_;      // cells to look at before others wait; negative: a debt
     std::map<double, std::shared_ptr<const GoalWays>> ways_;  // by the height of people
     std::int64_t ways_of_ = -1;                               // changes of the world then
 };

@@ -400,5 +400,34 @@ TEST(ActivityDirector, RepeatsDays) {
     EXPECT_EQ(day.simulation.events().at(2).time - day.simulation.events().at(0).time, hours(24));
 }
 
+/// Ways of a crowd take turns, the same ones in each run; no one is left behind.
+TEST(ActivityDirector, ACrowdSetsOutInTurns) {
+    std::string people, script;
+    constexpr int kPeople = 150;
+    for (int i = 0; i < kPeople; ++i) {
+        const std::string id = "p" + std::to_string(i);
+        people += "human id=" + id + " at=" + formatDouble(-18 + 0.6 * (i % 30)) + ',' +
+                  formatDouble(-10 + 0.6 * (i / 30)) + '\n';
+        script += "at 00:00 " + id + " goes far\n";
+    }
+    const Scene hall = testing::scene("ispace size=40,24\nzone id=far at=0,8 size=38,6\n", people);
+    std::vector<int> underway;
+    for (int run = 0; run < 2; ++run) {
+        Lived day(script, hall, milliseconds(20));
+        for (int step = 0; step < 150; ++step) {
+            day.run(1);
+            int count = 0;
+            for (std::size_t i = 0; i < kPeople; ++i) count += day.world.running(i) > 0 ? 1 : 0;
+            if (run == 0)
+                underway.push_back(count);
+            else
+                ASSERT_EQ(count, underway[static_cast<std::size_t>(step)]) << step;
+        }
+    }
+    EXPECT_GT(underway[0], 0);
+    EXPECT_LT(underway[0], kPeople / 2) << "all in one step";
+    EXPECT_GT(underway.back(), kPeople * 9 / 10);
+}
+
 }  // namespace
 }  // namespace ispace

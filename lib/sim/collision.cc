@@ -11,6 +11,7 @@
 #include <unordered_set>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "geom/polygon.h"
 #include "geom/predicates.h"
 #include "geom/tolerance.h"
@@ -288,7 +289,8 @@ class Neighbours {
         grid_.rebuild(places, reach);
     }
 
-    /// Returns the first of movers `begin` to `end` that mover `i` overlaps.
+    /// Returns the first of movers `begin` to `end` that mover `i` overlaps; two people, by more
+    /// than kPress.
     [[nodiscard]] std::optional<std::size_t> firstOver(std::size_t i, std::size_t begin,
                                                        std::size_t end) const {
         const double radius = movers_[i].model.radius;
@@ -296,9 +298,11 @@ class Neighbours {
         const Vec2 margin{radius, radius};
         std::size_t first = end;
         grid_.forEachNear({place - margin, place + margin}, [&](std::size_t other) {
-            if (other >= begin && other < first &&
-                apart(i, other) < radius + movers_[other].model.radius - kContactTolerance)
-                first = other;
+            if (other < begin || other >= first) return;
+            const bool may_press = movers_[i].is_person && movers_[other].is_person;
+            const double reach =
+                (may_press ? 1 - kPress : 1) * (radius + movers_[other].model.radius);
+            if (apart(i, other) < reach - kContactTolerance) first = other;
         });
         return first < end ? std::optional(first) : std::nullopt;
     }
@@ -307,6 +311,9 @@ class Neighbours {
     }
 
   private:
+    /// Share of their widths by which people may overlap: in a crowd, arms give way.
+    static constexpr double kPress = 0.1;
+
     std::span<const Mover> movers_;
     FloorGrid grid_;
 };
@@ -333,14 +340,18 @@ void checkStart(const Scene& scene, std::span<const Mover> movers, const Obstacl
     const Neighbours neighbours(movers);
     std::size_t robots = 0;
     while (robots < movers.size() && !movers[robots].is_person) ++robots;
-    // Stops at full findings: a heap of robots would be tested in pairs.
-    for (std::size_t i = 0; i < robots && met.size() < Diagnostics::kMax; ++i) {
-        const Mover& robot = movers[i];
-        if (obstacles.at(robot.model.height).overlap(robot.pose.position, robot.model.radius))
-            met.insert(robot.id);
+    // Stops at full findings: a heap of movers would be tested in pairs.
+    for (std::size_t i = 0; i < movers.size() && met.size() < Diagnostics::kMax; ++i) {
+        const Mover& mover = movers[i];
+        if (!mover.is_person &&
+            obstacles.at(mover.model.height).overlap(mover.pose.position, mover.model.radius))
+            met.insert(mover.id);
+        // The movers of the same kind before it, and of a robot all people.
+        const std::size_t first = mover.is_person ? robots : 0;
         for (const auto other :
-             {neighbours.firstOver(i, 0, i), neighbours.firstOver(i, robots, movers.size())})
-            if (other) met.insert({robot.id, movers[*other].id});
+             {neighbours.firstOver(i, first, i),
+              neighbours.firstOver(i, robots, mover.is_person ? robots : movers.size())})
+            if (other) met.insert({mover.id, movers[*other].id});
     }
     if (met.empty()) return;
     Diagnostics findings;
@@ -349,11 +360,39 @@ void checkStart(const Scene& scene, std::span<const Mover> movers, const Obstacl
                            .ids = [&met](const std::string& id) { return met.contains(id); }}))
         findings.add(finding.diagnostic());
     // Overlaps within the tolerance of that check.
-    for (std::size_t i = 0; i < robots && findings.empty(); ++i)
+    for (std::size_t i = 0; i < movers.size() && findings.empty(); ++i)
         if (met.contains(movers[i].id))
-            findings.add(movers[i].place.finding("robot " + movers[i].id +
+            findings.add(movers[i].place.finding((movers[i].is_person ? "human " : "robot ") +
+                                                 movers[i].id +
                                                  " overlaps its surroundings; move it"));
     findings.throwIfAny();
+}
+
+void checkCrowding(std::span<const Mover> movers, std::span<const Motion> motions, double reach) {
+    std::vector<Point2> places;
+    places.reserve(movers.size());
+    double radius = 0;
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+        places.push_back(motions[i].pose.position);
+        radius = std::max(radius, movers[i].model.radius);
+    }
+    const double near = 2 * radius + reach;
+    FloorGrid grid;
+    grid.rebuild(places, near / 2);
+    const Vec2 margin{near / 2, near / 2};
+    std::size_t twice = 0;  // each pair is met from both sides
+    for (std::size_t i = 0; i < places.size() && twice <= 2 * kMaxMeetingPairs; ++i)
+        grid.forEachNear({places[i] - margin, places[i] + margin}, [&](std::size_t other) {
+            const Vec2 way = places[other] - places[i];
+            if (other != i && dot(way, way) < near * near) ++twice;
+        });
+    if (twice <= 2 * kMaxMeetingPairs) return;
+    throw FormatError(
+        Diagnostic{"", 0, 0,
+                   "more than " + std::to_string(kMaxMeetingPairs) +
+                       " pairs of robots and people would be within " + formatFixed(near, 1) +
+                       " m of each other, too many to move; leave some out, spread them over more "
+                       "floor, or take shorter steps"});
 }
 
 }  // namespace ispace

@@ -191,7 +191,17 @@ ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> 
                          const ObstacleSets* before = nullptr);
 
 /// \throws FormatError with the findings of checkScene() if a robot overlaps a body, a robot or a
-/// person. People may overlap bodies, as one on a chair does: they can only get out.
+/// person, or two people overlap by more than a tenth of their widths. People may overlap bodies,
+/// as one on a chair does, and a little each other, as in a crowd: they can only get out.
 void checkStart(const Scene& scene, std::span<const Mover> movers, const ObstacleSets& obstacles);
+
+/// Distance at which movers look out for each other, in metres between their edges.
+constexpr double kMoverSight = 4;
+/// Limit of pairs of movers that look out for each other: a step tests each some twenty times.
+constexpr std::size_t kMaxMeetingPairs = 4'000'000;
+
+/// Bounds the work of a step before there is any. Two movers are a pair if their centres are nearer
+/// than `reach` and twice the largest radius. \throws FormatError beyond kMaxMeetingPairs
+void checkCrowding(std::span<const Mover> movers, std::span<const Motion> motions, double reach);
 
 }  // namespace ispace

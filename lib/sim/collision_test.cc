@@ -5,9 +5,15 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <random>
+#include <string>
+#include <vector>
 
+#include "base/error.h"
 #include "geom/predicates.h"
+#include "sim/world.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 
@@ -194,6 +200,40 @@ TEST(Collision, ACancelledMoveStays) {
     EXPECT_TRUE(step.move.to.motion.arrived());
     EXPECT_EQ(step.move.to.path, 0);
     EXPECT_EQ(step.move.place(5), (Point2{1, 1}));
+}
+
+TEST(Collision, PeopleStandBesideEachOther) {
+    const auto start = [](const std::string& layout) {
+        const Scene scene = testing::scene("ispace size=8,6\n", layout);
+        const World world(scene, std::chrono::milliseconds(5));
+    };
+    // 0.51 m wide, of which arms give way.
+    EXPECT_NO_THROW(start("human at=0,0\nhuman at=0.47,0\n"));
+    try {
+        start("human id=a at=0,0\nhuman id=b at=0.4,0\nhuman id=c at=2,0\n");
+        FAIL() << "two people in each other";
+    } catch (const FormatError& error) {
+        EXPECT_NE(std::string(error.what())
+                      .find("human a overlaps human b near (0.2, 0.0); move one, e.g. by 0.11 m"),
+                  std::string::npos)
+            << error.what();
+    }
+    EXPECT_THROW(start("robot at=0,0\nhuman at=0.45,0\n"), FormatError) << "robots do not give way";
+}
+
+TEST(Collision, PairsThatCanMeetAreBounded) {
+    std::vector<Mover> movers(2900);
+    std::vector<Motion> motions(movers.size());
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+        movers[i].model.radius = 0.01;
+        motions[i].pose.position = {static_cast<double>(i) * 1e-3, 0};
+    }
+    EXPECT_THROW(checkCrowding(movers, motions, kMoverSight), FormatError);
+    // A tenth of a metre apart, each has some eighty in sight.
+    for (std::size_t i = 0; i < movers.size(); ++i)
+        motions[i].pose.position = {static_cast<double>(i) * 0.1, 0};
+    EXPECT_NO_THROW(checkCrowding(movers, motions, kMoverSight));
+    EXPECT_THROW(checkCrowding(movers, motions, 300), FormatError) << "of fast movers";
 }
 
 }  // namespace

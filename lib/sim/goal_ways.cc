@@ -86,7 +86,13 @@ class BesideTest {
     BesideTest(const Element& element, const Obstacles& walls)
         : parts_(outlineOf(element, *middleOf(element))),
           walls_(&walls),
-          is_divider_(isDivider(element.record)) {}
+          is_divider_(isDivider(element.record)) {
+        for (const OutlinePart& part : parts_)
+            for (const Point2 corner : part.corners) box_.add(corner);
+    }
+
+    /// Returns a box that holds all points beside the element.
+    [[nodiscard]] Box2 limits(double reach) const { return box_.expanded(reach); }
 
     [[nodiscard]] bool isBeside(Point2 p, double reach) const {
         return std::any_of(parts_.begin(), parts_.end(), [&](const OutlinePart& part) {
@@ -110,6 +116,7 @@ class BesideTest {
     }
 
     std::vector<OutlinePart> parts_;
+    Box2 box_;
     const Obstacles* walls_;
     bool is_divider_;
 };
@@ -127,12 +134,24 @@ GoalWays::GoalWays(const Scene& scene, double radius, double height)
     : radius_(radius),
       environment_(scene.environment),
       obstacles_(environment_, height, nullptr),
-      walls_(dividersOf(environment_, height)),
-      wide_(obstacles_, bounds(environment_.indoor()), radius + kWideSpare),
-      narrow_(obstacles_, bounds(environment_.indoor()), radius) {}
+      walls_(dividersOf(environment_, height)) {}
 
-std::vector<Point2> GoalWays::way(Point2 from, const std::string& id,
-                                  std::span<const Spot> others) const {
+std::vector<Point2> GoalWays::way(Point2 from, const std::string& id, std::span<const Spot> others,
+                                  std::size_t* work) const {
+    const auto count = [work](std::size_t cells) {
+        if (work != nullptr) *work += cells;
+    };
+    // Testing a cell against obstacles takes as long as going on from some.
+    constexpr std::size_t kTest = 8;
+    const auto finder = [&](std::optional<WayFinder>& known, double spare) -> const WayFinder& {
+        if (!known) {
+            known.emplace(obstacles_, bounds(environment_.indoor()), radius_ + spare);
+            count(kTest * known->cells());
+        }
+        return *known;
+    };
+    const auto wide = [&]() -> const WayFinder& { return finder(wide_, kWideSpare); };
+    const auto narrow = [&]() -> const WayFinder& { return finder(narrow_, 0); };
     for (const Element& element : environment_.elements()) {
         const auto middle = element.id == id ? middleOf(element) : std::nullopt;
         if (!middle) continue;
@@ -152,17 +171,22 @@ std::vector<Point2> GoalWays::way(Point2 from, const std::string& id,
         // Before others rather than behind them.
         const double share = kApart / std::max(kApart, distance(from, *middle));
         const Point2 aim = is_taken(*middle) ? *middle + share * (from - *middle) : *middle;
-        const auto search = [&](const WayFinder& finder) {
-            const WayFinder::Field field = finder.waysFrom(from);
-            const auto goal = finder.nearestReached(field, aim, is_suitable);
-            return goal ? finder.way(field, *goal) : std::vector<Point2>();
+        const Box2 limits = is_zone ? bounds(zone) : beside.limits(kReach);
+        const auto search = [&](const WayFinder& cells) {
+            const WayFinder::Approach found = cells.approach(from, aim, limits, is_suitable);
+            count(found.field.expanded + kTest * others.size());
+            return found.goal ? cells.way(found.field, *found.goal) : std::vector<Point2>();
+        };
+        const auto search_around = [&](const WayFinder& cells) {
+            count(cells.cells() / kTest);  // copies them
+            return search(cells.around(others));
         };
         std::vector<Point2> way;
-        if (!others.empty()) way = search(wide_.around(others));
-        if (way.empty() && !others.empty()) way = search(narrow_.around(others));
+        if (!others.empty()) way = search_around(wide());
+        if (way.empty() && !others.empty()) way = search_around(narrow());
         // Those in the way may leave it.
-        if (way.empty()) way = search(wide_);
-        if (way.empty()) way = search(narrow_);
+        if (way.empty()) way = search(wide());
+        if (way.empty()) way = search(narrow());
         if (!way.empty()) return way;
     }
     return {};

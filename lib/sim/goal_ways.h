@@ -2,6 +2,8 @@
 // Private to lib/sim: ways of people to zones and things.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,8 +31,11 @@ class GoalWays {
     /// element, see isAt(), that is nearest to its middle. Points that are too near to others are
     /// not free, and the way leads round them if it can. Empty if the id is unknown or no way leads
     /// there.
+    /// Not thread-safe. \param work grows by the cells looked at, which is the same on any machine;
+    /// may be null
     [[nodiscard]] std::vector<Point2> way(Point2 from, const std::string& id,
-                                          std::span<const Spot> others = {}) const;
+                                          std::span<const Spot> others = {},
+                                          std::size_t* work = nullptr) const;
     /// Returns true if a point is in the zone `id`, or beside the element: at most kReach from its
     /// outline, as seen from above, with no wall or shut door between them.
     [[nodiscard]] bool isAt(Point2 p, const std::string& id) const;
@@ -40,8 +45,8 @@ class GoalWays {
     double radius_;
     Environment environment_;
     Obstacles obstacles_;
-    Obstacles walls_;  // with doors and windows
-    WayFinder wide_, narrow_;
+    Obstacles walls_;                                 // with doors and windows
+    mutable std::optional<WayFinder> wide_, narrow_;  // once a way is wanted
 };
 
 /// Returns the ids of the zones and elements to which people may go.

@@ -11,8 +11,6 @@ namespace {
 
 /// Metres to keep between circles and obstacles if there is room.
 constexpr double kGap = 0.05;
-/// Metres beyond which movers are ignored.
-constexpr double kSight = 4;
 /// Usual number of neighbours.
 constexpr std::size_t kUsual = 32;
 constexpr double kHair = 1e-6;
@@ -50,7 +48,7 @@ Steering::Steering(const SteeringState& helm, double speed, double horizon)
 }
 
 void Steering::findNeighbours(const Surroundings& around, std::size_t mover) {
-    const double sight = radius_ + std::min(kSight, 2 * speed_ * horizon_);
+    const double sight = radius_ + std::min(kMoverSight, 2 * speed_ * horizon_);
     around.traffic->forEachNear(place_, sight, [&](std::size_t other) {
         if (other == mover) return;
         const Motion& motion = around.motions[other];

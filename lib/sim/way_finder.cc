@@ -67,11 +67,45 @@ void WayFinder::forEachNeighbour(std::size_t cell, Visit visit) const {
 WayFinder WayFinder::around(std::span<const Spot> spots) const {
     WayFinder finder = *this;
     finder.spots_.assign(spots.begin(), spots.end());
-    for (std::size_t cell = 0; cell < free_.size(); ++cell) {
-        const Point2 center = centerOf(cell);
-        if (finder.isInSpot({center, center})) finder.free_[cell] = 0;
+    for (const Spot& spot : spots) {
+        const double apart = reach_ + spot.radius;
+        const Vec2 margin{apart, apart};
+        forEachCellIn({spot.center - margin, spot.center + margin}, [&](std::size_t cell) {
+            const Vec2 way = centerOf(cell) - spot.center;
+            if (dot(way, way) < apart * apart) finder.free_[cell] = 0;
+        });
     }
     return finder;
+}
+
+/// Calls visit(cell) for each cell whose centre is in the box, and possibly for others, by rows.
+template <typename Visit>
+void WayFinder::forEachCellIn(const Box2& box, Visit visit) const {
+    if (box.empty()) return;
+    const auto within = [](double at, int count) {
+        return static_cast<int>(std::clamp(at, -1.0, static_cast<double>(count)));
+    };
+    const Point2 low = grid_.toCells(box.low), high = grid_.toCells(box.high);
+    const int left = std::max(0, within(std::floor(low.x) - 1, grid_.columns));
+    const int right = std::min(grid_.columns - 1, within(std::ceil(high.x) + 1, grid_.columns));
+    const int bottom = std::max(0, within(std::floor(low.y) - 1, grid_.rows));
+    const int top = std::min(grid_.rows - 1, within(std::ceil(high.y) + 1, grid_.rows));
+    for (int row = bottom; row <= top; ++row)
+        for (int column = left; column <= right; ++column) visit(cellOf(column, row));
+}
+
+/// Returns the cell of those that pass the test whose centre is nearest to a point.
+template <typename Test>
+std::optional<std::size_t> WayFinder::nearestCell(Point2 to, const Box2& box, Test test) const {
+    std::optional<std::size_t> best;
+    double least = std::numeric_limits<double>::infinity();
+    forEachCellIn(box, [&](std::size_t cell) {
+        const double apart = distance(centerOf(cell), to);
+        if (apart >= least || !test(cell)) return;
+        least = apart;
+        best = cell;
+    });
+    return best;
 }
 
 bool WayFinder::isInSpot(const Segment2& way) const {
@@ -148,10 +182,12 @@ std::int32_t WayFinder::leastCost(std::size_t a, std::size_t b) const {
     return kSide * std::max(columns, rows) + (kCorner - kSide) * std::min(columns, rows);
 }
 
-WayFinder::Field WayFinder::waysFrom(Point2 from) const { return search(from, std::nullopt); }
+WayFinder::Field WayFinder::waysFrom(Point2 from) const {
+    return search(from, std::nullopt, false);
+}
 
-WayFinder::Field WayFinder::search(Point2 from, std::optional<std::size_t> goal) const {
-    Field field{from, std::vector<std::int32_t>(free_.size(), kNoWay)};
+WayFinder::Field WayFinder::search(Point2 from, std::optional<std::size_t> goal, bool aims) const {
+    Field field{from, std::vector<std::int32_t>(free_.size(), kNoWay), 0};
     const auto start = cellNear(from);
     if (!start) return field;
     // Dial's algorithm, with A*'s estimate: a step adds at most two corners to cost and estimate.
@@ -159,7 +195,7 @@ WayFinder::Field WayFinder::search(Point2 from, std::optional<std::size_t> goal)
         std::size_t cell;
         std::int32_t cost;
     };
-    const auto estimate = [&](std::size_t cell) { return goal ? leastCost(cell, *goal) : 0; };
+    const auto estimate = [&](std::size_t cell) { return aims ? leastCost(cell, *goal) : 0; };
     std::array<std::vector<Entry>, 2 * kCorner + 1> buckets;
     const auto bucket = [&](std::int32_t sum) -> std::vector<Entry>& {
         return buckets[static_cast<std::size_t>(sum) % buckets.size()];
@@ -174,6 +210,7 @@ WayFinder::Field WayFinder::search(Point2 from, std::optional<std::size_t> goal)
             const Entry entry = cells[i];
             if (entry.cost != field.cost[entry.cell]) continue;
             if (entry.cell == goal) return field;
+            ++field.expanded;
             forEachNeighbour(entry.cell, [&](std::size_t to, std::int32_t step) {
                 std::int32_t& known = field.cost[to];
                 if (known != kNoWay && known <= entry.cost + step) return;
@@ -190,7 +227,7 @@ WayFinder::Field WayFinder::search(Point2 from, std::optional<std::size_t> goal)
 
 std::vector<Point2> WayFinder::wayBetween(Point2 from, Point2 to) const {
     const auto goal = cellNear(to);
-    return goal ? way(search(from, goal), to) : std::vector<Point2>();
+    return goal ? way(search(from, goal, true), to) : std::vector<Point2>();
 }
 
 std::optional<double> WayFinder::length(const Field& field, Point2 to) const {
@@ -199,19 +236,19 @@ std::optional<double> WayFinder::length(const Field& field, Point2 to) const {
     return field.cost[*cell] * (grid_.limits.width() / grid_.columns) / kSide;
 }
 
-std::optional<Point2> WayFinder::nearestReached(
-    const Field& field, Point2 to, const std::function<bool(Point2)>& is_suitable) const {
-    std::optional<Point2> best;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t cell = 0; cell < field.cost.size(); ++cell) {
-        if (field.cost[cell] == kNoWay) continue;
-        const Point2 center = centerOf(cell);
-        const double apart = distance(center, to);
-        if (apart >= least || !is_suitable(center)) continue;
-        least = apart;
-        best = center;
-    }
-    return best;
+WayFinder::Approach WayFinder::approach(Point2 from, Point2 to, const Box2& box,
+                                        const std::function<bool(Point2)>& is_suitable) const {
+    auto goal = nearestCell(
+        to, box, [&](std::size_t i) { return free_[i] != 0 && is_suitable(centerOf(i)); });
+    if (!goal) return {};
+    Approach found{search(from, goal, false), std::nullopt};
+    // No way leads there: all cells with a way are known.
+    if (found.field.cost[*goal] == kNoWay)
+        goal = nearestCell(to, box, [&](std::size_t i) {
+            return found.field.cost[i] != kNoWay && is_suitable(centerOf(i));
+        });
+    if (goal) found.goal = centerOf(*goal);
+    return found;
 }
 
 std::vector<Point2> WayFinder::way(const Field& field, Point2 to) const {

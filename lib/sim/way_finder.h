@@ -36,13 +36,15 @@ class WayFinder {
         Point2 center;
         double radius = 0;
     };
-    /// Returns a finder whose ways lead round these circles, too. O(cells)
+    /// Returns a finder whose ways lead round these circles, too. Copies the cells, and tests those
+    /// that a circle may reach.
     [[nodiscard]] WayFinder around(std::span<const Spot> spots) const;
 
     /// Ways from one point to all cells.
     struct Field {
         Point2 from;
         std::vector<std::int32_t> cost;  ///< by cell, kNoWay without a way or unknown
+        std::size_t expanded = 0;        ///< cells from which the search went on
     };
     static constexpr std::int32_t kNoWay = -1;
 
@@ -55,9 +57,18 @@ class WayFinder {
     [[nodiscard]] std::optional<double> length(const Field& field, Point2 to) const;
     /// Returns the points of the way after its first, up to `to`; empty without a way.
     [[nodiscard]] std::vector<Point2> way(const Field& field, Point2 to) const;
-    /// Returns the suitable free point with a way that is nearest to a point. O(cells)
-    [[nodiscard]] std::optional<Point2> nearestReached(
-        const Field& field, Point2 to, const std::function<bool(Point2)>& is_suitable) const;
+    /// Ways from one point to some cells, and a goal among these.
+    struct Approach {
+        Field field;
+        std::optional<Point2> goal;
+    };
+    /// Finds the suitable free point with a way that is nearest to a point, and searches no farther
+    /// than to the nearest suitable one unless no way leads there. \param box holds all suitable
+    /// points
+    [[nodiscard]] Approach approach(Point2 from, Point2 to, const Box2& box,
+                                    const std::function<bool(Point2)>& is_suitable) const;
+    /// Number of cells, with a border.
+    [[nodiscard]] std::size_t cells() const { return free_.size(); }
     /// Returns true if the circle with the margin is free at that point.
     [[nodiscard]] bool isFree(Point2 p) const;
     /// Returns true if the circle is free all along the straight line.
@@ -70,7 +81,14 @@ class WayFinder {
     }
     [[nodiscard]] Point2 centerOf(std::size_t cell) const;
     [[nodiscard]] std::int32_t leastCost(std::size_t a, std::size_t b) const;
-    [[nodiscard]] Field search(Point2 from, std::optional<std::size_t> goal) const;
+    /// \param aims estimates the cost to the goal: expands fewer cells, and of equal ways may find
+    /// another one
+    [[nodiscard]] Field search(Point2 from, std::optional<std::size_t> goal, bool aims) const;
+    template <typename Visit>
+    void forEachCellIn(const Box2& box, Visit visit) const;
+    template <typename Test>
+    [[nodiscard]] std::optional<std::size_t> nearestCell(Point2 to, const Box2& box,
+                                                         Test test) const;
     template <typename Visit>
     void forEachNeighbour(std::size_t cell, Visit visit) const;
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -154,6 +155,43 @@ TEST(WayFinder, KnowsNoWayFromWithinWallsOrBeyondTheGrid) {
     EXPECT_TRUE(finder.way(finder.waysFrom({1, 1}), {40, 1}).empty());
     // To where it stands.
     EXPECT_EQ(finder.way(finder.waysFrom({1, 1}), {1, 1}), (std::vector<Point2>{{1, 1}}));
+}
+
+/// A search that stops at its goal finds the ways of one that visits all cells, also round others.
+TEST(WayFinder, ApproachesTheNearestSuitablePoint) {
+    const Floor floor(kRooms);
+    const WayFinder open(floor.obstacles, floor.box, 0.3);
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> across(0.2, 7.8), along(0.2, 3.8);
+    std::size_t reached = 0, saved = 0;
+    for (int i = 0; i < 100; ++i) {
+        std::vector<WayFinder::Spot> spots;
+        for (int k = 0; k < i % 12; ++k) spots.push_back({{across(random), along(random)}, 0.25});
+        const WayFinder finder = open.around(spots);
+        const Point2 from{across(random), along(random)}, to{across(random), along(random)};
+        const Box2 box{to - Vec2{0.5, 0.5}, to + Vec2{0.5, 0.5}};
+        const auto is_suitable = [&](Point2 p) { return distance(p, to) < 0.5; };
+        const WayFinder::Approach found = finder.approach(from, to, box, is_suitable);
+        const WayFinder::Field all = finder.waysFrom(from);
+        std::optional<Point2> best;
+        for (int row = 0; row < 40; ++row)
+            for (int column = 0; column < 80; ++column) {
+                const Point2 p{0.1 * column + 0.05, 0.1 * row + 0.05};
+                if (!is_suitable(p) || !finder.isFree(p) || !finder.length(all, p)) continue;
+                if (!best || distance(p, to) < distance(*best, to) - 1e-9) best = p;
+            }
+        ASSERT_EQ(found.goal.has_value(), best.has_value()) << i;
+        for (const WayFinder::Spot& spot : spots)
+            EXPECT_FALSE(finder.isFree(spot.center + Vec2{0.3, 0})) << i;
+        if (!best) continue;
+        EXPECT_NEAR(distance(*found.goal, to), distance(*best, to), 1e-6) << i;
+        EXPECT_EQ(finder.way(found.field, *found.goal), finder.way(all, *found.goal)) << i;
+        EXPECT_LE(found.field.expanded, all.expanded);
+        saved += all.expanded - found.field.expanded;
+        ++reached;
+    }
+    EXPECT_GT(reached, 30U);
+    EXPECT_GT(saved, 10000U);
 }
 
 }  // namespace

@@ -167,6 +167,10 @@ World::Data::Data(std::shared_ptr<SceneResources> room, SimTime length, const Ru
         moves[i].duration = seconds(length);
         moves[i].radius = model.radius;
     }
+    // Two movers meet within a step at most two of these apart; the room around a mover is measured
+    // as far again.
+    constexpr double kSteps = 4;
+    checkCrowding(movers, motions, std::max(kMoverSight, kSteps * longestStep()));
 }
 
 void World::Data::tell(std::size_t mover) {

@@ -112,12 +112,13 @@ bool World::Data::isAlone(std::size_t mover) {
 
 /// Returns false if the move cannot meet another mover, whatever its move. Measures the room.
 bool World::Data::mayMeet(std::size_t mover) {
-    // Longer than a search takes to pay.
+    // Longer than a search takes to pay, but no farther than movers see each other: fast ones, or
+    // long steps, would have half of a crowd in reach.
     constexpr double kSteps = 32;
     const Move& move = moves[mover];
     if (states[mover].blocked) return true;
     const double both = move.to.path + *longest_step;
-    double room = options.noise ? 0 : kSteps * both;
+    double room = options.noise ? 0 : std::min(kSteps * both, 2 * both + kMoverSight);
     bool may_meet = false;
     traffic.forEachNear(move.start(), move.radius + std::max(room, 2 * both),
                         [&](std::size_t other) {

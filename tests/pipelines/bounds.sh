@@ -81,3 +81,22 @@ truncate -s 5G hollow.env
 bounded envc hollow.env -- "more than 4294967296 bytes, the most that an input may have"
 endless() { yes '#' | envc -; }
 bounded endless -- "more than 1073741824 bytes, the most that a pipe or a device may bring"
+
+# People upon each other, and a crowd that sets out at once: each step is short.
+printf '#env 1\nispace size=20,20\n' >crowd.env
+{ echo '#3dm 1'; for ((i = 0; i < 400; ++i)); do echo "human at=0,0"; done; } >heap.3dm
+bounded simrun crowd.env heap.3dm --clock fast --until 1 -- "overlaps human"
+python3 - <<'END'
+zones = "".join(f"zone id=z{i} at={-9 + i % 19},{-9 + i // 19} size=0.9,0.9\n" for i in range(361))
+people = "".join(f"human id=h{i} at={-9 + i % 35 * 0.52:.2f},{-9 + i // 35 * 0.6:.1f}\n" for i in range(400))
+days = "".join(f"at 00:00 h{i} goes z{i * 7 % 361}\n" for i in range(400))
+for name, text in {"crowd.env": "#env 1\nispace size=20,20\n" + zones, "crowd.3dm": "#3dm 1\n" + people,
+                   "crowd.txt": days}.items():
+    with open(name, "w", encoding="ascii") as file:
+        file.write(text)
+END
+for threads in 1 2; do
+    expect_status 0 simrun crowd.env crowd.3dm --script crowd.txt --clock fast --until 0.5 -j $threads \
+        --record crowd$threads
+done
+cmp crowd1/people.csv crowd2/people.csv || fail "a crowd sets out in another order with two threads"

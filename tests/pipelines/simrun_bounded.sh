@@ -42,6 +42,11 @@ for line in lines:
 END
 simrun --replay run --clock fast >/dev/null 2>err || fail "no replay: $(cat err)"
 
+# People in a heap.
+start "$data/square.env" bounded.3dm --clock real
+heavy people
+ended 0
+
 # Memory of a recorded run does not grow with its steps.
 python3 - "$data/square.env" <<'END' || fail "the memory of a recorded run grows"
 import os

@@ -103,6 +103,22 @@ def sums():
     term("sums")
 
 
+def people():
+    """People at one point, then side by side: the first are refused, and a step stays short."""
+    watch, world = Watch(), Client("WORLD")
+    check(world.ask("PAUSE").startswith("OK "), "no pause")
+    answers = [world.ask("ADD human at=1.2,1.2 walk=wander") for _ in range(200)]
+    check(answers[0].startswith("OK ADD "), answers[0])
+    check(all(answer.startswith("ERR 409 ") and " overlaps " in answer for answer in answers[1:]), answers[-1])
+    for i in range(5):
+        answer = world.ask(f"ADD human at={-1.5 + 0.6 * i:.1f},-1.2 walk=wander")
+        check(answer.startswith("OK ADD "), answer)
+    check(world.ask("RESUME").startswith("OK "), "no way on")
+    time.sleep(1)
+    watch.end("people")
+    term("people")
+
+
 def connected(address):
     host, port = address.rsplit(":", 1)
     connection = socket.create_connection((host, int(port)), timeout=60)
@@ -141,4 +157,4 @@ def places():
     term("places")
 
 
-{"globs": globs, "pictures": pictures, "sums": sums, "places": places}[KIND]()
+{"globs": globs, "pictures": pictures, "sums": sums, "places": places, "people": people}[KIND]()
