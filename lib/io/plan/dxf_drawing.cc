@@ -282,50 +282,126 @@ std::vector<DxfPolyline> mlineOf(const Entity& entity) {
     return paths;
 }
 
-/// Returns the rings of a hatch whose boundary consists of polylines, lines and circular arcs;
-/// others are left out.
+/// Pieces of an ellipse in the boundary of a hatch, a whole turn: of 4 m radius within 0.6 mm.
+constexpr double kEllipsePieces = 180;
+
+/// An edge of a hatch's boundary, as its groups are read.
+struct HatchEdge {
+    enum Kind { Line = 1, Arc, Ellipse, Spline };
+    int kind = 0;
+    Point2 center;
+    Vec2 major;
+    double size = 0, from = 0, to = 0;  // radius or ratio; degrees
+    bool is_left = true;
+    DxfSpline spline;
+
+    /// Takes a number.
+    void take(int code, double value) {
+        if (code == 10) center.x = value;
+        if (code == 20) center.y = value;
+        if (code == 11) major.x = value;
+        if (code == 21) major.y = value;
+        if (code == 50) from = value;
+        if (code == 51) to = value;
+        if (code == 73) is_left = value != 0;
+        if (kind != Spline) {
+            if (code == 40) size = value;
+            return;
+        }
+        if (code == 94) spline.degree = static_cast<int>(value);
+        if (code == 40) spline.knots.push_back(value);
+        if (code == 42) spline.weights.push_back(value);
+        if (code == 10) spline.controls.push_back({value, 0});
+        if (code == 20 && !spline.controls.empty()) spline.controls.back().y = value;
+    }
+
+    /// Appends the vertices from its beginning to before its end. \return false if it is damaged
+    [[nodiscard]] bool appendTo(std::vector<DxfPolyline::Vertex>& vertices) const {
+        // Of edges that turn right, angles are those of the mirror image.
+        const double sweep = (to - from) * (is_left ? 1 : -1), start = is_left ? from : -from;
+        if (kind == Line) {
+            vertices.push_back({center});
+        } else if (kind == Arc) {
+            for (const double part : {0.0, 0.5})
+                vertices.push_back(
+                    {center + size * unitVector(Angle::degrees(start + part * sweep)),
+                     std::tan(sweep / 8 * std::numbers::pi / 180)});
+        } else if (kind == Ellipse) {
+            const Vec2 minor = size * perpendicular(major);
+            const int count =
+                1 + static_cast<int>(kEllipsePieces * std::min(1.0, std::abs(sweep) / 360));
+            for (int i = 0; i < count; ++i) {
+                const Vec2 spoke = unitVector(Angle::degrees(start + sweep * i / count));
+                vertices.push_back({center + spoke.x * major + spoke.y * minor});
+            }
+        } else {
+            return appendSpline(vertices);
+        }
+        return true;
+    }
+
+  private:
+    /// The scale of the drawing is unknown here: pieces follow the curve within a ten-thousandth of
+    /// its extent.
+    [[nodiscard]] bool appendSpline(std::vector<DxfPolyline::Vertex>& vertices) const {
+        if (spline.controls.empty() || !splineFault(spline).empty()) return false;
+        const Box2 box = bounds(spline.controls);
+        const double extent = std::max(box.width(), box.depth());
+        if (!(extent > 0)) return false;
+        const double scale = 1e4 * kCurveSagitta / extent;
+        DxfSpline scaled = spline;
+        for (Point2& p : scaled.controls) p = Point2() + scale * (p - box.low);
+        Polygon points = splinePoints(scaled, kMaxSplinePoints);
+        if (!points.empty()) points.pop_back();
+        for (const Point2 p : points) vertices.push_back({box.low + (1 / scale) * (p - Point2())});
+        return true;
+    }
+
+    static constexpr std::size_t kMaxSplinePoints = 10'000;
+};
+
+/// Returns the rings of a hatch. Damaged ones are left out.
 std::vector<DxfPolyline> hatchOf(const Entity& entity) {
     std::vector<DxfPolyline> rings;
-    bool is_path = false, is_polyline = false, is_arc = false, is_straight = false;
-    double center_x = 0, center_y = 0, radius = 0, from = 0, to = 0;
+    bool is_path = false, is_polyline = false, is_damaged = false;
+    std::optional<HatchEdge> edge;
+    const auto end_edge = [&] {
+        if (edge && !edge->appendTo(rings.back().vertices)) is_damaged = true;
+        edge.reset();
+    };
+    const auto end_path = [&] {
+        end_edge();
+        if (is_damaged) rings.pop_back();
+        is_path = is_damaged = false;
+    };
     for (const auto& [code, value] : entity.sequence) {
         if (code == 92) {
+            end_path();
             rings.push_back({{}, true});
             is_path = true;
             is_polyline = (static_cast<int>(value) & kPolylinePath) != 0;
-            is_arc = is_straight = false;
         }
-        if (code == 97 || code == 75 || code == 98) is_path = false;
+        if (code == 75 || code == 98) end_path();
         if (!is_path) continue;
         auto& vertices = rings.back().vertices;
-        if (code == 72 && !is_polyline) {
-            is_straight = value == 1;
-            is_arc = value == 2;
-            if (!is_straight && !is_arc) {  // an ellipse or a spline
-                rings.pop_back();
-                is_path = false;
-            }
-        } else if (is_polyline || is_straight) {
+        if (is_polyline) {
+            if (code == 97) end_path();
             if (code == 10) vertices.push_back({{value, 0}});
             if (code == 20 && !vertices.empty()) vertices.back().at.y = value;
             if (code == 42 && !vertices.empty()) vertices.back().bulge = value;
-        } else if (is_arc) {
-            if (code == 10) center_x = value;
-            if (code == 20) center_y = value;
-            if (code == 40) radius = value;
-            if (code == 50) from = value;
-            if (code == 51) to = value;
-            if (code != 73) continue;
-            const bool left = value != 0;  // else angles are those of its mirror image
-            const double sweep = (to - from) * (left ? 1 : -1);
-            const double start = left ? from : -from;
-            for (const double part : {0.0, 0.5}) {
-                const Vec2 spoke = unitVector(Angle::degrees(start + part * sweep));
-                vertices.push_back({Point2{center_x, center_y} + radius * spoke,
-                                    std::tan(sweep / 8 * std::numbers::pi / 180)});
-            }
+        } else if (code == 72) {
+            end_edge();
+            edge.emplace();
+            edge->kind = static_cast<int>(value);
+            is_damaged =
+                is_damaged || edge->kind < HatchEdge::Line || edge->kind > HatchEdge::Spline;
+        } else if (code == 97) {
+            end_edge();  // behind a spline its fit points, else the sources of the path
+        } else if (edge) {
+            edge->take(code, value);
         }
     }
+    end_path();
     std::erase_if(rings, [](const DxfPolyline& ring) { return ring.vertices.size() < 3; });
     return rings;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Walls in all entities that draw them, on the layers that hold them. Areas are sums of rectangles.
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -105,6 +106,24 @@ TEST(DxfWalls, HatchesAsNarrowAsWalls) {
         "0 72 1 10 3.2 20 0 11 3.2 21 6 72 1 10 3.2 20 6 11 3 21 6 72 1 10 3 20 6 11 3 21 0 "
         "97 0 75 1 76 1 98 0");
     EXPECT_NEAR(areaOf(drawing(kRoom + edges, "", 6)), 4.8 * 6, 1e-9);
+}
+
+TEST(DxfWalls, HatchesBehindCurves) {
+    // A quarter of a ring of ellipses, half axes 4 x 3 and 3.8 x 2.8, cuts a corner off.
+    const std::string ring = groups(
+        "0 HATCH 8 W 10 0 20 0 30 0 2 SOLID 70 1 71 0 91 1 92 1 93 4 72 3 10 0 20 0 11 4 21 0 40 "
+        "0.75 50 0 51 90 73 1 72 1 10 0 20 3 11 0 21 2.8 72 3 10 0 20 0 11 3.8 21 0 40 "
+        "0.736842105263 50 270 51 360 73 0 72 1 10 3.8 20 0 11 4 21 0 97 0 75 1 76 1 98 0");
+    EXPECT_NEAR(areaOf(drawing(kRoom + ring, "", 6)), 48 - 3 * std::numbers::pi, 0.01);
+    // A Bézier curve as a spline, and back along one 0.2 m beside it.
+    const std::string strip = groups(
+        "0 HATCH 8 W 10 0 20 0 30 0 2 SOLID 70 1 71 0 91 1 92 1 93 4 72 4 94 3 73 0 74 0 95 8 96 4 "
+        "40 0 40 0 40 0 40 0 40 1 40 1 40 1 40 1 10 3 20 0 10 4 20 2 10 4 20 4 10 3 20 6 97 0 72 1 "
+        "10 3 20 6 11 2.8 21 6 72 4 94 3 73 0 74 0 95 8 96 4 40 0 40 0 40 0 40 0 40 1 40 1 40 1 40 "
+        "1 10 2.8 20 6 10 3.8 20 4 10 3.8 20 2 10 2.8 20 0 97 0 72 1 10 2.8 20 0 11 3 21 0 97 0 75 "
+        "1 76 1 98 0");
+    // It bulges by 3 t (1 - t) over 6 m.
+    EXPECT_NEAR(areaOf(drawing(kRoom + strip, "", 6)), 48 - 18 - 3, 0.01);
 }
 
 TEST(DxfWalls, UnreadEntitiesWarn) {
