@@ -56,7 +56,7 @@ void writeProduct(const EnvcOptions& options, const Scene& scene, const Document
 
 namespace {
 
-const std::vector<std::string> kUnits{"m", "cm", "mm", "inch", "foot"};
+const std::vector<std::string> kUnits{"m", "cm", "mm", "inch", "in", "foot", "ft"};
 
 std::vector<std::string> formatNames(bool of_slices) {
     std::vector<std::string> names;
@@ -219,8 +219,8 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
               Enters::History);
     line.texts("--wall-layer", "GLOB", import.wall_layers,
                "layers of a drawing that hold walls (default: all others)", Enters::History);
-    line.texts("--door-layer", "GLOB", import.door_layers, "layers that hold doors",
-               Enters::History);
+    line.texts("--door-layer", "GLOB", import.door_layers,
+               "layers that hold doors (default: those named so)", Enters::History);
     line.texts("--window-layer", "GLOB", import.window_layers, "layers that hold windows",
                Enters::History);
     line.texts("--models", "DIR", import.model_folders,
@@ -322,6 +322,8 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     line.parse(argc, argv);
 
     if (options.inputs.empty()) options.inputs.emplace_back("-");
+    if (options.import.units == "in") options.import.units = "inch";
+    if (options.import.units == "ft") options.import.units = "foot";
     if (options.rooms == "all") options.import.rooms = RoomChoice::All;
     for (Edit& edit : options.edits) edit.closed = closed && edit.kind == Edit::Kind::Fence;
     options.list_rooms = options.rooms == "list";

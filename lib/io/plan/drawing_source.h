@@ -2,18 +2,24 @@
 // The scale of a drawing in DXF or SVG, and the layers, blocks and groups that hold its walls.
 #pragma once
 
-#include <algorithm>
 #include <functional>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "io/import_records.h"
 #include "io/importers.h"
+#include "io/plan/layer_names.h"
 #include "io/plan/plan_lines.h"
 
 namespace ispace {
+
+/// The result of an import, to compare others with.
+struct PlanOutcome {
+    double area = 0;        ///< of the floor, in square metres
+    double widest_gap = 0;  ///< that was closed, in metres
+    bool is_frame = false;  ///< the room is a rectangle around the whole drawing
+};
 
 /// A drawing that can be imported again, so that messages can report the effect of other options.
 struct DrawingSource {
@@ -21,19 +27,14 @@ struct DrawingSource {
     double metres_per_unit = 1;                        ///< of the drawing's coordinates
     std::size_t bytes = 0;                             ///< of the file
     std::map<std::string, std::size_t> left_out = {};  ///< what draws no lines, by type or reason
-    /// Computes the floor area of an import with other options, in square metres; null omits these
-    /// messages. \throws FormatError as the import does
-    std::function<double(const ImportOptions&)> area = {};
-    /// Receives layers, as globs, that alone enclose more floor than all lines do, see
-    /// warnOfWallNames(); may be null.
+    std::vector<std::string> likely_units = {};  ///< for --units, the most likely first, if known
+    /// Imports with other options; null omits these messages. \throws FormatError as the import
+    /// does
+    std::function<PlanOutcome(const ImportOptions&)> import = {};
+    /// Receives layers of walls and windows, as globs, whose room other lines clutter or surround,
+    /// see warnOfWallNames(); may be null.
     std::vector<std::string>* better_layers = nullptr;
 };
-
-/// True if a list of words holds this one. O(words)
-template <typename List>
-bool isOneOf(const List& words, std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
 
 /// Advice for a drawing without a scale.
 constexpr const char* kScaleHint =
@@ -58,28 +59,12 @@ std::string otherUnitHint(double extent, const DrawingSource& drawing,
 void checkScale(double extent, const DrawingSource& drawing, const std::string& name,
                 const ImportOptions& options);
 
-/// Lower case of ASCII, Latin, Greek and Cyrillic letters below U+0460 in UTF-8, in any locale;
-/// lower case has as many bytes. Other bytes stay.
-std::string lowerCased(std::string_view text);
-
-/// Returns true if one of the globs matches the name of a layer; letters match in either case.
-bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer);
-
-/// Returns true if a word of the name of a layer, block or group means wall in one of two dozen
-/// languages (A-WALL, Außenwände, murs_ext, СТЕНЫ, 墙), and no word means hatching, text, doors or
-/// windows of them.
-bool isWallName(std::string_view name);
-
-/// Returns true if a word of the name of a layer means furniture, dimensions, text, hatching, axes,
-/// electrical or plumbing in one of two dozen languages (A-FURN, Möbel, cotas, размеры, 家具), and
-/// it is no isWallName().
-bool isNoWallName(std::string_view name);
-
 /// Compares the room with that of walls from these layers, blocks and groups alone. A larger room,
-/// which other lines clutter, is passed to DrawingSource::better_layers, if there is one; else, and
-/// for a smaller one, warns. Rooms below a square metre are no advice.
-/// \param names with their numbers of lines \param area of the room that was taken
-void warnOfWallNames(const std::map<std::string, std::size_t>& names, double area,
+/// which other lines clutter, and one in the frame of a sheet are passed to
+/// DrawingSource::better_layers, if there is one; else warns. Rooms below a square metre, and those
+/// that need wider gaps closed than the one that was taken, are no advice.
+/// \param names with their numbers of lines \param taken the room
+void warnOfWallNames(const std::map<std::string, std::size_t>& names, const PlanOutcome& taken,
                      const DrawingSource& drawing, const ImportOptions& options,
                      ImportRecords& out);
 

@@ -16,6 +16,7 @@
 #include "env/environment.h"
 #include "geom/tolerance.h"
 #include "io/importers.h"
+#include "io/plan/drawing_unit.h"
 #include "io/plan/dxf_drawing.h"
 #include "io/plan/line_plan.h"
 
@@ -125,9 +126,13 @@ class Expander {
         }
     }
 
-    /// Returns the layer of the entity, unless an option names an enclosing block instead.
-    [[nodiscard]] const std::string& layerOf(const std::string& layer) const {
+    /// Returns the layer of the entity, unless an option names an enclosing block instead, or one
+    /// is called as furniture and the layer not as walls.
+    [[nodiscard]] const std::string& layerOf(const std::string& layer) {
         if (blocks_.empty() || layers_.isHidden(layer) || layers_.isNamed(layer)) return layer;
+        if (!isCalled(layer).walls)
+            for (const std::string* block : blocks_)
+                if (isCalled(*block).thing) return *block;
         const auto named =
             std::find_if(blocks_.rbegin(), blocks_.rend(),
                          [this](const std::string* block) { return layers_.isNamed(*block); });
@@ -137,17 +142,20 @@ class Expander {
     /// Returns the layer, or the innermost enclosing block, with a name of walls; "" if there is
     /// none.
     [[nodiscard]] std::string wallsAround(const std::string& layer) {
-        if (isCalledWalls(layer)) return layer;
+        if (isCalled(layer).walls) return layer;
         const auto walls =
             std::find_if(blocks_.rbegin(), blocks_.rend(),
-                         [this](const std::string* block) { return isCalledWalls(*block); });
+                         [this](const std::string* block) { return isCalled(*block).walls; });
         return walls == blocks_.rend() ? "" : **walls;
     }
 
-    /// Caches isWallName() by name.
-    [[nodiscard]] bool isCalledWalls(const std::string& name) {
-        const auto [found, is_new] = called_walls_.try_emplace(name, false);
-        if (is_new) found->second = isWallName(name);
+    /// Caches isWallName() and isThingName() by name.
+    struct Called {
+        bool walls = false, thing = false;
+    };
+    [[nodiscard]] Called isCalled(const std::string& name) {
+        const auto [found, is_new] = called_.try_emplace(name);
+        if (is_new) found->second = {isWallName(name), isThingName(name)};
         return found->second;
     }
 
@@ -329,33 +337,44 @@ class Expander {
     LayerSorter& layers_;
     MissingBlocks& missing_;
     std::vector<const std::string*> blocks_;  // around the entity, the outermost first
-    std::unordered_map<std::string, bool> called_walls_;
+    std::unordered_map<std::string, Called> called_;
     std::vector<UnreadThing> unread_;  // in inserted blocks
     std::vector<PlanShape> shapes_;
     PlanShape shape_;  // in the making
 };
 
-const LengthUnit& unitOf(const DxfDrawing& drawing, const std::string& name,
-                         const ImportOptions& options) {
-    const bool asked = !options.units.empty();
+/// Returns the unit of --units, else the one that the drawing states; null if there is none.
+const LengthUnit* unitOf(const DxfDrawing& drawing, const ImportOptions& options) {
     const auto unit =
         std::find_if(kLengthUnits.begin(), kLengthUnits.end(), [&](const LengthUnit& u) {
-            return asked ? u.name == options.units : u.insunits == drawing.units;
+            return options.units.empty() ? u.insunits == drawing.units : u.name == options.units;
         });
-    if (unit == kLengthUnits.end())
-        failFile(name, (asked ? "unknown unit " + options.units
-                        : drawing.units == 0
-                            ? std::string("the drawing does not say its unit ($INSUNITS)")
-                            : "$INSUNITS is " + std::to_string(drawing.units) +
-                                  ", wanted 1 (inch), 2 (foot), 4 (mm), 5 (cm) or 6 (m)") +
-                           ": " + kScaleHint);
-    return *unit;
+    return unit == kLengthUnits.end() ? nullptr : &*unit;
 }
 
-/// A drawing's document in a unit, and its floor area.
+/// Returns the codes of $INSUNITS that are read: "1 (inch), 2 (foot) or 4 (mm)".
+std::string codesText() {
+    std::map<int, std::string> units;
+    for (const LengthUnit& unit : kLengthUnits) units[unit.insunits] = unit.name;
+    std::string text;
+    std::size_t listed = 0;
+    for (const auto& [code, unit] : units) {
+        if (listed++ > 0) text += listed == units.size() ? " or " : ", ";
+        text += std::to_string(code) + " (" + unit + ')';
+    }
+    return text;
+}
+
+std::string unknownUnitText(const DxfDrawing& drawing) {
+    return drawing.units == 0
+               ? std::string("the drawing does not say its unit ($INSUNITS)")
+               : "$INSUNITS is " + std::to_string(drawing.units) + ", wanted " + codesText();
+}
+
+/// A drawing's document in a unit, and its room.
 struct DxfImport {
     Document document;
-    double area = 0;
+    PlanOutcome outcome;
 };
 
 class DxfImporter {
@@ -363,6 +382,29 @@ class DxfImporter {
     DxfImporter(const DxfDrawing& drawing, const std::string& name, std::size_t bytes,
                 const Schemas& schemas)
         : drawing_(drawing), name_(name), bytes_(bytes), schemas_(schemas) {}
+
+    /// Decides on a unit by the drawing's contents if neither the options nor the drawing state a
+    /// likely one.
+    void decideUnit(const ImportOptions& options) {
+        if (!options.units.empty() || options.width_is || isDrawnRoom(drawing_)) return;
+        const LengthUnit* const stated = unitOf(drawing_, options);
+        ranking_ = rankedUnits(
+            [&](double metres) -> LayerSorter::Sorted {
+                try {
+                    MissingBlocks missing;
+                    LayerSorter sorter(drawing_.hidden_layers, options);
+                    std::vector<PlanShape> shapes =
+                        Expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter)
+                            .expand(metres);
+                    leaveOutStrays(shapes);
+                    return sorter.sort(std::move(shapes));
+                } catch (const FormatError& /*not in this unit*/) {
+                    return {};
+                }
+            },
+            Budget(bytes_, options.max_work), stated);
+        decided_ = decidedUnit(ranking_, stated);
+    }
 
     /// \param hints whether the drawing may be imported again to report the effect of other options
     /// \param better_layers see DrawingSource
@@ -374,10 +416,12 @@ class DxfImporter {
         ImportRecords out(schemas_, name_, options);
         DrawingSource source = scaleOf(options, out);
         source.left_out = drawing_.left_out;
+        for (const UnitEvidence& evidence : ranking_)
+            source.likely_units.emplace_back(evidence.unit->name);
         if (hints)
-            source.area = [&](ImportOptions other) {
+            source.import = [&](ImportOptions other) {
                 other.max_work = asked.max_work;  // as much again
-                return import(other, false).area;
+                return import(other, false).outcome;
             };
         source.better_layers = better_layers;
         MissingBlocks missing;
@@ -387,7 +431,7 @@ class DxfImporter {
         LayerSorter sorter(drawing_.hidden_layers, own);
         Expander expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter);
         std::vector<PlanShape> expanded = expander.expand(source.metres_per_unit);
-        if (!is_ours) leaveOutStrays(expanded, out);
+        if (!is_ours) leaveOutStrays(expanded, &out);
         const auto moved = expander.moveHome(expanded);
         if (moved) out.tell(surveyText(*moved, "drawing"));
         const double metres = source.metres_per_unit;
@@ -412,10 +456,10 @@ class DxfImporter {
                                          metres * size.height, metres * size.depth};
         }
         const std::optional<std::map<int, DrawnSize>> sizes = shapes.sizes;
-        const double area =
+        const PlanOutcome outcome =
             writeLinePlan(std::move(shapes), sorter, name_, own, is_ours ? nullptr : &source, out);
         if (sizes) addDrawnThings(drawing_, *sizes, frame, out);
-        return {out.take(), area};
+        return {out.take(), outcome};
     }
 
   private:
@@ -430,11 +474,20 @@ class DxfImporter {
 
     [[nodiscard]] DrawingSource scaleOf(const ImportOptions& options, ImportRecords& out) const {
         if (!options.width_is) {
-            const LengthUnit& unit = unitOf(drawing_, name_, options);
-            out.note(
-                std::string("unit: ") + unit.name +
-                (options.units.empty() ? ", as $INSUNITS of the drawing says" : ", as asked for"));
-            return {unit.name, unit.metres, bytes_};
+            const LengthUnit* unit = unitOf(drawing_, options);
+            if (options.units.empty() && decided_ != nullptr) {
+                warnOfDecision(unit, out);
+                unit = decided_->unit;
+            } else if (unit != nullptr) {
+                out.note(std::string("unit: ") + unit->name +
+                         (options.units.empty() ? ", as $INSUNITS of the drawing says"
+                                                : ", as asked for"));
+            } else {
+                failFile(name_, (options.units.empty() ? unknownUnitText(drawing_)
+                                                       : "unknown unit " + options.units) +
+                                    ": " + kScaleHint);
+            }
+            return {unit->name, unit->metres, bytes_};
         }
         const double metres = metresPerUnit(*options.width_is, name_, [&](double metres_per_unit) {
             MissingBlocks missing;
@@ -450,9 +503,22 @@ class DxfImporter {
         return {unitText(metres), metres, bytes_};
     }
 
+    void warnOfDecision(const LengthUnit* stated, ImportRecords& out) const {
+        const std::string reason =
+            std::string(decided_->unit->name) + ", in which " + evidenceText(*decided_);
+        if (stated == nullptr)
+            out.warn(unknownUnitText(drawing_) + ": it is read in " + reason +
+                     "; --units takes another");
+        else
+            out.warn(std::string("the drawing states ") + stated->name +
+                     " ($INSUNITS), but is read in " + reason + "; --units takes another");
+    }
+
     const DxfDrawing& drawing_;
     const std::string& name_;
     std::size_t bytes_;  // of the file
+    std::vector<UnitEvidence> ranking_;
+    const UnitEvidence* decided_ = nullptr;  // the first of them, instead of the stated unit
     const Schemas& schemas_;
 };
 
@@ -461,7 +527,8 @@ class DxfImporter {
 Document readDxf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
     const DxfDrawing drawing = readDrawing(bytes, name);
-    const DxfImporter importer(drawing, name, bytes.size(), schemas);
+    DxfImporter importer(drawing, name, bytes.size(), schemas);
+    importer.decideUnit(options);
     return importWithNamedWalls(
         options, [&](const ImportOptions& asked, std::vector<std::string>* better_layers) {
             return importer.import(asked, true, better_layers).document;

@@ -91,13 +91,18 @@ class LinePlan {
         keepRooms(options, drawing, budget, out);
     }
 
-    [[nodiscard]] double area() const { return rooms_.area(); }
+    [[nodiscard]] PlanOutcome outcome() const {
+        PlanOutcome outcome{rooms_.area(), 0, rooms_.is_frame};
+        for (const Segment2& gap : rooms_.closing)
+            outcome.widest_gap = std::max(outcome.widest_gap, distance(gap.a, gap.b));
+        return outcome;
+    }
 
     void write(ImportRecords& out, const ImportOptions& options) {
         if (!rooms_.reached.empty()) {
             // Without walls, doors are where the floor continues.
             writeRooms(rooms_, options, out);
-            return note(out);
+            return note(options, out);
         }
         const std::vector<PlanPath> fences =
             sizes_ ? std::move(paths_) : joinedAtEnds(std::move(paths_));
@@ -122,7 +127,7 @@ class LinePlan {
             writeOpening(openings_[i], wall, out, options.wall_height);
         }
         writeRooms(rooms_, options, out);
-        note(out);
+        note(options, out);
     }
 
   private:
@@ -272,7 +277,8 @@ class LinePlan {
     }
 
     /// Warns of symbols that open no wall, once for each layer.
-    void warnOfLost(ImportRecords& out) const {
+    void warnOfLost(const ImportOptions& options, ImportRecords& out) const {
+        if (options.door_layers.empty() && options.window_layers.empty()) return;
         std::map<std::string, std::pair<std::size_t, const LostSymbol*>> by_layer;
         for (const LostSymbol& symbol : lost_) {
             auto& [count, first] = by_layer[symbol.layer];
@@ -289,8 +295,8 @@ class LinePlan {
         }
     }
 
-    void note(ImportRecords& out) const {
-        warnOfLost(out);
+    void note(const ImportOptions& options, ImportRecords& out) const {
+        warnOfLost(options, out);
         if (drawn_doors_ > 0)
             out.tell("leaves and swings of " + countText(drawn_doors_, "door") +
                      " among the walls close no room");
@@ -324,16 +330,20 @@ LayerSorter::Use LayerSorter::useOf(const std::string& layer) {
     const auto [it, is_new] = uses_.try_emplace(layer, Others);
     if (!is_new) return it->second;
     Use& use = it->second;
+    const bool is_wall = matchesLayer(options_.wall_layers, layer);
+    const bool is_window = matchesLayer(options_.window_layers, layer);
+    const bool is_door = options_.door_layers.empty() ? !is_wall && !is_window && isDoorName(layer)
+                                                      : matchesLayer(options_.door_layers, layer);
     if (hidden_.count(layer) != 0 || lowerCased(layer) == "defpoints")  // never plotted
         use = Hidden;
-    else if (matchesLayer(options_.door_layers, layer))
+    else if (is_door)
         use = Doors;
-    else if (matchesLayer(options_.window_layers, layer))
+    else if (is_window)
         use = Windows;
-    else if (options_.wall_layers.empty())
-        use = isNoWallName(layer) ? Things : Walls;
-    else if (matchesLayer(options_.wall_layers, layer))
+    else if (is_wall || (options_.wall_layers.empty() && !isThingName(layer)))
         use = Walls;
+    else if (options_.wall_layers.empty())
+        use = Things;
     return use;
 }
 
@@ -355,11 +365,14 @@ LayerSorter::Sorted LayerSorter::sort(std::vector<PlanShape> shapes) {
     if (std::none_of(shapes.begin(), shapes.end(),
                      [this](const PlanShape& shape) { return useOf(shape.layer) == Walls; }))
         for (auto& [layer, use] : uses_)
-            if (use == Things) use = Walls;
+            if (use == Things || (use == Doors && options_.door_layers.empty())) use = Walls;
     for (PlanShape& shape : shapes) {
         const Use use = useOf(shape.layer);
         ++counts_[use][shape.layer];
-        if (use == Walls) ++wall_names_[shape.walls_in];
+        if (use == Walls) {
+            const bool is_window = shape.walls_in.empty() && isWindowName(shape.layer);
+            ++(is_window ? window_names_[shape.layer] : wall_names_[shape.walls_in]);
+        }
         if (use == Walls)
             sorted.walls.push_back(std::move(shape.path));
         else if (use == Doors)
@@ -425,12 +438,13 @@ std::map<std::string, std::size_t> LayerSorter::unusedWallNames() const {
     if (!options_.wall_layers.empty() || wall_names_.count("") == 0) return {};
     std::map<std::string, std::size_t> names = wall_names_;
     names.erase("");
+    if (!names.empty()) names.insert(window_names_.begin(), window_names_.end());
     return names;
 }
 
-double writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter, const std::string& name,
-                     const ImportOptions& options, const DrawingSource* drawing,
-                     ImportRecords& out) {
+PlanOutcome writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter,
+                          const std::string& name, const ImportOptions& options,
+                          const DrawingSource* drawing, ImportRecords& out) {
     sorter.mustHaveWalls(
         shapes, name,
         drawing == nullptr ? std::map<std::string, std::size_t>() : drawing->left_out);
@@ -446,12 +460,12 @@ double writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter, cons
         LinePlan plan(std::move(shapes), name, options, drawing, out);
         plan.write(out, options);
         if (drawing != nullptr)
-            warnOfWallNames(sorter.unusedWallNames(), plan.area(), *drawing, options, out);
-        return plan.area();
+            warnOfWallNames(sorter.unusedWallNames(), plan.outcome(), *drawing, options, out);
+        return plan.outcome();
     });
 }
 
-void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords& out) {
+void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords* out) {
     constexpr double kFar = 5;      // of the gap to strays, as a share of the plan's extent
     constexpr double kBulk = 0.9;   // of the length of all lines, which the plan has
     constexpr int kMaxRounds = 64;  // groups of strays
@@ -516,11 +530,12 @@ void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords& out) {
     const PlanShape& stray = shapes[static_cast<std::size_t>(first - is_stray.begin())];
     const Point2 at = stray.path.points.front();
     const auto count = static_cast<std::size_t>(std::count(is_stray.begin(), is_stray.end(), true));
-    out.warn("left out " + countText(count, "line") + " far from all others, " +
-                 (count == 1 ? "at " : "the first at ") + formatFixed(at.x, 1) + ',' +
-                 formatFixed(at.y, 1) + " m on the layer " + stray.layer +
-                 ": delete it in the drawing",
-             stray.path.line);
+    if (out != nullptr)
+        out->warn("left out " + countText(count, "line") + " far from all others, " +
+                      (count == 1 ? "at " : "the first at ") + formatFixed(at.x, 1) + ',' +
+                      formatFixed(at.y, 1) + " m on the layer " + stray.layer +
+                      ": delete it in the drawing",
+                  stray.path.line);
     std::vector<PlanShape> kept;
     for (std::size_t i = 0; i < shapes.size(); ++i)
         if (!is_stray[i]) kept.push_back(std::move(shapes[i]));
@@ -532,7 +547,7 @@ double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,
     LayerSorter sorter({}, options);
     LayerSorter::Sorted sorted = sorter.sort(std::move(shapes));
     sorter.note(out);
-    return writeLinePlan(std::move(sorted), sorter, name, options, nullptr, out);
+    return writeLinePlan(std::move(sorted), sorter, name, options, nullptr, out).area;
 }
 
 std::string listText(const std::map<std::string, std::size_t>& counts) {

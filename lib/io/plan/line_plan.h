@@ -123,7 +123,8 @@ class LayerSorter {
     }
     /// Returns true for layers of walls.
     [[nodiscard]] bool mayBeWall(const std::string& layer);
-    /// Layers that isNoWallName() close no room, unless no other has a line.
+    /// Layers that isThingName() close no room, and those that isDoorName() are doors, unless no
+    /// other has a line.
     Sorted sort(std::vector<PlanShape> shapes);
     /// Notes the use of each layer.
     void note(ImportRecords& out) const;
@@ -133,8 +134,8 @@ class LayerSorter {
     /// \throws FormatError: no line on the layers of walls
     void mustHaveWalls(const Sorted& sorted, const std::string& name,
                        const std::map<std::string, std::size_t>& left_out) const;
-    /// Returns names of walls, with their numbers of lines, if lines without a name became walls,
-    /// too, because no option says otherwise.
+    /// Returns names of walls, and of windows beside them, with their numbers of lines, if lines
+    /// without a name became walls, too, because no option says otherwise.
     [[nodiscard]] std::map<std::string, std::size_t> unusedWallNames() const;
 
   private:
@@ -148,25 +149,28 @@ class LayerSorter {
     const ImportOptions& options_;
     std::map<std::string, Use> uses_;
     std::array<std::map<std::string, std::size_t>, kUses> counts_;
-    std::map<std::string, std::size_t> wall_names_;  // with their lines; "": lines without one
+    std::map<std::string, std::size_t> wall_names_;    // with their lines; "": lines without one
+    std::map<std::string, std::size_t> window_names_;  // of these that became walls
 };
 
 /// Writes the plan of sorted shapes, see readDxf: walls, doors and windows of the largest region.
 /// For drawings, doors among the walls close no room, see takeDrawnDoors(); impossible scales of a
 /// building are rejected, see checkScale(); and unused names of walls are reported.
 /// \param drawing null for cuts through meshes
-/// \return the floor area kept, in square metres
+/// \return the room kept
 /// \throws FormatError: no line on the layers of walls
-double writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter, const std::string& name,
-                     const ImportOptions& options, const DrawingSource* drawing,
-                     ImportRecords& out);
+PlanOutcome writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter,
+                          const std::string& name, const ImportOptions& options,
+                          const DrawingSource* drawing, ImportRecords& out);
 
 /// Leaves out shapes that lie far from the bulk of the lines, by five times its extent: what a slip
-/// of the mouse leaves behind, or an origin in a plan of surveyors' coordinates. Warns of them.
+/// of the mouse leaves behind, or an origin in a plan of surveyors' coordinates. Warns of them,
+/// unless `out` is null.
 /// \param shapes in metres. O(n log n)
-void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords& out);
+void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords* out = nullptr);
 
-/// Sorts the shapes of a drawing without hidden layers, and writes them. \return as above
+/// Sorts the shapes of a drawing without hidden layers, and writes them. \return the floor area
+/// kept, in square metres
 double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,
                      const ImportOptions& options, ImportRecords& out);
 

@@ -317,7 +317,7 @@ class RoomChooser {
         return reached;
     }
 
-    void report(const RoomAttempt& taken, const PlanRooms& rooms) {
+    void report(const RoomAttempt& taken, PlanRooms& rooms) {
         warnOfGaps(rooms.closing, taken.width, out_);
         std::size_t faces = 0;
         Box2 kept;
@@ -337,7 +337,7 @@ class RoomChooser {
         if (points_.empty() && !is_odd_ && !wider_) warnOfTheRest(plan_, taken, kept, out_);
         if (plan_.is_drawing && points_.empty() && rooms.regions.size() == 1 &&
             lines_.size() <= kMaxLinesTried)
-            warnOfFrame(plan_, lines_, taken, rooms.regions.front(), out_);
+            rooms.is_frame = warnOfFrame(plan_, lines_, taken, rooms.regions.front(), out_);
     }
 
     const PlanWalls& plan_;

@@ -131,6 +131,7 @@ struct PlanRooms {
     std::vector<Segment2> closing;    ///< lines that close gaps in their walls
     std::vector<Region> reached;      ///< floor that a disc reaches, if requested
     bool writes_inside = true;        ///< false: another input has the inside points
+    bool is_frame = false;            ///< the room is a rectangle around the whole drawing
 
     [[nodiscard]] double area() const;
 };

@@ -65,7 +65,7 @@ bool isRoom(const PlanWalls& plan, const PlanFaces& faces, const PlanFaces::Grou
     return !plan.is_floor || plan.is_floor(interiorPoint(faces.faces()[group.faces.front()]));
 }
 
-void warnOfFrame(const PlanWalls& plan, std::span<const Segment2> lines, const RoomAttempt& taken,
+bool warnOfFrame(const PlanWalls& plan, std::span<const Segment2> lines, const RoomAttempt& taken,
                  const PlanRegion& region, ImportRecords& out) {
     const Box2 all = boundsOf(plan.lines);
     const Box2 rim{all.low + Vec2{kAtBorder, kAtBorder}, all.high - Vec2{kAtBorder, kAtBorder}};
@@ -75,13 +75,13 @@ void warnOfFrame(const PlanWalls& plan, std::span<const Segment2> lines, const R
     // A title block may take a corner.
     const bool is_rectangle = !is_inside(around.low) && !is_inside(around.high) &&
                               std::abs(signedArea(outline)) > kFrameFilled * areaOf(all);
-    if (!is_rectangle) return;
+    if (!is_rectangle) return false;
     std::vector<Segment2> within;
     for (const Segment2& line : lines)
         if (is_inside(line.a) && is_inside(line.b)) within.push_back(line);
     double largest = 0;
     for (const Box2& part : joinedParts(within)) largest = std::max(largest, areaOf(part));
-    if (largest < kFrameShare * areaOf(all)) return;
+    if (largest < kFrameShare * areaOf(all)) return false;
     std::string text =
         "the room is the rectangle around the whole drawing: if that is the "
         "frame of a sheet, ";
@@ -97,6 +97,7 @@ void warnOfFrame(const PlanWalls& plan, std::span<const Segment2> lines, const R
         text += "--inside X,Y chooses a room in it, the largest has " + areaText(other->area) +
                 " about " + placeText(interiorPoint(taken.faces.faces()[other->faces.front()]));
     out.warn(std::move(text));
+    return true;
 }
 
 void warnOfTheRest(const PlanWalls& plan, const RoomAttempt& taken, const Box2& kept,

@@ -30,9 +30,9 @@ struct RoomAttempt {
 /// Returns true if a group of faces is floor, and no space between the two lines of a wall.
 bool isRoom(const PlanWalls& plan, const PlanFaces& faces, const PlanFaces::Group& group);
 
-/// Warns if the room is a rectangle around the drawing with large parts of it inside.
-/// \param lines of the plan and of other inputs \param region the only one kept
-void warnOfFrame(const PlanWalls& plan, std::span<const Segment2> lines, const RoomAttempt& taken,
+/// Warns if the room is a rectangle around the drawing with large parts of it inside. \return true
+/// if so \param lines of the plan and of other inputs \param region the only one kept
+bool warnOfFrame(const PlanWalls& plan, std::span<const Segment2> lines, const RoomAttempt& taken,
                  const PlanRegion& region, ImportRecords& out);
 
 /// Warns if most of the drawing is left out. \param kept bounds of the rooms kept

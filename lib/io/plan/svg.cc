@@ -19,6 +19,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "io/import_records.h"
+#include "io/plan/drawing_unit.h"
 #include "io/plan/line_plan.h"
 #include "io/plan/svg.h"
 #include "io/plan/unread.h"
@@ -87,6 +88,21 @@ class SvgReader {
             for (std::size_t i = 0; i < count; ++i)
                 drawing_.unread.push_back({"the CSS rule `" + printable(selector) + '`'});
         return std::move(drawing_);
+    }
+
+    /// Returns metres a unit by the size on paper, if the drawing has one.
+    std::optional<double> paperScale() {
+        const pugi::xml_node root = file_.root();
+        if (svgName(root) != "svg") file_.fail(root, "no `svg` at the root");
+        std::optional<double> scale;
+        at(root, [&] {
+            if (isSvgPhysical(root.attribute("width").value()) ||
+                isSvgPhysical(root.attribute("height").value())) {
+                pageOf(root);
+                scale = drawing_.metres_per_unit;
+            }
+        });
+        return scale;
     }
 
   private:
@@ -361,14 +377,55 @@ class SvgReader {
     SvgDrawing drawing_;
 };
 
-/// A drawing's document, and its floor area.
+/// A drawing's document, and its room.
 struct SvgImport {
     Document document;
-    double area = 0;
+    PlanOutcome outcome;
 };
 
+/// The units that a drawing may have, and the decision for one of them.
+struct SvgUnits {
+    std::vector<UnitEvidence> ranking;
+    const UnitEvidence* decided = nullptr;
+    bool has_size = false;  ///< on paper
+};
+
+/// Decides on the unit of a drawing by its contents if the options do not state it, and its size
+/// on paper is missing or impossible.
+SvgUnits unitsOf(std::string_view bytes, const std::string& name, const ImportOptions& options) {
+    SvgUnits units;
+    if (!options.units.empty() || options.width_is) return units;
+    const std::optional<double> paper = SvgReader(bytes, name, options).paperScale();
+    units.has_size = paper.has_value();
+    const LengthUnit stated{"its size", paper.value_or(0), 0};
+    const LengthUnit* const own = paper ? &stated : nullptr;
+    units.ranking = rankedUnits(
+        [&](double metres) -> LayerSorter::Sorted {
+            try {
+                std::vector<PlanShape> shapes =
+                    SvgReader(bytes, name, options, metres).read().shapes;
+                leaveOutStrays(shapes);
+                return LayerSorter({}, options).sort(std::move(shapes));
+            } catch (const FormatError& /*not in this unit*/) {
+                return {};
+            }
+        },
+        Budget(bytes.size(), options.max_work), own);
+    const UnitEvidence* const decided = decidedUnit(units.ranking, own);
+    std::erase_if(units.ranking,
+                  [&](const UnitEvidence& evidence) { return evidence.unit == own; });
+    // A decided unit leads the ranking.
+    if (decided != nullptr) units.decided = &units.ranking.front();
+    return units;
+}
+
 SvgDrawing readDrawing(std::string_view bytes, const std::string& name,
-                       const ImportOptions& options) {
+                       const ImportOptions& options, const UnitEvidence* decided) {
+    if (decided != nullptr) {
+        SvgDrawing drawing = SvgReader(bytes, name, options, decided->unit->metres).read();
+        drawing.scale = std::string("a unit of the drawing is 1 ") + decided->unit->name;
+        return drawing;
+    }
     if (!options.width_is) return SvgReader(bytes, name, options).read();
     const double metres = metresPerUnit(*options.width_is, name, [&](double metres_per_unit) {
         LayerSorter sorter({}, options);
@@ -385,13 +442,20 @@ SvgDrawing readDrawing(std::string_view bytes, const std::string& name,
 
 /// \param hints whether the drawing may be imported again to report the effect of other options
 SvgImport importSvg(std::string_view bytes, const std::string& name, const ImportOptions& asked,
-                    const Schemas& schemas, bool hints,
+                    const Schemas& schemas, const SvgUnits& units, bool hints,
                     std::vector<std::string>* better_layers = nullptr) {
     Budget whole(bytes.size(), asked.max_work);
     ImportOptions options = asked;
     options.max_work.whole = &whole;  // pays for uses and curves, and for the plan of them
     ImportRecords out(schemas, name, options);
-    SvgDrawing drawing = readDrawing(bytes, name, options);
+    const UnitEvidence* const decided =
+        options.units.empty() && !options.width_is ? units.decided : nullptr;
+    SvgDrawing drawing = readDrawing(bytes, name, options, decided);
+    if (decided != nullptr)
+        out.warn(std::string(units.has_size ? "by its size on paper the drawing is no building"
+                                            : "the drawing has no scale") +
+                 ": its unit is read as 1 " + decided->unit->name + ", in which " +
+                 evidenceText(*decided) + "; --units takes another");
     out.note(drawing.scale);
     for (const auto& [what, count] : drawing.left_out)
         out.note("left out: " + what + " (" + std::to_string(count) + ')');
@@ -400,19 +464,22 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
             ? "units of " + formatDouble(std::round(drawing.metres_per_unit * 1e9) / 1e6) + " mm"
             : options.units,
         drawing.metres_per_unit, bytes.size(), drawing.left_out};
+    for (const UnitEvidence& evidence : units.ranking)
+        source.likely_units.emplace_back(evidence.unit->name);
     if (hints)
-        source.area = [&](ImportOptions other) {
+        source.import = [&](ImportOptions other) {
             other.max_work = asked.max_work;  // as much again
-            return importSvg(bytes, name, other, schemas, false).area;
+            return importSvg(bytes, name, other, schemas, units, false).outcome;
         };
     source.better_layers = better_layers;
     warnOfUnread(drawing.unread, "save it as plain SVG, with attributes instead of rules", out);
-    leaveOutStrays(drawing.shapes, out);
+    leaveOutStrays(drawing.shapes, &out);
     LayerSorter sorter({}, options);
     LayerSorter::Sorted shapes = sorter.sort(std::move(drawing.shapes));
     sorter.note(out);
-    const double area = writeLinePlan(std::move(shapes), sorter, name, options, &source, out);
-    return {out.take(), area};
+    const PlanOutcome outcome =
+        writeLinePlan(std::move(shapes), sorter, name, options, &source, out);
+    return {out.take(), outcome};
 }
 
 }  // namespace
@@ -421,9 +488,10 @@ bool isSvg(std::string_view bytes) { return xmlRootName(bytes) == "svg"; }
 
 Document readSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
+    const SvgUnits units = unitsOf(bytes, name, options);
     return importWithNamedWalls(
         options, [&](const ImportOptions& asked, std::vector<std::string>* better_layers) {
-            return importSvg(bytes, name, asked, schemas, true, better_layers).document;
+            return importSvg(bytes, name, asked, schemas, units, true, better_layers).document;
         });
 }
 

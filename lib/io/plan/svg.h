@@ -182,10 +182,12 @@ SvgStyle svgStyle(SvgStyle style, const SvgProperties& properties);
 
 /// Names that an element has or inherits, verbatim; null: unnamed.
 struct SvgNames {
-    const char* option = nullptr;  ///< named by an option, of the innermost element
-    const char* walls = nullptr;   ///< the innermost wall name, see isWallName()
-    const char* layer = nullptr;   ///< of the innermost Inkscape layer
-    const char* group = nullptr;   ///< of the outermost group
+    const char* option = nullptr;   ///< named by an option, of the innermost element
+    const char* walls = nullptr;    ///< the innermost wall name, see isWallName()
+    const char* layer = nullptr;    ///< of the innermost Inkscape layer
+    const char* group = nullptr;    ///< of the outermost group
+    const char* meaning = nullptr;  ///< of the innermost group called as doors, windows, or as what
+                                    ///< closes no room, unless one within it is called walls
 
     /// Merges the names of an element, `own`, into those of its parent.
     [[nodiscard]] SvgNames with(const SvgNames& own) const;

@@ -110,11 +110,12 @@ SvgStyle svgStyle(SvgStyle style, const SvgProperties& properties) {
 
 SvgNames SvgNames::with(const SvgNames& own) const {
     return {own.option != nullptr ? own.option : option, own.walls != nullptr ? own.walls : walls,
-            own.layer != nullptr ? own.layer : layer, group != nullptr ? group : own.group};
+            own.layer != nullptr ? own.layer : layer, group != nullptr ? group : own.group,
+            own.meaning != nullptr ? own.meaning : (own.walls != nullptr ? nullptr : meaning)};
 }
 
 const char* SvgNames::planLayer() const {
-    for (const char* name : {option, layer, group})
+    for (const char* name : {option, meaning, layer, group})
         if (name != nullptr) return name;
     return "(none)";
 }
@@ -138,7 +139,12 @@ SvgElement readSvgElement(pugi::xml_node node, const SvgSheet& sheet,
     if (const char* const name = (label ? label : id).value(); *name != '\0') {
         if (std::string_view(node.attribute("inkscape:groupmode").value()) == "layer")
             names.layer = name;
-        if (svgName(node) == "g") names.group = name;
+        if (svgName(node) == "g") {
+            names.group = name;
+            if (names.walls == nullptr &&
+                (isThingName(name) || isDoorName(name) || isWindowName(name)))
+                names.meaning = name;
+        }
     }
     // Others are parsed each time, or passed over in the search for one that is.
     constexpr std::array<std::string_view, 3> kParsedOnce{"style", "class", "transform"};

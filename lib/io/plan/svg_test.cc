@@ -211,8 +211,8 @@ TEST(Svg, NamesOfWalls) {
     const auto warned = [](const std::string& svg) { return warningsOf(read(page(svg))); };
     const auto noted = [](const std::string& svg) { return notesOf(read(page(svg))); };
     EXPECT_NE(noted("<g id='plan'><g id='Walls'>" + walls + "</g>" + rest + "</g>")
-                  .find("only lines named as walls are taken, the others clutter their room: "
-                        "--wall-layer Walls; --wall-layer '*' takes all\n"),
+                  .find("only lines named as walls are taken, the others clutter or frame their "
+                        "room: --wall-layer Walls; --wall-layer '*' takes all\n"),
               std::string::npos);
     EXPECT_NE(noted("<g id='g1' inkscape:label='W\u00c4NDE 1'>" + walls + "</g>" + rest)
                   .find("--wall-layer 'W\u00c4NDE 1';"),

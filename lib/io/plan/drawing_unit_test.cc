@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan/drawing_unit.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "io/importers.h"
+#include "support/test_dxf.h"
+#include "support/test_import.h"
+
+namespace ispace {
+namespace {
+
+constexpr double kInch = 1 / 0.0254;
+
+Document read(const std::string& dxf, const ImportOptions& options = {}) {
+    return readDxf(dxf, "plan.dxf", options, sceneSchemas());
+}
+double areaOf(const std::string& dxf, const ImportOptions& options = {}) {
+    return environmentOf(read(dxf, options)).indoor().area();
+}
+
+/// Two rooms of 8 m x 6 m in sum, and `doors` doors of 0.8 m, all `scale` times as large.
+std::string flat(double scale, int doors = 1) {
+    const auto scaled = [scale](double x0, double y0, double x1, double y1) {
+        return line("0", scale * x0, scale * y0, scale * x1, scale * y1);
+    };
+    std::string text = rectangle("0", 0, 0, 8 * scale, 6 * scale);
+    double y = 0;
+    for (int i = 0; i < doors; ++i, y += 2.8) {
+        text += scaled(4, y, 4, y + 2);
+        text += scaled(4, y + 2, 3.2, y + 2);  // the leaf
+        text += arc("0", 4 * scale, (y + 2) * scale, 0.8 * scale, 90, 180);
+    }
+    return text + scaled(4, y, 4, 6);
+}
+
+TEST(DrawingUnit, DoorsDecideWithoutAUnit) {
+    for (const auto& [name, scale] : {std::pair{"m", 1.0},
+                                      {"cm", 100.0},
+                                      {"mm", 1000.0},
+                                      {"inch", kInch},
+                                      {"foot", kInch / 12}}) {
+        const Document document = read(drawing(flat(scale), "", 0));
+        EXPECT_NEAR(environmentOf(document).indoor().area(), 48, 1e-3) << name;
+        EXPECT_NE(warningsOf(document).find(
+                      "the drawing does not say its unit ($INSUNITS): it is read in " +
+                      std::string(name) +
+                      ", in which doors are 0.80 m wide and the plan 8.0 m wide; --units takes "
+                      "another"),
+                  std::string::npos)
+            << warningsOf(document);
+    }
+}
+
+TEST(DrawingUnit, WallsDecideWithoutDoors) {
+    const std::string walls = rectangle("0", 0, 0, 800, 600) + rectangle("0", 24, 24, 776, 576);
+    const Document document = read(drawing(walls, "", 0));
+    EXPECT_NEAR(environmentOf(document).indoor().area(), 7.52 * 5.52, 1e-6);
+    EXPECT_NE(warningsOf(document).find("read in cm, in which walls are 0.24 m thick"),
+              std::string::npos);
+    // A rectangle may have any size.
+    EXPECT_NE(errorsOf([&] {
+                  read(drawing(rectangle("0", 0, 0, 8, 6), "", 0));
+              }).find("the drawing does not say its unit ($INSUNITS): say its unit"),
+              std::string::npos);
+}
+
+TEST(DrawingUnit, AStatedUnitIsOverruledBySureSignsAlone) {
+    // Templates state inches: 8 m of millimetres would be 203 m.
+    const Document document = read(drawing(flat(1000, 2), "", 1));
+    EXPECT_NEAR(environmentOf(document).indoor().area(), 48, 1e-6);
+    EXPECT_NE(warningsOf(document).find("the drawing states inch ($INSUNITS), but is read in mm"),
+              std::string::npos);
+    // One door may be a washbasin, unless the size is impossible.
+    EXPECT_GT(areaOf(drawing(flat(1000, 1), "", 1)), 10'000);
+    EXPECT_NEAR(areaOf(drawing(flat(1, 1), "", 4)), 48, 1e-6);
+    EXPECT_EQ(warningsOf(read(drawing(flat(1000, 2), "", 4))), "");
+    ImportOptions inch;
+    inch.units = "inch";
+    EXPECT_GT(areaOf(drawing(flat(1000, 2), "", 1), inch), 10'000);
+}
+
+TEST(DrawingUnit, ListsTheCodesThatAreRead) {
+    EXPECT_NE(errorsOf([&] { read(drawing(rectangle("0", 0, 0, 8, 6), "", 3)); })
+                  .find("$INSUNITS is 3, wanted 1 (inch), 2 (foot), 4 (mm), 5 (cm), 6 (m), 7 (km), "
+                        "10 (yard) or 14 (dm)"),
+              std::string::npos);
+}
+
+TEST(DrawingUnit, OfSvg) {
+    const std::string body =
+        "<path d='M0 0H800V600H0Z M400 0V200 M400 280V600 M400 200H320'/>"
+        "<path d='M320 200A80 80 0 0 0 400 280'/></svg>";
+    const Document document =
+        readSvg("<svg viewBox='0 0 900 700'>" + body, "plan.svg", {}, sceneSchemas());
+    EXPECT_NEAR(environmentOf(document).indoor().area(), 48, 1e-6);
+    EXPECT_NE(warningsOf(document).find("the drawing has no scale: its unit is read as 1 cm, in "
+                                        "which doors are 0.80 m wide"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace ispace

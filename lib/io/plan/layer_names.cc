@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan/layer_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/glob.h"
+#include "base/message.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr std::array<std::string_view, 63> kWallWords{
+    "wall",   "walls",   "wand",   "wände", "waende", "wande",  "mauer",    "mauern", "mauerwerk",
+    "mur",    "murs",    "mura",   "mury",  "muro",   "muros",  "muri",     "muur",   "muren",
+    "parede", "paredes", "pared",  "paret", "parets", "parete", "pareti",   "perete", "pereți",
+    "pereti", "vägg",    "väggar", "vegg",  "vegger", "væg",    "vægge",    "seinä",  "seinät",
+    "stěna",  "stěny",   "stena",  "steny", "zed",    "zdi",    "zid",      "zidovi", "ściana",
+    "ściany", "sciana",  "sciany", "fal",   "falak",  "duvar",  "duvarlar", "τοίχος", "τοίχοι",
+    "стена",  "стены",   "стіна",  "стіни", "墙",     "墙体",   "壁",       "벽",     "벽체"};
+/// Word endings, as in Innenwand and CURTAINWALL.
+constexpr std::array<std::string_view, 6> kWallEnds{"wall",  "walls",  "wand",
+                                                    "wände", "waende", "mauer"};
+/// Words of layers that belong to walls but have no outlines of walls.
+constexpr std::array<std::string_view, 20> kOtherWords{
+    "patt",  "hatch", "hatching", "fill",    "schraffur", "iden",     "text",
+    "texts", "tag",   "tags",     "dim",     "dims",      "note",     "notes",
+    "door",  "doors", "window",   "windows", "glaz",      "furniture"};
+
+/// Beginnings of words of layers without walls, in lower case: furniture, dimensions, text,
+/// hatching, axes, electrical, plumbing.
+constexpr auto kNoWallStems = std::to_array<std::string_view>(
+    {"furnit",    "möbel",         "moebel",   "mobel",       "mobil",          "mobler",
+     "möbler",    "møbl",          "meubel",   "meubil",      "meubl",          "mebl",
+     "mööbel",    "mēbel",         "kalust",   "huonekal",    "nábyt",          "nabyt",
+     "bútor",     "butor",         "namješ",   "namjes",      "namešt",         "namest",
+     "pohiš",     "baldai",        "mobilya",  "έπιπλ",       "επιπλ",          "мебел",
+     "мебл",      "обзавежд",      "家具",     "가구",        "dimens",         "bemass",
+     "bemaß",     "vermass",       "vermaß",   "cotas",       "cotat",          "cotac",
+     "acotac",    "acotad",        "maatv",    "maatl",       "mitoit",         "wymiar",
+     "ölçü",      "olcu",          "mérete",   "meretez",     "kótov",          "kotov",
+     "размер",    "розмір",        "διαστάσ",  "διαστασ",     "尺寸",           "标注",
+     "標注",      "寸法",          "치수",     "annot",       "beschrift",      "textos",
+     "texto",     "testi",         "tekst",    "szöveg",      "szoveg",         "metin",
+     "teksti",    "текст",         "надпис",   "κείμεν",      "κειμεν",         "文字",
+     "文本",      "注释",          "문자",     "schriftfeld", "plankopf",       "cartigl",
+     "cartouch",  "legend",        "titlebl",  "rotulo",      "rótulo",         "tytuł",
+     "hatch",     "schraff",       "hachur",   "sombread",    "trattegg",       "tratteg",
+     "retino",    "arcer",         "skraver",  "šraf",        "sraf",           "kreskow",
+     "tarama",    "rayado",        "rellen",   "штрих",       "заливк",         "填充",
+     "해치",      "achs",          "eixos",    "axlar",       "tengely",        "osie",
+     "osy",       "axen",          "akslinj",  "akselij",     "axonum",         "осеве",
+     "осевы",     "координационн", "轴线",     "轴网",        "轴号",           "軸線",
+     "통심",      "gridlin",       "elect",    "elekt",       "elett",          "eléct",
+     "élect",     "eletr",         "elett",    "sähkö",       "sahko",          "villany",
+     "elektrik",  "электр",        "електр",   "ηλεκτρ",      "电气",           "電気",
+     "전기",      "照明",          "beleucht", "leucht",      "steckdos",       "enchuf",
+     "lumin",     "belysn",        "освещ",    "освітл",      "plumb",          "sanitär",
+     "sanitaer",  "sanitar",       "sanitair", "sanear",      "fontan",         "plombe",
+     "idraul",    "hidraul",       "hydraul",  "saniteh",     "rohrl",          "vodovod",
+     "kanaliz",   "vízvez",        "tesisat",  "сантех",      "водопр",         "канализ",
+     "υδραυλ",    "给排水",        "給排水",   "卫生",        "洁具",           "衛生",
+     "위생",      "hvac",          "lüftung",  "lueftung",    "heizung",        "klima",
+     "einricht",  "ausstatt",      "titlebl",  "blattrahm",   "zeichnungsrahm", "planrahm",
+     "squadrat",  "viewport",      "рамк",     "图框",        "図枠",           "도곽",
+     "stair",     "trepp",         "escalier", "escaler",     "escada",         "scala",
+     "scalin",    "schod",         "lépcs",    "lepcs",       "merdiven",       "scări",
+     "stubišt",   "лестниц",       "сходи",    "σκάλ",        "σκαλ",           "楼梯",
+     "階段",      "계단",          "ceiling",  "overhead",    "landscap",       "vegetat",
+     "entourage", "roofs",         "cotation", "bemating",    "overordn",       "dimension"});
+/// The same as whole words, which begin others.
+constexpr auto kNoWallWords = std::to_array<std::string_view>(
+    {"furn",        "furniture", "equip",  "appl",   "muebles", "mueble",    "arredi",  "arredo",
+     "arredamento", "móveis",    "moveis", "mobili", "meble",   "dim",       "dims",    "dimen",
+     "cote",        "cotes",     "cota",   "quote",  "maße",    "mått",      "mål",     "mitat",
+     "kóty",        "koty",      "kote",   "kota",   "méret",   "meret",     "text",    "texts",
+     "texte",       "textes",    "testo",  "anno",   "note",    "notes",     "tag",     "tags",
+     "iden",        "txt",       "tekste", "patt",   "pattern", "trama",     "mønster", "schraf",
+     "axis",        "axes",      "axe",    "asse",   "assi",    "eje",       "ejes",    "eixo",
+     "akse",        "akser",     "osi",    "aks",    "оси",     "ось",       "осі",     "grid",
+     "grids",       "raster",    "achse",  "achsen", "elec",    "lite",      "light",   "lights",
+     "licht",       "luce",      "luces",  "luci",   "fixt",    "pipe",      "pipes",   "piping",
+     "vvs",         "sani",      "wc",     "flor",   "clng",    "ovhd",      "strs",    "evtr",
+     "area",        "areas",     "comm",   "powr",   "sanr",    "levl",      "detl",    "sect",
+     "ttlb",        "bord",      "nplt",   "vprt",   "roof",    "fire",      "frame",   "frames",
+     "border",      "borders",   "sheet",  "title",  "titles",  "rahmen",    "cadre",   "marco",
+     "kader",       "ramka",     "ramme",  "kehys",  "keret",   "cartouche", "stairs",  "steps",
+     "trap",        "trappen",   "trappa", "trappe", "scale",   "schody",    "portaat", "case",
+     "casework",    "millwork",  "tree",   "trees",  "plants",  "marker",    "markers", "symbol",
+     "symbols",     "legend"});
+
+/// Words of doors, and beginnings of those whose endings vary.
+constexpr auto kDoorWords = std::to_array<std::string_view>(
+    {"door",  "doors",  "tür",   "türen",  "tuer",    "tueren",  "tur",    "porte", "portes",
+     "porta", "portas", "porte", "puerta", "puertas", "deur",    "deuren", "drzwi", "dveře",
+     "dvere", "dør",    "døre",  "dører",  "dörr",    "dörrar",  "ovi",    "ovet",  "ajtó",
+     "ajtók", "ajto",   "ajtok", "kapı",   "kapılar", "kapi",    "usa",    "ușă",   "uși",
+     "usi",   "vrata",  "врата", "门",     "門",      "门窗",    "ドア",   "扉",    "建具",
+     "문",    "двері",  "двери", "дверь",  "ușa",     "дверные", "дверей"});
+constexpr auto kDoorStems = std::to_array<std::string_view>(
+    {"carpinter", "serrament", "infiss", "menuiserie", "esquadri", "πόρτ", "θύρ", "πορτ"});
+constexpr auto kDoorEnds = std::to_array<std::string_view>({"türen", "tür", "tueren", "tuer"});
+constexpr auto kWindowWords = std::to_array<std::string_view>(
+    {"window",   "windows", "glaz",     "glazing", "fenster", "fenêtre",  "fenêtres", "fenetre",
+     "fenetres", "ventana", "ventanas", "janela",  "janelas", "finestra", "finestre", "raam",
+     "ramen",    "kozijn",  "kozijnen", "okno",    "okna",    "vindue",   "vinduer",  "vindu",
+     "vinduer",  "fönster", "fonster",  "ikkuna",  "ikkunat", "ablak",    "ablakok",  "pencere",
+     "prozor",   "prozori", "окно",     "окна",    "вікно",   "вікна",    "прозорец", "прозорци",
+     "窗",       "窗户",    "窓",       "창",      "창문",    "vitre",    "vitrage"});
+constexpr auto kWindowStems = std::to_array<std::string_view>(
+    {"fereastr", "ferestr", "παράθυρ", "παραθυρ", "verglas", "pencerel"});
+
+/// Words of blocks and groups of furniture and fixtures.
+constexpr auto kThingWords = std::to_array<std::string_view>(
+    {"bed",          "beds",     "sofa",      "couch",   "chair",       "chairs",     "armchair",
+     "table",        "tables",   "desk",      "desks",   "stool",       "bench",      "toilet",
+     "sink",         "basin",    "washbasin", "bathtub", "tub",         "shower",     "fridge",
+     "refrigerator", "stove",    "oven",      "cooker",  "hob",         "dishwasher", "washer",
+     "cupboard",     "wardrobe", "cabinet",   "shelf",   "bookshelf",   "bookcase",   "lamp",
+     "plant",        "piano",    "car",       "bett",    "tisch",       "stuhl",      "sessel",
+     "schrank",      "regal",    "herd",      "spüle",   "waschbecken", "badewanne",  "dusche",
+     "lit",          "chaise",   "fauteuil",  "canapé",  "canape",      "armoire",    "évier",
+     "evier",        "lavabo",   "baignoire", "douche",  "letto",       "tavolo",     "sedia",
+     "armadio",      "divano",   "poltrona",  "lavello", "vasca",       "doccia",     "cama",
+     "mesa",         "silla",    "sillon",    "armario", "ducha",       "cadeira",    "стол",
+     "стул",         "диван",    "кровать",   "шкаф",    "床",          "桌",         "椅",
+     "沙发",         "马桶"});
+
+/// The parts of a layer's name by ISO 13567-2 that count: the element by the tables of CI/SfB, and
+/// the presentation.
+struct IsoLayer {
+    int element = 0;          ///< two digits; 0: none
+    char presentation = '-';  ///< E element, T text, H hatching, D dimension, and others
+};
+
+/// Parses names such as A-21----E-: two characters of the agent, six of the element, two of the
+/// presentation.
+std::optional<IsoLayer> isoLayer(std::string_view name) {
+    constexpr std::size_t kLeast = 10;
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    if (name.size() < kLeast || name[0] < 'A' || name[0] > 'Z') return std::nullopt;
+    if (!std::all_of(name.begin(), name.end(), [&](char c) {
+            return is_digit(c) || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
+        }))
+        return std::nullopt;
+    const bool has_element = is_digit(name[2]) && is_digit(name[3]);
+    if (!has_element && name.substr(2, 6) != "------") return std::nullopt;
+    if (std::string_view("-EMATHDJKGUYPBFVIL").find(name[8]) == std::string_view::npos)
+        return std::nullopt;
+    return IsoLayer{has_element ? 10 * (name[2] - '0') + (name[3] - '0') : 0, name[8]};
+}
+
+bool showsElements(const IsoLayer& layer) {
+    return layer.presentation == 'E' || layer.presentation == 'M' || layer.presentation == '-';
+}
+
+/// Returns true for a layer of the National CAD Standard of a discipline that draws no walls, as
+/// E-POWR and P-FIXT: one letter, a hyphen and a group of four.
+bool isOtherDiscipline(std::string_view name) {
+    const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+    return name.size() >= 6 && std::string_view("EPMTFLVepmtflv").find(name[0]) < 14 &&
+           name[1] == '-' && std::all_of(name.begin() + 2, name.begin() + 6, is_letter) &&
+           (name.size() == 6 || name[6] == '-');
+}
+
+template <typename Words, typename Stems>
+bool hasWordOf(const std::vector<std::string>& words, const Words& whole, const Stems& stems) {
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+        return isOneOf(whole, word) ||
+               std::any_of(stems.begin(), stems.end(),
+                           [&](std::string_view stem) { return word.starts_with(stem); });
+    });
+}
+
+/// Splits a name into words in lower case: letters of ASCII, and all characters beyond ASCII.
+std::vector<std::string> wordsOf(std::string_view name) {
+    std::vector<std::string> words;
+    bool inside = false;
+    for (const char c : lowerCased(name)) {
+        const bool is_letter = (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80;
+        if (is_letter && !inside) words.emplace_back();
+        inside = is_letter;
+        if (is_letter) words.back() += c;
+    }
+    return words;
+}
+
+}  // namespace
+
+std::string lowerCased(std::string_view text) {
+    const auto lower = [](unsigned code) {
+        const bool is_even_upper =
+            (code >= 0x100 && code < 0x138) || (code >= 0x14A && code < 0x178);
+        const bool is_odd_upper =
+            (code >= 0x139 && code < 0x149) || (code >= 0x179 && code < 0x17F);
+        if ((code >= 0xC0 && code <= 0xDE && code != 0xD7) || (code >= 0x391 && code <= 0x3A9) ||
+            (code >= 0x410 && code <= 0x42F))
+            return code + 0x20;
+        if (code >= 0x400 && code <= 0x40F) return code + 0x50;
+        return (is_even_upper && code % 2 == 0) || (is_odd_upper && code % 2 == 1) ? code + 1
+                                                                                   : code;
+    };
+    std::string result(text);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        char& c = result[i];
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        if (utf8Length(std::string_view(result).substr(i)) != 2) continue;
+        const auto lead = static_cast<unsigned char>(c),
+                   trail = static_cast<unsigned char>(result[i + 1]);
+        const unsigned code = lower((lead & 0x1FU) << 6U | (trail & 0x3FU));
+        c = static_cast<char>(0xC0U | code >> 6U);
+        result[++i] = static_cast<char>(0x80U | (code & 0x3FU));
+    }
+    return result;
+}
+
+bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer) {
+    const std::string name = lowerCased(layer);
+    return std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
+        return Glob(lowerCased(glob)).matches(name);
+    });
+}
+
+bool isWallName(std::string_view name) {
+    if (const auto iso = isoLayer(name))
+        return showsElements(*iso) && (iso->element == 21 || iso->element == 22);
+    const std::vector<std::string> words = wordsOf(name);
+    if (std::any_of(words.begin(), words.end(),
+                    [](const std::string& word) { return isOneOf(kOtherWords, word); }))
+        return false;
+    return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+        return isOneOf(kWallWords, word) ||
+               std::any_of(kWallEnds.begin(), kWallEnds.end(),
+                           [&](std::string_view end) { return word.ends_with(end); });
+    });
+}
+
+bool isNoWallName(std::string_view name) {
+    if (const auto iso = isoLayer(name)) {
+        const int group = iso->element / 10;
+        return !showsElements(*iso) || group >= 4 ||
+               (group == 2 && iso->element != 21 && iso->element != 22 && iso->element != 28);
+    }
+    if (isWallName(name)) return false;
+    return isOtherDiscipline(name) || hasWordOf(wordsOf(name), kNoWallWords, kNoWallStems);
+}
+
+bool isDoorName(std::string_view name) {
+    if (const auto iso = isoLayer(name)) return showsElements(*iso) && iso->element == 32;
+    if (isNoWallName(name)) return false;
+    const std::vector<std::string> words = wordsOf(name);
+    return hasWordOf(words, kDoorWords, kDoorStems) ||
+           std::any_of(words.begin(), words.end(), [](const std::string& word) {
+               return std::any_of(kDoorEnds.begin(), kDoorEnds.end(),
+                                  [&](std::string_view end) { return word.ends_with(end); });
+           });
+}
+
+bool isWindowName(std::string_view name) {
+    if (const auto iso = isoLayer(name)) return showsElements(*iso) && iso->element == 31;
+    return !isNoWallName(name) && !isDoorName(name) &&
+           hasWordOf(wordsOf(name), kWindowWords, kWindowStems);
+}
+
+bool isThingName(std::string_view name) {
+    const std::vector<std::string> words = wordsOf(name);
+    return !isWallName(name) &&
+           (hasWordOf(words, kThingWords, std::array<std::string_view, 0>()) || isNoWallName(name));
+}
+
+}  // namespace ispace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/plan/layer_names.h"
+
+#include <gtest/gtest.h>
+
+namespace ispace {
+namespace {
+
+TEST(LayerNames, DoorsAndWindows) {
+    for (const char* name :
+         {"A-DOOR", "Doors", "Innentüren", "TÜREN", "PORTES", "puertas", "Deuren", "drzwi", "двери",
+          "门", "A-32----E-", "Serramenti", "ovet"}) {
+        EXPECT_TRUE(isDoorName(name)) << name;
+        EXPECT_FALSE(isWindowName(name)) << name;
+    }
+    for (const char* name : {"A-GLAZ", "Windows", "FENSTER", "fenêtres", "Ventanas", "janelas",
+                             "okna", "окна", "窗", "A-31----E-"}) {
+        EXPECT_TRUE(isWindowName(name)) << name;
+        EXPECT_FALSE(isDoorName(name)) << name;
+    }
+    for (const char* name : {"A-DOOR-IDEN", "door text", "Outdoor", "0", "A-WALL", "A-32----T-"})
+        EXPECT_FALSE(isDoorName(name)) << name;
+}
+
+TEST(LayerNames, OfStandards) {
+    for (const char* name : {"A-21----E-", "A-22----E-", "AR210000E-", "I-WALL", "A-WALL-FULL"})
+        EXPECT_TRUE(isWallName(name)) << name;
+    for (const char* name :
+         {"A-21----D-", "A-82----E-", "E-63----E-", "A-------G-", "A-24----E-", "E-LITE-EQPM",
+          "P-SANR-FIXT", "M-DUCT", "A-FLOR-STRS", "A-ANNO-TTLB", "A-CLNG", "I-FURN", "S-GRID",
+          "Blattrahmen", "CADRE", "Treppen", "escaleras", "楼梯"}) {
+        EXPECT_TRUE(isNoWallName(name)) << name;
+        EXPECT_FALSE(isWallName(name)) << name;
+    }
+    for (const char* name :
+         {"A-28----E-", "S-COLS", "Partitions", "E-Cloison", "Structural - Bearing"})
+        EXPECT_FALSE(isNoWallName(name)) << name;
+}
+
+TEST(LayerNames, OfBlocks) {
+    for (const char* name : {"Bed-Double", "SOFA_3_SEATS", "M_Chair", "Schrank", "马桶", "A-FURN"})
+        EXPECT_TRUE(isThingName(name)) << name;
+    for (const char* name : {"", "*U12", "Bedroom", "Wall-table", "Block3", "Bath"})
+        EXPECT_FALSE(isThingName(name)) << name;
+}
+
+}  // namespace
+}  // namespace ispace
