@@ -99,7 +99,7 @@ ROWS = {
     "radars": each("radar at={x},{y},1.5"),
     "microphones": heard("microphone at={x},{y},1", "speaker at={x},{y}"),
     "thermometers": zoned(heard("thermometer at={x},{y},1", "heater at={x},{y}")),
-    "people": each("human at={x},{y}"),
+    "people": each("human at={x},{y} height=0.6"),  # side by side in long lists, too
     "robots": each("robot at={x},{y} radius=0.05"),
     "storeys": storeys,
     "lifts": lifts,
