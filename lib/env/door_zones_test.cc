@@ -57,7 +57,10 @@ TEST(DoorZones, OneForEachDoor) {
 }
 
 TEST(DoorZones, RefusesWhatIsNone) {
-    EXPECT_EQ(refusal("door:frond,1"), "the room has no door `frond`, did you mean `front`?");
+    EXPECT_EQ(
+        refusal("door:frond,1"),
+        "the room has no door `frond`, did you mean `front`?; its doors: front (1.00 m), back "
+        "(0.90 m)");
     EXPECT_EQ(refusal("door:front"),
               "`door:front` is no zone: wanted door:GLOB,M, such as door:*,0.8");
     for (const char* text : {"door:*,", "door:*,0", "door:*,-1", "door:*,nan", "door:*,x"})

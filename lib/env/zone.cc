@@ -138,7 +138,8 @@ NamedZone readZone(std::string_view text, const Environment& environment) {
 namespace {
 
 constexpr std::string_view kDoor = "door:";
-constexpr int kChords = 16;  // per quarter circle
+constexpr int kChords = 16;             // per quarter circle
+constexpr std::size_t kMaxListed = 20;  // doors in a message
 
 }  // namespace
 
@@ -217,7 +218,11 @@ std::vector<DoorZone> doorZones(std::string_view text, const Environment& enviro
     const Glob doors(glob);
     std::vector<DoorZone> zones;
     std::vector<std::string> known;
+    std::string list;
     for (const Doorway& door : doorwaysOf(environment)) {
+        if (known.size() < kMaxListed)
+            list += (known.empty() ? "" : ", ") + door.id + " (" +
+                    formatFixed(distance(door.line.a, door.line.b), 2) + " m)";
         known.push_back(door.id);
         if (!doors.matches(door.id)) continue;
         zones.push_back(
@@ -226,9 +231,13 @@ std::vector<DoorZone> doorZones(std::string_view text, const Environment& enviro
               door.line.a + 0.5 * (door.line.b - door.line.a), false}});
     }
     if (zones.empty())
-        throw UsageError(known.empty()
-                             ? "the room has no doors, which " + excerpt(text) + " is about"
-                             : "the room has no door " + excerpt(glob) + didYouMean(glob, known));
+        throw UsageError(
+            known.empty() ? "the room has no doors, which " + excerpt(text) + " is about"
+                          : "the room has no door " + excerpt(glob) + didYouMean(glob, known) +
+                                "; its doors: " + list +
+                                (known.size() > kMaxListed
+                                     ? " and " + std::to_string(known.size() - kMaxListed) + " more"
+                                     : ""));
     return zones;
 }
 

@@ -148,11 +148,12 @@ void ImportRecords::cube(Point2 middle, double length, double width) {
     record.set("size", Tuple{wholeMicrometres(length), wholeMicrometres(width), wall_height_});
 }
 
-std::string ImportRecords::freeId(std::string_view name, const std::string& fallback) {
+std::string ImportRecords::freeId(std::string_view name, const std::string& fallback,
+                                  Letters letters) {
     std::string word;
     for (const char original : withPlainLetters(name)) {
-        const char c = lowerCase(original);
-        if (isIdCharacter(c))
+        const char c = letters == Letters::Lower ? lowerCase(original) : original;
+        if (isIdCharacter(lowerCase(c)))
             word += c;
         else if (!word.empty() && word.back() != '-')
             word += '-';

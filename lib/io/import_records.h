@@ -51,10 +51,13 @@ class ImportRecords {
     /// Sets a key of x,y.
     static void setPoint(Record& record, const char* key, Point2 point);
 
+    /// Letters of ids made from names: in lower case, or as the file has them.
+    enum class Letters : std::uint8_t { Lower, AsWritten };
     /// Returns a free id made from a name in a file: letters (without diacritics), digits and _ - .
     /// are kept, others become -; then "", "-2", "-3" … `fallback` if no readable character is
     /// left.
-    std::string freeId(std::string_view name, const std::string& fallback);
+    std::string freeId(std::string_view name, const std::string& fallback,
+                       Letters letters = Letters::Lower);
 
     void note(std::string sentence) { document_.notes.push_back(std::move(sentence)); }
     /// Adds a warning, shown without -v; `line` of the file, 0 for the file as a whole.
@@ -132,6 +135,8 @@ std::string_view trimmed(std::string_view text);
 
 /// Coordinates further out are surveyors', in metres.
 constexpr double kSurveyed = 100'000;
+/// Readers that move a plan to the origin accept coordinates up to this far out, in metres.
+constexpr double kMaxSurveyed = 1e8;
 /// Returns whole metres to subtract from surveyors' coordinates of a place; nothing for others.
 std::optional<Vec2> wayFromSurvey(Point2 place);
 /// Returns "moved by (-450000, -5400000) m: the drawing stands in surveyors' coordinates".

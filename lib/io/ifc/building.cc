@@ -141,7 +141,7 @@ void pack(Archive& archive, BuildingWall& wall) {
 }
 template <typename Archive>
 void pack(Archive& archive, BuildingOpening& opening) {
-    archive(opening.kind, opening.has_hole, opening.box);
+    archive(opening.kind, opening.has_hole, opening.storey, opening.name, opening.box);
 }
 template <typename Archive>
 void pack(Archive& archive, BuildingThing& thing) {
@@ -171,7 +171,8 @@ Building unpackedBuilding(std::string_view bytes) {
     for (const BuildingWall& wall : building.walls)
         Unpacker::check(wall.storey < building.storeys.size());
     for (const BuildingOpening& opening : building.openings)
-        Unpacker::check(opening.kind <= BuildingOpening::Kind::Hole);
+        Unpacker::check(opening.kind <= BuildingOpening::Kind::Hole &&
+                        opening.storey < building.storeys.size());
     return building;
 }
 

@@ -70,8 +70,10 @@ struct BuildingWall {
 struct BuildingOpening {
     enum class Kind : std::uint8_t { Door, Window, Hole };
     Kind kind = Kind::Door;
-    bool has_hole = false;  ///< false: the box is that of the door or window
-    BuildingBox box;        ///< the length lies along the wall if the file gives its direction
+    bool has_hole = false;     ///< false: the box is that of the door or window
+    std::uint64_t storey = 0;  ///< that the file assigns it to, else the one at its height
+    std::string name;          ///< of the door or window
+    BuildingBox box;           ///< the length lies along the wall if the file gives its direction
 };
 
 /// Furniture, fixtures, stairs and the like.

@@ -114,7 +114,8 @@ class BuildingReader {
         Product product{file_.read(id), {}, {}};
         try {
             product.frame = frames_.placement(product.instance[5].reference());
-            product.shape = shapes_.shapeOf(product.instance[6].reference());
+            product.shape = shapes_.shapeOf(product.instance[6].reference(),
+                                            product.instance.type.starts_with("IFCOPENING"));
         } catch (const UnreadGeometry& part) {
             ++out_.unread[part.what()];
         } catch (const std::runtime_error& error) {
@@ -289,10 +290,20 @@ class BuildingReader {
             std::max<std::ptrdiff_t>(above - out_.storeys.begin() - 1, 0));
     }
 
-    void addOpening(StepId id, BuildingOpening::Kind kind, bool has_hole, Vec2 axis) {
+    /// \param filler the door or window itself, or 0
+    /// \return false for an opening without a box
+    bool addOpening(StepId id, StepId filler, Vec2 axis) {
         auto box = boxAround(productOf(id).shape, axis);
-        if (!box && !has_hole) box = statedBox(id);
-        if (box) out_.openings.push_back({kind, has_hole, *box});
+        if (!box && id == filler) box = statedBox(id);
+        if (!box) return false;
+        BuildingOpening opening;
+        opening.kind = filler == 0 ? BuildingOpening::Kind::Hole : kindOf(file_.typeOf(filler));
+        opening.has_hole = id != filler;
+        opening.storey = storeyOf(id).value_or(storeyAtHeight(box->bottom));
+        if (filler != 0) opening.name = file_.read(filler)[2].text();
+        opening.box = *box;
+        out_.openings.push_back(std::move(opening));
+        return true;
     }
 
     /// The box of a door or window without a body, e.g. one of plates, by its height and width: its
@@ -342,13 +353,14 @@ class BuildingReader {
             !file_.typeOf(host).starts_with("IFCCURTAINWALL") && host != 0)
             return;  // in slabs and roofs
         const StepId filler = tree_.fillerOf(id);
-        addOpening(id, filler == 0 ? BuildingOpening::Kind::Hole : kindOf(file_.typeOf(filler)),
-                   true, axisOf(filler == 0 ? host : filler));
+        const bool is_added = addOpening(id, filler, axisOf(filler == 0 ? host : filler));
+        // Holes that a wall's mesh has already need no volume of their own.
+        if (!is_added && filler != 0) addOpening(filler, filler, axisOf(filler));
     }
 
     /// Adds a door or window that fills no hole.
     void addFiller(StepId id) {
-        if (!tree_.fillsHole(id)) addOpening(id, kindOf(file_.typeOf(id)), false, axisOf(id));
+        if (!tree_.fillsHole(id)) addOpening(id, id, axisOf(id));
     }
 
     void addThing(StepId id) {

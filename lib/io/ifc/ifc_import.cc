@@ -15,6 +15,7 @@
 #include "base/number.h"
 #include "env/environment.h"
 #include "geom/arrangement.h"
+#include "geom/predicates.h"
 #include "io/ifc/building.h"
 #include "io/ifc/step_file.h"
 #include "io/ifc/storey_import.h"
@@ -100,6 +101,47 @@ std::size_t storeyCalled(const Building& building, const std::string& wanted) {
            "; its storeys: " + listOf(building));
 }
 
+/// Returns true if a line from the point crosses no wall of the storey.
+bool seesOutside(const Building& building, std::uint64_t sections, Point2 from, Vec2 way) {
+    constexpr double kFar = 1000;  // metres, longer than buildings
+    const Segment2 ray{from, from + kFar * way};
+    return std::none_of(building.walls.begin(), building.walls.end(),
+                        [&](const BuildingWall& wall) {
+                            if (wall.storey != sections) return false;
+                            const Vec2 u = wall.box.length / 2 * wall.box.along;
+                            const Vec2 v = wall.box.width / 2 * perpendicular(wall.box.along);
+                            const Point2 c = wall.box.center;
+                            return intersects(ray, {c - u - v, c + u + v}) ||
+                                   intersects(ray, {c - u + v, c + u - v});
+                        });
+}
+
+/// Computes for each storey whether one of its doors has a room on one side alone: a space, or in a
+/// storey without spaces anything between walls.
+std::vector<bool> storeysWithOuterDoors(const Building& building) {
+    constexpr double kBeside = 0.3;  // metres from the door's box
+    std::vector<bool> outer(building.storeys.size(), false);
+    std::vector<std::vector<Region>> spaces(building.storeys.size());
+    for (const BuildingSpace& space : building.spaces)
+        for (Region& part : areaOf(space.outline)) spaces[space.storey].push_back(std::move(part));
+    for (const BuildingOpening& door : building.openings) {
+        if (door.kind != BuildingOpening::Kind::Door || outer[door.storey]) continue;
+        const BuildingBox& box = door.box;
+        const Vec2 across = box.length >= box.width ? perpendicular(box.along) : box.along;
+        const double off = std::min(box.length, box.width) / 2 + kBeside;
+        const auto isOutside = [&](Vec2 way) {
+            const Point2 beside = box.center + off * way;
+            if (spaces[door.storey].empty())
+                return seesOutside(building, storeyOfSections(building, door.storey), beside, way);
+            return std::none_of(
+                spaces[door.storey].begin(), spaces[door.storey].end(),
+                [beside](const Region& space) { return space.locate(beside) != Side::Outside; });
+        };
+        outer[door.storey] = isOutside(across) != isOutside(-across);
+    }
+    return outer;
+}
+
 }  // namespace
 
 double areaOfSection(const BuildingSection& section) { return totalArea(areaOf(section)); }
@@ -116,9 +158,13 @@ std::size_t chosenStorey(const Building& building, const ImportOptions& options)
     if (options.slice_walls)
         for (std::size_t i = count; i-- > 0;)
             if (building.storeys[i].elevation <= *options.slice_walls) return i;
-    // The ground floor, and not the cellar: a storey with doors whose floor is near to 0.
+    // The ground floor, and not the cellar: a storey with a door to the outside whose floor is near
+    // to 0, else with any door.
+    const std::vector<bool> outer = storeysWithOuterDoors(building);
     std::optional<std::size_t> ground;
-    const auto off = [&](std::size_t i) { return std::abs(building.storeys[i].elevation); };
+    const auto off = [&](std::size_t i) {
+        return std::pair(!outer[i], std::abs(building.storeys[i].elevation));
+    };
     for (std::size_t i = 0; i < count; ++i)
         if (building.storeys[i].doors > 0 && (!ground || off(i) < off(*ground))) ground = i;
     if (ground) return *ground;

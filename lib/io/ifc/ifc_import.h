@@ -13,8 +13,9 @@
 namespace ispace {
 
 /// Finds the storey that ImportOptions::storey names: by its name, as BUILDING/NAME, or by its
-/// number, from 1 for the lowest; else the one that ImportOptions::slice_walls cuts, else the
-/// lowest that has spaces or doors, else the lowest with walls.
+/// number, from 1 for the lowest; else the one that ImportOptions::slice_walls cuts, else of those
+/// with a door to the outside, or with any door, the one nearest to height 0, else the lowest with
+/// spaces, else the lowest with walls.
 /// \throws FormatError (without a file) for a missing storey, an ambiguous name, and `all`
 std::size_t chosenStorey(const Building& building, const ImportOptions& options);
 

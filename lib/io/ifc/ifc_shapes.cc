@@ -80,7 +80,7 @@ void IfcShapes::append(IfcShape& shape, const IfcShape& part, const IfcFrame& fr
     }
 }
 
-IfcShape IfcShapes::shapeOf(StepId definition) {
+IfcShape IfcShapes::shapeOf(StepId definition, bool is_hole) {
     std::vector<std::pair<int, StepInstance>> ranked;
     const StepInstance all = frames_.file().read(definition);
     const auto check = [this](StepId id, const StepInstance& read) {
@@ -91,7 +91,8 @@ IfcShape IfcShapes::shapeOf(StepId definition) {
         curves_.pay(1, "shared shapes");
         StepInstance representation = frames_.file().read(value.reference());
         check(value.reference(), representation);
-        if (const int rank = rankOf(representation); rank > 0)
+        const bool is_reference = is_hole && representation[1].text() == "Reference";
+        if (const int rank = is_reference ? 1 : rankOf(representation); rank > 0)
             ranked.emplace_back(rank, std::move(representation));
     }
     IfcShape shape;

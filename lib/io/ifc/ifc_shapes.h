@@ -54,10 +54,11 @@ class IfcShapes {
 
     /// Reads the body of a product in its own frame: from its IfcProductDefinitionShape the
     /// representation `Body`, else another one with solids; if there is none, its footprint, 2.5 m
-    /// high, or its box. Counts unsupported parts.
+    /// high, or its box. Counts unsupported parts. \param is_hole the representation `Reference`,
+    /// in which openings of tessellated walls have their volume, serves, too
     /// \throws std::runtime_error for more than kMaxCorners, and if shapes require more work
     /// than is left
-    IfcShape shapeOf(StepId definition);
+    IfcShape shapeOf(StepId definition, bool is_hole = false);
     /// Takes the work for solids that are read, copied or cut again.
     /// \throws std::runtime_error, which begins with the cause, if it is more than is left
     void pay(std::span<const IfcSolid> part, const char* cause, std::size_t times = 1);

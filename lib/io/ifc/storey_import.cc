@@ -10,6 +10,7 @@
 
 #include "base/message.h"
 #include "base/number.h"
+#include "env/environment.h"
 #include "io/ifc/ifc_import.h"
 #include "io/ifc/storey_plan.h"
 #include "io/plan/plan_rooms.h"
@@ -24,6 +25,8 @@ constexpr double kThinnestThing = 0.01;
 constexpr double kMaxProxy = 5;  // metres, both ways: larger proxies are terrain or a building
 constexpr double kMaxRailing = 0.3;
 constexpr double kAreaDiffers = 0.1;  // share
+constexpr double kAtCut = 0.02;  // metres around the reading height that an opening reaches over
+constexpr int kMaxFills = 12;    // windows in a row whose wall is filled one after another
 
 /// Writes the records of a storey.
 class StoreyImport {
@@ -54,6 +57,7 @@ class StoreyImport {
         writeSpaces();
         writeThings();
         writeRooms(rooms_, options_, out_);
+        mustEnclose();
     }
 
   private:
@@ -107,7 +111,29 @@ class StoreyImport {
                bottom < std::min(floor_ + height_, ceiling_) - 0.1;
     }
 
+    /// Fills the gaps that openings leave in walls whose bodies have them already, so that these
+    /// are read as whole walls with openings are.
+    void fillWalls() {
+        const double cut = building_.storeys[storey_].cut;
+        for (int i = 0; i < kMaxFills; ++i) {
+            std::vector<Polygon> parts;
+            const WallFaces faces(walls_, work_);
+            for (const BuildingOpening& opening : building_.openings) {
+                if (!isHere(opening) || opening.box.bottom > cut - kAtCut ||
+                    opening.box.top < cut + kAtCut)
+                    continue;
+                const bool is_row =
+                    opening.has_hole && opening.kind != BuildingOpening::Kind::Hole && i > 0;
+                if (auto part = faces.missingWall(opening.box, is_row))
+                    parts.push_back(*std::move(part));
+            }
+            if (parts.empty() && i > 0) return;
+            if (!parts.empty()) addPieces(walls_, parts);
+        }
+    }
+
     void takeOpenings() {
+        fillWalls();
         std::vector<BuildingBox> bent;  // holes in curved walls
         {
             const WallFaces faces(walls_, work_);
@@ -130,14 +156,17 @@ class StoreyImport {
             if (other == openings_.end())
                 openings_.push_back(*std::move(found));
             else if (kindOf(*other) == BuildingOpening::Kind::Hole)
-                fillers_[other->opening] = opening.kind;
+                fillers_[other->opening] = i;
         }
     }
 
     /// The kind of an opening, or of the door or window that stands in a hole without a relation.
     [[nodiscard]] BuildingOpening::Kind kindOf(const StoreyOpening& opening) const {
+        return filling(opening).kind;
+    }
+    [[nodiscard]] const BuildingOpening& filling(const StoreyOpening& opening) const {
         const auto filler = fillers_.find(opening.opening);
-        return filler == fillers_.end() ? building_.openings[opening.opening].kind : filler->second;
+        return building_.openings[filler == fillers_.end() ? opening.opening : filler->second];
     }
 
     /// Finds another opening that removes the same part of a wall, e.g. for two leaves of one door.
@@ -199,6 +228,21 @@ class StoreyImport {
                 "another --storey");
     }
 
+    /// Inside points that are computed here are no fault of the user.
+    /// \throws FormatError (without a file) if the written walls do not enclose one
+    void mustEnclose() {
+        if (!options_.inside.empty() || !rooms_.writes_inside) return;
+        written_.insert(written_.end(), rooms_.closing.begin(), rooms_.closing.end());
+        const PlanFaces faces(written_, work_);
+        for (const PlanRegion& region : rooms_.regions)
+            if (faces.groupAt(region.inside) == nullptr)
+                failFile("", "storey " + storeyWord(building_, storey_) +
+                                 ": the walls that were read leave the room of " +
+                                 areaText(region.area()) + " around " + placeText(region.inside) +
+                                 " open: try another height with --slice-walls, wider gaps with "
+                                 "--close-gaps, another room with --inside, or another --storey");
+    }
+
     [[nodiscard]] bool isKept(Point2 p) const {
         if (rooms_.regions.empty()) return true;
         for (const PlanRegion& region : rooms_.regions)
@@ -219,6 +263,8 @@ class StoreyImport {
             for (const Polygon& curve : curves)
                 for (std::size_t i = 0; i < curve.size(); ++i) bounds = keep[line++] || bounds;
             for (const Polygon& curve : curves) {
+                if (bounds)
+                    forEachEdge(curve, [this](const Segment2& edge) { written_.push_back(edge); });
                 ids_.push_back(bounds ? out_.freeId("w" + std::to_string(ids_.size() + 1), "w")
                                       : "");
                 if (bounds) out_.fence({curve, true, 0}, ids_.back(), height_);
@@ -226,18 +272,32 @@ class StoreyImport {
             if (!bounds) ++left_out_;
         }
         for (const Segment2& sheet : walls_.sheets)
-            if (keep[line++]) out_.fence({{sheet.a, sheet.b}, false, 0}, "", height_);
+            if (keep[line++]) {
+                out_.fence({{sheet.a, sheet.b}, false, 0}, "", height_);
+                written_.push_back(sheet);
+            }
+    }
+
+    /// Computes whether the lines of openings across gaps bound the rooms, or lie in them.
+    [[nodiscard]] std::vector<bool> keptOpenings() const {
+        if (rooms_.regions.empty()) return std::vector<bool>(openings_.size(), true);
+        std::vector<Segment2> lines;
+        for (const StoreyOpening& opening : openings_) lines.push_back(opening.line);
+        return belongsTo(rooms_.regions, lines);
     }
 
     void writeOpenings() {
-        for (const StoreyOpening& opening : openings_) {
+        const std::vector<bool> kept = keptOpenings();
+        for (std::size_t i = 0; i < openings_.size(); ++i) {
+            const StoreyOpening& opening = openings_[i];
             const BuildingOpening& one = building_.openings[opening.opening];
             std::string wall = opening.curve ? ids_[*opening.curve] : "";
             if (opening.curve && wall.empty()) continue;
             if (!opening.curve) {
-                if (!isKept(one.box.center)) continue;
+                if (!kept[i]) continue;
                 wall = out_.freeId("gap", "gap");
                 out_.wall(opening.line, wall, 0, height_);
+                written_.push_back(opening.line);
             }
             const bool is_door = isPassage(opening);
             const double sill =
@@ -245,6 +305,10 @@ class StoreyImport {
             const double height = std::min(one.box.top - floor_, height_) - sill;
             if (height < kThinnestThing) continue;
             Record& record = out_.add(is_door ? "door" : "window", 0);
+            const std::string& name = filling(opening).name;
+            if (is_door && !name.empty())
+                record.set("id", out_.freeId(name.substr(0, name.find(':')), "door",
+                                             ImportRecords::Letters::AsWritten));
             record.set("wall", wall);
             ImportRecords::setPoint(record, "from", opening.line.a);
             ImportRecords::setPoint(record, "to", opening.line.b);
@@ -353,9 +417,10 @@ class StoreyImport {
     double height_ = 0;  // of the walls
     std::vector<Room> spaces_;
     std::vector<StoreyOpening> openings_;
-    std::map<std::size_t, BuildingOpening::Kind> fillers_;  // by opening: what stands in holes
-    std::vector<Segment2> lines_;   // of all walls, in the order of their curves; then sheets
-    std::vector<std::string> ids_;  // of the curves; "": left out
+    std::map<std::size_t, std::size_t> fillers_;  // by hole: the door or window that stands in it
+    std::vector<Segment2> lines_;    // of all walls, in the order of their curves; then sheets
+    std::vector<std::string> ids_;   // of the curves; "": left out
+    std::vector<Segment2> written_;  // walls, also across gaps
     PlanRooms rooms_;
     std::size_t not_in_walls_ = 0, left_out_ = 0;
 };

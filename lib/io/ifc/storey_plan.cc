@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "geom/arrangement.h"
@@ -24,6 +25,9 @@ constexpr double kHoleReach = 0.05, kDoorReach = 0.5;
 constexpr double kThickestPane = 0.5;  // metres
 constexpr double kJambReach = 0.4;     // beyond a door to the ends of walls beside it
 constexpr double kMaxThrough = 0.99;   // metres: thickest wall that an opening goes through
+constexpr double kThinnestWall = 0.01;
+constexpr double kBesideWall = 0.1;  // metres between the face of a wall and a door in front of it
+constexpr double kIntoWall = 0.002;  // that a part overlaps the walls which it joins
 
 std::vector<Segment2> linesOf(std::span<const Region> solids) {
     std::vector<Segment2> lines;
@@ -157,6 +161,63 @@ bool WallFaces::isInWall(Point2 p) const {
                        [p](const Region& solid) { return solid.locate(p) != Side::Outside; });
 }
 
+std::optional<WallFaces::Jamb> WallFaces::jambBeside(const BuildingBox& box, double side) const {
+    const Vec2 u = box.along, v = perpendicular(u);
+    const double half = box.length / 2, beyond = box.width / 2 + kBesideWall;
+    Box2 window;
+    for (const double x : {side * half / 2, side * (half + kJambReach)})
+        for (const double y : {-beyond, beyond}) window.add(box.center + x * u + y * v);
+    std::optional<Jamb> nearest;
+    for (const std::size_t i : search_.near(window, 0)) {
+        const Segment2& line = faces_[i].line;
+        const Vec2 along = line.b - line.a;
+        const double l = length(along);
+        if (std::abs(dot(u, along)) > kParallel * l || side * cross(u, along) >= 0) continue;
+        const double from = dot(line.a - box.center, v), to = dot(line.b - box.center, v);
+        Jamb jamb;
+        jamb.slope = dot(along, u) / dot(along, v);
+        jamb.at = dot(line.a - box.center, u) - jamb.slope * from;
+        std::tie(jamb.low, jamb.high) = std::minmax({from, to});
+        const double off = side * jamb.at;
+        if (off < half / 2 || off > half + kJambReach ||
+            std::min(jamb.high, beyond) - std::max(jamb.low, -beyond) < kThinnestWall)
+            continue;
+        if (!nearest || off < side * nearest->at) nearest = jamb;
+    }
+    return nearest;
+}
+
+std::optional<Polygon> WallFaces::missingWall(const BuildingBox& box, bool from_one_end) const {
+    BuildingBox turned = box;
+    turned.along = perpendicular(box.along);
+    std::swap(turned.length, turned.width);
+    if (isInWall(box.center)) return std::nullopt;
+    for (const BuildingBox* const one : {&box, static_cast<const BuildingBox*>(&turned)}) {
+        if (one->length < kMinWidth) continue;
+        std::optional<Jamb> left = jambBeside(*one, -1), right = jambBeside(*one, 1);
+        const bool may_end = from_one_end && one->length >= one->width;
+        if ((!left || !right) && !((left || right) && may_end)) continue;
+        const auto boxEnd = [&](const Jamb& other, double at) {
+            return Jamb{at, 0, other.low, other.high};
+        };
+        const double into_left = left ? kIntoWall : 0, into_right = right ? kIntoWall : 0;
+        if (!left) left = boxEnd(*right, -one->length / 2);
+        if (!right) right = boxEnd(*left, one->length / 2);
+        const double low = std::max(left->low, right->low);
+        const double high = std::min(left->high, right->high);
+        if (high - low < kThinnestWall || high - low > kMaxThrough) continue;
+        const Vec2 u = one->along, v = perpendicular(u);
+        const auto at = [&](const Jamb& jamb, double into, double y) {
+            return wholeMicrometres(one->center + (jamb.at + jamb.slope * y + into) * u + y * v);
+        };
+        Polygon part{at(*left, -into_left, low), at(*right, into_right, low),
+                     at(*right, into_right, high), at(*left, -into_left, high)};
+        if (isInWall(part[0] + 0.5 * (part[2] - part[0]))) return std::nullopt;
+        return part;
+    }
+    return std::nullopt;
+}
+
 void carve(StoreyWalls& walls, std::span<const BuildingBox> holes) {
     constexpr double kBeyond = 0.02;
     std::vector<Polygon> boxes;
@@ -171,9 +232,10 @@ void carve(StoreyWalls& walls, std::span<const BuildingBox> holes) {
 
 namespace {
 
-constexpr double kMeet = 0.002;     // metres between walls that should meet
-constexpr double kStraight = 1e-4;  // within which corners lie on a face where another wall ends
-constexpr double kTouch = 0.01;     // and between a column and the wall it belongs to
+constexpr double kMeet = 0.002;       // metres between walls that should meet
+constexpr double kStraight = 1e-4;    // within which corners lie on a face where another wall ends
+constexpr double kTouch = 0.01;       // and between a column and the wall it belongs to
+constexpr double kSameCorner = 1e-5;  // exporters round ends of walls that should meet
 
 Layer layerOf(std::span<const Polygon> curves) {
     Layer layer;
@@ -277,21 +339,44 @@ bool touches(const BuildingBox& box, std::span<const Segment2> edges, const Near
     return touch;
 }
 
-/// Rounds corners to whole micrometres and removes spikes that this creates.
+/// Rounds corners to whole micrometres, merges those that are as near as rounding, and removes
+/// spikes that this creates.
 void tidy(Polygon& curve) {
     Polygon kept;
     const auto drop_spike = [&kept] {
-        while (kept.size() > 2 && kept.back() == kept[kept.size() - 3])
+        while (kept.size() > 2 && distance(kept.back(), kept[kept.size() - 3]) <= kSameCorner)
             kept.resize(kept.size() - 2);
     };
     for (const Point2 p : curve) {
         const Point2 rounded = wholeMicrometres(p);
-        if (!kept.empty() && kept.back() == rounded) continue;
+        if (!kept.empty() && distance(kept.back(), rounded) <= kSameCorner) continue;
         kept.push_back(rounded);
         drop_spike();
     }
-    while (kept.size() > 1 && kept.front() == kept.back()) kept.pop_back();
+    while (kept.size() > 1 && distance(kept.front(), kept.back()) <= kSameCorner) kept.pop_back();
     curve = std::move(kept);
+}
+
+/// Rounds the corners of regions as tidy(), and removes curves without area.
+void tidy(std::vector<Region>& regions) {
+    for (Region& region : regions) {
+        tidy(region.outline);
+        for (Polygon& hole : region.holes) tidy(hole);
+        std::erase_if(region.holes, [](const Polygon& hole) { return hole.size() < 3; });
+    }
+    std::erase_if(regions, [](const Region& region) { return region.outline.size() < 3; });
+}
+
+/// Sets the solids to the union of layers, with straight faces where walls meet.
+void unite(StoreyWalls& walls, std::span<const Layer> layers) {
+    walls.solids = united(layers);
+    const std::vector<Polygon> simple = simplified(curvesOf(walls.solids), kStraight);
+    auto next = simple.begin();
+    for (Region& solid : walls.solids) {
+        solid.outline = *next++;
+        for (Polygon& hole : solid.holes) hole = *next++;
+    }
+    tidy(walls.solids);
 }
 
 double heightOfMost(std::vector<std::pair<double, double>> tops) {
@@ -308,7 +393,17 @@ double heightOfMost(std::vector<std::pair<double, double>> tops) {
 std::vector<Region> areaOf(const BuildingSection& section) {
     std::vector<Layer> layers;
     for (const std::vector<Polygon>& part : partsOf(section)) layers.push_back(layerOf(part));
-    return united(layers);
+    std::vector<Region> regions = united(layers);
+    tidy(regions);
+    return regions;
+}
+
+void addPieces(StoreyWalls& walls, std::span<const Polygon> pieces) {
+    std::vector<Layer> layers;
+    layers.reserve(walls.solids.size() + pieces.size());
+    for (const Region& solid : walls.solids) layers.push_back(layerOf(curvesOf(solid)));
+    for (const Polygon& piece : pieces) layers.push_back(layerOf({&piece, 1}));
+    unite(walls, layers);
 }
 
 std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey) {
@@ -328,10 +423,13 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) 
         if (wall.storey != storey || wall.is_column) continue;
         for (std::vector<Polygon>& part : partsOf(wall.section))
             pieces.push_back({std::move(part)});
-        for (const Polygon& sheet : wall.section.sheets)
-            for (std::size_t i = 1; i < sheet.size(); ++i)
-                walls.sheets.push_back(
-                    {wholeMicrometres(sheet[i - 1]), wholeMicrometres(sheet[i])});
+        for (const Polygon& sheet : wall.section.sheets) {
+            Polygon line{wholeMicrometres(sheet.front())};
+            for (const Point2 p : sheet)
+                if (distance(p, line.back()) > kSameCorner) line.push_back(wholeMicrometres(p));
+            for (std::size_t i = 1; i < line.size(); ++i)
+                walls.sheets.push_back({line[i - 1], line[i]});
+        }
         (wall.is_inside ? tops : other_tops).emplace_back(wall.box.top, wall.box.length);
     }
     std::vector<std::size_t> owners;
@@ -351,15 +449,7 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) 
     std::vector<Layer> layers;
     layers.reserve(pieces.size());
     for (const WallCurves& piece : pieces) layers.push_back(layerOf(piece.curves));
-    walls.solids = united(layers);
-    const std::vector<Polygon> simple = simplified(curvesOf(walls.solids), kStraight);
-    auto next = simple.begin();
-    for (Region& solid : walls.solids) {
-        tidy(solid.outline = *next++);
-        for (Polygon& hole : solid.holes) tidy(hole = *next++);
-        std::erase_if(solid.holes, [](const Polygon& hole) { return hole.size() < 3; });
-    }
-    std::erase_if(walls.solids, [](const Region& solid) { return solid.outline.size() < 3; });
+    unite(walls, layers);
     return walls;
 }
 

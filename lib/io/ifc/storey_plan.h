@@ -42,6 +42,9 @@ struct StoreyOpening {
 /// Subtracts holes from the walls where their faces are not straight.
 void carve(StoreyWalls& walls, std::span<const BuildingBox> holes);
 
+/// Merges further pieces into the walls.
+void addPieces(StoreyWalls& walls, std::span<const Polygon> pieces);
+
 /// Finds the faces of walls that openings go through.
 class WallFaces {
   public:
@@ -54,6 +57,14 @@ class WallFaces {
     /// \param is_hole the box is that of a hole, which goes through all faces in it; else that of a
     /// door or window itself, which takes the nearest faces within 0.5 m
     [[nodiscard]] std::optional<StoreyOpening> find(const BuildingBox& box, bool is_hole) const;
+
+    /// Returns the part of a wall that is missing at a box: from the end of the wall on one side of
+    /// the box to that on the other, as thick as both, and a little into them. std::nullopt if
+    /// there is a wall, or no end of one within 0.4 m of a side.
+    /// \param from_one_end without an end on the other side the box itself ends the part, as of
+    /// one window in a row of them
+    [[nodiscard]] std::optional<Polygon> missingWall(const BuildingBox& box,
+                                                     bool from_one_end) const;
 
   private:
     struct Face {
@@ -69,6 +80,12 @@ class WallFaces {
     [[nodiscard]] std::vector<Beside> facesBeside(const BuildingBox& box, double reach) const;
     [[nodiscard]] std::optional<StoreyOpening> through(const BuildingBox& box, bool is_hole) const;
     [[nodiscard]] std::optional<StoreyOpening> across(const BuildingBox& box) const;
+    /// The end of a wall beside a box, in the frame of the box.
+    struct Jamb {
+        double at = 0, slope = 0;  ///< x = at + slope * y
+        double low = 0, high = 0;  ///< of y
+    };
+    [[nodiscard]] std::optional<Jamb> jambBeside(const BuildingBox& box, double side) const;
     [[nodiscard]] bool isInWall(Point2 p) const;
 
     const StoreyWalls& walls_;
