@@ -17,6 +17,7 @@
 #include "geom/arrangement.h"
 #include "geom/predicates.h"
 #include "io/ifc/building.h"
+#include "io/ifc/ifc_zip.h"
 #include "io/ifc/step_file.h"
 #include "io/ifc/storey_import.h"
 #include "io/ifc/storey_plan.h"
@@ -265,6 +266,7 @@ void listRooms(const Building& building, std::size_t first, std::size_t end,
 }  // namespace
 
 bool isIfc(std::string_view bytes) {
+    if (isIfcZip(bytes)) return true;
     bytes = bytes.substr(0, 1 << 16);
     const std::size_t schema = bytes.find("FILE_SCHEMA");
     return beginsAsStep(bytes) && schema != std::string_view::npos &&
@@ -276,6 +278,14 @@ namespace {
 
 Building wholeBuilding(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, Budget& work) {
+    std::string unpacked;
+    if (isIfcZip(bytes)) {
+        unpacked = unzippedIfc(bytes, operand, work);
+        work.grant(unpacked.size());
+        bytes = unpacked;
+        if (!beginsAsStep(bytes))
+            failFile(operand, "a zip archive whose .ifc is no STEP file: export it as IFC-SPF");
+    }
     if (bytes.find("END-ISO-10303-21") == std::string_view::npos)
         failFile(operand, "truncated: the building ends without `END-ISO-10303-21;`");
     return readBuildingInChild(bytes, operand, options.slice_walls, work);

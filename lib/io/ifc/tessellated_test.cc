@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Buildings as exporters of tessellated geometry write them: holes in meshes, gaps, rounding.
+// Buildings as exporters of tessellated geometry write them: holes in meshes, gaps, rounding, zip.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "env/zone.h"
 #include "io/ifc/building.h"
 #include "io/ifc/ifc_import.h"
+#include "io/ifc/ifc_zip.h"
 #include "io/ifc/storey_plan.h"
 #include "io/importers.h"
 #include "support/test_ifc_house.h"
@@ -133,6 +135,65 @@ TEST(Ifc, TheStoreyWithTheFrontDoorIsRead) {
     for (BuildingSpace& space : building.spaces) space.storey = 1;  // by walls: none, both outside
     building.openings[1].storey = 0;
     EXPECT_EQ(chosenStorey(building, {}), 0U);
+}
+
+std::uint32_t crcOf(const std::string& text) {
+    return static_cast<std::uint32_t>(
+        crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())));
+}
+
+/// Builds an archive of one file, deflated. \param stated its size
+std::string zipOf(const std::string& name, const std::string& text, std::uint32_t stated) {
+    std::string packed(compressBound(static_cast<uLong>(text.size())) + 64, '\0');
+    z_stream stream{};
+    deflateInit2(&stream, 9, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = static_cast<uInt>(text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+    stream.avail_out = static_cast<uInt>(packed.size());
+    deflate(&stream, Z_FINISH);
+    packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    std::string fields;  // of both headers, from the version on
+    for (const int word : {20, 0, 8, 0, 0}) appendLittle(fields, static_cast<std::uint16_t>(word));
+    appendLittle(fields, crcOf(text));
+    appendLittle(fields, static_cast<std::uint32_t>(packed.size()));
+    appendLittle(fields, stated);
+    appendLittle(fields, static_cast<std::uint16_t>(name.size()));
+    appendLittle(fields, std::uint16_t{0});
+    std::string zip = "PK\3\4" + fields + name + packed;
+    const auto directory = static_cast<std::uint32_t>(zip.size());
+    zip += "PK\1\2";
+    appendLittle(zip, std::uint16_t{20});
+    zip += fields + std::string(14, '\0') + name;
+    const std::uint32_t size = static_cast<std::uint32_t>(zip.size()) - directory;
+    zip += std::string("PK\5\6\0\0\0\0\1\0\1\0", 12);
+    appendLittle(zip, size);
+    appendLittle(zip, directory);
+    return zip + std::string(2, '\0');
+}
+
+TEST(IfcZip, Opens) {
+    const std::string text = ifcHouse({});
+    const std::string zip = zipOf("House.IFC", text, static_cast<std::uint32_t>(text.size()));
+    ASSERT_TRUE(isIfc(zip));
+    EXPECT_EQ(unzippedIfc(zip, "house.ifczip", ampleWork()), text);
+    EXPECT_NEAR(environmentOf(read(zip)).indoor().area(), IfcHouse::kArea, 1e-3);
+    EXPECT_FALSE(isIfc(zipOf("plan.svg", text, 1)));
+}
+
+TEST(IfcZip, RefusesBombsAndDamage) {
+    const std::string text = ifcHouse({});
+    const auto refusal = [&](const std::string& zip) {
+        Budget work(zip.size());
+        return errorsOf([&] { (void)unzippedIfc(zip, "house.ifczip", work); });
+    };
+    EXPECT_NE(refusal(zipOf("a.ifc", text, 4'000'000'000U)).find("units of work"),
+              std::string::npos);
+    std::string damaged = zipOf("a.ifc", text, static_cast<std::uint32_t>(text.size()));
+    damaged[damaged.size() / 2] ^= 1;
+    EXPECT_NE(refusal(damaged).find("damaged zip archive"), std::string::npos) << refusal(damaged);
+    EXPECT_NE(refusal(damaged.substr(0, 100)).find("damaged zip archive"), std::string::npos);
 }
 
 }  // namespace
