@@ -103,7 +103,7 @@ class HeaderReader {
             return {};
         }
         const auto entry = [&](std::size_t i) {
-            return number(node[i], "origin", -kMaxPlanCoordinate, kMaxPlanCoordinate);
+            return number(node[i], "origin", -kMaxSurveyed, kMaxSurveyed);
         };
         Pose2 pose;
         pose.position = {entry(0), entry(1)};
@@ -222,10 +222,14 @@ bool isRosMap(std::string_view bytes) {
 
 Document readRosMap(std::string_view yaml, const std::string& name, const ImportOptions& options,
                     const Schemas& schemas) {
-    const MapHeader header = readHeader(yaml, name);
+    MapHeader header = readHeader(yaml, name);
     const std::string path = sideFilePath(name, header.image);
     ImportRecords out(schemas, name, options);
     out.source(path);
+    if (const auto way = wayFromSurvey(header.map_from_grid.position)) {
+        header.map_from_grid.position = header.map_from_grid.position - *way;
+        out.tell(surveyText(*way, "map"));
+    }
     const CellMap map = readCells(header, path, name, options, out);
     writeCellMap(map, {path, "check `negate` and `free_thresh` of the map"}, options, out);
     return out.take();

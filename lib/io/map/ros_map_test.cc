@@ -195,8 +195,8 @@ TEST_F(RosMap, FindingsNameTheirPlace) {
         errorsOf("image: map.pgm\nresolution: 0.05\norigin: [1]\n"),
         "map.yaml:3:9: error: `origin`: wanted a list of two or three numbers, [x, y, yaw]\n");
     EXPECT_EQ(errorsOf("image: map.pgm\nresolution: 0.05\norigin: [1, .inf]\n"),
-              "map.yaml:3:13: error: `origin`: found `.inf`, wanted a number from -900000 to "
-              "900000\n");
+              "map.yaml:3:13: error: `origin`: found `.inf`, wanted a number from -100000000 to "
+              "100000000\n");
     EXPECT_EQ(errorsOf("image: [a]\nresolution: [1]\norigin: [1, 2]\n"),
               "map.yaml:1:8: error: `image`: wanted the name of a picture\n"
               "map.yaml:2:13: error: `resolution`: found a list or map, wanted a number from 0.001 "

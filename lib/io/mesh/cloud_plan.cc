@@ -11,6 +11,7 @@
 
 #include "base/budget.h"
 #include "base/number.h"
+#include "env/environment.h"
 #include "geom/polygon.h"
 #include "io/import_records.h"
 #include "io/importers.h"
@@ -38,6 +39,10 @@ constexpr int kHeadings = 90;         // rectangle headings that are tried
 /// Widths of gaps between points, tried in this order; wider ones are doors.
 constexpr std::array kGaps{0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.2};
 constexpr double kGapOfPoints = 0.3;
+
+/// Some points of a cloud lie kilometres away: reflections, and slips of a digit.
+constexpr double kStrayShare = 0.001;  // of all points, beyond each end of their bulk
+constexpr double kBeside = 1;          // width of the bulk, in which points beside it belong to it
 
 /// Lowest and highest of some points.
 struct PointBox {
@@ -106,12 +111,15 @@ class CloudPlan {
     void measure() {
         PointBox all, band;
         std::size_t in_band = 0;
+        cell_ = options_.resolution.value_or(kCell);
         file_.forEach([&](const Point3& p) {
             all.add(p);
             if (!isInBand(p)) return;
             band.add(p);
             ++in_band;
         });
+        PointBox bulk = band;
+        if (in_band > 0 && cellsOver(band) > kMaxCells) bulk = bulkOf(band, in_band);
         const std::string reach = "its points reach from " + formatFixed(all.low.z, 2) + " m to " +
                                   formatFixed(all.high.z, 2) + " m in height";
         if (!options_.slice_top)
@@ -123,10 +131,12 @@ class CloudPlan {
         if (in_band == 0)
             failFile(name_, "no point lies between the heights of --slice-walls: " + reach +
                                 "; are --units and --up right?");
-        cell_ = options_.resolution.value_or(kCell);
         // The outermost walls lie in the middle of their cells.
         // A disc as wide as a gap must fit outside.
         const double rim = kRim + std::ceil(options_.close_gaps.value_or(kGaps.back()) / cell_);
+        if (bulk.high.x < band.high.x || bulk.high.y < band.high.y || bulk.low.x > band.low.x ||
+            bulk.low.y > band.low.y)
+            band = withoutStrays(bulk);
         const Point2 low{band.low.x, band.low.y};
         if (const auto way = wayFromSurvey(low)) {
             survey_ = *way;
@@ -147,6 +157,68 @@ class CloudPlan {
         rows_ = static_cast<int>(rows);
         checkCellMap(columns_, rows_, cell_, name_);
         floor_ = floorHeight(all);
+    }
+
+    [[nodiscard]] double cellsOver(const PointBox& box) const {
+        return (box.high.x - box.low.x) / cell_ * ((box.high.y - box.low.y) / cell_);
+    }
+
+    /// Finds the box of most points: narrows each axis to the steps that hold all but few at its
+    /// ends, and as much beside them, until it stays.
+    [[nodiscard]] PointBox bulkOf(PointBox box, std::size_t points) const {
+        constexpr std::size_t kSteps = 4096;
+        constexpr int kMaxRounds = 8;
+        const double few = kStrayShare * static_cast<double>(points);
+        for (int round = 0; round < kMaxRounds; ++round) {
+            const double x0 = box.low.x, y0 = box.low.y;
+            const double width = box.high.x - x0, depth = box.high.y - y0;
+            std::array<std::vector<std::size_t>, 2> counts;
+            for (auto& axis : counts) axis.assign(kSteps, 0);
+            const auto add = [&](std::vector<std::size_t>& axis, double offset, double extent) {
+                const double step = kSteps * offset / std::max(extent, 1e-9);
+                if (step >= 0 && step <= kSteps)
+                    ++axis[std::min(kSteps - 1, static_cast<std::size_t>(step))];
+            };
+            file_.forEach([&](const Point3& p) {
+                if (!isInBand(p)) return;
+                add(counts[0], p.x - x0, width);
+                add(counts[1], p.y - y0, depth);
+            });
+            const auto narrow = [&](const std::vector<std::size_t>& axis, double& low,
+                                    double& high) {
+                std::size_t first = 0, last = kSteps - 1;
+                for (std::size_t sum = axis[0]; first < last && static_cast<double>(sum) <= few;)
+                    sum += axis[++first];
+                for (std::size_t sum = axis[last]; first < last && static_cast<double>(sum) <= few;)
+                    sum += axis[--last];
+                const double step = (high - low) / kSteps;
+                const double from = low + step * static_cast<double>(first);
+                const double to = low + step * static_cast<double>(last + 1);
+                low = std::max(low, from - kBeside * (to - from));
+                high = std::min(high, to + kBeside * (to - from));
+            };
+            narrow(counts[0], box.low.x, box.high.x);
+            narrow(counts[1], box.low.y, box.high.y);
+            if (box.high.x - box.low.x > width / 2 && box.high.y - box.low.y > depth / 2) break;
+        }
+        return box;
+    }
+
+    /// Returns the box of the points in `bulk`; warns of all others.
+    PointBox withoutStrays(const PointBox& bulk) {
+        PointBox band;
+        std::size_t strays = 0;
+        Point2 one;
+        file_.forEach([&](const Point3& p) {
+            if (!isInBand(p)) return;
+            if (p.x >= bulk.low.x && p.x <= bulk.high.x && p.y >= bulk.low.y && p.y <= bulk.high.y)
+                return band.add(p);
+            if (strays++ == 0) one = {p.x, p.y};
+        });
+        out_.warn(countText(strays, "point") + (strays == 1 ? " lies" : " lie") +
+                  " far from all others, at " + placeText(one) +
+                  (strays == 1 ? "" : " and others") + ": left out");
+        return band;
     }
 
     [[nodiscard]] bool isInBand(const Point3& p) const {

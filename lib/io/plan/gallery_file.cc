@@ -81,9 +81,9 @@ class GalleryReader {
         if (!number)
             fail(of + ": found " + (word.empty() ? "the end" : excerpt(word)) +
                  ", wanted a coordinate, a number or a fraction p/q");
-        if (!(std::abs(*number) <= kMaxPlanCoordinate))
+        if (!(std::abs(*number) <= kMaxSurveyed))
             fail(of + ": " + excerpt(word) + " is too far away, wanted metres up to " +
-                 formatDouble(kMaxPlanCoordinate));
+                 formatDouble(kMaxSurveyed));
         return *number;
     }
 
@@ -103,6 +103,19 @@ class GalleryReader {
     GalleryWords words_;
     const std::string& name_;
 };
+
+/// Moves a gallery in surveyors' coordinates to the origin. Doubles less whole metres are exact.
+void moveHome(Region& region, const std::string& name, ImportRecords& out) {
+    const Box2 box = bounds(region.outline);
+    if (std::max(box.width(), box.depth()) > kMaxPlanCoordinate)
+        failFile(name, "the gallery is wider than 900 km: is it in metres?");
+    const auto way = wayFromSurvey(box.low);
+    if (!way) return;
+    for (Point2& p : region.outline) p = p - *way;
+    for (Polygon& hole : region.holes)
+        for (Point2& p : hole) p = p - *way;
+    out.tell(surveyText(*way, "gallery"));
+}
 
 /// Adds a closed fence with the coordinates as they are: a proof is about this polygon, and whole
 /// micrometres would make another of it.
@@ -144,6 +157,7 @@ Document readGalleryFile(std::string_view bytes, const std::string& name,
     Region region = GalleryReader(bytes, name).read();
     if (signedArea(region.outline) < 0) std::reverse(region.outline.begin(), region.outline.end());
     ImportRecords out(schemas, name, options);
+    moveHome(region, name, out);
     for (const Polygon& curve : curvesOf(region)) addExactFence(curve, options, out);
     for (const Point2 p : options.inside) out.inside(p);
     if (options.inside.empty() && options.known_inside.empty()) {

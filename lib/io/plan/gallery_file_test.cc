@@ -46,7 +46,7 @@ TEST(GalleryFile, Refuses) {
               "a.pol: error: the outline: found `4/0`, wanted a coordinate, a number or a fraction "
               "p/q\n");
     EXPECT_EQ(errorOf("3 0/1 0/1 4/1 0/1 4/1 1e9"),
-              "a.pol: error: the outline: `1e9` is too far away, wanted metres up to 900000\n");
+              "a.pol: error: the outline: `1e9` is too far away, wanted metres up to 100000000\n");
     EXPECT_EQ(errorOf("4 0/1 0/1 4/1 4/1 4/1 0/1 0/1 3/1"),
               "a.pol: error: the outline crosses itself\n");
     // The height is below the doubles' resolution of points between the corners.

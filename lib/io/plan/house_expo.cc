@@ -165,11 +165,11 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
     bool number(double value) {
         if (depth_ == 0 || !wanted()) return depth_ > 0 || scalar("a number");
         if (depth_ != tupleDepth()) return fail("found a number");
-        if (!(std::abs(value) <= kMaxPlanCoordinate))
+        if (!(std::abs(value) <= kMaxSurveyed))
             return fail("`" + key_ +
                             "`: " + (std::isfinite(value) ? formatDouble(value) : "a number") +
                             " is too far away",
-                        "wanted metres up to " + formatDouble(kMaxPlanCoordinate));
+                        "wanted metres up to " + formatDouble(kMaxSurveyed));
         tuple_.push_back(value);
         return tuple_.size() <= 4 || fail("found a list of five numbers");
     }
@@ -204,6 +204,23 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
     std::vector<double> tuple_;
     Polygon ring_;
 };
+
+/// Moves a plan in surveyors' coordinates to the origin.
+void moveHome(HousePlan& plan, const std::string& name, ImportRecords& out) {
+    Box2 box;
+    for (const Point2 p : plan.outline) box.add(p);
+    if (!box.empty() && std::max(box.width(), box.depth()) > kMaxPlanCoordinate)
+        failFile(name, "`verts`: the outline is wider than 900 km: is it in metres?");
+    const auto way = plan.outline.empty() ? std::nullopt : wayFromSurvey(box.low);
+    if (!way) return;
+    for (Point2& p : plan.outline) p = p - *way;
+    for (Polygon& hole : plan.holes)
+        for (Point2& p : hole) p = p - *way;
+    for (Box& room : plan.boxes)
+        for (std::size_t i = 0; i < room.corners.size(); ++i)
+            room.corners[i] -= i % 2 == 0 ? way->x : way->y;
+    out.tell(surveyText(*way, "plan"));
+}
 
 /// The rings after snapping and simplifying; those without area are dropped.
 std::vector<Polygon> normalised(const std::vector<Polygon>& rings, const ImportOptions& options,
@@ -290,9 +307,10 @@ bool isJson(std::string_view bytes) {
 
 Document readHouseExpo(std::string_view json, const std::string& name, const ImportOptions& options,
                        const Schemas& schemas) {
-    const HousePlan plan = HousePlanHandler(json, name).read();
+    HousePlan plan = HousePlanHandler(json, name).read();
     Budget work(json.size(), options.max_work);
     ImportRecords out(schemas, name, options);
+    moveHome(plan, name, out);
     const PlanRooms rooms = withFileName(
         name, [&] { return RoomFinder(plan, name, options, work).rooms(options, out); });
     if (rooms.reached.empty())
