@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plans in surveyors' coordinates, with strays far away.
+// Plans in surveyors' coordinates, with strays far away, and meshes as other programs spell them.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "io/importers.h"
+#include "io/mesh/mesh_file.h"
 #include "support/test_folder.h"
 #include "support/test_import.h"
 
@@ -95,6 +96,67 @@ TEST(Strays, OfCloudsAreLeftOut) {
     EXPECT_EQ(warningsOf(document),
               "hall: warning: 2 points lie far from all others, at (5000.0, 5000.0) and others: "
               "left out\n");
+}
+
+const char* const kUpper =
+    " SOLID ROOM\n FACET NORMAL 0 0 0\n  OUTER LOOP\n   VERTEX 0 0 0\n   VERTEX 8 0 0\n"
+    "   VERTEX 0 6E0 1\n  ENDLOOP\n ENDFACET\nENDSOLID ROOM\n";
+
+std::string collada(const std::string& blank) {
+    return "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/"
+           "COLLADASchema\" version=\"1.4.1\"><asset><up_axis>Z_UP</up_axis></asset>"
+           "<library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"a\" "
+           "count=\"9\">" +
+           blank +
+           "0 0 0 8 0 0 0 6 1</float_array><technique_common><accessor source=\"#a\" "
+           "count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" "
+           "type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor></technique_common>"
+           "</source><vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>"
+           "<triangles count=\"1\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>" +
+           blank +
+           "0 1 2</p></triangles></mesh></geometry></library_geometries>"
+           "<library_visual_scenes><visual_scene id=\"s\"><node id=\"n\"><matrix>" +
+           blank +
+           "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix><instance_geometry url=\"#g\"/></node>"
+           "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/>"
+           "</scene></COLLADA>\n";
+}
+
+TEST(MeshSpelling, CapitalsInStlAndBlanksInCollada) {
+    const testing::TestFolder folder;
+    const auto corners = [&](const std::string& name, const std::string& text) {
+        writeAll(folder.file(name), text);
+        return loadMesh(folder.file(name), {})->vertices;
+    };
+    const auto wanted = corners("plain.dae", collada(""));
+    ASSERT_EQ(wanted.size(), 3U);
+    EXPECT_EQ(corners("upper.stl", kUpper), wanted);
+    EXPECT_EQ(corners("blanks.dae", collada("\n   ")), wanted);
+}
+
+TEST(SdfMeshes, BadOnesAreLeftOut) {
+    const testing::TestFolder folder;
+    writeAll(folder.file("bad.dae"), "<COLLADA>");
+    std::string world = "<sdf version='1.7'><world name='w'>";
+    const auto box = [&](double x, double y, double length, double width) {
+        world += "<model name='wall'><static>1</static><pose>" + formatDouble(x) + ' ' +
+                 formatDouble(y) +
+                 " 1 0 0 0</pose><link name='l'><collision name='c'><geometry><box><size>" +
+                 formatDouble(length) + ' ' + formatDouble(width) +
+                 " 2</size></box></geometry></collision></link></model>";
+    };
+    box(3, 0, 6.2, 0.2);
+    box(3, 4, 6.2, 0.2);
+    box(0, 2, 0.2, 4.2);
+    box(6, 2, 0.2, 4.2);
+    world +=
+        "<model name='desk'><pose>3 2 0 0 0 0</pose><link name='l'><collision name='c'><geometry>"
+        "<mesh><uri>bad.dae</uri></mesh></geometry></collision></link></model></world></sdf>";
+    const Document document = parseDocument(world, folder.file("w.sdf"), {}, sceneSchemas());
+    EXPECT_EQ(countOf(document, "mesh"), 0U);
+    EXPECT_GT(environmentOf(document).indoor().area(), 20);
+    EXPECT_NE(warningsOf(document).find("mesh file `bad.dae` is left out: "), std::string::npos)
+        << warningsOf(document);
 }
 
 }  // namespace

@@ -208,7 +208,9 @@ TEST_F(SdfIncludes, TheLatestVersionIsRead) {
 }
 
 TEST_F(SdfIncludes, MeshesLieBesideTheModel) {
-    put("lamp/foot.stl", "solid\nendsolid\n");
+    put("lamp/foot.stl",
+        "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+        "endfacet\nendsolid\n");
     put("lamp/model.sdf",
         "<sdf><model name='lamp'><link name='l'><visual name='v'><geometry><mesh>"
         "<uri>foot.stl</uri></mesh></geometry></visual></link></model></sdf>");

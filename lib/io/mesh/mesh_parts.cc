@@ -93,11 +93,19 @@ bool isBinaryStl(std::string_view bytes) {
 
 }  // namespace
 
+bool isTextStl(std::string_view bytes) {
+    std::string start(bytes.substr(0, 4096));
+    for (char& c : start)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    const std::size_t first = start.find_first_not_of(" \t\r\n");
+    return first != std::string::npos && start.compare(first, 5, "solid") == 0 &&
+           start.find("facet") != std::string::npos;
+}
+
 std::optional<MeshFormat> meshFormatOf(std::string_view bytes) {
     const std::string_view start = bytes.substr(0, 4096);
     if (start.starts_with("ply\n") || start.starts_with("ply\r")) return MeshFormat::Ply;
-    if (start.starts_with("solid") && start.find("facet") != std::string_view::npos)
-        return MeshFormat::Stl;
+    if (isTextStl(start)) return MeshFormat::Stl;
     if (start.find("<COLLADA") != std::string_view::npos) return MeshFormat::Collada;
     if (isBinaryStl(bytes)) return MeshFormat::Stl;
     if (isObj(bytes)) return MeshFormat::Obj;

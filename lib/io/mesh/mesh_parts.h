@@ -29,6 +29,9 @@ constexpr std::array<MeshSuffix, 6> kMeshSuffixes{{{".obj", MeshFormat::Obj},
                                                    {".gltf", MeshFormat::Gltf},
                                                    {".glb", MeshFormat::Glb}}};
 
+/// Returns true for STL as text, with its words in any case.
+bool isTextStl(std::string_view bytes);
+
 /// Recognises OBJ, STL, PLY or COLLADA by content; std::nullopt for other bytes.
 std::optional<MeshFormat> meshFormatOf(std::string_view bytes);
 

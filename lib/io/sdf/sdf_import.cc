@@ -2,19 +2,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "io/exporters.h"
 #include "io/import_records.h"
 #include "io/importers.h"
+#include "io/mesh/mesh_file.h"
 #include "io/plan/line_plan.h"
 #include "io/plan/plan_rooms.h"
 #include "io/sdf/sdf_import.h"
@@ -40,7 +46,8 @@ class SdfImporter {
           options_(options),
           schemas_(schemas),
           work_(work),
-          out_(out) {}
+          out_(out),
+          files_(options.meshes != nullptr ? *options.meshes : own_files_) {}
 
     void write() {
         for (std::string& source : world_.sources) out_.source(std::move(source));
@@ -67,6 +74,7 @@ class SdfImporter {
         if (!missing_.empty())
             text += "; meshes that are not in the folders of models (--models DIR names more): " +
                     listText(missing_);
+        if (!unreadable_.empty()) text += "; " + unreadable_;
         if (!world_.left_out.empty()) text += "; left out: " + listText(world_.left_out);
         failFile(name_, text);
     }
@@ -127,7 +135,8 @@ class SdfImporter {
         }
         if (options_.slice_top) failFile(name_, "meshes are cut at one height: --slice-walls M");
         const double height = options_.slice_walls.value_or(kMeshCut);
-        std::vector<SdfMeshCut> cuts = cutMeshes(world_.shapes, name_, height, work_, schemas_);
+        std::vector<SdfMeshCut> cuts =
+            cutMeshes(world_.shapes, name_, height, work_, schemas_, files_);
         if (!cuts.empty()) cuts = wallsAmong(std::move(cuts), lines, work_, choose);
         std::vector<Segment2> all = lines;
         for (const SdfMeshCut& cut : cuts)
@@ -168,6 +177,8 @@ class SdfImporter {
             ++missing_[printable(mesh.uri)];
             return;
         }
+        const auto loaded = loadedMesh(*mesh.file);
+        if (!loaded) return;
         Record& record = out_.add("mesh", shape.line);
         record.set("id", out_.freeId(shape.model, "mesh"));
         const Eigen::Vector3d& place = pose.translation();
@@ -176,7 +187,34 @@ class SdfImporter {
         record.set("file", *mesh.file);
         record.set("up", sdfMeshUp(*mesh.file));
         record.set("scale", scale);
+        if (*loaded != nullptr) record.setMesh(*loaded);
         ++meshes_;
+    }
+
+    /// Reads a mesh file once, if the options say so: null if they do not, or if the file cannot be
+    /// opened, which the records' reader reports; std::nullopt for a bad file, with a warning.
+    std::optional<std::shared_ptr<const TriangleMesh>> loadedMesh(const std::string& file) {
+        if (!options_.load_files) return nullptr;
+        const auto [known, is_new] = loaded_.try_emplace(file, nullptr);
+        if (!is_new) return known->second;
+        const std::string path = sideFilePath(name_, file);
+        try {
+            work_.grant(openRegular(path).size);
+            const MeshFiles::Loaded& loaded =
+                files_.load(path, {sdfMeshUp(file), false, {options_.max_work.max, &work_}});
+            out_.source(path);
+            for (const std::string& side : loaded.side_files) out_.source(side);
+            known->second = loaded.mesh;
+        } catch (const FormatError& error) {
+            known->second = std::nullopt;
+            unreadable_ = "mesh file " + excerpt(file) +
+                          " is left out: " + error.diagnostics().front().message +
+                          "; if it has walls, convert it, for example with Blender";
+            out_.warn(unreadable_);
+        } catch (const std::system_error&) {
+            known->second = nullptr;
+        }
+        return known->second;
     }
 
     static Tuple placeOf(Point2 at, double z) {
@@ -370,6 +408,10 @@ class SdfImporter {
     std::vector<Fence> fences_;
     std::vector<SdfBlock> blocks_;
     std::map<std::string, std::size_t> missing_;
+    std::string unreadable_;  // about the last bad file
+    MeshFiles own_files_;
+    MeshFiles& files_;
+    std::map<std::string, std::optional<std::shared_ptr<const TriangleMesh>>> loaded_;  // by file
     std::vector<PlanRegion> regions_;  // that are kept
     std::size_t meshes_ = 0, floors_ = 0, outside_ = 0, blocks_outside_ = 0, doors_ = 0;
 };

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geom/polygon.h"
+#include "io/mesh/mesh_file.h"
 #include "io/plan/plan_rooms.h"
 #include "io/sdf/sdf_shapes.h"
 #include "record/schema.h"
@@ -68,10 +69,12 @@ struct SdfMeshCut {
 };
 
 /// Cuts the available meshes at a height of the world; skips those that do not reach it, and bad
-/// files. \param name the world's file \param work pays for files that shapes repeat
-/// \throws FormatError if fewer units are left, std::system_error as loadMesh
+/// files. \param files those that are read already \param name the world's file \param work pays
+/// for files that shapes repeat \throws FormatError if fewer units are left, std::system_error as
+/// loadMesh
 std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
-                                  double height, Budget& work, const Schemas& schemas);
+                                  double height, Budget& work, const Schemas& schemas,
+                                  MeshFiles& files);
 
 /// Returns the cuts that are walls; others are objects in the room. Prefers the cut that, with
 /// other walls of the world, encloses half of the world's extent; then those at the edge of the

@@ -67,10 +67,10 @@ Body bodyOf(const SdfShape& shape, const TriangleMesh& mesh, const Schemas& sche
     return meshBody(record);
 }
 
-/// Skips bad files, which are reported when records load them: furniture must not block the import.
-std::shared_ptr<const TriangleMesh> meshOrNothing(const std::string& path) {
+/// Skips bad files, which the importer reports: furniture must not block the import.
+std::shared_ptr<const TriangleMesh> meshOrNothing(const std::string& path, MeshFiles& files) {
     try {
-        return loadMesh(path, {sdfMeshUp(path)});
+        return files.load(path, {sdfMeshUp(path)}).mesh;
     } catch (const FormatError&) {
         return std::make_shared<TriangleMesh>();
     }
@@ -245,7 +245,8 @@ std::string sdfMeshUp(const std::string& file) {
 }
 
 std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
-                                  double height, Budget& work, const Schemas& schemas) {
+                                  double height, Budget& work, const Schemas& schemas,
+                                  MeshFiles& files) {
     std::map<std::string, std::shared_ptr<const TriangleMesh>> loaded;
     std::vector<SdfMeshCut> cuts;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -253,7 +254,7 @@ std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::s
         if (mesh == nullptr || !mesh->file) continue;
         std::shared_ptr<const TriangleMesh>& triangles = loaded[*mesh->file];
         if (triangles == nullptr)
-            triangles = meshOrNothing(sideFilePath(name, *mesh->file));
+            triangles = meshOrNothing(sideFilePath(name, *mesh->file), files);
         else if (!work.take(1 + triangles->triangles.size() / kTrianglesPerUnit))
             failFile(name, "cuts of repeated meshes make " + work.excess(), shapes[i].line);
         const Body body = bodyOf(shapes[i], *triangles, schemas);

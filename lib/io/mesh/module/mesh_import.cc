@@ -39,6 +39,7 @@
 #include "io/mesh/mesh_parts.h"
 #include "io/mesh/module/handed_files.h"
 #include "io/mesh/module/plain_gltf.h"
+#include "io/mesh/module/plain_text.h"
 
 // Debian builds assimp with its assertions, which abort the program on some damaged files. This
 // function replaces assimp's own of the same name and throws an error, which assimp catches and
@@ -278,6 +279,8 @@ TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& 
         files->hold(files->name(), std::move(plain->json));
         for (auto& [uri, bytes] : plain->buffers) files->hold(uri, std::move(bytes));
     }
+    if (auto text = plainMeshText(format, MappedInput(size).bytes()))
+        files->hold(files->name(), *std::move(text));
     const std::string name = files->name();
     importer.SetIOHandler(files.release());
     const bool as_is = up != "auto";

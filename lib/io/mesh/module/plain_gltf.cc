@@ -338,17 +338,45 @@ PlainGltf GltfReader::plain() {
             {{kBuffer, std::move(out_)}}};
 }
 
+/// Returns true if a mesh of glTF 2 has positions of another type than float.
+bool hasIntegerPositions(std::string_view text) {
+    constexpr std::size_t kFloat = 5126;
+    // Data in the text itself would take as much memory again.
+    const Json root = Json::parse(
+        text,
+        [](int /*depth*/, Json::parse_event_t event, Json& value) {
+            return event != Json::parse_event_t::key || (value != "uri" && value != "extras");
+        },
+        false);
+    if (root.is_discarded() || !root.is_object()) return false;
+    try {
+        const Json accessors = root.value("accessors", Json::array());
+        if (!accessors.is_array()) return false;  // glTF 1
+        for (const Json& mesh : root.value("meshes", Json::array()))
+            for (const Json& primitive : mesh.value("primitives", Json::array())) {
+                const Json attributes = primitive.value("attributes", Json::object());
+                const std::size_t position = attributes.value("POSITION", accessors.size());
+                if (position < accessors.size() &&
+                    accessors[position].value("componentType", kFloat) != kFloat)
+                    return true;
+            }
+    } catch (const Json::exception&) {
+        return false;  // assimp reports it
+    }
+    return false;
+}
+
 }  // namespace
 
 std::optional<PlainGltf> plainGltf(MeshFormat format, std::string_view bytes,
                                    const ReadBuffer& read_buffer, Budget& work) {
     const GltfParts parts = partsOf(format, bytes);
-    const bool is_packed = parts.json.find("KHR_mesh_quantization") != std::string_view::npos ||
-                           parts.json.find(kPacked) != std::string_view::npos;
-    if (!is_packed) return std::nullopt;
+    std::string_view text = parts.json.substr(0, parts.json.find_last_not_of('\0') + 1);
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    const bool is_packed = text.find("KHR_mesh_quantization") != std::string_view::npos ||
+                           text.find(kPacked) != std::string_view::npos;
+    if (!is_packed && !hasIntegerPositions(text)) return std::nullopt;
     try {
-        std::string_view text = parts.json.substr(0, parts.json.find_last_not_of('\0') + 1);
-        if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
         const Json root = Json::parse(text);
         return GltfReader(root, parts.binary, read_buffer, work).plain();
     } catch (const Json::exception& error) {

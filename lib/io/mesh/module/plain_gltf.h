@@ -26,7 +26,8 @@ struct PlainGltf {
 /// floats and indices as 32-bit integers, its nodes, and the names of its materials.
 ///
 /// Reads KHR_mesh_quantization (positions as integers) and EXT_meshopt_compression (buffers packed
-/// by gltfpack, with their filters); checkMesh() rejects others. The work is charged before memory
+/// by gltfpack, with their filters); checkMesh() rejects others. Positions as integers without
+/// this extension, which some exporters write, are read likewise. The work is charged before memory
 /// is allocated: a unit for 8 numbers.
 ///
 /// \param format Gltf or Glb \param bytes of the file, see checkMesh()
