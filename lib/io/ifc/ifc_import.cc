@@ -130,7 +130,7 @@ std::vector<bool> storeysWithOuterDoors(const Building& building) {
         const BuildingBox& box = door.box;
         const Vec2 across = box.length >= box.width ? perpendicular(box.along) : box.along;
         const double off = std::min(box.length, box.width) / 2 + kBeside;
-        const auto isOutside = [&](Vec2 way) {
+        const auto is_outside = [&](Vec2 way) {
             const Point2 beside = box.center + off * way;
             if (spaces[door.storey].empty())
                 return seesOutside(building, storeyOfSections(building, door.storey), beside, way);
@@ -138,7 +138,7 @@ std::vector<bool> storeysWithOuterDoors(const Building& building) {
                 spaces[door.storey].begin(), spaces[door.storey].end(),
                 [beside](const Region& space) { return space.locate(beside) != Side::Outside; });
         };
-        outer[door.storey] = isOutside(across) != isOutside(-across);
+        outer[door.storey] = is_outside(across) != is_outside(-across);
     }
     return outer;
 }

@@ -197,12 +197,12 @@ std::optional<Polygon> WallFaces::missingWall(const BuildingBox& box, bool from_
         std::optional<Jamb> left = jambBeside(*one, -1), right = jambBeside(*one, 1);
         const bool may_end = from_one_end && one->length >= one->width;
         if ((!left || !right) && !((left || right) && may_end)) continue;
-        const auto boxEnd = [&](const Jamb& other, double at) {
+        const auto box_end = [&](const Jamb& other, double at) {
             return Jamb{at, 0, other.low, other.high};
         };
         const double into_left = left ? kIntoWall : 0, into_right = right ? kIntoWall : 0;
-        if (!left) left = boxEnd(*right, -one->length / 2);
-        if (!right) right = boxEnd(*left, one->length / 2);
+        if (!left) left = box_end(*right, -one->length / 2);
+        if (!right) right = box_end(*left, one->length / 2);
         const double low = std::max(left->low, right->low);
         const double high = std::min(left->high, right->high);
         if (high - low < kThinnestWall || high - low > kMaxThrough) continue;
