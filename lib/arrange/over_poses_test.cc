@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
 #include <numbers>
 #include <string>
 
 #include "base/number.h"
+#include "coverage/coverage.h"
 #include "env/level.h"
 #include "geom/arrangement.h"
 #include "scene/placement_schemas.h"
@@ -113,6 +117,57 @@ TEST(OverPoses, RefusesSheetsOfWhichAPartStandsOutsideOfBodies) {
                         "cube at=0,-1 size=0.4,0.4,1\n")
                   .find("without thickness"),
               std::string::npos);
+}
+
+/// Reads a gallery of the AGP library: the number of corners, then each as two fractions.
+std::string galleryRoom(const std::string& file) {
+    std::ifstream in(file);
+    std::size_t count = 0;
+    in >> count;
+    const auto fraction = [&in] {
+        double top = 0, bottom = 1;
+        char slash = 0;
+        in >> top >> slash >> bottom;
+        return formatDouble(top / bottom);
+    };
+    std::string path;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i > 0) path += ';';
+        path += fraction();
+        path += ',' + fraction();
+    }
+    return in ? "#env 1\nfence closed=yes path=" + path + "\n" : "";
+}
+
+// What is proven to see all of the floor is measured so, whatever the range, but for the lattice of
+// the room.
+TEST(OverPoses, CoverageOfProvenGalleriesIsWhole) {
+    const char* data = std::getenv("ISPACE_TEST_DATA");
+    if (data == nullptr) GTEST_SKIP() << "ISPACE_TEST_DATA is not set";
+    const auto begin = std::chrono::steady_clock::now();
+    int count = 0;
+    for (int number = 1; number <= 8; ++number) {
+        for (const int corners : {60, 100, 200}) {
+            if (std::chrono::steady_clock::now() - begin > std::chrono::seconds(15)) break;
+            const std::string name =
+                "/agp/randsimple-" + std::to_string(corners) + '-' + std::to_string(number);
+            const std::string room = galleryRoom(data + name + ".pol");
+            if (room.empty()) continue;
+            for (const char* sensor : {"laser,range=1e6,fov=360", "laser,range=1000,fov=360"}) {
+                const Scene scene = roomScene(room);
+                const auto groups = groupsOf(scene, {sensor}, true);
+                const Arrangement found = arranged(scene, groups, provenOverPoses());
+                if (!found.is_reached) continue;  // on a slow machine
+                const Scene whole = withPlaced(scene, groups, found.sensors);
+                Worlds worlds(whole.environment);
+                const CoverageReport report =
+                    measureCoverage(whole, worlds, {.keep_depths = false}).report;
+                EXPECT_NEAR(*report.coverage.exact, 1, 1e-8) << name << ' ' << sensor;
+                ++count;
+            }
+        }
+    }
+    if (count == 0) GTEST_SKIP() << "no galleries in the folder agp of ISPACE_TEST_DATA";
 }
 
 // Lasers that see all of an L-shaped room: areas add up to its floor, up to rounding.

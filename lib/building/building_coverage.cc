@@ -62,13 +62,14 @@ void nameWholly(const BuildingScene& building, std::size_t storey,
 }
 
 void addUp(BuildingCoverage& building) {
-    AreaSum total_grid, total_exact, grid, exact, free_grid, free_exact;
+    AreaSum total_grid, total_exact, outside, grid, exact, free_grid, free_exact;
     for (const Coverage& storey : building.storeys) {
         const CoverageReport& report = storey.report;
         building.indoor_area += report.indoor_area;
         building.free_area += report.free_area;
         total_grid.add(report.total_effective_area.grid);
         total_exact.add(report.total_effective_area.exact);
+        outside.add(report.outside);
         grid.add(areaOf(report.coverage.grid, report.indoor_area));
         exact.add(areaOf(report.coverage.exact, report.indoor_area));
         free_grid.add(areaOf(report.free_coverage.grid, report.free_area));
@@ -79,6 +80,7 @@ void addUp(BuildingCoverage& building) {
             building.redundancy[k] += report.redundancy[k] * report.indoor_area;
     }
     building.total_effective_area = {total_grid.sum(), total_exact.sum()};
+    building.outside = outside.sum();
     building.coverage = {grid.shareOf(building.indoor_area), exact.shareOf(building.indoor_area)};
     building.free_coverage = {free_grid.shareOf(building.free_area),
                               free_exact.shareOf(building.free_area)};
@@ -171,6 +173,9 @@ std::string buildingCoverageJson(const BuildingScene& building, const BuildingCo
     json.key("indoor_area").value(roundSignificant(coverage.indoor_area));
     json.key("free_area").value(roundSignificant(coverage.free_area));
     writeMetric(json, "total_effective_area", coverage.total_effective_area);
+    json.key("outside_area")
+        .value(coverage.outside ? std::optional(roundSignificant(*coverage.outside))
+                                : std::nullopt);
     writeMetric(json, "coverage", coverage.coverage);
     writeMetric(json, "free_coverage", coverage.free_coverage);
     json.key("redundancy").beginArray();

@@ -23,6 +23,7 @@ struct BuildingCoverage {
     std::vector<std::size_t> sensors;       ///< number of those that stand in each storey
     double indoor_area = 0, free_area = 0;  ///< m2
     Metric total_effective_area;            ///< m2
+    std::optional<double> outside;          ///< see CoverageReport, m2
     Metric coverage, free_coverage;         ///< shares; empty if that of a storey is unknown
     std::vector<double> redundancy;         ///< see CoverageReport
 };

@@ -179,7 +179,7 @@ TEST(BuildingSight, AgreesWithRaysOfBothRooms) {
     const RayWorld below = RayWorld::ofEnvironment(building.scenes[0]->environment);
     const RayWorld over = RayWorld::ofEnvironment(building.scenes[1]->environment);
     const Grid grid = gridOf({0, 0}, 0.05, 160, 120);
-    const CellSet cells = sensorViewOf(view, 0, grid, {.plane = 0.3}).cells;
+    const CellSet cells = sensorViewOf(view, 0, grid, {{-99, -99}, {99, 99}}, {.plane = 0.3}).cells;
     std::size_t wrong = 0, seen_cells = 0;
     for (std::size_t cell = 0; cell < grid.size(); ++cell) {
         const Point2 p = grid.center(cell);

@@ -19,6 +19,7 @@
 #include "coverage/visible_area.h"
 #include "env/level.h"
 #include "geom/arrangement.h"
+#include "geom/curve_clip.h"
 #include "geom/overlay/overlay.h"
 #include "raster/contour.h"
 #include "scene/sensor/ultrasound.h"
@@ -38,7 +39,9 @@ std::uint32_t maxMultiplicity(const Coverage& coverage,
 
 std::vector<Region> viewRegions(const SensorView& view, const Grid& grid) {
     if (!view.region) return cellRegions(grid, view.cells);
-    const Overlay overlay(std::vector<Layer>{{.curves = *view.region}});
+    std::vector<Curve> whole = *view.region;
+    whole.insert(whole.end(), view.beyond.begin(), view.beyond.end());
+    const Overlay overlay(std::vector<Layer>{{.curves = std::move(whole)}});
     return withArcAreas(overlay,
                         overlay.regions([](const LayerLabel& label) { return label.count > 0; }));
 }
@@ -57,6 +60,15 @@ std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
         if (cell_times[cell] == times) cells.set(cell);
     });
     return cellRegions(target.grid, cells);
+}
+
+void setRegion(std::optional<std::vector<Curve>> region, const Box2& limits, SensorView& view) {
+    view.region.reset();
+    view.beyond.clear();
+    if (!region) return;
+    CutCurves cut = cutAlong(*region, limits);
+    view.region = std::move(cut.inside);
+    view.beyond = std::move(cut.outside);
 }
 
 std::optional<std::vector<Curve>> regionHeardByEnough(
@@ -204,8 +216,14 @@ class Viewer {
         view.cells = by_beams && (scansSlice(sensor) || !isInsideSolid(sensor))
                          ? cellsAmongBeams(grid_, sensor, view.beams)
                          : sight_.cellsOf(grid_, sensor);
-        if (options_.exact) view.region = regionOf(sensor);
+        if (options_.exact) setRegion(regionOf(sensor), scene_.environment.limits(), view);
         if (sensor.is<Camera>()) addClasses(view, sensor);
+    }
+
+    [[nodiscard]] std::optional<std::vector<Curve>> withinLimits(
+        std::optional<std::vector<Curve>> region) const {
+        if (region) region = cutAlong(*region, scene_.environment.limits()).inside;
+        return region;
     }
 
     [[nodiscard]] std::optional<std::vector<Curve>> regionOf(const Sensor& sensor) const {
@@ -221,7 +239,7 @@ class Viewer {
         CoveredSet seen{view.cells, view.region};
         if (options_.density > 0) {
             seen.cells = sight_.cellsOf(grid_, whole);
-            if (options_.exact) seen.region = regionOf(whole);
+            if (options_.exact) seen.region = withinLimits(regionOf(whole));
         }
         const FloorDensity density(sensor.as<Camera>(), sensor.pose, options_.plane);
         try {
@@ -271,7 +289,10 @@ SensorMetrics metricsOf(const Scene& scene, const SensorView& view, const Grid& 
     SensorMetrics metrics{.id = view.id, .model = view.model, .kind = view.kind};
     if (const auto* laser = std::get_if<Laser>(&scene.sensors[view.index].model))
         metrics.slice_area = sliceArea(*laser, view.beams);
-    if (view.region) metrics.area.exact = std::max(0.0, signedArea(*view.region));
+    if (view.region) {
+        metrics.area.exact = std::max(0.0, signedArea(*view.region));
+        metrics.outside = std::max(0.0, signedArea(view.beyond));
+    }
     if (const auto* camera = std::get_if<Camera>(&scene.sensors[view.index].model))
         metrics.picture = pictureMetricsOf(FloorDensity(*camera, view.pose, plane), grid,
                                            view.pose.position.onFloor(), view);
@@ -311,6 +332,39 @@ void tryExactMetrics(Coverage& coverage, const Environment& environment, FarHole
     }
 }
 
+/// Computes the area beyond the limits that any sensor sees; empty if a region is not known.
+std::optional<double> outsideOf(const std::vector<SensorView>& views) {
+    std::vector<Layer> layers;
+    std::vector<SensorView> receivers;
+    for (const SensorView& view : views) {
+        if (!view.region) return std::nullopt;
+        if (view.beyond.empty()) continue;
+        if (view.isPartial())
+            receivers.emplace_back().region = view.beyond;
+        else
+            layers.push_back({.curves = view.beyond});
+    }
+    if (receivers.size() >= kMinReceivers) {
+        std::vector<const SensorView*> all;
+        all.reserve(receivers.size());
+        for (const SensorView& view : receivers) all.push_back(&view);
+        auto heard = regionHeardByEnough(all);
+        if (!heard) return std::nullopt;
+        layers.push_back({.curves = std::move(*heard)});
+    }
+    if (layers.empty()) return 0;
+    if (layers.size() == 1) return std::max(0.0, signedArea(layers.front().curves));
+    double area = 0;
+    try {
+        forEachArea(layers, [&area](const LayerLabel& label, double part) {
+            if (label.count > 0) area += part;
+        });
+    } catch (const FormatError&) {
+        return std::nullopt;
+    }
+    return std::max(0.0, area);
+}
+
 /// Labels of the two layouts' layers, kept apart by their numbers.
 constexpr std::int64_t kThisNumber = 1, kOtherNumber = std::int64_t{1} << 32;
 
@@ -346,7 +400,8 @@ void addOutside(std::span<const std::shared_ptr<const OutsideView>> outside, std
                 const Scene& scene) {
     if (outside.empty()) return;
     for (std::size_t i = 0; i < outside.size(); ++i)
-        coverage.sensors.push_back(sensorViewOf(*outside[i], own + i, grid, options));
+        coverage.sensors.push_back(
+            sensorViewOf(*outside[i], own + i, grid, scene.environment.limits(), options));
     std::stable_sort(coverage.sensors.begin(), coverage.sensors.end(),
                      [&](const SensorView& a, const SensorView& b) {
                          return scene.sensors[a.index].model.index() <
@@ -388,6 +443,7 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
         report.sensors.push_back(metricsOf(scene, view, grid, options.plane));
     const std::vector<Zone> zones = zonesOf(environment);
     report.zones = zoneMetricsOf(environment, zones);
+    if (options.exact) report.outside = outsideOf(coverage.sensors);
     if (holes) tryExactMetrics(coverage, environment, *holes, zones, options.keep_depths);
     addCellMetrics(coverage, zones);
     addDensities(coverage, environment, level->freeFloor(), zones, options.whole_densities);

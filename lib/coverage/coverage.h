@@ -68,9 +68,11 @@ struct SensorMetrics {
     std::string id, model;  ///< model is "" for a sensor without one
     const SensorKind* kind = &Laser::kKind;
     std::optional<double> slice_area = {};  ///< eq. (4.4), m2; of lasers
-    Metric area = {};      ///< of its region, m2; of a receiver the region that it hears
-    Metric marginal = {};  ///< area lost if this sensor is removed, m2
-    Metric overlap = {};   ///< area that other sensors see, too, m2; not of receivers
+    /// Of its region within the limits, m2; of a receiver the region that it hears.
+    Metric area = {};
+    std::optional<double> outside = {};  ///< area beyond the limits, exact, m2
+    Metric marginal = {};                ///< area lost if this sensor is removed, m2
+    Metric overlap = {};                 ///< area that other sensors see, too, m2; not of receivers
     std::optional<PictureMetrics> picture = {};  ///< of cameras
 };
 
@@ -114,10 +116,13 @@ struct CoverageReport {
     double density = 0;                     ///< requested pixels a metre; 0: not requested
     double indoor_area = 0, free_area = 0;  ///< exact, m2
     std::vector<SensorMetrics> sensors;     ///< by kind
-    Metric total_effective_area;            ///< eq. (4.6), m2; of all cells, indoor or not
-    Metric overlap;                         ///< area seen by two sensors or more, m2; indoor or not
-    Metric coverage;                        ///< eq. (4.7), fraction of the indoor region
-    Metric free_coverage;                   ///< share of the free floor
+    /// Eq. (4.6), m2: within the limits, indoor or not.
+    Metric total_effective_area;
+    /// Area beyond the limits (through open doors) that any sensor sees, exact, m2.
+    std::optional<double> outside;
+    Metric overlap;   ///< area seen by two sensors or more, m2; within the limits, indoor or not
+    Metric coverage;  ///< eq. (4.7), fraction of the indoor region
+    Metric free_coverage;  ///< share of the free floor
     /// [k]: share of indoor cells seen by exactly k sensors (all ultrasonic receivers count as
     /// one); all 0 without indoor cells.
     std::vector<double> redundancy;
@@ -155,10 +160,12 @@ struct SensorView {
     Pose3 pose;
     double max_range = 0;
     CellSet cells = CellSet();
-    /// Exact region: disjoint curves with the seen floor on their left; empty if unknown.
+    /// Exact region within the limits: disjoint curves with the seen floor on their left, up to
+    /// edges that cancel out (cutAlong()); empty if unknown.
     std::optional<std::vector<Curve>> region = {};
-    std::vector<float> beams = {};  ///< of a laser, as castBeams returns them
-    /// Of a camera: the floor seen with the pixels of each of densityClasses().
+    std::vector<Curve> beyond = {};  ///< the rest of the exact region
+    std::vector<float> beams = {};   ///< of a laser, as castBeams returns them
+    /// Of a camera: the floor within the limits seen with the pixels of each of densityClasses().
     std::vector<CoveredSet> classes = {};
 
     /// True for a sensor that covers floor only together with others.

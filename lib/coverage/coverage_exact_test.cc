@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "base/number.h"
 #include "coverage/coverage.h"
@@ -49,6 +50,46 @@ double perimeterOf(const Coverage& coverage) {
     double sum = 0;
     for (const SensorView& view : coverage.sensors) sum += perimeter(*view.region);
     return sum;
+}
+
+// A door of 1 m in the middle of a wall, open to a floor without end.
+Scene openDoor(const std::string& range) {
+    return sceneOf(
+        "fence id=w path=0,0;6,0;6,4;0,4 closed=yes height=2.5\n"
+        "door id=front wall=w at=3,0 size=1,0.2 height=2.1 open=yes\ninside at=1,1\n"
+        "laser at=3,3.9,0.3 heading=-90 fov=180 range=" +
+        range + "\nlaser at=2,3.9,0.3 heading=-90 fov=180 range=" + range + "\n");
+}
+
+TEST(ExactCoverage, FloorBeyondTheLimitsIsAnotherFigure) {
+    const Coverage coverage = coverageOf(openDoor("30"), 600, 400);
+    const CoverageReport& report = coverage.report;
+    for (const auto& [metric, name] : {std::pair(report.total_effective_area, "total"),
+                                       {report.overlap, "overlap"},
+                                       {report.sensors[0].area, "area"},
+                                       {report.sensors[1].area, "other area"},
+                                       {report.sensors[0].marginal, "marginal"},
+                                       {report.sensors[0].overlap, "shared"}})
+        EXPECT_NEAR(*metric.grid, *metric.exact, 0.02) << name;
+    EXPECT_NEAR(*report.total_effective_area.exact, *report.coverage.exact * report.indoor_area,
+                1e-7);
+    EXPECT_NEAR(*report.sensors[0].area.exact, 23.4, 1e-7);
+    // Up to the opening, the sector has the opening's width.
+    const double width = 2 * std::atan2(0.5, 3.9);
+    EXPECT_NEAR(*report.sensors[0].outside, 900 * width / 2 - 0.5 * 3.9, 0.5 * 900 * 1e-3);
+    EXPECT_LT(*report.outside, *report.sensors[0].outside + *report.sensors[1].outside);
+    EXPECT_GT(*report.outside, *report.sensors[1].outside);
+}
+
+// The lattice is that of the room, however far views through the door reach.
+TEST(ExactCoverage, DoesNotDependOnTheRange) {
+    const CoverageReport near = coverageOf(openDoor("30")).report;
+    const CoverageReport far = coverageOf(openDoor("1000000")).report;
+    EXPECT_NEAR(*near.coverage.exact, *far.coverage.exact, 1e-9);
+    EXPECT_NEAR(*near.total_effective_area.exact, *far.total_effective_area.exact, 1e-8);
+    EXPECT_NEAR(*near.sensors[0].area.exact, *far.sensors[0].area.exact, 1e-8);
+    EXPECT_GT(*far.outside, 1e10);
+    EXPECT_NEAR(*far.coverage.grid, *far.coverage.exact, 0.01);
 }
 
 TEST(ExactCoverage, CellsConvergeToIt) {

@@ -72,7 +72,8 @@ TEST(CoveragePlaces, SensorOutsideCoversNoneOfTheRoom) {
     const CoverageReport report =
         coverageOf(sceneOf("ispace size=8,8\nlaser at=9,0 fov=360 range=5\n")).report;
     EXPECT_EQ(report.coverage.exact, 0.0);
-    EXPECT_GT(*report.total_effective_area.exact, 30);
+    EXPECT_EQ(report.total_effective_area.exact, 0.0);
+    EXPECT_GT(*report.outside, 30);
 }
 
 TEST(CoveragePlaces, NothingIsSeenInASolidThatTheSensorTouches) {

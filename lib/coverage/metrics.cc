@@ -11,6 +11,7 @@
 #include "coverage/metrics.h"
 #include "env/level.h"
 #include "geom/arrangement.h"
+#include "geom/curve_clip.h"
 #include "raster/morphology.h"
 #include "scene/sensor/ultrasound.h"
 
@@ -121,6 +122,12 @@ std::vector<Zone> zonesOf(const Environment& environment) {
     for (const Element& element : environment.elements())
         if (element.record.keyword() == "zone")
             zones.push_back({element.id, zoneOutline(element.record)});
+    // The step of an overlay's lattice grows with the extent of its layers.
+    for (Zone& zone : zones) {
+        const std::vector<Curve> outline = {curveOf(zone.outline)};
+        const std::vector<Curve> part = cutAlong(outline, environment.limits()).inside;
+        if (!part.empty()) zone.outline = chords(part.front());
+    }
     return zones;
 }
 

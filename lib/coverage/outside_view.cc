@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "coverage/metrics.h"
 #include "coverage/pixel_density.h"
+#include "geom/curve_clip.h"
 #include "geom/overlay/overlay.h"
 
 namespace ispace {
@@ -66,7 +68,7 @@ OutsideView moved(OutsideView view, const Pose2& pose, double lift) {
 }
 
 SensorView sensorViewOf(const OutsideView& view, std::size_t index, const Grid& grid,
-                        const CoverageOptions& options) {
+                        const Box2& limits, const CoverageOptions& options) {
     const Sensor& sensor = view.sensor;
     SensorView out{.kind = &kindOf(sensor.model),
                    .index = index,
@@ -78,10 +80,10 @@ SensorView sensorViewOf(const OutsideView& view, std::size_t index, const Grid& 
         return view.cells ? view.cells(grid, density) : cellsInside(region, grid);
     };
     out.cells = cells(view.region, options.density);
-    if (options.exact) out.region = view.region;
+    if (options.exact) setRegion(view.region, limits, out);
     if (const Camera* const camera = sensor.tryAs<Camera>()) {
         CoveredSet whole{options.density > 0 ? cells(view.whole, 0) : out.cells, {}};
-        if (options.exact) whole.region = view.whole;
+        if (options.exact) whole.region = cutAlong(view.whole, limits).inside;
         out.classes = classesOf(FloorDensity(*camera, sensor.pose, options.plane), grid, whole);
     }
     return out;

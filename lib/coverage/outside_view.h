@@ -44,8 +44,8 @@ Coverage measureWithOutside(const Scene& scene, Worlds& worlds, const CoverageOp
                             std::span<const std::shared_ptr<const OutsideView>> outside);
 
 /// Returns the view by cells and in closed form, as measureCoverage() has it of a sensor of the
-/// room. \param index see SensorView
+/// room. \param index see SensorView \param limits of the room, see SensorView::region
 SensorView sensorViewOf(const OutsideView& view, std::size_t index, const Grid& grid,
-                        const CoverageOptions& options);
+                        const Box2& limits, const CoverageOptions& options);
 
 }  // namespace ispace

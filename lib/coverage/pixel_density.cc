@@ -270,7 +270,9 @@ PictureMetrics pictureMetricsOf(const FloorDensity& density, const Grid& grid, P
     });
     if (cells > 0) metrics.mean_density.grid = sum / static_cast<double>(cells);
     if (!view.region) return metrics;
-    addDistances(*view.region, foot, metrics);
+    std::vector<Curve> whole = *view.region;
+    whole.insert(whole.end(), view.beyond.begin(), view.beyond.end());
+    addDistances(whole, foot, metrics);
     const double area = signedArea(*view.region);
     if (area > kMinPiece) metrics.mean_density.exact = density.integral(*view.region) / area;
     return metrics;

@@ -371,7 +371,8 @@ std::string coverageDxf(const Scene& scene, const Coverage& coverage) {
     addRoomToDxf(out, scene.environment);
     for (const SensorView& view : coverage.sensors) {
         if (view.region)
-            for (const Curve& curve : *view.region) out.curve("views", curve);
+            for (const auto* curves : {&*view.region, &view.beyond})
+                for (const Curve& curve : *curves) out.curve("views", curve);
         else
             for (const Region& piece : viewRegions(view, coverage.target.grid))
                 for (const Polygon& ring : curvesOf(piece)) out.path("views", ring, true);

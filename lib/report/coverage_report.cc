@@ -76,6 +76,7 @@ void write(JsonWriter& json, const SensorMetrics& sensor) {
     write(json, "area", sensor.area);
     write(json, "marginal", sensor.marginal);
     write(json, "overlap", sensor.overlap);
+    write(json, "outside_area", sensor.outside);
     if (sensor.picture) write(json, *sensor.picture);
     json.endObject();
 }
@@ -129,6 +130,7 @@ std::string coverageJson(const CoverageReport& report, const ReportParts& parts)
     write(json, "free_area", report.free_area);
     writeList(json, "sensors", report.sensors);
     write(json, "total_effective_area", report.total_effective_area);
+    write(json, "outside_area", report.outside);
     write(json, "overlap_area", report.overlap);
     write(json, "coverage", report.coverage);
     write(json, "free_coverage", report.free_coverage);
@@ -187,6 +189,9 @@ std::string withSign(double value, Format format) {
     return text.front() == '-' || text.front() == '+' ? text : "+" + text;
 }
 
+/// True for floor beyond the limits that is more than rounding.
+bool isShown(const std::optional<double>& outside) { return outside.value_or(0) >= kMinPiece; }
+
 /// Formats a metric by cells, exact, and the error of the cells.
 template <typename Format>
 TextRow row(std::string name, const Metric& metric, Format format) {
@@ -238,10 +243,12 @@ std::string classText(std::size_t index) {
 
 std::string metricTable(const CoverageReport& report) {
     std::vector<TextRow> rows = {{"", "by cells", "exact", "difference"},
-                                 row("total effective area", report.total_effective_area, area),
-                                 row("seen by several", report.overlap, area),
-                                 row("coverage", report.coverage, percent),
-                                 row("free coverage", report.free_coverage, percent)};
+                                 row("total effective area", report.total_effective_area, area)};
+    if (isShown(report.outside))
+        rows.push_back({"outside of the limits", "-", area(*report.outside), "-"});
+    rows.push_back(row("seen by several", report.overlap, area));
+    rows.push_back(row("coverage", report.coverage, percent));
+    rows.push_back(row("free coverage", report.free_coverage, percent));
     addRedundancy(report, rows);
     if (!report.densities.indoor.empty())
         for (const std::size_t i : classesByDensity())
@@ -264,6 +271,9 @@ std::string sensorTable(const std::vector<SensorMetrics>& sensors) {
     const auto cell = [](const std::optional<double>& value) { return value ? area(*value) : "-"; };
     std::vector<TextRow> rows = {{"sensor", "model", "slice area", "by cells", "exact",
                                   "difference", "marginal", "exact", "difference", "overlap"}};
+    const bool is_outside = std::any_of(sensors.begin(), sensors.end(),
+                                        [](const auto& sensor) { return isShown(sensor.outside); });
+    if (is_outside) rows.front().emplace_back("outside");
     for (const SensorMetrics& sensor : sensors) {
         const TextRow region = row("", sensor.area, area), alone = row("", sensor.marginal, area);
         rows.push_back(
@@ -271,6 +281,7 @@ std::string sensorTable(const std::vector<SensorMetrics>& sensors) {
              sensor.model.empty() ? std::string(sensor.kind->keyword) : printable(sensor.model),
              cell(sensor.slice_area), region[1], region[2], region[3], alone[1], alone[2], alone[3],
              cell(sensor.overlap.exact ? sensor.overlap.exact : sensor.overlap.grid)});
+        if (is_outside) rows.back().push_back(cell(sensor.outside));
     }
     return aligned(rows, "llr");
 }

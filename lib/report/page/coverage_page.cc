@@ -374,6 +374,10 @@ PageSection methodsOf(const CoveragePageInput& input) {
         std::string(report.coverage.exact
                         ? "; they are computed in closed form, without cells."
                         : "; they are counted on " + cellsText(report.grid) + "."));
+    if (report.outside.value_or(0) >= kMinPiece)
+        add("Sensors also see " + squareMetres(*report.outside) +
+            " beyond the limits of the room, through open doors, which is part of no other "
+            "figure.");
     if (!report.exact_missing.empty())
         add("Some figures are counted on cells: " + printable(report.exact_missing) + ".");
     if (!report.densities.indoor.empty())

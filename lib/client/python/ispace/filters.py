@@ -64,6 +64,7 @@ class CoverageReport(Object):
     free_area: float
     sensors: List[Object]
     total_effective_area: Figure
+    outside_area: Optional[float]
     overlap_area: Figure
     coverage: Figure
     free_coverage: Figure
