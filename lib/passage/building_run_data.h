@@ -66,6 +66,8 @@ struct BuildingTrip {
     /// Once it is out of lifts and stairs, it clears the landing and ends so.
     std::optional<Outcome> ending;
     std::optional<SimTime> blocked;  ///< since when others occupy its landing
+    std::optional<SimTime> asked;    ///< when it last asked them to step aside
+    SimTime queued{};                ///< since when it waits for a passage
 };
 
 /// A mover with walk=wander.
@@ -162,11 +164,20 @@ struct BuildingRun::Data {
     /// Returns the first of these spots that is free and not reserved.
     [[nodiscard]] std::optional<Point2> freeSpot(const Traveller& who,
                                                  const std::vector<Point2>& spots) const;
+    /// Returns a way on its storey; after a failure one that leads round movers that stand, if
+    /// there is one.
+    [[nodiscard]] std::vector<Point2> wayTo(const Traveller& who, const BuildingTrip& trip,
+                                            Point2 to) const;
+    /// Sends those that wait or pause aside if they stand in the way of a circle that is stuck at a
+    /// point of a storey. \returns true if there are any
+    bool askAside(std::size_t storey, double radius, Point2 at, const std::vector<Point2>& way);
+    /// Finds the nearest point where a mover can wait, off all landings and `apart` from a way.
+    [[nodiscard]] std::optional<Point2> spotAside(const Traveller& who, Point2 from,
+                                                  const std::vector<Point2>& way, double apart);
     void release(const std::string& id);
     void releaseHolders();
     [[nodiscard]] bool mayHoldOpen(std::size_t lift) const;
-    [[nodiscard]] bool mayPass(const Traveller& who, const StoreyLink& passage, std::size_t room,
-                               bool is_up) const;
+    [[nodiscard]] bool mayPass(const Traveller& who, const BuildingTrip& trip) const;
 
     // Wanderers.
     void advanceWanderers();

@@ -194,7 +194,6 @@ void BuildingRun::Data::advanceTrip(const std::string& id, BuildingTrip& trip) {
 void BuildingRun::Data::setOut(Traveller& who, BuildingTrip& trip) {
     const StoreyWays& all = waysOf(who);
     const Point2 at = statusOf(who).pose.position;
-    const std::size_t storey = *rooms[who.room].storey;
     Point2 to = trip.plan.points[trip.goal].at;
     trip.state = TripState::Walking;
     trip.spot.reset();
@@ -203,10 +202,13 @@ void BuildingRun::Data::setOut(Traveller& who, BuildingTrip& trip) {
         const Leg& leg = trip.legs[trip.leg];
         const Landing& landing = *all.landing(leg.passage, leg.from);
         trip.spot = freeSpot(who, landing.spots);
+        // It leaves the landing to others.
+        if (!trip.spot && landingUnder(who) != nullptr)
+            trip.spot = spotAside(who, at, {}, clearanceOf(who));
         if (!trip.spot) return queueUp(who, trip);
         to = *trip.spot;
     }
-    const std::vector<Point2> way = all.finder(storey).wayBetween(at, to);
+    const std::vector<Point2> way = wayTo(who, trip, to);
     if (way.empty()) return giveUp(who, trip, Outcome::Unreached);
     send(who, trip, way, trip.plan.speed > 0 ? trip.plan.speed : who.ability.speed);
 }
@@ -311,9 +313,19 @@ void BuildingRun::Data::step(Traveller& who, BuildingTrip& trip) {
 /// After a command that failed: another mover may have been in the way.
 void BuildingRun::Data::tryAgain(Traveller& who, BuildingTrip& trip, Outcome outcome) {
     trip.steps.clear();
-    const bool is_on_storey = rooms[who.room].storey.has_value();
-    if (is_on_storey && ++trip.attempts > kMaxAttempts) return giveUp(who, trip, outcome);
     const bool has_leg = trip.leg < trip.legs.size();
+    if (const auto& storey = rooms[who.room].storey) {
+        const Point2 at = statusOf(who).pose.position;
+        const Point2 to = trip.spot ? *trip.spot
+                          : has_leg
+                              ? waysOf(who)
+                                    .landing(trip.legs[trip.leg].passage, trip.legs[trip.leg].from)
+                                    ->at.position
+                              : trip.plan.points[trip.goal].at;
+        const std::vector<Point2> way = waysOf(who).finder(*storey).wayBetween(at, to);
+        const bool is_heard = askAside(*storey, who.size.radius, at, way);
+        if (++trip.attempts > (is_heard ? 2 : 1) * kMaxAttempts) return giveUp(who, trip, outcome);
+    }
     switch (trip.state) {
         case TripState::Walking:
             // Others crowd about the landing: it waits where it is.

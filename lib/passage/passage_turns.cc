@@ -19,6 +19,8 @@ constexpr double kClearLanding = 0.3;
 constexpr double kTurnWait = 15;
 /// Time for which a mover in a lift or on stairs waits at an occupied landing before it turns back.
 constexpr SimTime kPatience = std::chrono::seconds(30);
+/// Time after which it asks those that wait there to step aside.
+constexpr SimTime kPolite = std::chrono::seconds(3);
 
 }  // namespace
 
@@ -104,7 +106,13 @@ void BuildingRun::Data::release(const std::string& id) {
 
 void BuildingRun::Data::queueUp(Traveller& who, BuildingTrip& trip) {
     const Leg& leg = trip.legs[trip.leg];
-    stops[leg.passage][leg.from].queue.push_back(who.id);
+    Stop& stop = stops[leg.passage][leg.from];
+    // One that stands on the landing keeps others from it.
+    if (stop.holder == who.id)
+        stop.queue.push_front(who.id);
+    else
+        stop.queue.push_back(who.id);
+    trip.queued = rooms.front().world->time();
     trip.state = TripState::Queueing;
 }
 
@@ -122,17 +130,11 @@ void BuildingRun::Data::waitTurn(Traveller& who, BuildingTrip& trip) {
         const Rider rider{who.id, {}, who.size.radius, who.ability.mass, leg.to};
         if (!slotIn(passage.cabin, riders[leg.passage], rider)) return;
     } else {
-        const bool is_up = leg.to > leg.from;
-        const std::size_t flight = is_up ? leg.from : leg.from - 1;
-        if (!mayPass(who, passage, first_room[leg.passage] + flight, is_up)) return;
+        if (!mayPass(who, trip)) return;
     }
     if (!stop.holder.empty() && stop.holder != who.id) return;
-    const StoreyWays& all = waysOf(who);
-    const Landing& landing = *all.landing(leg.passage, leg.from);
-    const std::size_t storey = *rooms[who.room].storey;
-    const WayFinder& finder = all.finder(storey);
-    const Point2 at = statusOf(who).pose.position;
-    const std::vector<Point2> way = finder.wayBetween(at, landing.at.position);
+    const Landing& landing = *waysOf(who).landing(leg.passage, leg.from);
+    const std::vector<Point2> way = wayTo(who, trip, landing.at.position);
     if (way.empty()) return finish(who.id, Outcome::Unreached);
     stop.holder = who.id;
     trip.state = TripState::Nearing;
@@ -147,19 +149,32 @@ double BuildingRun::Data::laneOf(const Traveller& who, const StoreyLink& passage
     return is_narrow ? 0 : (is_up ? -1 : 1) * passage.width / 4;
 }
 
-/// Returns true if a mover may enter a flight of stairs at that end.
-bool BuildingRun::Data::mayPass(const Traveller& who, const StoreyLink& passage, std::size_t room,
-                                bool is_up) const {
-    const World& world = *rooms[room].world;
-    const double radius = who.size.radius;
+/// Returns true if a mover may enter its flight of stairs. Where two cannot pass, those of one
+/// direction follow each other until one waits at the other end for longer.
+bool BuildingRun::Data::mayPass(const Traveller& who, const BuildingTrip& trip) const {
+    const Leg& leg = trip.legs[trip.leg];
+    const StoreyLink& passage = passages[leg.passage];
+    const auto goes_up = [](const BuildingTrip& one) {
+        return one.legs[one.leg].to > one.legs[one.leg].from;
+    };
+    const bool is_up = goes_up(trip);
+    const std::size_t other_end = is_up ? leg.from + 1 : leg.from - 1;
+    const World& world = *rooms[first_room[leg.passage] + std::min(leg.from, other_end)].world;
+    const auto room_for_two = [&](const MoverSize& other) {
+        return passage.width >= 2 * (who.size.radius + other.radius) + 2 * kFlightGap;
+    };
     for (const Mover& mover : world.movers()) {
-        const double room_for_two = 2 * (radius + mover.model.radius) + 2 * kFlightGap;
-        const auto trip = trips.find(mover.id);
-        const bool goes_up = trip != trips.end() && trip->second.legs[trip->second.leg].to >
-                                                        trip->second.legs[trip->second.leg].from;
-        if (goes_up != is_up && passage.width < room_for_two) return false;
+        const auto other = trips.find(mover.id);
+        const bool meets = other == trips.end() || goes_up(other->second) != is_up;
+        if (meets && !room_for_two({mover.model.radius, 0})) return false;
     }
-    return true;
+    if (world.movers().empty()) return true;
+    const std::deque<std::string>& queue = stops[leg.passage][other_end].queue;
+    return std::none_of(queue.begin(), queue.end(), [&](const std::string& id) {
+        const BuildingTrip& other = trips.find(id)->second;
+        return goes_up(other) != is_up && other.queued < trip.queued &&
+               !room_for_two(travellers.find(id)->second.size);
+    });
 }
 
 void BuildingRun::Data::enter(Traveller& who, BuildingTrip& trip) {
@@ -200,7 +215,7 @@ void BuildingRun::Data::enterFlight(Traveller& who, BuildingTrip& trip) {
     const Pose2 begin{{is_up ? 0 : passage.length, laneOf(who, passage, is_up)},
                       Angle::degrees(is_up ? 0 : 180)};
     const Pose2 pose = placedIn(passage.frame, begin);
-    if (!mayPass(who, passage, room, is_up) || !move(who, room, pose).empty()) {
+    if (!mayPass(who, trip) || !move(who, room, pose).empty()) {
         trip.state = TripState::Setting;
         return;
     }
@@ -248,6 +263,10 @@ void BuildingRun::Data::arrive(Traveller& who, BuildingTrip& trip) {
     const SimTime now = rooms.front().world->time();
     if (!trip.blocked) trip.blocked = now;
     if (now - *trip.blocked > kPatience) return turnBack(who, trip);
+    if (now - *trip.blocked > kPolite && (!trip.asked || now - *trip.asked > kPolite)) {
+        trip.asked = now;
+        askAside(landing.storey, who.size.radius, landing.at.position, {});
+    }
     if (!stop.holder.empty() && stop.holder != who.id) return;
     Pose2 pose = landing.at;
     if (passage.is_lift) {
@@ -260,6 +279,7 @@ void BuildingRun::Data::arrive(Traveller& who, BuildingTrip& trip) {
     stop.holder = who.id;
     std::erase_if(riders[leg.passage], [&](const Rider& rider) { return rider.id == who.id; });
     trip.blocked.reset();
+    trip.asked.reset();
     ++trip.leg;
     trip.state = TripState::Setting;
 }

@@ -174,11 +174,33 @@ const Landing* StoreyWays::landing(std::size_t passage, std::size_t stop) const 
     return nullptr;
 }
 
+/// Returns the ways from a landing to the others of its storey and to the point farthest away.
+std::vector<Segment2> StoreyWays::waysOut(const Landing& landing) const {
+    const WayFinder& finder = finders_[landing.storey];
+    std::vector<Segment2> out;
+    const auto add = [&](const std::vector<Point2>& way) {
+        Point2 from = landing.at.position;
+        for (const Point2 to : way) {
+            out.push_back({from, to});
+            from = to;
+        }
+    };
+    for (const Landing& other : landings_)
+        if (&other != &landing && other.storey == landing.storey)
+            add(finder.way(landing.ways, other.at.position));
+    if (const auto farthest = finder.farthestReached(landing.ways))
+        add(finder.way(landing.ways, *farthest));
+    return out;
+}
+
 /// Finds points near a landing that leave the way to the passages free.
 void StoreyWays::addSpots(Landing& landing) const {
     const WayFinder& finder = finders_[landing.storey];
     const double wide = 2 * size_.radius;
-    std::vector<std::tuple<double, double, double>> found;
+    // The floor before the door of a lift is left free anyway.
+    const std::vector<Segment2> ways_out =
+        (*passages_)[landing.passage].is_lift ? std::vector<Segment2>() : waysOut(landing);
+    std::vector<std::tuple<double, double, double>> found, in_ways;
     const int reach = static_cast<int>(kMaxSpot / kSpotStep);
     for (int i = -reach; i <= reach; ++i)
         for (int k = -reach; k <= reach; ++k) {
@@ -200,8 +222,13 @@ void StoreyWays::addSpots(Landing& landing) const {
                 });
             if (is_in_way || !finder.isFree(p)) continue;
             const auto way = finder.length(landing.ways, p);
-            if (way && *way <= 2 * kMaxSpot) found.emplace_back(*way, p.x, p.y);
+            if (!way || *way > 2 * kMaxSpot) continue;
+            const bool is_in_way_out =
+                std::any_of(ways_out.begin(), ways_out.end(),
+                            [&](const Segment2& out) { return distance(p, out) < wide + kRoom; });
+            (is_in_way_out ? in_ways : found).emplace_back(*way, p.x, p.y);
         }
+    if (found.empty()) found = std::move(in_ways);
     std::sort(found.begin(), found.end());
     for (const auto& [way, x, y] : found) {
         const Point2 p{x, y};

@@ -99,6 +99,7 @@ class StoreyWays {
     void addLift(const BuildingScene& building, std::size_t index);
     void addStairs(const BuildingScene& building, std::size_t index);
     void addSpots(Landing& landing) const;
+    [[nodiscard]] std::vector<Segment2> waysOut(const Landing& landing) const;
     [[nodiscard]] std::optional<Point2> freeBefore(std::size_t storey, const Pose2& end) const;
 
     const std::vector<StoreyLink>* passages_;

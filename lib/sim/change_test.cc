@@ -55,6 +55,20 @@ TEST(Change, WhatStaysGoesOn) {
     EXPECT_EQ(changed.command(1, {Verb::Left, 90}), 2);
 }
 
+TEST(Change, KeepsTheCommandsThatEndedInTheLastStep) {
+    World world(scene(kRoom, kRobot + "robot id=r2 at=2,2\n"), kStep);
+    world.command(1, {Verb::Forward, 0.1});
+    while (world.ends().empty()) world.step();
+    world.change(scene(kRoom, "robot id=r2 at=2,2\n" + kRobot + kLaser));
+    ASSERT_EQ(world.ends().size(), 1U);
+    EXPECT_EQ(world.ends().front().robot, world.robotNamed("r2"));
+    EXPECT_EQ(world.ends().front().id, 1);
+    EXPECT_EQ(world.ends().front().outcome, Outcome::Done);
+    // Those of movers that are gone are not.
+    world.change(scene(kRoom, kRobot));
+    EXPECT_TRUE(world.ends().empty());
+}
+
 TEST(Change, ARobotWithAnotherStartIsPutThere) {
     World world(shared(scene(kRoom, kRobot + "laser id=l1 on=r1 rate=10\n")), kStep);
     world.command(0, {Verb::Forward, 2});

@@ -14,6 +14,8 @@ constexpr SimTime kNever{-1};
 
 /// m/s: a faster mover tries lower speeds down to this one.
 constexpr double kPace = 1;
+/// Time without a gain after which a mover near its goal is taken to circle there.
+constexpr SimTime kCircling = std::chrono::seconds(2);
 /// Degrees: for a wider turn the mover turns on the spot.
 constexpr double kWide = 30;
 
@@ -126,6 +128,12 @@ void Navigator::walk(const SteeringState& helm, Motion& motion) {
         aside_until_ = {};
     }
     const Angle direct = Angle::radians(std::atan2(way.y, way.x));
+    // Walls about a point turn the mover aside, so that it circles there: it goes straight on.
+    constexpr double kLast = 0.5;  // metres
+    if (stops && left < kLast && helm.time - gained_ > kCircling && steering.isFree(way)) {
+        bumped_ = true;
+        return go(motion, direct, speed_, left);
+    }
     // Obstacles behind the point do not matter.
     const auto needed = [&](double speed) { return std::min(horizon(speed), left / speed); };
     constexpr double kMinValue = 0.3;  // seconds

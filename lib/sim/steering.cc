@@ -107,6 +107,20 @@ double Steering::freeTime(Angle direction, double share) const {
     return time == 0 ? 0 : std::min(time, untilLine(velocity, share));
 }
 
+bool Steering::isFree(Vec2 way) const {
+    const Segment2 path{place_, place_ + way};
+    const bool is_clear = std::all_of(lines_.begin(), lines_.end(), [&](const Line& line) {
+        const double at_end = std::sqrt(squaredDistance(path.b, line.line));
+        const double reach = std::min(line.reach, std::max(radius_, at_end) - kHair);
+        return !comesNear(path, line.line, reach);
+    });
+    return is_clear &&
+           std::all_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& other) {
+               const double apart = std::min(other.reach, length(other.offset) - kHair);
+               return squaredDistance(place_ + other.offset, path) >= apart * apart;
+           });
+}
+
 FreeHeading Steering::choose(Angle desired, double needed) const {
     constexpr std::array<double, 11> kTurns = {0, -15, 15, -30, 30, -50, 50, -75, 75, -100, 100};
     // Degrees of turning that a second of free way is worth.

@@ -54,6 +54,10 @@ class Steering {
     /// for a quarter of the horizon there. Of left and right it chooses right, so that two movers
     /// that meet pass each other.
     [[nodiscard]] FreeHeading choose(Angle desired, double needed) const;
+    /// Returns true if obstacles and movers, as they stand now, leave a straight way free up to its
+    /// end, which may be nearer to obstacles than others are passed. \pre it is not longer than the
+    /// way of the horizon
+    [[nodiscard]] bool isFree(Vec2 way) const;
 
   private:
     struct Neighbour {

@@ -251,6 +251,12 @@ WayFinder::Approach WayFinder::approach(Point2 from, Point2 to, const Box2& box,
     return found;
 }
 
+std::optional<Point2> WayFinder::farthestReached(const Field& field) const {
+    const auto most = std::max_element(field.cost.begin(), field.cost.end());
+    if (most == field.cost.end() || *most == kNoWay) return std::nullopt;
+    return centerOf(static_cast<std::size_t>(most - field.cost.begin()));
+}
+
 std::vector<Point2> WayFinder::way(const Field& field, Point2 to) const {
     const auto end = cellNear(to);
     if (!end || field.cost[*end] == kNoWay) return {};

@@ -69,6 +69,8 @@ class WayFinder {
                                     const std::function<bool(Point2)>& is_suitable) const;
     /// Number of cells, with a border.
     [[nodiscard]] std::size_t cells() const { return free_.size(); }
+    /// Returns the point with the longest way; empty without ways. O(cells)
+    [[nodiscard]] std::optional<Point2> farthestReached(const Field& field) const;
     /// Returns true if the circle with the margin is free at that point.
     [[nodiscard]] bool isFree(Point2 p) const;
     /// Returns true if the circle is free all along the straight line.

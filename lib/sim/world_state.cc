@@ -270,6 +270,10 @@ std::shared_ptr<World::Data> World::Data::next(
     after->time = time;
     after->steps = steps;
     after->changes = changes + 1;
+    // Those of the last step may not have been read yet.
+    for (const CommandEnd& end : ends)
+        if (const auto now = after->moverNamed(movers[end.robot].id))
+            after->ends.push_back({*now, end.id, end.outcome, end.time});
     for (std::size_t i = 0; i < after->motions.size(); ++i) {
         const std::string& id = after->movers[i].id;
         const auto old = moverNamed(id);
