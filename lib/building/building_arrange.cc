@@ -101,6 +101,16 @@ void measureTogether(const BuildingScene& building, const ArrangeOptions& option
     }
 }
 
+/// Returns the height up to which candidates see floor: of the highest site, and of the plane.
+double highestSite(const BuildingScene& building, const ArrangeOptions& options) {
+    double highest = options.plane;
+    for (const double height : options.mount.heights) highest = std::max(highest, height);
+    if (!options.mount.heights.empty()) return highest;
+    for (const auto& scene : building.scenes)
+        highest = std::max(highest, scene->environment.height());
+    return highest;
+}
+
 /// Arranges the sensors of a building, part by part.
 class BuildingSearch {
   public:
@@ -110,7 +120,8 @@ class BuildingSearch {
           count_(count),
           options_(options),
           progress_(progress),
-          scenes_(scenesOfFloors(building)),
+          coupling_(building),
+          scenes_(coupling_.floors(highestSite(building, options))),
           alone_(sensor, building.devices, options, progress) {}
 
     BuildingArrangement run() {
@@ -150,7 +161,7 @@ class BuildingSearch {
   private:
     /// Storeys whose candidates see each other are one part, the others one each.
     void findParts() {
-        const StoreySight sight(building_, options_.plane);
+        const StoreySight sight(coupling_, options_.plane);
         const SensorGroup group = alone_.groupFor(*scenes_.front(), 1);
         if (sight.hasOpenings() && seesOutside({"", group.model, {}})) {
             std::vector<JoinedRooms::Room> rooms;
@@ -215,6 +226,7 @@ class BuildingSearch {
     int count_;
     const ArrangeOptions& options_;
     Progress& progress_;
+    Coupling coupling_;
     std::vector<std::shared_ptr<const Scene>> scenes_;
     StoreySearch alone_;
     std::vector<Part> parts_;

@@ -127,10 +127,11 @@ std::shared_ptr<const OutsideView> withCells(const StoreySight& sight,
 }  // namespace
 
 BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options) {
+    const Coupling coupling(building);
     BuildingCoverage measured;
-    measured.floors = scenesOfFloors(building);
-    const std::vector<std::vector<StoreyView>> outside = viewsBetweenStoreys(building, options);
-    const StoreySight sight(building, options.plane);
+    measured.floors = coupling.floors(options.plane);
+    const std::vector<std::vector<StoreyView>> outside = viewsBetweenStoreys(coupling, options);
+    const StoreySight sight(coupling, options.plane);
     using Views = std::vector<std::shared_ptr<const OutsideView>>;
     std::map<std::pair<const Scene*, Views>, std::size_t> known;
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {

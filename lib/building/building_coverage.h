@@ -19,7 +19,7 @@ namespace ispace {
 /// reports name the storey, as in "ground/l1".
 struct BuildingCoverage {
     std::vector<Coverage> storeys;                     ///< with the views from other storeys
-    std::vector<std::shared_ptr<const Scene>> floors;  ///< what was measured, scenesOfFloors()
+    std::vector<std::shared_ptr<const Scene>> floors;  ///< what was measured, Coupling::floors()
     std::vector<std::size_t> sensors;       ///< number of those that stand in each storey
     double indoor_area = 0, free_area = 0;  ///< m2
     Metric total_effective_area;            ///< m2

@@ -28,7 +28,7 @@ struct BuildingInfo {
 BuildingInfo describe(const BuildingScene& building) {
     BuildingInfo info;
     std::map<const Scene*, EnvironmentInfo> known;
-    const auto floors = scenesOfFloors(building);
+    const auto floors = Coupling(building).floors();
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         const Scene& scene = *building.scenes[i];
         const auto [room, is_new] = known.try_emplace(floors[i].get());

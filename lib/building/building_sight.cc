@@ -12,7 +12,6 @@
 #include "base/parallel.h"
 #include "building/opening_bounds.h"
 #include "coverage/shadow_footprint.h"
-#include "env/level.h"
 #include "geom/overlay/overlay.h"
 #include "trace/ray_world.h"
 
@@ -31,17 +30,17 @@ std::int64_t rounded(double value) { return std::llround(value / kEqualWithin); 
 /// Searches the views between the storeys, then computes each once.
 class StoreyViews {
   public:
-    StoreyViews(const BuildingScene& building, const CoverageOptions& options)
-        : building_(building),
+    StoreyViews(const Coupling& coupling, const CoverageOptions& options)
+        : coupling_(coupling),
+          building_(coupling.building()),
           options_(options),
-          openings_(floorOpenings(building)),
-          bounds_(building, openings_) {
-        for (const auto& scene : building.scenes) {
+          openings_(coupling.openings()),
+          bounds_(building_, openings_) {
+        for (const auto& scene : building_.scenes) {
             const auto [at, is_new] = sensors_.try_emplace(scene.get());
             if (!is_new) continue;
             for (std::size_t i = 0; i < scene->sensors.size(); ++i)
-                if (seesOutside(scene->sensors[i]) && !isInsideSolid(*scene, scene->sensors[i]))
-                    at->second.push_back(i);
+                if (seesOutside(scene->sensors[i])) at->second.push_back(i);
         }
     }
 
@@ -77,10 +76,6 @@ class StoreyViews {
     [[nodiscard]] double floorOf(std::size_t storey) const {
         return building_.document.storeys[storey].floor;
     }
-    static bool isInsideSolid(const Scene& scene, const Sensor& sensor) {
-        const Point3 at = sensor.pose.position;
-        return scene.environment.level(at.z)->isInsideSolid(at.onFloor());
-    }
 
     /// Adds the views of the sensors of a storey into another one. \param between storeys through
     /// which sight leads, ends included
@@ -92,7 +87,9 @@ class StoreyViews {
         std::optional<std::size_t> kind;
         for (const std::size_t sensor : sensors) {
             if (!bounds_.maySee(between, from, to, building_.scenes[from]->sensors[sensor],
-                                options_.plane))
+                                options_.plane) ||
+                coupling_.isInsideSolid(from,
+                                        building_.scenes[from]->sensors[sensor].pose.position))
                 continue;
             if (!kind) kind = kindOfSurroundings(between);
             const auto place = [&](std::size_t storey) {
@@ -146,7 +143,7 @@ class StoreyViews {
         parallelChunks(true, rooms.size(), [&](std::size_t first, std::size_t last) {
             for (std::size_t k = first; k < last; ++k) {
                 const auto& [storeys, jobs] = rooms[k];
-                const ShadowCaster caster(joinedRoom(building_, openings_, storeys));
+                const ShadowCaster caster(coupling_.joined(storeys));
                 for (const std::size_t job : jobs) look(caster, jobs_[job]);
             }
         });
@@ -208,9 +205,10 @@ class StoreyViews {
             [all](const LayerLabel& label) { return label.marks == all; });
     }
 
+    const Coupling& coupling_;
     const BuildingScene& building_;
     const CoverageOptions& options_;
-    std::vector<FloorOpening> openings_;
+    std::span<const FloorOpening> openings_;
     OpeningBounds bounds_;
     std::map<const Scene*, std::vector<std::size_t>> sensors_;  // that see outside
     std::map<const Scene*, std::size_t> rooms_;                 // numbers of rooms
@@ -223,9 +221,9 @@ class StoreyViews {
 
 }  // namespace
 
-std::vector<std::vector<StoreyView>> viewsBetweenStoreys(const BuildingScene& building,
+std::vector<std::vector<StoreyView>> viewsBetweenStoreys(const Coupling& coupling,
                                                          const CoverageOptions& options) {
-    return StoreyViews(building, options).run();
+    return StoreyViews(coupling, options).run();
 }
 
 }  // namespace ispace

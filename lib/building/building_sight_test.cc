@@ -45,7 +45,7 @@ BuildingScene towerOf(const std::string& ground, const std::string& upper,
 
 /// Returns the area of the only view into a storey; 0 without one.
 double areaSeen(const BuildingScene& building, std::size_t storey, double plane = 0) {
-    const auto views = viewsBetweenStoreys(building, {.plane = plane});
+    const auto views = viewsBetweenStoreys(Coupling(building), {.plane = plane});
     if (views[storey].empty()) return 0;
     EXPECT_EQ(views[storey].size(), 1U);
     return signedArea(views[storey].front().view->region);
@@ -85,9 +85,8 @@ TEST(BuildingSight, AShaftMayTakeTheWholeFloor) {
         EXPECT_NEAR(measureBuilding(building, {}).storeys[1].report.indoor_area, 0, 1e-6);
         EXPECT_GT(areaSeen(building, 0), 40);
         EXPECT_TRUE(measureBuilding(building, {}).coverage.grid);
-        const auto room = roomWithSurroundings(building, floorOpenings(building), 1);
-        ASSERT_TRUE(room);
-        const RayWorld rays = RayWorld::ofEnvironment(*room);
+        const Coupling coupling(building);
+        const RayWorld rays = RayWorld::ofEnvironment(*coupling.surroundings(1));
         Directions down;
         down.resize(1);
         down.set(0, {0, 0, -1});
@@ -113,7 +112,7 @@ TEST(BuildingSight, HoldsInTurnedStoreys) {
     const std::string camera = "{camera: {id: c, at: [1, 2, 2], tilt: -90, fov: 120, heading: 0}}";
     const BuildingScene building = towerOf("", camera, kShaft, "3", ", at: [6, 2], heading: 90");
     EXPECT_NEAR(areaSeen(building, 0), 25, 1e-4);
-    const auto views = viewsBetweenStoreys(building, {});
+    const auto views = viewsBetweenStoreys(Coupling(building), {});
     const Point3 eye = views[0].front().view->sensor.pose.position;
     EXPECT_NEAR(eye.x, 4, 1e-9);
     EXPECT_NEAR(eye.y, 3, 1e-9);
@@ -149,7 +148,7 @@ TEST(BuildingSight, StepsHideTheFloorBelowThem) {
 
 TEST(BuildingSight, LasersSeeTheirStoreyAlone) {
     const std::string laser = "{laser: {id: l, at: [4, 3, 2], tilt: -90}}";
-    EXPECT_TRUE(viewsBetweenStoreys(towerOf("", laser, kShaft), {})[0].empty());
+    EXPECT_TRUE(viewsBetweenStoreys(Coupling(towerOf("", laser, kShaft)), {})[0].empty());
 }
 
 TEST(BuildingSight, ReportsNameTheStoreyOfTheSensor) {
@@ -171,7 +170,7 @@ TEST(BuildingSight, AgreesWithRaysOfBothRooms) {
         "{cube: {at: [4.2, 2.3], size: [0.5, 0.3, 0.8]}}, "
         "{camera: {id: c, at: [3.2, 4.4, 1.7], heading: -70, tilt: -60, fov: 110}}";
     const BuildingScene building = towerOf(things, above, kShaft);
-    const auto views = viewsBetweenStoreys(building, {.plane = 0.3});
+    const auto views = viewsBetweenStoreys(Coupling(building), {.plane = 0.3});
     ASSERT_EQ(views[0].size(), 1U);
     const OutsideView& view = *views[0].front().view;
     const FieldOfView field = *fieldOfView(view.sensor);
@@ -217,9 +216,7 @@ double castTo(const Environment& room, Point3 from, Vec3 way) {
 /// Returns the share of a grid on the floor of a storey that rays of its only sensor, which looks
 /// straight down, reach in the surroundings.
 double coverageByRays(const BuildingScene& building, std::size_t storey) {
-    const Environment room =
-        roomWithSurroundings(building, floorOpenings(building), storey).value();
-    const RayWorld world = RayWorld::ofEnvironment(room);
+    const RayWorld world = RayWorld::ofEnvironment(*Coupling(building).surroundings(storey));
     const Sensor& sensor = building.scenes[storey]->sensors.front();
     const Point3 eye = sensor.pose.position;
     std::vector<Point3> targets;
@@ -234,25 +231,28 @@ double coverageByRays(const BuildingScene& building, std::size_t storey) {
 
 TEST(BuildingSight, RaysPassOpeningsInTheRoomWithItsSurroundings) {
     const BuildingScene building = towerOf("{robot: {id: r, at: [4.6, 3]}}", "", kShaft);
-    const std::vector<FloorOpening> openings = floorOpenings(building);
-    const Environment upper = roomWithSurroundings(building, openings, 1).value();
+    const Coupling coupling(building);
+    const Environment upper = *coupling.surroundings(1, Coupling::Movers::OfNeighbours);
     EXPECT_NEAR(upper.indoor().area(), 48 - 4, 1e-6);
     EXPECT_NEAR(castTo(upper, {3.5, 3, 2}, {0, 0, -1}), 5, 1e-5);
     EXPECT_NEAR(castTo(upper, {2.5, 3, 2}, {0, 0, -1}), 2, 1e-5);
     EXPECT_LT(castTo(upper, {4.6, 3, 2}, {0, 0, -1}), 4.9);  // the robot below
-    const Environment ground = roomWithSurroundings(building, openings, 0).value();
+    const Environment ground = *coupling.surroundings(0);
     EXPECT_NEAR(castTo(ground, {2.5, 3, 1}, {0, 0, 1}), 2, 1e-5);
     EXPECT_EQ(castTo(ground, {3.5, 3, 1}, {0, 0, 1}), std::numeric_limits<double>::infinity());
     EXPECT_NEAR(castTo(ground, {3.5, 2.2, 1}, {0, 3.8, 4.3}), std::hypot(3.8, 4.3), 1e-4);
-    EXPECT_FALSE(roomWithSurroundings(towerOf("", "", ""), {}, 1)) << "under the roof";
+    const BuildingScene apart = towerOf("", "", "");
+    const Coupling closed(apart);
+    EXPECT_TRUE(closed.isAlone(1)) << "under the roof";
+    EXPECT_FALSE(closed.isAlone(0));
+    EXPECT_EQ(closed.surroundings(1).get(), &apart.scenes[1]->environment);
 }
 
 TEST(BuildingSight, SlabsHaveUndersidesAndWallsReachUpToThem) {
     // Walls of 2.5 m, and storeys of 2.8 m below floors 3 m apart.
     for (const std::string& passages : {std::string(), std::string(kShaft)}) {
         const BuildingScene building = towerOf("", "", passages, "2.8");
-        const Environment ground =
-            roomWithSurroundings(building, floorOpenings(building), 0).value();
+        const Environment ground = *Coupling(building).surroundings(0);
         EXPECT_NEAR(castTo(ground, {1, 1, 2}, {0, 0, 1}), 0.8, 1e-5);
         EXPECT_NEAR(castTo(ground, {1, 1, 2.7}, {-1, 0, 0}), 1, 1e-5);
         EXPECT_NEAR(castTo(ground, {1, 1, 2.4}, {-1, 0, 0}), 1, 1e-5);
@@ -335,6 +335,8 @@ TEST(RoomsAround, AreBuiltAnewIfTheRoomOfTheStoreyChanges) {
     EXPECT_EQ(rooms.around(0, cleared), changed);
     EXPECT_NE(rooms.around(1, *building.scenes[1]), nullptr) << "sides of shafts stop lasers";
     EXPECT_EQ(rooms.around(0, edited(building, 0, "camera", std::nullopt)), nullptr);
+    const BuildingScene apart = towerOf(kUp, kUp, "");
+    EXPECT_EQ(RoomsAround(apart).around(1, *apart.scenes[1]), nullptr);
 }
 
 TEST(RoomsAround, FixedSensorsOfOtherStoreysSeeTheFloorThatTheyCover) {
@@ -374,7 +376,7 @@ TEST(BuildingSight, EqualStoreysShareViews) {
     text += "- shaft: {storeys: '" + storeys + "', path: [[3, 2], [5, 2], [5, 4], [3, 4]]}\n";
     const BuildingScene building = sceneOf(text);
     const auto begin = std::chrono::steady_clock::now();
-    const auto views = viewsBetweenStoreys(building, {});
+    const auto views = viewsBetweenStoreys(Coupling(building), {});
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
     std::set<const OutsideView*> known;
     std::size_t uses = 0;

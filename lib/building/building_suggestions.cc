@@ -41,7 +41,7 @@ void nameAdded(Suggestion& suggestion, const Storey& storey, const std::vector<s
 }  // namespace
 
 std::vector<std::shared_ptr<const Scene>> wholeScenes(const BuildingScene& building) {
-    const auto floors = scenesOfFloors(building);
+    const auto floors = Coupling(building).floors();
     const auto is_first = [&floors](std::size_t i) {
         return std::find(floors.begin(), floors.end(), floors[i]) - floors.begin() ==
                static_cast<std::ptrdiff_t>(i);
@@ -57,7 +57,7 @@ std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::siz
                                          const SuggestOptions& options, Progress& progress) {
     BuildingScene named = building;
     named.scenes[storey] = whole[storey];
-    const std::shared_ptr<const Scene> opened = openedScene(named, storey);
+    const std::shared_ptr<const Scene> opened = Coupling(named).recordedFloor(storey);
     const Scene& scene = *opened;
     SuggestOptions own = options;
     own.most = kKinds;

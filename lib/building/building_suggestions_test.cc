@@ -21,7 +21,7 @@ TEST(BuildingSuggestions, AddNoSensorInAShaft) {
         "{laser: {id: l, at: [-4.8, -4.8, 1], range: 4, fov: 360}}]}\n"
         "- shaft: {id: s, storeys: 'g,u', path: '-2,-2;4,-2;4,4;-2,4'}\n");
     const auto whole = wholeScenes(building);
-    const auto floors = scenesOfFloors(building);
+    const auto floors = Coupling(building).floors();
     int added = 0;
     SilentProgress silent;
     for (const Suggestion& one : suggestForStorey(building, 1, whole, {}, silent)) {

@@ -2,7 +2,7 @@
 // Openings in floors, and the storeys that one reaches through them.
 #include <algorithm>
 
-#include "building/building_sight.h"
+#include "building/coupling.h"
 #include "env/walls.h"
 #include "geom/polygon.h"
 #include "scene/placement_schemas.h"

@@ -14,12 +14,9 @@
 
 namespace ispace {
 
-bool meetsSurroundings(const Sensor& sensor) {
-    return kindOf(sensor.model).stopped_by == Surfaces::Opaque;
-}
-
 bool seesOtherStoreys(const Sensor& sensor) {
-    return meetsSurroundings(sensor) && (!sensor.is<Laser>() || !scansSlice(sensor));
+    return kindOf(sensor.model).stopped_by == Surfaces::Opaque &&
+           (!sensor.is<Laser>() || !scansSlice(sensor));
 }
 
 namespace {
@@ -47,7 +44,7 @@ bool looksOtherwise(const Scene& before, const Scene& now) {
 RoomsAround::RoomsAround(const BuildingScene& building, double plane)
     : building_(building),
       plane_(plane),
-      openings_(floorOpenings(building)),
+      has_openings_(!floorOpenings(building).empty()),
       watching_(std::make_shared<const BuildingScene>(building)),
       latest_(building.scenes.size()) {}
 
@@ -62,10 +59,11 @@ std::shared_ptr<const SurroundedRoom> RoomsAround::room(std::size_t storey, cons
     if (!changes || changes->size() > 0) {
         BuildingScene now = building_;
         now.scenes[storey] = std::make_shared<const Scene>(scene);
-        auto room = roomWithSurroundings(now, openings_, storey, false);
-        known = std::make_shared<const Known>(
-            Known{scene.environment,
-                  room ? std::make_shared<const SurroundedRoom>(*std::move(room)) : nullptr});
+        const Coupling coupling(now);
+        known = std::make_shared<const Known>(Known{
+            scene.environment, coupling.isAlone(storey) ? nullptr
+                                                        : std::make_shared<const SurroundedRoom>(
+                                                              *coupling.surroundings(storey))});
         const std::lock_guard lock(mutex_);
         latest_[storey] = known;
     }
@@ -73,15 +71,17 @@ std::shared_ptr<const SurroundedRoom> RoomsAround::room(std::size_t storey, cons
 }
 
 std::shared_ptr<const SurroundedRoom> RoomsAround::around(std::size_t storey, const Scene& scene) {
-    const bool is_seen = std::any_of(scene.sensors.begin(), scene.sensors.end(), meetsSurroundings);
-    return is_seen ? room(storey, scene) : nullptr;
+    const bool has_sonar =
+        std::any_of(scene.robots.begin(), scene.robots.end(),
+                    [](const PlacedRobot& robot) { return !robot.model.sonar.places.empty(); });
+    return has_sonar || !scene.sensors.empty() ? room(storey, scene) : nullptr;
 }
 
 RoomsAround::SensorsByStorey RoomsAround::sensorsOutside(const BuildingScene& building) const {
     CoverageOptions options;
     options.plane = plane_;
     SensorsByStorey sensors;
-    for (const auto& views : viewsBetweenStoreys(building, options)) {
+    for (const auto& views : viewsBetweenStoreys(Coupling(building), options)) {
         std::vector<Sensor>& seeing = sensors.emplace_back();
         for (const StoreyView& one : views) {
             const Scene& scene = *building.scenes[one.storey];
@@ -106,7 +106,14 @@ void RoomsAround::setSensors(std::size_t storey, const Scene& scene) {
 }
 
 OutsideWatch RoomsAround::outside(std::size_t storey, const Scene& scene) {
-    if (openings_.empty()) return {};
+    if (!has_openings_) {
+        const Coupling coupling(building_);
+        const auto is_in_slab = [&](const Sensor& sensor) {
+            return coupling.slabAround(storey, sensor.pose.position).has_value();
+        };
+        if (std::none_of(scene.sensors.begin(), scene.sensors.end(), is_in_slab)) return {};
+        return {room(storey, scene), {}};
+    }
     std::shared_ptr<Lazy<SensorsByStorey>> known;
     std::shared_ptr<const BuildingScene> building;
     {
@@ -116,9 +123,9 @@ OutsideWatch RoomsAround::outside(std::size_t storey, const Scene& scene) {
     }
     const std::vector<Sensor>& sensors =
         known->get([&] { return sensorsOutside(*building); })[storey];
-    auto around = room(storey, scene);
-    if (around == nullptr) return {};
-    return {std::move(around), sensors};
+    auto seen = room(storey, scene);
+    if (seen == nullptr) return {};
+    return {std::move(seen), sensors};
 }
 
 }  // namespace ispace

@@ -9,7 +9,6 @@
 
 #include "coverage/outside_view.h"
 #include "coverage/plane_cells.h"
-#include "env/level.h"
 #include "geom/predicates.h"
 #include "geom/visibility/visibility.h"
 #include "scene/sensor/field_of_view.h"
@@ -31,12 +30,12 @@ bool isWellInside(const Polygon& outline, Point2 p) {
 
 }  // namespace
 
-StoreySight::StoreySight(const BuildingScene& building, double plane)
-    : building_(building),
+StoreySight::StoreySight(const Coupling& coupling, double plane)
+    : coupling_(coupling),
+      building_(coupling.building()),
       plane_(plane),
-      openings_(floorOpenings(building)),
-      bounds_(building, openings_),
-      rooms_(building.scenes.size()) {}
+      bounds_(building_, coupling.openings()),
+      rooms_(building_.scenes.size()) {}
 
 bool StoreySight::maySee(std::size_t from, const Sensor& sensor, std::size_t to) const {
     const auto& storeys = building_.document.storeys;
@@ -57,7 +56,7 @@ std::vector<StoreySight::Passed> StoreySight::floorsBetween(std::size_t from,
         return std::find(between.begin(), between.end(), storey) != between.end();
     };
     std::map<double, std::vector<Polygon>> floors;
-    for (const FloorOpening& opening : openings_) {
+    for (const FloorOpening& opening : coupling_.openings()) {
         const double floor = storeys[opening.above].floor;
         if (!is_here(opening.above) || floor <= storeys[between.front()].floor) continue;
         Polygon outline = opening.outline;
@@ -77,7 +76,7 @@ void StoreySight::look(std::size_t from, std::span<const Sensor> turned, std::si
     parts.runs.clear();
     parts.first.assign(turned.size() + 2, 0);
     const Point3 at = turned.front().pose.position;
-    if (building_.scenes[from]->environment.level(at.z)->isInsideSolid(at.onFloor())) return;
+    if (coupling_.isInsideSolid(from, at)) return;
     const Pose2 seen_from_own{inStorey(seen, own.building_from_storey.position),
                               own.building_from_storey.heading - seen.building_from_storey.heading};
     std::vector<FieldOfView> views;
@@ -88,10 +87,8 @@ void StoreySight::look(std::size_t from, std::span<const Sensor> turned, std::si
             view.sensor.model);
         views.push_back(*fieldOfView(view.sensor));
     }
-    const auto& room = rooms_[to].get([&] {
-        return std::make_shared<const SurroundedRoom>(
-            roomWithSurroundings(building_, openings_, to, false).value());
-    });
+    const auto& room = rooms_[to].get(
+        [&] { return std::make_shared<const SurroundedRoom>(*coupling_.surroundings(to)); });
     cellsByView(grid, room->mesh(), views, plane_, parts);
     // Only through openings of all floors between, not past the outlines of floors.
     const Point3 eye = views.front().frame.origin;

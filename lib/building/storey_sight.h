@@ -18,14 +18,14 @@ namespace ispace {
 /// The sight of sensors that may stand anywhere on a storey into other storeys, by cells; rooms of
 /// JoinedRooms are storeys. measureBuilding() counts these cells, too. They agree with the regions
 /// of viewsBetweenStoreys(), but for centres within 0.3 mm of a boundary: those on the rim of an
-/// opening are not seen. Stores the building's reference. Thread-safe.
+/// opening are not seen. Stores the coupling's reference. Thread-safe.
 class StoreySight final : public SightBetweenRooms {
   public:
     /// \param plane see CoverageOptions
-    StoreySight(const BuildingScene& building, double plane);
+    StoreySight(const Coupling& coupling, double plane);
 
     /// Returns true if there are openings between storeys.
-    [[nodiscard]] bool hasOpenings() const { return !openings_.empty(); }
+    [[nodiscard]] bool hasOpenings() const { return !coupling_.openings().empty(); }
     [[nodiscard]] bool maySee(std::size_t from, const Sensor& sensor,
                               std::size_t to) const override;
     void look(std::size_t from, std::span<const Sensor> turned, std::size_t to, const Grid& grid,
@@ -42,9 +42,9 @@ class StoreySight final : public SightBetweenRooms {
     };
     [[nodiscard]] std::vector<Passed> floorsBetween(std::size_t from, std::size_t to) const;
 
+    const Coupling& coupling_;
     const BuildingScene& building_;
     double plane_;
-    std::vector<FloorOpening> openings_;
     OpeningBounds bounds_;
     std::vector<Lazy<std::shared_ptr<const SurroundedRoom>>> rooms_;  // by storey that is seen
 };

@@ -42,7 +42,8 @@ CoverageOptions coarseFloor() {
 
 TEST(StoreySight, CellsAreThoseOfTheRegionsSeen) {
     const BuildingScene empty = placed(kTurned, "");
-    const StoreySight sight(empty, 0);
+    const Coupling coupling(empty);
+    const StoreySight sight(coupling, 0);
     EXPECT_TRUE(sight.hasOpenings());
     std::mt19937_64 engine(3);
     const auto uniform = [&engine](double low, double high) {

@@ -108,12 +108,12 @@ DetectionMonitor::Data::Data(const Scene& scene, const WatchOptions& options)
       outside(options.outside ? options.outside(scene) : OutsideWatch{}),
       worlds(scene.environment, outside.room) {
     const std::vector<Pose2> people = peopleOf(scene);
+    const Environment& room = outside.room ? outside.room->environment() : scene.environment;
     for (const Sensor& sensor : scene.sensors) {
         if (!kindOf(sensor.model).perceives) continue;
         Watcher& watcher = watchers.emplace_back(watcherOf(sensor, people, options.density));
         const Point3 place = sensor.pose.position;
-        watcher.is_blind =
-            !watcher.rides() && scene.environment.level(place.z)->isInsideSolid(place.onFloor());
+        watcher.is_blind = !watcher.rides() && room.level(place.z)->isInsideSolid(place.onFloor());
         if (scansSlice(sensor))
             worlds.prepare(sensor.pose);
         else

@@ -250,14 +250,15 @@ void Worlds::prepare(const Pose3& pose, const Worlds* before) {
 }
 
 void Worlds::prepareMesh(Surfaces surfaces) {
-    if (around_ != nullptr && surfaces == Surfaces::Opaque) {
+    if (around_ != nullptr && (surfaces == Surfaces::Opaque || !has_clear_)) {
         static_cast<void>(around_->mesh());
         is_around_prepared_ = true;
         return;
     }
     std::optional<RayWorld>& mesh = hearsMore(surfaces) ? solid_ : mesh_;
     if (mesh) return;
-    RayWorld made = RayWorld::ofEnvironment(*environment_, surfaces);
+    RayWorld made = RayWorld::ofEnvironment(
+        around_ == nullptr ? *environment_ : around_->environment(), surfaces);
     const std::unique_lock lock(mutex_);
     mesh.emplace(std::move(made));
 }
@@ -269,7 +270,7 @@ const RayWorld& Worlds::at(const Pose3& pose) const {
 }
 
 const RayWorld& Worlds::mesh(Surfaces surfaces) const {
-    if (around_ != nullptr && surfaces == Surfaces::Opaque) return around_->mesh();
+    if (around_ != nullptr && (surfaces == Surfaces::Opaque || !has_clear_)) return around_->mesh();
     const std::shared_lock lock(mutex_);
     const std::optional<RayWorld>& mesh = hearsMore(surfaces) ? solid_ : mesh_;
     assert(mesh);

@@ -67,3 +67,28 @@ for tool in scan coverage; do
     expect_status 0 $tool -q room.env layout.3dm
     [ ! -s err ] || fail "$tool -q says: $(cat err)"
 done
+
+# A laser in the floor between two storeys: each tool tells, and none sees anything.
+cat >house.env <<'ENV'
+#env 1
+storey id=ground file=room.env height=2.8
+storey id=upper file=room.env z=3.1 height=2.8
+stairs id=s storeys=ground,upper at=6,1 heading=90 size=1,3.5
+ENV
+printf '#env 1\nispace id=room at=4,3 size=8,6,2.5\n' >room.env
+cat >layout.3dm <<'LAYOUT'
+#3dm 1
+laser id=ground/l at=2,3,3 range=0,20 fov=360 step=90
+laser id=ground/s at=6,2.7,1.4 range=0,1
+LAYOUT
+slab="layout.3dm:2:1: ground: laser l stands inside the floor of upper, 2.80 m to 3.10 m high, at (2.0, 3.0); lower it to 2.80 m"
+steps="layout.3dm:3:1: ground: laser s stands inside the steps of stairs s at (6.0, 2.7); move it, or raise it to 1.51 m"
+expect_status 1 envc house.env layout.3dm --check
+findings envc "$slab" "$steps"
+expect_status 0 scan house.env layout.3dm
+findings scan "$slab" "$steps"
+expect_status 0 coverage house.env layout.3dm
+findings coverage "$slab" "$steps"
+grep -qE '^ground/l +laser +[0-9.]+ m2 +0.00 m2 +0.00 m2' out || fail "a blind laser covers floor: $(cat out)"
+expect_status 0 simrun house.env layout.3dm --clock fast --until 0.1
+findings simrun "$slab" "$steps"

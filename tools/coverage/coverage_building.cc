@@ -14,6 +14,7 @@
 #include "building/building_coverage.h"
 #include "building/building_page.h"
 #include "building/building_suggestions.h"
+#include "building/coupling.h"
 #include "cli/building_operands.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
@@ -200,17 +201,17 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     addZones(options.zones, input.building);
     warn(options.common, "coverage", input.warnings);
     if (!options.report.empty()) mustBeWritable(options.report);
+    warn(options.common, "coverage", storeyWarnings(Coupling(input.building), sensorChecks()));
     for (std::size_t i = 0; i < input.building.scenes.size(); ++i)
-        for (Diagnostic finding : sensorFindings(*input.building.scenes[i])) {
-            finding.message = input.building.document.storeys[i].id + ": " + finding.message;
-            warn(options.common, "coverage", std::span<const Diagnostic>(&finding, 1));
-        }
+        if (auto deaf = receiverFinding(*input.building.scenes[i]))
+            warn(options.common, "coverage",
+                 input.building.document.storeys[i].id + ": " + deaf->message);
     const BuildingCoverage coverage = measureBuilding(input.building, options.measure);
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
         if (const std::string text =
                 largeCellsText(options.measure, coverage.storeys[i].report.grid);
             !text.empty())
-            warn(options.common, "coverage", input.building.document.storeys[i].id + ": " + text);
+            tell(options.common, "coverage", input.building.document.storeys[i].id + ": " + text);
     const std::vector<JunitCase> verdicts = judgeBuilding(options, input.building, coverage);
     const std::optional<BuildingRunCoverage> run = measureStoreyRuns(options, input);
     if (options.format != nullptr) {

@@ -203,16 +203,22 @@ void writeProduct(const CoverageToolOptions& options, const SceneInput& input,
 }
 
 std::vector<Diagnostic> sensorFindings(const Scene& scene) {
-    std::vector<Diagnostic> found =
-        sceneWarnings(scene, {.checks = {"unplaced", "outside", "buried"}});
+    std::vector<Diagnostic> found = sceneWarnings(scene, sensorChecks());
+    if (auto deaf = receiverFinding(scene)) found.push_back(*std::move(deaf));
+    return found;
+}
+
+FindingFilter sensorChecks() { return {.checks = {"unplaced", "outside", "buried"}}; }
+
+std::optional<Diagnostic> receiverFinding(const Scene& scene) {
     if (const std::size_t count = sensorsOf<Receiver>(scene).size();
         count > 0 && count < kMinReceivers)
-        found.push_back(
-            {.file = "",
-             .message = "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
-                        " receivers have to hear a tag, here are " + std::to_string(count),
-             .severity = Severity::Warning});
-    return found;
+        return Diagnostic{
+            .file = "",
+            .message = "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
+                       " receivers have to hear a tag, here are " + std::to_string(count),
+            .severity = Severity::Warning};
+    return std::nullopt;
 }
 
 std::string largeCellsText(const CoverageOptions& options, const Grid& grid) {

@@ -19,6 +19,7 @@
 #include "report/objective_report.h"
 #include "report/robustness_report.h"
 #include "report/suggestion_report.h"
+#include "scene/findings/findings.h"
 
 namespace ispace {
 
@@ -67,6 +68,10 @@ void writeProduct(const CoverageToolOptions& options, const SceneInput& input,
 
 /// Returns the findings about the sensors, robots and people of a scene.
 std::vector<Diagnostic> sensorFindings(const Scene& scene);
+/// Selects those of checkScene() among them.
+FindingFilter sensorChecks();
+/// Returns a warning of too few ultrasound receivers; empty if there are none or enough.
+std::optional<Diagnostic> receiverFinding(const Scene& scene);
 
 /// Returns a sentence if cells are larger than usual by default, else "".
 std::string largeCellsText(const CoverageOptions& options, const Grid& grid);

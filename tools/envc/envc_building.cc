@@ -15,6 +15,7 @@
 #include "building/building_edit.h"
 #include "building/building_imports.h"
 #include "building/building_scene.h"
+#include "building/coupling.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
@@ -102,19 +103,19 @@ void check(const EnvcOptions& options, const BuildingScene& building, const Impo
     Diagnostics findings;
     for (const Diagnostic& warning : building.document.warnings) findings.add(warning);
     for (const Diagnostic& doubt : report.doubts) findings.add(doubt);
+    FindingFilter mistakes;
+    for (const SceneCheck& check : sceneChecks())
+        if (check.name != "unplaced") mistakes.checks.push_back(check.name);
+    const Coupling coupling(building);
+    // As of a room: arrange accepts a sensor without a position.
+    warn(options.common, "envc", storeyWarnings(coupling, {.checks = {"unplaced"}}));
     std::vector<const Scene*> checked;
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         const Scene* const scene = building.scenes[i].get();
-        if (std::find(checked.begin(), checked.end(), scene) != checked.end()) continue;
+        const bool is_new = std::find(checked.begin(), checked.end(), scene) == checked.end();
         checked.push_back(scene);
-        FindingFilter mistakes;
-        for (const SceneCheck& check : sceneChecks())
-            if (check.name != "unplaced") mistakes.checks.push_back(check.name);
-        for (const Finding& finding : checkScene(*scene, mistakes)) {
-            Diagnostic diagnostic = finding.diagnostic();
-            diagnostic.message = building.document.storeys[i].id + ": " + diagnostic.message;
-            findings.add(std::move(diagnostic));
-        }
+        for (Diagnostic& finding : storeyFindings(coupling, i, mistakes, is_new))
+            findings.add(std::move(finding));
     }
     for (Diagnostic& finding : checkBuilding(building)) findings.add(std::move(finding));
     findings.throwIfAny();

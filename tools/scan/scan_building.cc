@@ -15,7 +15,6 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "scan/scan_run.h"
-#include "scene/findings/findings.h"
 #include "sense/warnings.h"
 
 namespace ispace {
@@ -42,14 +41,10 @@ struct StoreySensors {
     Sensors sensors;
 };
 
-/// Returns the scene of a storey in its surroundings, if sensors meet these.
-Scene sceneOf(const BuildingScene& building, std::span<const FloorOpening> openings,
-              const StoreySensors& one) {
-    Scene scene = *building.scenes[one.storey];
-    const std::vector<Sensor>& sensors = one.sensors.read;
-    if (std::none_of(sensors.begin(), sensors.end(), meetsSurroundings)) return scene;
-    if (auto room = roomWithSurroundings(building, openings, one.storey))
-        scene.environment = *std::move(room);
+/// Returns the scene of a storey in its surroundings.
+Scene sceneOf(const Coupling& coupling, std::size_t storey) {
+    Scene scene = *coupling.building().scenes[storey];
+    scene.environment = *coupling.surroundings(storey, Coupling::Movers::OfNeighbours);
     return scene;
 }
 
@@ -82,20 +77,6 @@ std::vector<std::unique_ptr<StoreySensors>> sensorsIn(const ScanToolOptions& opt
                                "storey, such as " +
                                    input.building.document.storeys.front().id + "/l1");
     return all;
-}
-
-void warnOfSensors(const ScanToolOptions& options, const BuildingInput& input) {
-    for (std::size_t i = 0; i < input.building.scenes.size(); ++i) {
-        const Storey& storey = input.building.document.storeys[i];
-        const FindingFilter filter{.checks = {"unplaced", "outside", "buried"},
-                                   .ids = [&](const std::string& id) {
-                                       return isSelected(wholeId(storey, id), options.select);
-                                   }};
-        for (Diagnostic finding : sceneWarnings(*input.building.scenes[i], filter)) {
-            finding.message = storey.id + ": " + finding.message;
-            warn(options.common, "scan", std::span<const Diagnostic>(&finding, 1));
-        }
-    }
 }
 
 /// Takes all readings of a storey. \param scene see sceneOf() \return their number
@@ -138,7 +119,11 @@ bool scanBuilding(const ScanCommand& command) {
     const BuildingInput& input = *read;
     mustBeAboutBuildings(options, input.building.document);
     warn(options.common, "scan", input.warnings);
-    if (options.view.views.empty()) warnOfSensors(options, input);
+    const Coupling coupling(input.building);
+    if (options.view.views.empty())
+        warn(options.common, "scan",
+             storeyWarnings(coupling, {.checks = {"unplaced", "outside", "buried"}},
+                            [&](const std::string& id) { return isSelected(id, options.select); }));
     if (!options.view.views.empty()) {
         takeBuildingViews(options, input);
         return true;
@@ -146,9 +131,8 @@ bool scanBuilding(const ScanCommand& command) {
     const bool is_set = OutputSet::of(options.common.output).has_value();
     std::optional<OutputFile> file;
     std::int64_t done = 0;
-    const std::vector<FloorOpening> openings = floorOpenings(input.building);
     for (const auto& one : sensorsIn(options, input)) {
-        const Scene scene = sceneOf(input.building, openings, *one);
+        const Scene scene = sceneOf(coupling, one->storey);
         command.checkSensors(one->sensors.read);
         const auto format =
             makeFormat(options.format, one->sensors, formatOptions(command, options, one->input));

@@ -39,7 +39,7 @@ bool isWithinRoom(const ViewSpec& view) {
 class BuildingViews {
   public:
     BuildingViews(const ScanToolOptions& options, const BuildingScene& building)
-        : options_(options), building_(building), openings_(floorOpenings(building)) {
+        : options_(options), building_(building), coupling_(building) {
         for (const ViewSpec& view : options.view.views) add(view);
         for (std::size_t i = 0; i < views_.size(); ++i) nameApart(i);
         for (const StoreyViewSpec& one : views_)
@@ -133,8 +133,7 @@ class BuildingViews {
         auto& room = rooms_[storey];
         if (room == nullptr) {
             Scene scene = *building_.scenes[storey];
-            if (auto around = roomWithSurroundings(building_, openings_, storey))
-                scene.environment = *std::move(around);
+            scene.environment = *coupling_.surroundings(storey, Coupling::Movers::OfNeighbours);
             room = std::make_unique<const Scene>(std::move(scene));
         }
         return *room;
@@ -195,8 +194,7 @@ class BuildingViews {
             ViewOptions own = drawingOf(i);
             for (std::string& id : own.highlight) id = wholeId(storeys[i], id);
             Scene scene = *sceneOfBuilding(building_, i);
-            if (auto room = roomWithOpenings(building_, openings_, i))
-                scene.environment = *std::move(room);
+            if (auto room = coupling_.opened(i)) scene.environment = *std::move(room);
             labels.push_back({std::move(scene), inFrameOf(storeys[i], view, contents), own});
             own.behind = &image;
             own.labels = false;
@@ -244,7 +242,7 @@ class BuildingViews {
 
     const ScanToolOptions& options_;
     const BuildingScene& building_;
-    std::vector<FloorOpening> openings_;
+    Coupling coupling_;
     std::vector<StoreyViewSpec> views_;
     std::map<std::size_t, std::unique_ptr<const Scene>> rooms_;
 };

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_files.h"
+#include "building/coupling.h"
 #include "cli/building_operands.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
@@ -21,7 +22,6 @@
 #include "passage/building_run.h"
 #include "passage/building_script.h"
 #include "record/text.h"
-#include "scene/findings/findings.h"
 #include "scene/run/run_reader.h"
 #include "sim/world_state.h"
 #include "simrun/simrun_ports.h"
@@ -34,13 +34,9 @@ namespace {
 
 void warnOfScenes(const SimrunOptions& options, const BuildingInput& input) {
     warn(options.common, "simrun", input.warnings);
-    for (std::size_t i = 0; i < input.building.scenes.size(); ++i)
-        for (Diagnostic finding :
-             sceneWarnings(*input.building.scenes[i],
-                           {.checks = {"unplaced", "outside", "buried", "paths"}})) {
-            finding.message = input.building.document.storeys[i].id + ": " + finding.message;
-            warn(options.common, "simrun", std::span<const Diagnostic>(&finding, 1));
-        }
+    warn(options.common, "simrun",
+         storeyWarnings(Coupling(input.building),
+                        {.checks = {"unplaced", "outside", "buried", "paths"}}));
     const auto& scenes = input.building.scenes;
     if (options.noise && std::none_of(scenes.begin(), scenes.end(), [&](const auto& scene) {
             return hasNoise(*scene, options.replay.empty());
