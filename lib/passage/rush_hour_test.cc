@@ -128,6 +128,11 @@ void expectAllArrive(unsigned seed) {
 
 TEST(BuildingRun, EverybodyArrivesInARushHour) { expectAllArrive(1); }
 
+/// Half a minute: the pipeline rush_hours runs it.
+TEST(BuildingRun, DISABLED_EverybodyArrivesInTwentyRushHours) {
+    for (unsigned seed = 1; seed <= 20; ++seed) expectAllArrive(seed);
+}
+
 TEST(BuildingRun, TwentyPeopleShareStairsWithLandingsOfAMetre) {
     constexpr double kMost = 900;  // seconds
     RushHour hour(1, 0, 20);

@@ -227,8 +227,9 @@ void Navigator::go(Motion& motion, Angle direction, double speed, double stop) {
     // Allows it to stop there, turning on the way.
     speed = std::min(speed, std::sqrt(2 * model_.accel * stop));
     const double aside = Angle::degrees(off).radians();
-    const bool sidles = model_.drive == Drive::Omni && std::abs(off) < 2 * kWide;
-    const bool turns = std::abs(off) >= kWide || bumped_;  // on the spot
+    // After a bump it turns on the spot: sidling, it would bend towards what it met again.
+    const bool sidles = model_.drive == Drive::Omni && std::abs(off) < 2 * kWide && !bumped_;
+    const bool turns = std::abs(off) >= kWide || bumped_;
     const double ahead = sidles ? speed * std::cos(aside) : turns ? 0 : speed;
     motion.drive.goal = {AxisGoal::Kind::Speed, ahead};
     if (sidles)

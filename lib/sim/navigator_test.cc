@@ -232,6 +232,24 @@ TEST(Navigator, APathLeadsAwayFromAThing) {
     }
 }
 
+TEST(Navigator, APersonThatGrazesAWallTurnsAwayInPlace) {
+    const Scene room = scene(kRoom, "human id=h at=2.72006,-3.74358 path=2.75,-3.65;-1.4,-3.65\n");
+    World world(room, milliseconds(50));
+    EXPECT_TRUE(timeUntil(world, seconds(20), [&] { return isAt(world, 0, {-1.4, -3.65}, 0.02); }));
+}
+
+TEST(Navigator, ReachesPointsNearerToAWallThanItPasses) {
+    for (const char* const mover : {"robot radius=0.3", "human"}) {
+        const Scene room =
+            scene(kRoom, mover + std::string(" id=m at=-3,0 path=2.07,3.69;2.5,1\n"));
+        World world(room, milliseconds(50));
+        EXPECT_TRUE(timeUntil(world, seconds(60), [&] { return isAt(world, 0, {2.5, 1}, 0.02); }));
+    }
+    const Scene room = scene(kRoom, "robot radius=0.3 id=m at=-3,0 path=2.07,3.69\n");
+    World world(room, milliseconds(50));
+    EXPECT_TRUE(timeUntil(world, seconds(60), [&] { return isAt(world, 0, {2.07, 3.69}, 0.02); }));
+}
+
 TEST(Navigator, WanderersKeepMoving) {
     std::string layout;
     for (int i = 0; i < 6; ++i) {
