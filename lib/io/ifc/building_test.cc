@@ -127,6 +127,82 @@ TEST(Building, BrokenPartsAreCounted) {
               "curves in a loop 1\nplacements in a loop 1\nshapes in a loop 2\n");
 }
 
+/// A building of a storey `g`, in whose placement (#13) these products are.
+std::string oneStorey(const std::string& data, const std::string& contained) {
+    return ifcWith(
+        "#10=IFCCARTESIANPOINT((0.,0.,0.));\n#11=IFCDIRECTION((0.,0.,1.));\n"
+        "#12=IFCAXIS2PLACEMENT3D(#10,$,$);\n#13=IFCLOCALPLACEMENT($,#12);\n"
+        "#14=IFCBUILDINGSTOREY('g',$,'g',$,$,#13,$,$,.ELEMENT.,0.);\n"
+        "#15=IFCRELCONTAINEDINSPATIALSTRUCTURE('r',$,$,$,(" +
+        contained +
+        "),#14);\n"
+        "#16=IFCRECTANGLEPROFILEDEF(.AREA.,$,$,5.4,0.2);\n"
+        "#17=IFCEXTRUDEDAREASOLID(#16,#12,#11,2.5);\n"
+        "#18=IFCSHAPEREPRESENTATION($,'Body','SweptSolid',(#17));\n"
+        "#19=IFCPRODUCTDEFINITIONSHAPE($,$,(#18));\n" +
+        data);
+}
+
+TEST(Building, PartsOfWallsAreWallsWhateverTheirClass) {
+    for (const char* type : {"IFCMEMBER", "IFCCOLUMN", "IFCBUILDINGELEMENTPROXY", "IFCCOVERING",
+                             "IFCBUILDINGELEMENTPART"}) {
+        const Building building = readBuilding(
+            oneStorey("#30=IFCWALL('w',$,'w',$,$,#13,$,$,$);\n#31=" + std::string(type) +
+                          "('m',$,'m',$,$,#13,#19,$,$);\n"
+                          "#32=IFCRELAGGREGATES('a',$,$,$,#30,(#31));\n",
+                      "#30"),
+            std::nullopt, ampleWork());
+        ASSERT_EQ(building.walls.size(), 1U) << type;
+        EXPECT_FALSE(building.walls[0].is_column) << type;
+        EXPECT_TRUE(building.things.empty()) << type;
+        EXPECT_TRUE(building.unread.empty()) << type;
+    }
+    // Alone, a long member is a brace.
+    EXPECT_TRUE(readBuilding(oneStorey("#31=IFCMEMBER('m',$,'m',$,$,#13,#19,$,$);\n", "#31"),
+                             std::nullopt, ampleWork())
+                    .walls.empty());
+}
+
+TEST(Building, WallsWithoutABodyAreCounted) {
+    const Building building = readBuilding(
+        oneStorey("#30=IFCWALL('w',$,'w',$,$,#13,$,$,$);\n", "#30"), std::nullopt, ampleWork());
+    ASSERT_EQ(building.unread.size(), 1U);
+    EXPECT_EQ(building.unread.begin()->first, "IFCWALL without a body");
+}
+
+TEST(Building, ASpaceWithPartialPartsIsASpace) {
+    const auto spaces = [](const char* shape, const char* kind) {
+        return readBuilding(oneStorey("#30=IFCSPACE('w',$,'w',$,$,#13," + std::string(shape) +
+                                          ",$,.ELEMENT.,.INTERNAL.,0.);\n"
+                                          "#31=IFCSPACE('p',$,'p',$,$,#13,#19,$," +
+                                          kind +
+                                          ",.INTERNAL.,0.);\n"
+                                          "#32=IFCRELAGGREGATES('a',$,$,$,#30,(#31));\n",
+                                      "#40"),
+                            std::nullopt, ampleWork())
+            .spaces;
+    };
+    const auto both = spaces("#19", ".PARTIAL.");
+    ASSERT_EQ(both.size(), 2U);
+    EXPECT_FALSE(both[0].is_part);
+    EXPECT_TRUE(both[1].is_part);
+    // Of a whole that is divided into spaces only these remain.
+    EXPECT_EQ(spaces("#19", ".ELEMENT.").size(), 1U);
+    const auto alone = spaces("$", ".PARTIAL.");
+    ASSERT_EQ(alone.size(), 1U);
+    EXPECT_FALSE(alone[0].is_part);
+}
+
+TEST(Building, TheGroundFloorIsReadByDefault) {
+    Building building;
+    building.storeys = {{"cellar", "", -2.8, -1.8, 4, 2, 0},
+                        {"ground", "", 0, 1, 4, 2, 0},
+                        {"upper", "", 2.8, 3.8, 4, 2, 0}};
+    EXPECT_EQ(chosenStorey(building, {}), 1U);
+    building.storeys[1].doors = 0;
+    EXPECT_EQ(chosenStorey(building, {}), 0U);
+}
+
 // A wall whose placement is missing does not stand in the origin.
 TEST(Building, MissingPlacementsAndShapesAreCounted) {
     const std::string whole = ifcBytes("broken-4-m.ifc");

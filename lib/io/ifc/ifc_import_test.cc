@@ -40,6 +40,7 @@ std::vector<std::string> texts(const Document& document, const char* keyword, co
 }
 
 TEST(Ifc, Known) {
+    EXPECT_TRUE(isIfc("\n/* by hand; */\nISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));"));
     EXPECT_TRUE(isIfc(ifcBytes("cabin-2x3-mm.ifc")));
     EXPECT_FALSE(
         isIfc("ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\n#1=IFCWALL();"));

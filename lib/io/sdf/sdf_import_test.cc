@@ -51,6 +51,23 @@ TEST(SdfImport, KnowsItsRoot) {
     EXPECT_FALSE(isSdf(""));
 }
 
+TEST(SdfImport, CapsulesConesAndEllipsoidsAreTheCylindersAroundThem) {
+    const auto record = [](const std::string& geometry) {
+        return recordsOf(
+            worldOf("<model name='a'><pose>1 2 0.5 0 0 0</pose><link name='l'>"
+                    "<collision name='c'><geometry>" +
+                    geometry + "</geometry></collision></link></model>"));
+    };
+    EXPECT_EQ(record("<cone><radius>0.5</radius><length>1</length></cone>"),
+              "cylinder id=a at=1,2,0 size=1,1,1\n");
+    EXPECT_EQ(record("<capsule><radius>0.3</radius><length>0.4</length></capsule>"),
+              "cylinder id=a at=1,2,0 size=0.6,0.6,1\n");
+    EXPECT_EQ(record("<ellipsoid><radii>0.4 0.4 0.5</radii></ellipsoid>"),
+              "cylinder id=a at=1,2,0 size=0.8,0.8,1\n");
+    EXPECT_EQ(record("<ellipsoid><radii>0.6 0.4 0.5</radii></ellipsoid>"),
+              "cube id=a at=1,2,0 size=1.2,0.8,1\n");
+}
+
 TEST(SdfImport, BoxesStandWhereAllPosesTogetherPutThem) {
     // Nested twice, each turned by a quarter: 1 m ahead of what looks along -x.
     EXPECT_EQ(recordsOf(worldOf("<model name='a'><pose>5 5 0 0 0 1.57079632679</pose>"
