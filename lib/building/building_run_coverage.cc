@@ -48,6 +48,7 @@ RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys) {
             addMetrics(sum.members[at->second], member);
         }
         addMetrics(sum.all, storey.all);
+        sum.unreached.insert(sum.unreached.end(), storey.unreached.begin(), storey.unreached.end());
     }
     for (RunCoverageMetrics& member : sum.members) {
         turnIntoShares(member.time_shares, member.duration);

@@ -253,6 +253,18 @@ void flush(const DetectionMonitor& watch, Members& members, std::vector<Sample>&
 
 }  // namespace
 
+namespace {
+
+void addUnreached(std::vector<UnreachedTarget>& all, const RunUnreached& target, double time) {
+    auto known = std::find_if(all.begin(), all.end(), [&](const UnreachedTarget& one) {
+        return one.id == target.id && one.to == target.to && one.at == target.at;
+    });
+    if (known == all.end()) known = all.insert(known, {target.id, target.to, target.at, time, 0});
+    ++known->times;
+}
+
+}  // namespace
+
 RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
                        RunChanges* changes, const std::function<bool(double)>& advance) {
     if (!reader.next())
@@ -291,8 +303,11 @@ RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions
             sum.leaveOut(*members);
         }
     };
+    std::vector<UnreachedTarget> unreached;
     do {
         make_changes();
+        for (const RunUnreached& target : reader.unreached())
+            addUnreached(unreached, target, reader.time());
         Sample sample{
             reader.time(), {reader.states().begin(), reader.states().end()}, {}, {}, {}, {}};
         for (const RunState& state : sample.states) members->move(state);
@@ -310,7 +325,9 @@ RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions
     } while (reader.next());
     if (passed) take(std::move(*passed));
     flush(*watch, *members, samples, sum);
-    return sum.finish(reader);
+    RunCoverage run = sum.finish(reader);
+    run.unreached = std::move(unreached);
+    return run;
 }
 
 }  // namespace ispace

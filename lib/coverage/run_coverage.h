@@ -49,6 +49,14 @@ struct TrackLoss {
     Point2 place;
 };
 
+/// A target that a mover gave up to reach.
+struct UnreachedTarget {
+    std::string id, to = {};        ///< to: a storey, a zone or an element, or ""
+    std::optional<Point2> at = {};  ///< of that storey, or of the room
+    double first = 0;               ///< seconds
+    std::size_t times = 0;
+};
+
 /// Coverage of a recorded run (the second valuation of the thesis, section 3.1): the number of
 /// sensors that saw each mover, and its unseen intervals.
 struct RunCoverage {
@@ -57,7 +65,8 @@ struct RunCoverage {
     std::vector<RunCoverageMetrics> members;
     RunCoverageMetrics all;
     std::vector<SeenWay> ways = {};
-    std::vector<TrackLoss> losses = {};  ///< sorted by duration, the longest first
+    std::vector<TrackLoss> losses = {};           ///< sorted by duration, the longest first
+    std::vector<UnreachedTarget> unreached = {};  ///< in the order of their first times
 };
 
 /// Computes the coverage of a recorded run by DetectionMonitor. Samples moments at least 0.02 s

@@ -104,7 +104,7 @@ void BuildingRun::Data::restart() {
         if (was.room == who.room) continue;
         for (const Observer& observer : observers) observer(id, was.room, who.room);
     }
-    beginRecordedTrips();
+    beginRecordedTrips().throwIfAny();
 }
 
 void BuildingRun::restart() { data_->restart(); }

@@ -28,7 +28,6 @@ BuildingRun::Data::Data(const BuildingScene& the_building, const BuildingRunOpti
         leader.beforeStep([this] { advance(); });
     else
         replay();
-    if (options.replay.empty()) beginRecordedTrips();
     if (around->hasOpenings()) leader.beforeStep([this] { showSensors(); });
     leader.beforeStep([this] {
         if (lift_recorder) lift_recorder->record(rooms.front().world->time(), lifts);
@@ -138,8 +137,7 @@ void BuildingRun::Data::addTravellers() {
     }
 }
 
-/// Begins the trips of records, in the order of ids.
-void BuildingRun::Data::beginRecordedTrips() {
+Diagnostics BuildingRun::Data::beginRecordedTrips() {
     Diagnostics findings;
     for (const auto& [id, who] : travellers) {
         const Record& own = who.records.front();
@@ -159,7 +157,7 @@ void BuildingRun::Data::beginRecordedTrips() {
         if (fault.find(id) == std::string::npos) fault.insert(0, id + ": ");
         findings.add(own.finding("trip", fault));
     }
-    findings.throwIfAny();
+    return findings;
 }
 
 RobotStatus BuildingRun::Data::statusOf(const Traveller& who) const {
@@ -238,7 +236,31 @@ std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose
 }
 
 BuildingRun::BuildingRun(const BuildingScene& building, const BuildingRunOptions& options)
-    : data_(std::make_unique<Data>(building, options)) {}
+    : data_(std::make_unique<Data>(building, options)) {
+    if (options.replay.empty()) data_->beginRecordedTrips().throwIfAny();
+}
+
+std::vector<Diagnostic> BuildingRun::tripFindings(const BuildingScene& building) {
+    const bool has_trips =
+        std::any_of(building.scenes.begin(), building.scenes.end(), [](const auto& scene) {
+            return std::any_of(scene->records.begin(), scene->records.end(), [](const Record& own) {
+                return own.schema().find("trip") != nullptr && own.has("trip");
+            });
+        });
+    if (!has_trips) return {};
+    std::unique_ptr<Data> run;
+    try {
+        run = std::make_unique<Data>(building, BuildingRunOptions());
+    } catch (const FormatError&) {
+        return {};
+    }
+    try {
+        run->beginRecordedTrips().throwIfAny();
+    } catch (const FormatError& error) {
+        return error.diagnostics();
+    }
+    return {};
+}
 
 BuildingRun::~BuildingRun() = default;
 

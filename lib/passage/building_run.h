@@ -70,6 +70,9 @@ class BuildingRun final : public JoinedWorlds {
     /// records of other steps, and if no mover is in any of them
     BuildingRun(const BuildingScene& building, const BuildingRunOptions& options);
     ~BuildingRun() override;
+    /// Returns the errors about trips of records that would keep a run from beginning: no way
+    /// leads there, or no floor is there. Empty if movers overlap.
+    static std::vector<Diagnostic> tripFindings(const BuildingScene& building);
     BuildingRun(const BuildingRun&) = delete;
     BuildingRun& operator=(const BuildingRun&) = delete;
 

@@ -65,9 +65,10 @@ struct BuildingTrip {
     std::optional<Point2> spot;  ///< reserved, in the frame of the storey
     /// Once it is out of lifts and stairs, it clears the landing and ends so.
     std::optional<Outcome> ending;
-    std::optional<SimTime> blocked;  ///< since when others occupy its landing
-    std::optional<SimTime> asked;    ///< when it last asked them to step aside
-    SimTime queued{};                ///< since when it waits for a passage
+    std::optional<RoomPoint> given_up;  ///< the goal at that moment
+    std::optional<SimTime> blocked;     ///< since when others occupy its landing
+    std::optional<SimTime> asked;       ///< when it last asked them to step aside
+    SimTime queued{};                   ///< since when it waits for a passage
 };
 
 /// A mover with walk=wander.
@@ -129,7 +130,9 @@ struct BuildingRun::Data {
     void locate();
 
     // Trips.
-    void beginRecordedTrips();
+    /// Begins the trips of records, in the order of ids. \returns the findings about those without
+    /// a way
+    Diagnostics beginRecordedTrips();
     TripAnswer begin(const std::string& mover, BuildingTrip trip);
     [[nodiscard]] std::optional<Route> routeFrom(const Traveller& who, std::size_t storey,
                                                  Point2 at, const BuildingTrip& trip,
@@ -152,6 +155,7 @@ struct BuildingRun::Data {
     void step(Traveller& who, BuildingTrip& trip);
     void arrive(Traveller& who, BuildingTrip& trip);
     void finish(const std::string& id, Outcome outcome);
+    void tellUnreached(const Traveller& who, const BuildingTrip& trip);
     void giveUp(Traveller& who, BuildingTrip& trip, Outcome outcome);
     void clearLanding(Traveller& who, BuildingTrip& trip);
     /// Returns how far from a landing it leaves it to others.

@@ -301,10 +301,16 @@ TEST(BuildingRun, ARiderWhoseLandingIsOccupiedTurnsBack) {
         "robot id=ground/r1 at=6,4\nrobot id=ground/r2 at=8,4\n"
         "robot id=upper/parked at=2.6,4\nrobot id=upper/r3 at=8,4\n");
     BuildingRun run(building, optionsOf());
+    EventLog& events = run.rooms()[0].simulation->events();
+    events.want({EventKind::Unreached});
     ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
     const auto end = await(run, "ground/r1", 300);
     ASSERT_TRUE(end) << "it does not wait for ever";
     EXPECT_EQ(end->outcome, Outcome::Unreached);
+    ASSERT_EQ(events.next(), 1);
+    EXPECT_EQ(events.at(0).id, "ground/r1");
+    EXPECT_EQ(events.at(0).other, "upper");
+    EXPECT_EQ(events.at(0).place, (Point2{9, 6})) << "the goal, not where it clears the landing";
     EXPECT_EQ(run.roomOf("ground/r1"), 0U);
     // The lift serves others once the landing is free.
     ASSERT_EQ(run.travel("upper/parked", {{{1, {9, 7}}}}).refusal, "");

@@ -98,8 +98,17 @@ void BuildingScript::give(BuildingRun& run) {
 }
 
 std::string BuildingScript::give(const Line& line, BuildingRun& run, std::size_t room) {
-    if (!line.lift.empty()) return run.ride(line.mover, line.lift, line.storey).refusal;
-    if (!line.plan.points.empty()) return run.travel(line.mover, line.plan).refusal;
+    if (!line.lift.empty() || !line.plan.points.empty()) {
+        const TripAnswer answer = line.lift.empty() ? run.travel(line.mover, line.plan)
+                                                    : run.ride(line.mover, line.lift, line.storey);
+        if (const auto& point = answer.unreached)
+            run.rooms()[room].simulation->events().tell({.kind = EventKind::Unreached,
+                                                         .id = line.mover,
+                                                         .other = run.rooms()[point->room].id,
+                                                         .place = point->at,
+                                                         .text = answer.refusal});
+        return answer.refusal;
+    }
     if (std::string refusal = refusalOf(run, room, line.mover, line.command); !refusal.empty())
         return refusal;
     const bool stops = line.command.verb == Verb::Stop;

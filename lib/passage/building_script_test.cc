@@ -44,10 +44,37 @@ TEST(BuildingScript, MarksAnOrderThatIsRefusedInItsTime) {
     ground.events().want(allEventKinds());
     BuildingScript script("0 ground/r1 GOTO ground/11.9,4\n", "s.txt", run);
     script.give(run);
-    ASSERT_EQ(ground.events().next(), 1);
-    EXPECT_EQ(ground.events().at(0).other, "ground/r1");
-    EXPECT_EQ(ground.events().at(0).text,
+    ASSERT_EQ(ground.events().next(), 2);
+    EXPECT_EQ(ground.events().at(0).kind, EventKind::Unreached);
+    EXPECT_EQ(ground.events().at(0).other, "ground");
+    EXPECT_EQ(ground.events().at(0).place, (Point2{11.9, 4}));
+    EXPECT_EQ(ground.events().at(1).other, "ground/r1");
+    EXPECT_EQ(ground.events().at(1).text,
               "script: ground/r1 has no room at ground/11.9,4: ground/f stands there");
+}
+
+TEST(BuildingScript, ATripWithoutStairsIsToldAsUnreached) {
+    std::string text = testing::kBuilding;
+    text.erase(text.find("- lift"));
+    const BuildingScene building = buildingOf("human id=ground/h at=6,4\n", text);
+    BuildingRun run(building, optionsOf());
+    EventLog& events = run.rooms()[0].simulation->events();
+    events.want({EventKind::Unreached});
+    BuildingScript script("0 ground/h GOTO upper/6,4\n", "s.txt", run);
+    script.give(run);
+    const Event& event = events.at(0);
+    EXPECT_EQ(event.kind, EventKind::Unreached);
+    EXPECT_EQ(event.id, "ground/h");
+    EXPECT_EQ(event.other, "upper");
+    EXPECT_EQ(event.place, (Point2{6, 4}));
+    EXPECT_EQ(event.text, "no way for ground/h to upper/6,4");
+    // The trip of a record is an error of the run, and a finding.
+    const BuildingScene recorded = buildingOf("human id=ground/h at=6,4 trip=upper/6,4\n", text);
+    const auto findings = BuildingRun::tripFindings(recorded);
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_EQ(findings[0].message, "no way for ground/h to upper/6,4");
+    EXPECT_TRUE(
+        BuildingRun::tripFindings(buildingOf("human id=ground/h at=6,4 trip=upper/6,4\n")).empty());
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
         if (!rooms[goal.room].storey)
             return {.refusal = room + " is no storey: RIDE leads by a lift"};
         if (std::string fault = noFloorText(goal.room, goal.at, who); !fault.empty())
-            return {.refusal = std::move(fault)};
+            return {.refusal = std::move(fault), .unreached = goal};
     }
     const std::vector<RoomPoint>& points = trip.plan.points;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -60,7 +60,7 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
                 if (const std::string why = waysOf(who).refusal(passages[k], who.ability);
                     !why.empty() && (!trip.only || trip.only == k))
                     text += "; " + passages[k].id + ": " + why;
-            return {.refusal = text};
+            return {.refusal = text, .unreached = points[i]};
         }
         answer.length += route->length;
         for (const Leg& leg : route->legs)
@@ -86,9 +86,22 @@ void BuildingRun::Data::finish(const std::string& id, Outcome outcome) {
     if (found == trips.end()) return;
     release(id);
     const int command = found->second.command;
+    if (outcome == Outcome::Unreached || outcome == Outcome::Stall)
+        tellUnreached(travellers.find(id)->second, found->second);
     new_ends.push_back({id, command, outcome, rooms.front().world->time()});
     trips.erase(found);
     wanderOn(id, command, outcome);
+}
+
+/// Raises the event of a trip that is given up, unless it is one to a random point.
+void BuildingRun::Data::tellUnreached(const Traveller& who, const BuildingTrip& trip) {
+    const auto wanderer = wanderers.find(who.id);
+    if (wanderer != wanderers.end() && wanderer->second.trip == trip.command) return;
+    const RoomPoint goal = trip.given_up.value_or(trip.plan.points[trip.goal]);
+    rooms[who.room].simulation->events().tell({.kind = EventKind::Unreached,
+                                               .id = who.id,
+                                               .other = rooms[goal.room].id,
+                                               .place = goal.at});
 }
 
 std::string BuildingRun::endTrip(const std::string& mover, Outcome outcome) {
@@ -112,8 +125,9 @@ void BuildingRun::Data::send(Traveller& who, BuildingTrip& trip, std::vector<Poi
     World& world = worldOf(who);
     MotionPlan plan;
     plan.path = std::move(way);
-    trip.running = world.command(world.moverNamed(who.id).value(),
-                                 pathCommand(std::move(plan), std::min(speed, who.max_speed)));
+    Command command = pathCommand(std::move(plan), std::min(speed, who.max_speed));
+    command.is_attempt = true;
+    trip.running = world.command(world.moverNamed(who.id).value(), command);
 }
 
 void BuildingRun::Data::sendStraight(Traveller& who, BuildingTrip& trip, std::deque<Point2> way) {
@@ -265,6 +279,7 @@ void BuildingRun::Data::clearLanding(Traveller& who, BuildingTrip& trip) {
                                               .wayBetween(statusOf(who).pose.position, *trip.spot)
                                         : std::vector<Point2>();
     if (way.empty()) return finish(who.id, *trip.ending);
+    trip.given_up = trip.plan.points[trip.goal];
     trip.plan = {.points = {{landing->storey, *trip.spot}}};
     trip.goal = 0;
     send(who, trip, way, who.ability.speed);

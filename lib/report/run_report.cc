@@ -101,6 +101,22 @@ std::string tableOf(const RunCoverage& run, bool is_way) {
     return aligned(rows, sides + "l");
 }
 
+std::string unreachedRows(const RunCoverage& run) {
+    constexpr std::size_t kListed = 20;
+    std::vector<TextRow> rows;
+    for (const UnreachedTarget& target : run.unreached) {
+        if (rows.size() == kListed) break;
+        const std::string to = printable(target.to) + (target.to.empty() ? "" : " ") +
+                               (target.at ? pointText(*target.at) : "");
+        rows.push_back({" ", printable(target.id), "to " + to, "t=" + formatFixed(target.first, 2),
+                        std::to_string(target.times) + (target.times == 1 ? " time" : " times")});
+    }
+    std::string text = aligned(rows, "lllrr");
+    if (run.unreached.size() > kListed)
+        text += "   and " + std::to_string(run.unreached.size() - kListed) + " more\n";
+    return text;
+}
+
 }  // namespace
 
 void writeRun(JsonWriter& json, const RunCoverage& run) {
@@ -122,6 +138,17 @@ void writeRun(JsonWriter& json, const RunCoverage& run) {
         writeMember(json, "place", {loss.place.x, loss.place.y});
         json.endObject();
     }
+    json.endArray();
+    json.key("unreached").beginArray();
+    for (const UnreachedTarget& target : run.unreached) {
+        json.beginObject();
+        json.key("id").value(target.id);
+        if (!target.to.empty()) json.key("to").value(target.to);
+        if (target.at) writeMember(json, "place", {target.at->x, target.at->y});
+        writeMember(json, "first", target.first);
+        json.key("times").value(target.times);
+        json.endObject();
+    }
     json.endArray().endObject();
 }
 
@@ -129,6 +156,7 @@ std::string runText(const RunCoverage& run) {
     std::string text = "run " + printable(run.name) + ", t=" + formatFixed(run.begin, 2) + " to " +
                        formatFixed(run.end, 2) + " s: seen by so many sensors\n" +
                        tableOf(run, false) + "\n" + tableOf(run, true);
+    if (!run.unreached.empty()) text += "\ngiven up on the way:\n" + unreachedRows(run);
     if (run.losses.empty()) return text;
     text += "\nwhere sight was lost:\n";
     std::vector<TextRow> rows;

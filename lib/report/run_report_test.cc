@@ -37,6 +37,25 @@ TEST(RunReport, HasTextAndJson) {
     EXPECT_EQ(coverageJson({}).find("\"run\""), std::string::npos);
 }
 
+TEST(RunReport, TargetsThatWereGivenUp) {
+    RunReader reader("t,id,x,y,heading_deg\n0,r1,0,0,0\n1,r1,0,0,0\n2,r1,0,0,0\n", "",
+                     "t,kind,id,other,x,y,value,text\n0.5,unreached,r1,,9,2,,\n"
+                     "1.5,unreached,r1,,9,2,,\n1.5,unreached,r1,upper,1,2,,\"no way, none\"\n"
+                     "2,unreached,r1,sofa,,,,\n");
+    const RunCoverage run =
+        measureRun(sceneOf("ispace size=8,6\nrobot id=r1 at=0,0\n"), reader, {});
+    ASSERT_EQ(run.unreached.size(), 3U);
+    EXPECT_EQ(run.unreached[0].times, 2U);
+    const std::string text = runText(run);
+    for (const char* row : {"to (9.00, 2.00)", "2 times", "to upper (1.00, 2.00)", "to sofa"})
+        EXPECT_NE(text.find(row), std::string::npos) << row << '\n' << text;
+    const std::string json = coverageJson({}, {.run = &run});
+    EXPECT_NE(json.find(R"("unreached":[{"id":"r1","place":[9,2],"first":1,"times":2})"),
+              std::string::npos)
+        << json;
+    EXPECT_EQ(runText(runOf(1)).find("given up"), std::string::npos);
+}
+
 TEST(RunReport, OfAMoment) {
     EXPECT_NE(runText(runOf(0)).find("t=0.00 to 0.00 s"), std::string::npos);
 }

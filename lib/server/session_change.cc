@@ -141,6 +141,14 @@ void appendEvent(std::string& out, const Event& event, std::string_view where) {
             add("x", measured(event.place->x));
             add("y", measured(event.place->y));
             break;
+        case EventKind::Unreached:
+            if (!event.other.empty()) add("to", event.other);
+            if (event.place) {
+                add("x", measured(event.place->x));
+                add("y", measured(event.place->y));
+            }
+            if (!event.text.empty()) add("text", event.text);
+            break;
         case EventKind::Enter:
         case EventKind::Leave:
             add("zone", event.other);

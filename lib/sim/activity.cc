@@ -309,7 +309,10 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
         if (doer.walks && doer.command > 0) arrive(world, *mover, doer);
         if (doer.walks && doer.command == 0 && world.time() >= doer.until) {
             if (work_left_ <= 0) return waiting_.push_back(&doer);
-            if (!depart(simulation, *mover, doer)) doer.walks = false;
+            if (!depart(simulation, *mover, doer)) {
+                doer.walks = false;
+                if (doer.gave_up) tellUnreached(simulation, doer);
+            }
         }
         if (doer.walks || world.time() < doer.until) return;
         tell(simulation, doer, doer.gave_up ? -1 : 0);
@@ -412,6 +415,7 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
         MotionPlan course;
         course.path = std::move(way);
         doer.rest = {pathCommand(std::move(course))};
+        doer.rest.back().is_attempt = true;
     }
     doer.gave_up = !goOnWalking(world, mover, doer);
     return !doer.gave_up;
@@ -467,6 +471,12 @@ void ActivityDirector::tell(Simulation& simulation, const Doer& doer, int value)
                               .other = line.name,
                               .value = value,
                               .text = line.actions[doer.action].text});
+}
+
+void ActivityDirector::tellUnreached(Simulation& simulation, const Doer& doer) const {
+    simulation.events().tell({.kind = EventKind::Unreached,
+                              .id = plan_.lines[*doer.line].person,
+                              .other = actionOf(doer).target});
 }
 
 }  // namespace ispace

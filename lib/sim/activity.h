@@ -104,6 +104,7 @@ class ActivityDirector {
                                                             std::size_t mover) const;
     const GoalWays& waysOf(const World& world, double height);
     void tell(Simulation& simulation, const Doer& doer, int value) const;
+    void tellUnreached(Simulation& simulation, const Doer& doer) const;
     [[nodiscard]] const DayAction& actionOf(const Doer& doer) const {
         return plan_.lines[*doer.line].actions[doer.action];
     }

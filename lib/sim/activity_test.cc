@@ -187,6 +187,20 @@ TEST(ActivityDirector, GivesUpWithoutAWay) {
     EXPECT_EQ(day.world.status(0).pose.position, (Point2{-4, 2}));
 }
 
+TEST(ActivityDirector, WhoGivesUpSaysSo) {
+    Lived day("at 00:00 a goes right; uses box 2s\n", home(""));
+    day.simulation.events().want({EventKind::Unreached});
+    day.simulation.events().unwant({EventKind::Activity});
+    day.run(200);
+    const EventLog& log = day.simulation.events();
+    // Once for each target, however often it tries.
+    ASSERT_EQ(log.next(), 2);
+    EXPECT_EQ(log.at(0).id, "a");
+    EXPECT_EQ(log.at(0).other, "right");
+    EXPECT_EQ(log.at(1).other, "box");
+    EXPECT_FALSE(log.at(1).place);
+}
+
 TEST(ActivityDirector, GoesOnWhenAnotherTakesOver) {
     const std::vector<std::pair<std::string, std::function<void(World&)>>> cases = {
         {"RESET", [](World& world) { world.restart(Scene(*world.sharedStart())); }},

@@ -35,6 +35,8 @@ struct Command {
     double value = 0;
     MotionPlan course = {};  ///< of Path: at least one point
     double speed = 0;        ///< of Path, m/s; 0: the default
+    /// Of Path: one attempt of several, whose failure World::unreached() leaves out.
+    bool is_attempt = false;
     friend bool operator==(const Command&, const Command&) = default;
 };
 

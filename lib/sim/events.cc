@@ -30,8 +30,8 @@ constexpr std::size_t kKept = 16384;
 constexpr SimTime kLookEvery = std::chrono::milliseconds(100);
 
 constexpr std::array<std::string_view, kEventKinds> kEventNames = {
-    "collision", "stall", "enter", "leave",    "mat",  "gate",
-    "seen",      "lost",  "state", "activity", "mark", "change"};
+    "collision", "stall", "unreached", "enter",    "leave", "mat",   "gate",
+    "seen",      "lost",  "state",     "activity", "mark",  "change"};
 
 }  // namespace
 
@@ -78,6 +78,7 @@ struct EventLog::Data {
     void forget();
     void readScene();
     void tellCollisions();
+    void tellUnreached();
     void tellZones();
     void tellMats();
     void tellGates();
@@ -165,6 +166,12 @@ void EventLog::Data::tellCollisions() {
             put(std::move(event));
         }
     }
+}
+
+void EventLog::Data::tellUnreached() {
+    if (!wants(EventKind::Unreached)) return;
+    for (const UnreachedPoint& point : world->unreached())
+        put({.kind = EventKind::Unreached, .id = walkers[point.mover].id, .place = point.at});
 }
 
 void EventLog::Data::tellZones() {
@@ -301,6 +308,7 @@ void EventLog::stepped() {
     data_->forget();
     data_->readScene();
     data_->tellCollisions();
+    data_->tellUnreached();
     data_->tellZones();
     data_->tellMats();
     data_->tellGates();
@@ -315,7 +323,8 @@ void EventLog::add(EventKind kind, std::string text, std::string other) {
 }
 
 void EventLog::tell(Event event) {
-    assert(event.kind == EventKind::Activity || event.kind == EventKind::State);
+    assert(event.kind == EventKind::Activity || event.kind == EventKind::State ||
+           event.kind == EventKind::Unreached);
     if (data_->wants(event.kind)) data_->put(std::move(event));
 }
 

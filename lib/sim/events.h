@@ -20,7 +20,10 @@ class World;
 enum class EventKind {
     Collision,  ///< mover `id` ran into `other` at this point
     Stall,      ///< `id` stands still until its next command
-    Enter,      ///< `id` entered the zone `other`
+    /// `id` gave up its way to this point; `other`: the storey of the point in a trip, or the zone
+    /// or element of an activity, which has no point. `text`: the reason, if known.
+    Unreached,
+    Enter,  ///< `id` entered the zone `other`
     Leave,
     Mat,    ///< `other` stepped on the mat `id` (value 1) or off it (0)
     Gate,   ///< `other` passed the gate `id` inwards (value 1) or outwards (0)
@@ -33,7 +36,7 @@ enum class EventKind {
     Mark,    ///< a client wrote `text`
     Change,  ///< the request `text` changed the world; `other`: file of the scene after it
 };
-constexpr std::size_t kEventKinds = 12;
+constexpr std::size_t kEventKinds = 13;
 /// Returns the name of a kind: "collision".
 std::string_view nameOf(EventKind kind);
 std::optional<EventKind> eventKindNamed(std::string_view name);
@@ -81,8 +84,8 @@ class EventLog {
     /// Adds an event between steps, at the world's time. \pre Mark or Change
     void add(EventKind kind, std::string text, std::string other = {});
 
-    /// Adds an event at the world's time if its kind is subscribed. \pre Activity, or State of a
-    /// thing that is not in the scene
+    /// Adds an event at the world's time if its kind is subscribed. \pre Activity, Unreached of
+    /// one, of a trip or of a script, or State of a thing that is not in the scene
     void tell(Event event);
 
     /// Events are numbered from 0 in their order; returns the number of the next one.

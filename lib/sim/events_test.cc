@@ -148,6 +148,27 @@ TEST(Events, AChangeOfTheWorldKeepsWhoIsWhere) {
               "0.1,change,,,,,,ADD robot id=r0\n0.2,enter,r0,z1,2.7,0,,\n");
 }
 
+TEST(Events, WhoGivesUpIsTold) {
+    // A path of a record goes on to its next point; a commanded one ends.
+    Watched run(
+        "human id=h1 at=0,0 path=3,0;0,-2;3,0 speed=1\nrobot id=r1 at=0,2\n"
+        "cube id=box at=3,0 size=1.4,1.4,1\n",
+        {EventKind::Unreached});
+    run.world.command(0, pathCommand({.path = {{9, 2}, {0, 2}}}));
+    const std::string rows = run.until(std::chrono::seconds(60));
+    EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 3) << rows;
+    EXPECT_NE(rows.find(",unreached,r1,,9,2,,\n"), std::string::npos) << rows;
+    const auto first = rows.find(",unreached,h1,,3,0,,\n");
+    ASSERT_NE(first, std::string::npos) << rows;
+    EXPECT_NE(rows.find(",unreached,h1,,3,0,,\n", first + 1), std::string::npos) << rows;
+    // One attempt of several is none.
+    Command attempt = pathCommand({.path = {{9, 2}}});
+    attempt.is_attempt = true;
+    run.world.command(0, attempt);
+    EXPECT_EQ(run.until(std::chrono::seconds(120)), "");
+    EXPECT_EQ(run.world.running(0), 0);
+}
+
 TEST(Events, OldOnesGo) {
     Watched run("");
     EventLog& log = run.simulation.events();

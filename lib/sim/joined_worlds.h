@@ -57,10 +57,11 @@ ParsedTrip parseTrip(std::span<const std::string_view> words, std::span<const Jo
 
 /// A trip that was asked for, or the reason why it cannot begin.
 struct TripAnswer {
-    std::string refusal = {};  ///< "": it has begun
-    int id = 0;                ///< among the commands of the mover
-    double length = 0;         ///< metres to go by itself, not in lifts
-    std::string via = {};      ///< ids of the passages, separated by commas
+    std::string refusal = {};                 ///< "": it has begun
+    int id = 0;                               ///< among the commands of the mover
+    double length = 0;                        ///< metres to go by itself, not in lifts
+    std::string via = {};                     ///< ids of the passages, separated by commas
+    std::optional<RoomPoint> unreached = {};  ///< the point to which no way leads, if refused so
 };
 
 /// The end of a trip.

@@ -26,11 +26,13 @@ double degreesOff(Angle a, Angle b) { return wrapped(a - b).degrees(); }
 Navigator::Navigator(const Mover& mover, std::uint64_t seed)
     : model_(mover.model), seed_(seed), id_(hashOf(mover.id)) {}
 
-void Navigator::follow(const MotionPlan& course, double speed, bool commanded) {
+void Navigator::follow(const MotionPlan& course, double speed, bool commanded, bool is_attempt) {
     const bool goes = course.wander || !course.path.empty();
     course_ = course;
     speed_ = speed;
     commanded_ = commanded;
+    is_attempt_ = is_attempt;
+    unreached_.reset();
     state_ = goes ? State::Underway : State::Off;
     due_ = pause_until_ = aside_until_ = turn_at_ = {};
     next_ = 0;
@@ -116,6 +118,7 @@ void Navigator::walk(const SteeringState& helm, Motion& motion) {
         gained_ = helm.time;
     } else if (helm.time - gained_ > kPatience) {
         stand(motion);
+        if (!is_attempt_) unreached_ = course_.path[next_];
         if (commanded_)
             state_ = State::Failed;
         else

@@ -4,7 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <utility>
 
+#include "geom/point.h"
 #include "scene/robot.h"
 #include "sim/motion.h"
 #include "sim/sim_time.h"
@@ -40,7 +43,8 @@ class Navigator {
     Navigator(const Mover& mover, std::uint64_t seed);
 
     /// Starts along a path. \param speed m/s, at most the mover's maximum
-    void follow(const MotionPlan& course, double speed, bool commanded);
+    /// \param is_attempt takeUnreached() returns no point of it
+    void follow(const MotionPlan& course, double speed, bool commanded, bool is_attempt = false);
     void turnOff() { state_ = State::Off; }
     [[nodiscard]] bool isOn() const { return state_ == State::Underway; }
     /// Returns true once it wanders without a command.
@@ -57,6 +61,10 @@ class Navigator {
     }
     /// Sets the goals of the motion. \pre isDue()
     void steer(const SteeringState& helm, Motion& motion);
+    /// Returns the point that was given up since the last call, if any.
+    [[nodiscard]] std::optional<Point2> takeUnreached() {
+        return std::exchange(unreached_, std::nullopt);
+    }
     /// Reports that the mover's step was cancelled by a collision.
     void bumped() {
         due_ = {};
@@ -83,12 +91,13 @@ class Navigator {
     std::uint64_t seed_ = 0, id_ = 0, draws_ = 0;
     double speed_ = 0;
     State state_ = State::Off;
-    bool commanded_ = false;
+    bool commanded_ = false, is_attempt_ = false;
     bool idle_ = false;    // it waits until a time
     bool bumped_ = false;  // and has not turned away since
     SimTime due_{};
     // On a path.
     std::size_t next_ = 0;
+    std::optional<Point2> unreached_;
     double nearest_ = 0;  // least distance to the next point so far
     SimTime gained_{};    // time of nearest_
     SimTime pause_until_{};

@@ -176,10 +176,23 @@ void Replay::collide(const World& world) {
             collisions_.push_back({i, std::nullopt, "something", time});
 }
 
+/// Reads the targets that are given up in the next step.
+void Replay::giveUp(const World& world) {
+    for (const RunUnreached& target : reader_.unreached()) {
+        const auto mover = world.moverNamed(target.id);
+        if (mover && target.at && target.to.empty())
+            points_.push_back({*mover, *target.at});
+        else
+            unreached_.push_back(target);
+    }
+}
+
 bool Replay::step(World& world) { return step(world, true); }
 
 bool Replay::step(World& world, bool reads) {
     if (!is_ahead_ && !is_joined_) return false;
+    points_.clear();
+    unreached_.clear();
     const SimTime now = world.time() + step_;
     const SimTime time = is_ahead_ ? recordedTime(reader_.time()) : now;
     const bool is_empty = isEmptyAt(now) && (time - now) % step_ == SimTime(0);
@@ -206,7 +219,8 @@ bool Replay::step(World& world, bool reads) {
         if (const auto robot = world.robotNamed(id)) world.feel(*robot, hit);
     if (reads) {
         collide(world);
-        world.stepTo(states_, collisions_, odometries_);
+        giveUp(world);
+        world.stepTo(states_, collisions_, odometries_, points_);
     } else {
         world.passTo(states_);
     }

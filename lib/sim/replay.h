@@ -58,6 +58,8 @@ class Replay {
     }
     /// Returns the changes that succeeded since the last call, in order.
     std::vector<RunChange> takeMade() { return std::exchange(made_, {}); }
+    /// Returns the targets of trips and activities that movers gave up in the last step.
+    [[nodiscard]] std::span<const RunUnreached> unreached() const { return unreached_; }
     /// Moves the world to its last step at or before a time, back or forth, or to the end of the
     /// record. Sensors are read as if all steps had been taken one by one. \throws as step()
     void seek(World& world, SimTime time);
@@ -98,6 +100,7 @@ class Replay {
     std::shared_ptr<const void> rewind(World& world, const NextScene& beginning);
     void find(const World& world);
     void collide(const World& world);
+    void giveUp(const World& world);
     [[nodiscard]] bool isEmptyAt(SimTime time) const;
 
     std::string folder_;
@@ -116,6 +119,8 @@ class Replay {
     std::vector<std::optional<Pose2>> odometries_;  // of all its robots
     std::vector<Collision> collisions_;
     std::vector<RunCollision> recorded_;              // their ids
+    std::vector<UnreachedPoint> points_;              // given up in the last step
+    std::vector<RunUnreached> unreached_;             // likewise, the targets that are no points
     std::vector<std::optional<std::size_t>> movers_;  // index of each in the record
     std::int64_t changes_ = -1;                       // of the world, when movers_ was computed
     double settle_ = 0;  // seconds before the end of a seek from which sensors are read

@@ -241,6 +241,13 @@ void Simulation::step() {
         world_->stepDeferred();
     }
     events_.stepped();
+    if (replay_ != nullptr)
+        for (const RunUnreached& target : replay_->unreached())
+            events_.tell({.kind = EventKind::Unreached,
+                          .id = target.id,
+                          .other = target.to,
+                          .place = target.at,
+                          .text = target.text});
     // Before the next commands: one of motion would clear the stall flag of this step.
     if (recorder_ != nullptr) recorder_->record(*world_);
     for (Simulation* const other : followers_) other->step();

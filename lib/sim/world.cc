@@ -50,6 +50,7 @@ std::span<const PlacedRobot> World::robots() const { return data_->scene->robots
 std::span<const PlacedPerson> World::people() const { return data_->scene->people; }
 std::span<const Sensor> World::sensors() const { return data_->sensors.sensors(); }
 std::span<const CommandEnd> World::ends() const { return data_->ends; }
+std::span<const UnreachedPoint> World::unreached() const { return data_->unreached; }
 std::span<const Collision> World::collisions() const { return data_->collisions; }
 std::span<const std::size_t> World::keptStarts() const { return data_->kept_starts; }
 std::span<const std::size_t> World::latestReadings() const { return data_->sensors.latest(); }
@@ -236,7 +237,7 @@ int World::command(std::size_t mover, const Command& command) {
     data.pilots[mover].turnOff();
     if (command.verb == Verb::Path) {
         const double speed = command.speed > 0 ? command.speed : data.movers[mover].model.speed;
-        data.pilots[mover].follow(command.course, speed, true);
+        data.pilots[mover].follow(command.course, speed, true, command.is_attempt);
     }
     if (comesToAnEnd(command.verb)) state.running = ++state.ids;
     return state.running;
@@ -321,7 +322,8 @@ void World::countOn(std::size_t mover, const CarriedState& state) {
 int World::issueId(std::size_t mover) { return ++data_->states[mover].ids; }
 
 void World::stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,
-                   std::span<const std::optional<Pose2>> odometries) {
+                   std::span<const std::optional<Pose2>> odometries,
+                   std::span<const UnreachedPoint> unreached) {
     Data& data = *data_;
     assert(states.size() == data.movers.size());
     data.begin();
@@ -329,6 +331,7 @@ void World::stepTo(std::span<const RobotStatus> states, std::span<const Collisio
     for (std::size_t i = 0; i < odometries.size(); ++i)
         if (odometries[i]) data.odometers[i].put(*odometries[i]);
     data.collisions.assign(collisions.begin(), collisions.end());
+    data.unreached.assign(unreached.begin(), unreached.end());
     data.sensors.read(data.time, data.where());
 }
 

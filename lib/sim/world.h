@@ -58,6 +58,12 @@ struct Collision {
     SimTime time{};
 };
 
+/// A mover gave up its way to a point.
+struct UnreachedPoint {
+    std::size_t mover = 0;  ///< an index of World::movers()
+    Point2 at;
+};
+
 struct CarriedState;
 struct WheelOrder;
 struct SceneResources;
@@ -210,7 +216,8 @@ class World {
     /// movers(), and `odometries` the robots' estimates, where known. \pre as many states as
     /// movers(), and odometries as robots() or zero
     void stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,
-                std::span<const std::optional<Pose2>> odometries = {});
+                std::span<const std::optional<Pose2>> odometries = {},
+                std::span<const UnreachedPoint> unreached = {});
     /// Likewise, but due sensors are read after a later step: for skipped steps. Updates mats and
     /// gates.
     void passTo(std::span<const RobotStatus> states);
@@ -259,6 +266,9 @@ class World {
     [[nodiscard]] std::span<const CommandEnd> ends() const;
     /// Returns the cancelled moves of the last step, in settling order: each began a stall.
     [[nodiscard]] std::span<const Collision> collisions() const;
+    /// Returns the points that movers gave up in the last step, in settling order: of their
+    /// records' paths, and of commands that are no attempts.
+    [[nodiscard]] std::span<const UnreachedPoint> unreached() const;
     /// Returns the sensors read in the last step (before the first step: all that are not heavy),
     /// ascending.
     [[nodiscard]] std::span<const std::size_t> latestReadings() const;

@@ -117,6 +117,7 @@ struct World::Data {
     void begin() {
         ends.clear();
         collisions.clear();
+        unreached.clear();
         time += step_length;
         ++steps;
     }
@@ -139,6 +140,7 @@ struct World::Data {
     struct Chunk {
         std::vector<std::size_t> doubtful;  // movers that may run into an obstacle or a mover
         std::vector<CommandEnd> ends;
+        std::vector<UnreachedPoint> unreached;
         bool moved = false;
     };
     void finish(std::size_t mover, Chunk& chunk);
@@ -192,6 +194,7 @@ struct World::Data {
 
     std::vector<CommandEnd> ends;
     std::vector<Collision> collisions;
+    std::vector<UnreachedPoint> unreached;
 };
 
 /// Reports the robots that start at their recorded pose because start_noise leads to no free one.

@@ -31,6 +31,7 @@ void World::Data::proposeAll() {
         Chunk& chunk = chunks[k];
         chunk.doubtful.clear();
         chunk.ends.clear();
+        chunk.unreached.clear();
         chunk.moved = false;
         const std::size_t end = std::min((k + 1) * kTogether, movers.size());
         for (std::size_t i = k * kTogether; i < end; ++i) {
@@ -182,6 +183,8 @@ void World::Data::finish(std::size_t mover, Chunk& chunk) {
         walk(mover);
     else if (options.noise)
         odometers[mover].count(steps);
+    if (const auto point = pilots[mover].takeUnreached())
+        chunk.unreached.push_back({mover, *point});
     if (states[mover].running == 0) return;
     const auto end = [&](Outcome outcome) { chunk.ends.push_back({mover, 0, outcome, time}); };
     if (Navigator& pilot = pilots[mover]; pilot.isOn()) {
@@ -203,8 +206,13 @@ void World::Data::apply() {
     for (const Chunk& chunk : chunks) {
         moved = moved || chunk.moved;
         ends.insert(ends.end(), chunk.ends.begin(), chunk.ends.end());
+        unreached.insert(unreached.end(), chunk.unreached.begin(), chunk.unreached.end());
     }
     if (moved) sensors.moved();
+    std::sort(unreached.begin(), unreached.end(),
+              [&](const UnreachedPoint& a, const UnreachedPoint& b) {
+                  return traffic.rank(a.mover) < traffic.rank(b.mover);
+              });
     const auto added = ends.begin() + static_cast<std::ptrdiff_t>(before);
     std::sort(added, ends.end(), [&](const CommandEnd& a, const CommandEnd& b) {
         return traffic.rank(a.robot) < traffic.rank(b.robot);

@@ -19,9 +19,11 @@
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
+#include "passage/building_run.h"
 #include "record/text.h"
 #include "scene/findings/findings.h"
 #include "scene/placement_schemas.h"
+#include "sim/course_check.h"
 
 namespace ispace {
 
@@ -116,8 +118,16 @@ void check(const EnvcOptions& options, const BuildingScene& building, const Impo
         checked.push_back(scene);
         for (Diagnostic& finding : storeyFindings(coupling, i, mistakes, is_new))
             findings.add(std::move(finding));
+        if (!is_new) continue;
+        for (const Finding& finding : checkCourses(*scene)) {
+            Diagnostic diagnostic = finding.diagnostic();
+            diagnostic.message = building.document.storeys[i].id + ": " + diagnostic.message;
+            findings.add(std::move(diagnostic));
+        }
     }
     for (Diagnostic& finding : checkBuilding(building)) findings.add(std::move(finding));
+    for (Diagnostic& finding : BuildingRun::tripFindings(building))
+        findings.add(std::move(finding));
     findings.throwIfAny();
     logInfo(options.common, "envc", "nothing found");
 }

@@ -30,6 +30,7 @@
 #include "scene/findings/remedies.h"
 #include "scene/placement_schemas.h"
 #include "scene/sensor/sensor.h"
+#include "sim/course_check.h"
 
 namespace {
 
@@ -138,6 +139,7 @@ void check(const EnvcOptions& options, const Document& document, const ImportRep
             if (check.name != "unplaced") mistakes.checks.push_back(check.name);
         const std::vector<Finding> found = checkScene(scene, mistakes);
         for (const Finding& finding : found) findings.add(finding.diagnostic());
+        for (const Finding& finding : checkCourses(scene)) findings.add(finding.diagnostic());
         if (options.suggestions) {
             const auto most = static_cast<std::size_t>(*options.suggestions);
             writeAll("-", remediesText(options, found.size(),

@@ -121,13 +121,17 @@ void run(const SimrunCommand& command, JunitFile& junit) {
     simulation.follow(std::move(script.days));
     if (replay) simulation.replay(*replay, options.holds);
     CollisionLog collisions(world, options.common);
+    UnreachedLog unreached(simulation, options.common);
     FailureLog failures(replay ? &*replay : nullptr, options.common);
     LagLog lag(simulation, options.common);
     simulation.onStep([&lag] { lag.tell(); });
     if (replay)
         simulation.onStep([&failures] { failures.tell(); });
     else
-        simulation.onStep([&collisions] { collisions.tell(); });
+        simulation.onStep([&] {
+            collisions.tell();
+            unreached.tell();
+        });
     serve(simulation, command, input, replay, junit);
 }
 

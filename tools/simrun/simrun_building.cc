@@ -133,19 +133,23 @@ class StepLogs {
     StepLogs(BuildingRun& run, const SimrunOptions& options)
         : lag_(run.simulation(), options.common) {
         for (std::size_t i = 0; i < run.rooms().size(); ++i)
-            if (const Replay* const replay = run.replay(i))
+            if (const Replay* const replay = run.replay(i)) {
                 failures_.emplace_back(replay, options.common);
-            else
+            } else {
                 collisions_.emplace_back(run.world(i), options.common);
+                unreached_.emplace_back(*run.rooms()[i].simulation, options.common);
+            }
     }
     void tell() {
         lag_.tell();
         for (CollisionLog& log : collisions_) log.tell();
+        for (UnreachedLog& log : unreached_) log.tell();
         for (FailureLog& log : failures_) log.tell();
     }
 
   private:
     std::vector<CollisionLog> collisions_;
+    std::vector<UnreachedLog> unreached_;
     std::vector<FailureLog> failures_;
     LagLog lag_;
 };

@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_writer.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
 #include "cli/building_operands.h"
@@ -339,10 +340,46 @@ std::string textOf(const World& world, const Collision& collision) {
 }  // namespace
 
 void CollisionLog::tell() {
+    constexpr double kSamePlace = 0.05;  // metres
     for (const Collision& collision : world_->collisions()) {
         if (count_ == kMaxCollisions) return;
+        const Point2 at = world_->status(collision.robot).pose.position;
+        const auto [last, is_new] = last_.try_emplace(world_->movers()[collision.robot].id);
+        const bool is_known = !is_new && last->second.into == collision.into &&
+                              distance(last->second.at, at) < kSamePlace;
+        if (is_known) continue;
+        last->second = {std::string(collision.into), at};
         warn(*options_, kTool, textOf(*world_, collision));
         if (++count_ == kMaxCollisions) warn(*options_, kTool, "no more of these are told");
+    }
+}
+
+UnreachedLog::UnreachedLog(Simulation& simulation, const CommonOptions& options)
+    : simulation_(&simulation), options_(&options) {
+    simulation.events().want({EventKind::Unreached});
+    next_ = simulation.events().next();
+}
+
+void UnreachedLog::tell() {
+    constexpr std::size_t kMaxTold = 100;
+    const EventLog& events = simulation_->events();
+    for (next_ = std::max(next_, events.first()); next_ < events.next(); ++next_) {
+        const Event& event = events.at(next_);
+        if (event.kind != EventKind::Unreached || told_.size() == kMaxTold) continue;
+        const auto text_of = [](Point2 p) {
+            return formatFixed(p.x, 3) + ',' + formatFixed(p.y, 3);
+        };
+        std::string target = event.other;
+        if (event.place) target += (target.empty() ? "" : "/") + text_of(*event.place);
+        if (!told_.insert(event.id + ' ' + target).second) continue;
+        const World& world = simulation_->world();
+        const auto mover = world.moverNamed(event.id);
+        warn(*options_, kTool,
+             "t=" + formatMilliseconds(event.time) + ' ' + event.id +
+                 (mover ? " at " + text_of(world.status(*mover).pose.position) : "") +
+                 " gave up its way to " + target +
+                 (event.text.empty() ? "" : ": " + printable(event.text)));
+        if (told_.size() == kMaxTold) warn(*options_, kTool, "further ones are not reported");
     }
 }
 

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -90,7 +94,8 @@ ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input);
 /// \param title of the picture, may be ""
 void drawRecord(const SimrunOptions& options, const Scene& scene, const std::string& title);
 
-/// Reports collisions of robots on stderr, up to a number of lines.
+/// Reports collisions of robots on stderr, up to a number of lines: of a mover that runs into the
+/// same thing again where it stands, the first.
 class CollisionLog {
   public:
     CollisionLog(const World& world, const CommonOptions& options)
@@ -99,9 +104,30 @@ class CollisionLog {
     void tell();
 
   private:
+    struct Bump {
+        std::string into;
+        Point2 at;
+    };
     const World* world_;
     const CommonOptions* options_;
+    std::map<std::string, Bump, std::less<>> last_;  // by mover
     int count_ = 0;
+};
+
+/// Reports on stderr the points, zones and things that movers give up to reach: each once for a
+/// mover, up to a number of lines.
+class UnreachedLog {
+  public:
+    /// Subscribes to the events.
+    UnreachedLog(Simulation& simulation, const CommonOptions& options);
+    /// Reports the events since the last call.
+    void tell();
+
+  private:
+    Simulation* simulation_;
+    const CommonOptions* options_;
+    std::int64_t next_ = 0;       // event
+    std::set<std::string> told_;  // movers and targets
 };
 
 /// Reports on stderr when a run by the clock Real falls behind it, and when it keeps up again.

@@ -141,12 +141,13 @@ void checkPath(CheckContext& context, std::size_t record, std::vector<Finding>& 
     const std::vector<Point2>& path = keyword == "robot" ? scene.robots[placed->index].course.path
                                                          : scene.people[placed->index].course.path;
     if (context.isOut(placed->pose.position.onFloor())) return;
-    const auto lost =
-        std::find_if(path.begin(), path.end(), [&context](Point2 p) { return context.isOut(p); });
-    if (lost == path.end()) return;
-    findings.push_back(context.finding(record, Severity::Warning, *lost,
-                                       " has a path that leaves the room at " + placeText(*lost),
-                                       "move that point in"));
+    for (const Point2 p : path) {
+        if (isFull(findings)) return;
+        if (context.isOut(p))
+            findings.push_back(context.finding(
+                record, Severity::Warning, p, " has a path that leaves the room at " + placeText(p),
+                "move that point in"));
+    }
 }
 
 CircleCheck::CircleCheck(CheckContext& context) : context_(&context) {

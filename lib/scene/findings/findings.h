@@ -60,7 +60,8 @@ struct SceneCheck {
 ///   not the sensors of a robot, as the robot is named.
 /// - buried: sensors and tags inside solids.
 /// - collisions: robots and people (as circles) that stand in objects or in each other.
-/// - paths: paths of robots and people that leave the room.
+/// - paths: points of paths of robots and people outside the room; sim/course_check.h walks the
+///   legs.
 /// - loose ends: ends of walls in the room less than 0.2 m before another wall.
 std::span<const SceneCheck> sceneChecks();
 

@@ -49,9 +49,6 @@ void BumperFile::read(double time, std::vector<RunBumpers>& bumpers) {
     for (; row_ && time_ <= time; readLine()) bumpers.push_back(std::move(*row_));
 }
 
-namespace {
-
-/// Removes the next field, which may be quoted, from the rest of a CSV line.
 std::string takeField(std::string_view& rest) {
     std::string field;
     if (!rest.starts_with('"')) {
@@ -67,8 +64,6 @@ std::string takeField(std::string_view& rest) {
     rest.remove_prefix(std::min(at + 1, rest.size()));
     return field;
 }
-
-}  // namespace
 
 std::vector<RunChange> recordedChanges(const std::string& folder) {
     const std::string name = RecordedFiles(folder).events;

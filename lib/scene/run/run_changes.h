@@ -102,6 +102,9 @@ class BumperFile {
     std::optional<RunBumpers> row_;  // read ahead
 };
 
+/// Removes the next field, which may be quoted, from the rest of a CSV line.
+std::string takeField(std::string_view& rest);
+
 /// A change of a run's world by a client, a row of events.csv.
 struct RunChange {
     double time = 0;         ///< seconds: of the step after which it was made

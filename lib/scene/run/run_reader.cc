@@ -180,11 +180,17 @@ bool MomentFile::read(std::vector<RunState>& states) {
     return is_whole;
 }
 
-/// Reads the collisions of a table of events, t,kind,id,other,…, or the events of another kind.
+/// Reads the events of some kinds of a table, t,kind,id,other,x,y,….
 class EventFile {
   public:
-    EventFile(std::string name, LineSource lines, std::string_view kind = "collision")
-        : name_(std::move(name)), lines_(std::move(lines)), kind_(kind) {
+    struct Row {
+        double time = 0;
+        std::string kind = {}, id = {}, other = {}, text = {};
+        std::optional<Point2> at = {};
+    };
+
+    EventFile(std::string name, LineSource lines, std::vector<std::string_view> kinds)
+        : name_(std::move(name)), lines_(std::move(lines)), kinds_(std::move(kinds)) {
         const auto head = lines_.next();
         if (head && !head->starts_with("t,kind,id,other"))
             throw FormatError({name_, 1, 0, "no events of a run: wanted t,kind,id,other,…"});
@@ -193,12 +199,12 @@ class EventFile {
 
     /// Returns the time of the next event.
     [[nodiscard]] std::optional<double> upcoming() const {
-        return row_ ? std::optional(row_->first) : std::nullopt;
+        return row_ ? std::optional(row_->time) : std::nullopt;
     }
-    /// Appends the unread events up to a time.
-    void read(double time, std::vector<RunCollision>& collisions) {
-        for (; row_ && row_->first <= time; readLine())
-            collisions.push_back(std::move(row_->second));
+    /// Calls visit(row) for the unread events up to a time.
+    template <typename Visit>
+    void read(double time, Visit visit) {
+        for (; row_ && row_->time <= time; readLine()) visit(std::move(*row_));
     }
 
   private:
@@ -206,22 +212,33 @@ class EventFile {
         row_.reset();
         while (const auto line = lines_.next()) {
             splitFields(*line, fields_);
-            if (fields_.size() < 4 || fields_[1] != kind_) continue;
+            if (fields_.size() < 4 ||
+                std::find(kinds_.begin(), kinds_.end(), fields_[1]) == kinds_.end())
+                continue;
             const auto time = parseRunTime(fields_[0]);
             if (!time)
                 throw FormatError({name_, lines_.number(), 0,
                                    "t is " + excerpt(fields_[0]) + ", wanted seconds from 0 on"});
-            row_.emplace(*time, RunCollision{std::string(fields_[2]), std::string(fields_[3])});
+            row_ = Row{.time = *time};
+            std::string_view rest = *line;
+            std::string t, x, y, value;
+            for (std::string* field :
+                 {&t, &row_->kind, &row_->id, &row_->other, &x, &y, &value, &row_->text})
+                *field = takeField(rest);
+            if (const auto px = parseDouble(x), py = parseDouble(y); px && py)
+                row_->at = Point2{*px, *py};
             return;
         }
     }
 
     std::string name_;
     LineSource lines_;
-    std::string_view kind_;
+    std::vector<std::string_view> kinds_;
     std::vector<std::string_view> fields_;
-    std::optional<std::pair<double, RunCollision>> row_;  // read ahead
+    std::optional<Row> row_;  // read ahead
 };
+
+const std::vector<std::string_view> kReadEvents = {"collision", "unreached"};
 
 bool exists(const std::string& file) { return std::filesystem::exists(file); }
 
@@ -258,6 +275,7 @@ struct RunReader::Data {
     std::vector<RunState> beliefs;
     std::vector<RunState> states;
     std::vector<RunCollision> collisions;
+    std::vector<RunUnreached> unreached;
     std::optional<BumperFile> bumper_file;
     std::vector<RunBumpers> bumpers;
     double time = 0;
@@ -290,7 +308,7 @@ RunReader::RunReader(const std::string& folder) : data_(std::make_unique<Data>()
     if (exists(files.odometry)) data_->addOdometry(files.odometry, tableOf(files.odometry));
     if (exists(files.bumpers)) data_->bumper_file.emplace(files.bumpers, tableOf(files.bumpers));
     if (!exists(files.events)) return;
-    data_->events.emplace(files.events, tableOf(files.events));
+    data_->events.emplace(files.events, tableOf(files.events), kReadEvents);
     if (!recordedChange(folder)) return;
     const auto info = recordedInfo(folder);
     data_->letGo(info && info->steps > 0 ? info->step * static_cast<double>(info->steps)
@@ -308,7 +326,8 @@ RunReader::RunReader(std::string robots, std::string people, std::string events,
         data_->bumper_file.emplace("bumpers.csv", LineSource({}, std::move(bumpers)));
     if (events.find(",change,") != std::string::npos)
         data_->letGo(std::numeric_limits<double>::infinity());
-    if (!events.empty()) data_->events.emplace("events.csv", LineSource({}, std::move(events)));
+    if (!events.empty())
+        data_->events.emplace("events.csv", LineSource({}, std::move(events)), kReadEvents);
 }
 
 /// Stores the recorded odometry of the moment in its robots; false if its rows are incomplete.
@@ -361,7 +380,15 @@ bool RunReader::next() {
         return false;
     }
     data.collisions.clear();
-    if (data.events) data.events->read(time, data.collisions);
+    data.unreached.clear();
+    if (data.events)
+        data.events->read(time, [&data](EventFile::Row row) {
+            if (row.kind == "collision")
+                data.collisions.push_back({std::move(row.id), std::move(row.other)});
+            else
+                data.unreached.push_back(
+                    {std::move(row.id), std::move(row.other), row.at, std::move(row.text)});
+        });
     data.bumpers.clear();
     if (data.bumper_file) data.bumper_file->read(time, data.bumpers);
     return true;
@@ -373,6 +400,7 @@ std::optional<std::span<const RunCollision>> RunReader::collisions() const {
     return data_->events ? std::optional<std::span<const RunCollision>>(data_->collisions)
                          : std::nullopt;
 }
+std::span<const RunUnreached> RunReader::unreached() const { return data_->unreached; }
 std::span<const RunBumpers> RunReader::bumpers() const { return data_->bumpers; }
 const std::vector<RunMember>& RunReader::members() const { return data_->members; }
 bool RunReader::isCut() const { return data_->is_cut; }
@@ -382,7 +410,7 @@ const std::string& RunReader::name() const { return data_->name; }
 std::optional<double> recordedChange(const std::string& folder) {
     const std::string name = RecordedFiles(folder).events;
     if (!exists(name)) return std::nullopt;
-    return EventFile(name, tableOf(name), "change").upcoming();
+    return EventFile(name, tableOf(name), {"change"}).upcoming();
 }
 
 }  // namespace ispace

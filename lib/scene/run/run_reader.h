@@ -59,6 +59,13 @@ struct RunCollision {
     std::string id, other;  ///< other: a robot, a person or an element
 };
 
+/// A mover gave up its way.
+struct RunUnreached {
+    std::string id, to;             ///< to: a storey, a zone or an element, or ""
+    std::optional<Point2> at = {};  ///< the point, of that storey or of the room
+    std::string text = {};          ///< the reason, if known
+};
+
 /// The contacts of a robot's bumpers from a moment on.
 struct RunBumpers {
     std::string id;
@@ -72,7 +79,8 @@ struct RunMember {
 };
 
 /// Reads the poses of a recorded run, one moment after another, in constant memory: robots.csv, and
-/// if present people.csv, odometry.csv, bumpers.csv and the collisions of events.csv.
+/// if present people.csv, odometry.csv, bumpers.csv, and collisions and unreached targets of
+/// events.csv.
 ///
 /// The record may still grow, or its run may have been killed: an unterminated last line and an
 /// incomplete last moment are skipped.
@@ -98,6 +106,8 @@ class RunReader {
     /// Returns the collisions in the step to this moment; empty optional without events.csv, as in
     /// runs of older versions.
     [[nodiscard]] std::optional<std::span<const RunCollision>> collisions() const;
+    /// Returns the targets that movers gave up in the step to this moment.
+    [[nodiscard]] std::span<const RunUnreached> unreached() const;
     /// Returns the bumpers that changed at this moment, or since the moment before.
     [[nodiscard]] std::span<const RunBumpers> bumpers() const;
     /// Returns all movers so far; indices stay valid.

@@ -4,6 +4,8 @@ import {keysOf} from './link.js';
 
 const kTexts = {
   collision: ({id, into}) => `${id} ran into ${into}`,
+  unreached: ({id, to, x, y, text}) =>
+    `${id} gives up its way to ${[to, x && `(${x}, ${y})`].filter(Boolean).join(' ')}${text ? `: ${text}` : ''}`,
   enter: ({id, zone}) => `${id} enters ${zone}`,
   leave: ({id, zone}) => `${id} leaves ${zone}`,
   mat: ({id, who, on}) => `${who} steps ${on === '1' ? 'on' : 'off'} ${id}`,
@@ -22,5 +24,5 @@ export function eventText(line) {
   if (!kTexts[kind]) return {};
   const keys = keysOf(line);
   for (const rest of ['text', 'what']) if (rest in keys) keys[rest] = line.split(` ${rest}=`)[1];  // of the line
-  return {text: `${Number(keys.t).toFixed(1)} s  ${kTexts[kind](keys)}`, bad: kind === 'collision'};
+  return {text: `${Number(keys.t).toFixed(1)} s  ${kTexts[kind](keys)}`, bad: kind === 'collision' || kind === 'unreached'};
 }
