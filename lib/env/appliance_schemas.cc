@@ -48,11 +48,14 @@ Schema projectorSchema() {
 }  // namespace
 
 void addAppliances(std::vector<Schema>& out) {
+    KeySpec sides = heading();
+    sides.help = "direction of two of its sides, counter-clockwise from +x";
     out.push_back(schemaOf(
         "lamp", RecordType::Infra,
-        "a panel of light in the ceiling, which pictures show: with lamps the "
+        "a panel of light in the ceiling, 0.7 m square, which pictures show: with lamps the "
         "room has no other light than these",
-        {floorAt(), flag("on", "it shines"), levelKey(), lightColorKey({1, 1, 0.97}),
+        {floorAt(), std::move(sides), flag("on", "it shines"), levelKey(),
+         lightColorKey({1, 1, 0.97}),
          number("lumens", Unit::None, "its full light for light meters, lumens", 3600, 0, 1e6)}));
     out.push_back(projectorSchema());
     KeySpec power = levelKey();

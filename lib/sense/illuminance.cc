@@ -48,18 +48,25 @@ double projectedSolidAngle(std::span<const Vec3> polygon, Vec3 normal) {
     return std::abs(sum) / 2;
 }
 
+/// Returns a point of a panel: from its centre along its sides, -1 to 1 each.
+Point2 pointOf(const Lux::Light& light, double along, double across) {
+    const double half = static_cast<double>(Lamps::kHalf);
+    return light.at + half * (along * light.along + across * perpendicular(light.along));
+}
+
 /// Computes the share of the light of a panel that no body holds back.
 double visibleShare(const Lux::Light& light, double height, const Moment& now) {
     const Point3 spot = now.pose.position;
     const Vec3 facing = Frame3(now.pose).forward;
     std::array<Point3, std::size_t{kAcross} * kAcross> points;
     std::array<std::uint8_t, points.size()> is_free{};
-    const double half = static_cast<double>(Lamps::kHalf);
-    const auto along = [half](std::size_t i) {
-        return half * (2 * (static_cast<double>(i) + 0.5) / kAcross - 1);
+    const auto share = [](std::size_t i) {
+        return 2 * (static_cast<double>(i) + 0.5) / kAcross - 1;
     };
-    for (std::size_t k = 0; k < points.size(); ++k)
-        points[k] = {light.at.x + along(k % kAcross), light.at.y + along(k / kAcross), height};
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const Point2 at = pointOf(light, share(k % kAcross), share(k / kAcross));
+        points[k] = {at.x, at.y, height};
+    }
     now.mesh().query(spot, points, is_free);
     double seen = 0, all = 0, free = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -81,15 +88,17 @@ double visibleShare(const Lux::Light& light, double height, const Moment& now) {
 double lightOf(const Lux::Light& light, double height, const Moment& now) {
     const Point3 spot = now.pose.position;
     if (spot.z >= height) return 0;
-    const double half = static_cast<double>(Lamps::kHalf);
-    const Vec3 to = Point3{light.at.x, light.at.y, height} - spot;
-    const std::array<Vec3, 4> corners = {
-        Vec3{to.x - half, to.y - half, to.z}, Vec3{to.x + half, to.y - half, to.z},
-        Vec3{to.x + half, to.y + half, to.z}, Vec3{to.x - half, to.y + half, to.z}};
+    const auto corner = [&](double along, double across) {
+        const Point2 at = pointOf(light, along, across);
+        return Point3{at.x, at.y, height} - spot;
+    };
+    const std::array<Vec3, 4> corners = {corner(-1, -1), corner(1, -1), corner(1, 1),
+                                         corner(-1, 1)};
     const Vec3 facing = Frame3(now.pose).forward;
     const double angle = projectedSolidAngle(inFront(corners, facing), facing);
     if (angle == 0) return 0;
-    const double radiance = light.lumens / (std::numbers::pi * 4 * half * half);
+    const double side = 2 * static_cast<double>(Lamps::kHalf);
+    const double radiance = light.lumens / (std::numbers::pi * side * side);
     return radiance * angle * visibleShare(light, height, now);
 }
 

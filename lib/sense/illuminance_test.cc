@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/number.h"
 #include "support/test_readings.h"
 #include "trace/render/lights.h"
 
@@ -51,15 +52,17 @@ TEST(Illuminance, IsThatOfALambertianPanel) {
 }
 
 /// Integrates the light of a lamp of 3000 lm over the origin at a spot, by a fine grid.
-double integrated(Point3 spot, Vec3 facing) {
+double integrated(Point3 spot, Vec3 facing, Angle heading = {}) {
     constexpr int kParts = 1600;
     const double half = static_cast<double>(Lamps::kHalf), height = 2.48;
     double sum = 0;
     for (int i = 0; i < kParts; ++i)
         for (int j = 0; j < kParts; ++j) {
-            const Vec3 way = Point3{half * (2 * (i + 0.5) / kParts - 1),
-                                    half * (2 * (j + 0.5) / kParts - 1), height} -
-                             spot;
+            const double along = half * (2 * (i + 0.5) / kParts - 1);
+            const double across = half * (2 * (j + 0.5) / kParts - 1);
+            const Vec2 at =
+                along * unitVector(heading) + across * perpendicular(unitVector(heading));
+            const Vec3 way = Point3{at.x, at.y, height} - spot;
             const double square = dot(way, way);
             sum += std::max(0.0, dot(way, facing)) * way.z / (square * square);
         }
@@ -81,6 +84,21 @@ TEST(Illuminance, IsExactNearAPanel) {
                 {std::cos(0.6108652381980153) * std::cos(0.3490658503988659),
                  std::cos(0.6108652381980153) * std::sin(0.3490658503988659),
                  std::sin(0.6108652381980153)});
+}
+
+TEST(Illuminance, PanelsTurnWithTheirLamps) {
+    const auto near = [](double degrees) {
+        return luxIn("lamp at=0,0 on=yes lumens=3000 heading=" + formatDouble(degrees) + '\n',
+                     "lux at=0.4,0,2.43 tilt=90\n");
+    };
+    for (const double degrees : {0.0, 20.0, 45.0, -70.0})
+        EXPECT_NEAR(near(degrees) / integrated({0.4, 0, 2.43}, {0, 0, 1}, Angle::degrees(degrees)),
+                    1, 2e-4)
+            << degrees;
+    // A corner reaches over the spot.
+    EXPECT_GT(near(45), 3 * near(0));
+    EXPECT_NEAR(near(20), near(-70), 1e-9 * near(20))
+        << "a square is the same after a quarter turn";
 }
 
 TEST(Illuminance, DependsOnTheFacing) {

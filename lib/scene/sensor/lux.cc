@@ -46,7 +46,9 @@ std::vector<Lux::Light> lightsOf(const RoomRecords& room) {
         if (record.keyword() != "lamp" || !record.flag("on") || record.number("level") == 0)
             continue;
         const Tuple& at = record.tuple("at");
-        lights.push_back({{at[0], at[1]}, record.number("level") * record.number("lumens")});
+        lights.push_back({{at[0], at[1]},
+                          record.number("level") * record.number("lumens"),
+                          unitVector(Angle::degrees(record.number("heading")))});
     }
     return lights;
 }

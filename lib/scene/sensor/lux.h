@@ -22,6 +22,7 @@ struct Lux {
     struct Light {
         Point2 at;
         double lumens = 0;
+        Vec2 along{1, 0};  ///< unit vector along two of its sides
         friend bool operator==(const Light&, const Light&) = default;
     };
 

@@ -149,8 +149,9 @@ void LightTracer::towardsLamps(const LitPlaces& places, std::span<const float> d
         while (chosen + 1 < near.size() && (left -= weights[chosen]) > 0) ++chosen;
         const float u = inNet(1, lane, sample, draw[1]), v = inNet(2, lane, sample, draw[2]);
         const Lamps::Lamp& lamp = lamps.all()[near[chosen]];
-        aimShadow(lane, places, lamp.x - x + Lamps::kHalf * (2 * u - 1),
-                  lamp.y - y + Lamps::kHalf * (2 * v - 1), z, 0.999F);
+        const float along = Lamps::kHalf * (2 * u - 1), across = Lamps::kHalf * (2 * v - 1);
+        aimShadow(lane, places, lamp.x - x + (lamp.cosine * along - lamp.sine * across),
+                  lamp.y - y + (lamp.sine * along + lamp.cosine * across), z, 0.999F);
         for (std::size_t k = 0; k < 3; ++k) strength_[lane][k] = sum * lamp.color[k];
     }
 }

@@ -82,6 +82,9 @@ void Lamps::addRecords(const Environment& environment, Vec3 shift, double spacin
         Lamp lamp{static_cast<float>(at[0] + shift.x), static_cast<float>(at[1] + shift.y),
                   static_cast<float>(level * strength)};
         for (std::size_t k = 0; k < 3; ++k) lamp.color[k] = static_cast<float>(color[k]);
+        const Vec2 along = unitVector(Angle::degrees(record.number("heading")));
+        lamp.cosine = static_cast<float>(along.x);
+        lamp.sine = static_cast<float>(along.y);
         lamps_.push_back(lamp);
     }
 }
@@ -134,7 +137,10 @@ std::span<const std::uint32_t> Lamps::near(float x, float y) const {
 bool Lamps::shinesAt(float x, float y) const {
     const auto nearby = near(x, y);
     return std::any_of(nearby.begin(), nearby.end(), [&](std::uint32_t i) {
-        return std::max(std::fabs(lamps_[i].x - x), std::fabs(lamps_[i].y - y)) < kHalf;
+        const Lamp& lamp = lamps_[i];
+        const float dx = x - lamp.x, dy = y - lamp.y;
+        return std::max(std::fabs(lamp.cosine * dx + lamp.sine * dy),
+                        std::fabs(lamp.cosine * dy - lamp.sine * dx)) < kHalf;
     });
 }
 

@@ -22,6 +22,7 @@ class Lamps {
         float x = 0, y = 0;  ///< centre, relative to the middle of the plan
         float strength = 0;  ///< radiance of a white surface one metre below it
         Rgb color{1, 1, 0.97F};
+        float cosine = 1, sine = 0;  ///< of the heading of two of its sides
     };
     /// Half the side of a panel, metres.
     static constexpr float kHalf = 0.35F;
