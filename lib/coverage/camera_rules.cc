@@ -15,6 +15,7 @@
 #include "coverage/metrics.h"
 #include "coverage/visible_area.h"
 #include "env/zone.h"
+#include "geom/curve_clip.h"
 #include "record/schema.h"
 #include "scene/sensor/camera.h"
 
@@ -70,7 +71,9 @@ AreaInZone areasIn(const Environment& environment, const Zone& zone,
     if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
     std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoorMark),
                                  markLayer({curveOf(outline)}, kZoneMark)};
-    for (const std::vector<Curve>& view : views) layers.push_back({.curves = view});
+    // The step of an overlay's lattice grows with the extent of its layers.
+    for (const std::vector<Curve>& view : views)
+        layers.push_back({.curves = cutAlong(view, bounds(outline)).inside});
     AreaInZone areas;
     forEachArea(layers, [&](const LayerLabel& label, double area) {
         if (label.marks != (kIndoorMark | kZoneMark)) return;

@@ -175,6 +175,22 @@ TEST(CameraRules, PrivacyIsSightOfTheZone) {
     EXPECT_THROW(measurePrivacy(scene, 0, unknown), UsageError);
 }
 
+// The lattice of unions is that of the zone, however far the camera sees through the open door.
+TEST(CameraRules, PrivacyDoesNotDependOnTheRange) {
+    const auto seen = [](const std::string& range) {
+        const Scene scene = sceneOf(
+            "fence id=w path=0,0;6,0;6,4;0,4 closed=yes height=2.5\n"
+            "door wall=w at=3,0 size=1,0.2 height=2.1 open=yes\ninside at=1,1\n"
+            "zone id=desk path=1,0.5;4.3,0.7;3.9,2.9;1.2,3\n"
+            "camera id=c at=3,3.9,2 heading=-97 fov=50 pixels=800,600 range=" +
+            range + '\n');
+        const std::vector<PrivacyRule> rules = {parsePrivacy("desk")};
+        return measurePrivacy(scene, 0, rules).front().seen.value();
+    };
+    EXPECT_GT(seen("30"), 0.5);
+    EXPECT_NEAR(seen("1000000"), seen("30"), 1e-7);
+}
+
 TEST(CameraRules, PrivacyOfALevelIsTheViewAtItsDensity) {
     const std::string lines =
         kTwoZones + "camera id=c at=0,3.9,2.8 heading=-60 tilt=-30 fov=80 pixels=1280,720\n";

@@ -9,6 +9,7 @@
 #include "coverage/coverage.h"
 #include "coverage/metrics.h"
 #include "env/zone.h"
+#include "geom/curve_clip.h"
 #include "geom/overlay/overlay.h"
 #include "scene/sensor/camera.h"
 
@@ -19,7 +20,8 @@ namespace {
 constexpr std::uint64_t kPrivateMark = 2;
 
 double areaInBoth(const std::vector<Curve>& floor, const std::vector<Curve>& view) {
-    const std::vector<Layer> layers = {markLayer(floor, kPrivateMark), {.curves = view}};
+    const std::vector<Layer> layers = {markLayer(floor, kPrivateMark),
+                                       {.curves = cutAlong(view, boundsOfAll(floor)).inside}};
     double sum = 0;
     forEachArea(layers, [&](const LayerLabel& label, double area) {
         if (label.marks == kPrivateMark && label.count > 0) sum += area;
