@@ -199,7 +199,13 @@ std::string JobOutcome::bytes() const {
     to.add(static_cast<std::uint64_t>(status));
     to.addText(line);
     to.add(messages.size());
-    for (const std::string& message : messages) to.addText(message);
+    for (const Diagnostic& message : messages) {
+        to.add(static_cast<std::uint64_t>(message.severity));
+        to.addText(message.file);
+        to.add(static_cast<std::uint64_t>(message.line));
+        to.add(static_cast<std::uint64_t>(message.column));
+        to.addText(message.message);
+    }
     to.add(verdicts.size());
     for (const JunitCase& verdict : verdicts) {
         to.add(static_cast<std::uint64_t>(verdict.outcome));
@@ -214,8 +220,14 @@ JobOutcome JobOutcome::fromBytes(std::string_view bytes) {
     JobOutcome outcome;
     outcome.status = static_cast<int>(from.number());
     outcome.line = from.text();
-    for (std::uint64_t left = from.number(); left > 0; --left)
-        outcome.messages.push_back(from.text());
+    for (std::uint64_t left = from.number(); left > 0; --left) {
+        Diagnostic& message = outcome.messages.emplace_back();
+        message.severity = static_cast<Severity>(from.number());
+        message.file = from.text();
+        message.line = static_cast<int>(from.number());
+        message.column = static_cast<int>(from.number());
+        message.message = from.text();
+    }
     for (std::uint64_t left = from.number(); left > 0; --left) {
         JunitCase& verdict = outcome.verdicts.emplace_back();
         verdict.outcome = static_cast<Verdict>(from.number());
@@ -277,17 +289,19 @@ JobOutcome outcomeOf(const BatchRun& run, const BatchJob& job, const JobWork& wo
     CommonOptions common = run.common;
     common.output = job.product;
     common.progress = false;
-    common.messages = [&outcome](const std::string& text) { outcome.messages.push_back(text); };
+    common.messages = [&outcome](const Diagnostic& message) {
+        outcome.messages.push_back(message);
+    };
     try {
         if (!job.wrong.empty()) throw UsageError(job.wrong);
         checkKinds(job);
         work(job, common, outcome);
     } catch (...) {
         const ToolFailure failure = currentFailure();
-        const std::vector<std::string> lines = failure.lines();
-        const std::string& error = lines.front();
+        const std::string error = failure.messages.front().text();
         outcome.status = failure.status;
-        outcome.messages.insert(outcome.messages.end(), lines.begin(), lines.end());
+        outcome.messages.insert(outcome.messages.end(), failure.messages.begin(),
+                                failure.messages.end());
         if (failure.status != JobOutcome::kUnmet)
             outcome.verdicts = {{.name = job.name, .outcome = Verdict::Error, .message = error}};
         if (outcome.line.empty() && !run.product.empty())
@@ -306,12 +320,8 @@ class BatchWriter {
 
     void take(const BatchJob& job, JobOutcome outcome) {
         lines_.write(outcome.line);
-        for (const std::string& message : outcome.messages)
-            writeSentence(run_.tool,
-                          {.file = run_.batch.list,
-                           .line = job.line,
-                           .message = message,
-                           .severity = outcome.status == 0 ? Severity::Warning : Severity::Error});
+        for (const Diagnostic& message : outcome.messages)
+            writeJobMessage(run_.tool, {.file = run_.batch.list, .line = job.line}, message);
         if (outcome.status != 0) ++(outcome.status == JobOutcome::kUnmet ? unmet_ : failed_);
         std::move(outcome.verdicts.begin(), outcome.verdicts.end(), std::back_inserter(verdicts_));
     }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "base/json_writer.h"
 #include "base/shard.h"
 #include "cli/command_line.h"
@@ -70,8 +71,8 @@ void runInOrder(std::size_t count, const std::function<std::function<void()>(std
 
 /// Result of one job of a list.
 struct JobOutcome {
-    std::string line = {};                   ///< of JSON; "": the job failed
-    std::vector<std::string> messages = {};  ///< for stderr, without tool and location
+    std::string line = {};                  ///< of JSON; "": the job failed
+    std::vector<Diagnostic> messages = {};  ///< for stderr
     std::vector<JunitCase> verdicts = {};
     static constexpr int kUnmet = 3;
     int status = 0;  ///< exit status of the job by itself; kUnmet: it missed a requirement

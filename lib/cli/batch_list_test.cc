@@ -51,7 +51,8 @@ TEST(BatchList, WantsTextAndJobs) {
 TEST(JobOutcome, IsReadBackFromItsBytes) {
     JobOutcome outcome;
     outcome.line = "{\"a\":1}\n";
-    outcome.messages = {"warning: no\nfloor", ""};
+    outcome.messages = {{"bad.3dm", 3, 1, "no\nfloor", Severity::Warning},
+                        {"", 0, 0, "", Severity::Note}};
     outcome.verdicts = {
         {.name = "list:1 a", .outcome = JunitCase::Outcome::Unmet, .message = "40%"},
         {.name = "list:1 b"}};
@@ -59,7 +60,10 @@ TEST(JobOutcome, IsReadBackFromItsBytes) {
     const std::string bytes = outcome.bytes();
     const JobOutcome back = JobOutcome::fromBytes(bytes);
     EXPECT_EQ(back.line, outcome.line);
-    EXPECT_EQ(back.messages, outcome.messages);
+    ASSERT_EQ(back.messages.size(), 2U);
+    EXPECT_EQ(back.messages[0].text(), "bad.3dm:3:1: warning: no\nfloor");
+    EXPECT_EQ(back.messages[0].severity, Severity::Warning);
+    EXPECT_EQ(back.messages[1].severity, Severity::Note);
     EXPECT_EQ(back.status, 3);
     ASSERT_EQ(back.verdicts.size(), 2U);
     EXPECT_EQ(back.verdicts[0].outcome, JunitCase::Outcome::Unmet);

@@ -96,8 +96,9 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
 
 void tell(const CommonOptions& options, const std::string& tool, const std::string& sentence) {
     if (options.quiet) return;
-    if (options.messages) return options.messages(sentence);
-    writeSentence(tool, {.message = sentence, .severity = Severity::Note});
+    const Diagnostic note{.message = sentence, .severity = Severity::Note};
+    if (options.messages) return options.messages(note);
+    writeSentence(tool, note);
 }
 
 void logInfo(const CommonOptions& options, const std::string& tool, const std::string& text) {
@@ -109,7 +110,7 @@ void warn(const CommonOptions& options, const std::string& tool,
     for (const Diagnostic& warning : warnings) {
         if (options.quiet) return;
         if (options.messages)
-            options.messages(warning.text());
+            options.messages(warning);
         else
             writeMessage(tool, warning);
     }

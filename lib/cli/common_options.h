@@ -27,8 +27,8 @@ struct CommonOptions {
     std::string errors = "text";  ///< parse() has selected the form already
     std::optional<bool> progress;
     DependencyOptions dependencies;
-    /// Receives warnings and messages, without the tool's name; empty: they go to stderr.
-    std::function<void(const std::string&)> messages = {};
+    /// Receives warnings and notes; empty: they go to stderr.
+    std::function<void(const Diagnostic&)> messages = {};
 };
 /// Declares -MD -MF -o -q -v -j --seed --errors --progress; `output_help` describes the product; if
 /// empty there is no -o, -MD and -MF.

@@ -145,6 +145,22 @@ void writeSentence(std::string_view tool, const Diagnostic& sentence) {
     writeErrorLine({tool, ": ", printable(sentence.place() + sentence.message)});
 }
 
+void writeJobMessage(std::string_view tool, const Diagnostic& job, const Diagnostic& message) {
+    if (message_form == MessageForm::Text) {
+        const bool is_note = message.severity == Severity::Note;
+        return writeErrorLine({tool, ": ",
+                               printable(job.place() + (is_note ? message.place() + message.message
+                                                                : message.text()))});
+    }
+    Diagnostic placed = message;
+    if (placed.file.empty()) {
+        placed.file = job.file;
+        placed.line = job.line;
+        placed.column = 0;
+    }
+    writeMessage(tool, placed);
+}
+
 void writeLines(std::string_view tool, std::string_view text) {
     const std::string begin = std::string(tool) + ": ";
     while (!text.empty()) {

@@ -37,9 +37,12 @@ void selectMessageForm(MessageForm form);
 /// \param status the exit status that it leads to; 0: the tool goes on
 void writeMessage(std::string_view tool, const Diagnostic& message, int status = 0);
 
-/// Likewise, but lines for people lack the severity: for sentences about the work, and for messages
-/// of other work, which have their own.
+/// Likewise, but lines for people lack the severity: for sentences about the work.
 void writeSentence(std::string_view tool, const Diagnostic& sentence);
+
+/// Writes a message of one job of many. A line for people begins with the place of the job; as JSON
+/// the message has its own place, or that of the job if it has none.
+void writeJobMessage(std::string_view tool, const Diagnostic& job, const Diagnostic& message);
 
 /// Writes lines for people, each of which may begin with "TOOL: "; as JSON each is a note.
 void writeLines(std::string_view tool, std::string_view text);

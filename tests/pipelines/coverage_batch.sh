@@ -190,3 +190,21 @@ if [ -s other.jsonl.resume ]; then
     expect_error 1 coverage --batch two --resume -o other.jsonl
     expect_same kept other.jsonl.resume "a checkpoint of another run was touched"
 fi
+
+# As JSON a message has the severity and the place of its own; one without a place has that of the line.
+printf '#env 1\nispace size=8,6\n' >plain.env
+printf '#3dm 1\nlaser id=l1 at=0,0\nlaser id=l2 at=90,1\n' >out.3dm
+echo 'plain.env out.3dm' >outside
+coverage --batch outside --require 99.9% --errors json >/dev/null 2>err && fail "the requirement is met"
+python3 - <<'END' || fail "messages of jobs as JSON: $(cat err)"
+import json
+first, second, last = [json.loads(line) for line in open("err", encoding="utf-8")]
+place = [first.get(key) for key in ("severity", "file", "line", "column")]
+assert place == ["warning", "out.3dm", 3, 1], first
+assert first["message"].startswith("laser l2 stands outside the room"), first
+assert (second["severity"], second["file"], second["line"]) == ("error", "outside", 1), second
+assert second["message"].startswith("coverage is 50.00%"), second
+assert last["status"] == 3, last
+END
+coverage --batch outside 2>&1 >/dev/null | grep -q '^coverage: outside:1: out.3dm:3:1: warning: laser l2' ||
+    fail "the line for people"
