@@ -191,17 +191,19 @@ bool CandidateViews::isRound() const { return data_->is_round; }
 namespace {
 
 /// Scans some sites at a time and adds their views to the set, in the order of the list. Once
-/// progress says stop, scans only a sample of the other sites, so that candidates exist everywhere.
+/// progress says stop, scans only a sample of the other sites, so that candidates exist everywhere:
+/// at least one, and more as long as the grace lasts.
 class Scanner {
   public:
     Scanner(PosedCandidates& set, std::span<const StackedViews> stack, std::span<const Site> sites,
-            std::size_t least, Progress& progress, const SearchShare& share)
+            std::size_t least, Progress& progress, const SearchShare& share, StopGrace* grace)
         : set_(set),
           stack_(stack),
           data_(stack.front().views->data()),
           sites_(sites),
           progress_(progress),
           share_(share),
+          grace_(grace != nullptr ? *grace : own_grace_),
           least_(std::min(least, sites.size())),
           at_once_(data_.looks_in_slice ? 512 : 32) {}
 
@@ -215,7 +217,7 @@ class Scanner {
             const std::string name = "views/" + std::to_string(step);
             prepare();
             if (!recall(name) && !leaveToOthers(step)) {
-                look(added_ >= least_);
+                look(added_ >= least_, false);
                 if (share_.results != nullptr && !progress_.stopped()) keep(name);
             }
             addSeen(max_bytes);
@@ -223,7 +225,7 @@ class Scanner {
         if (next < sites_.size()) {
             turns_ = sitesSpreadOver(sites_, next, std::min(least_, sites_.size() - next));
             prepare();
-            look(false);
+            look(false, set_.size() == 0);
             addSeen(max_bytes);
         }
         return added_ == sites_.size();
@@ -243,12 +245,14 @@ class Scanner {
     }
 
     /// Computes parts_ for the current batch. A view of a plane takes a while: may stop in between.
-    void look(bool may_stop) {
+    /// \param has_enough does not need the grace \param needs_one looks at one in any case
+    void look(bool has_enough, bool needs_one) {
         std::atomic<std::int64_t> looks = 0;
         tbb::parallel_for(std::size_t{0}, turns_.size(), [&](std::size_t i) {
             if (data_.looks_in_slice) {
                 lookFrom(i);
-            } else if (may_stop && progress_.stopped()) {
+            } else if (progress_.stopped() && (has_enough || grace_.isOver()) &&
+                       !(needs_one && looks == 0)) {
                 is_done_[i] = 0;
                 return;
             } else {
@@ -382,6 +386,8 @@ class Scanner {
     std::span<const Site> sites_;
     Progress& progress_;
     const SearchShare& share_;
+    StopGrace own_grace_;
+    StopGrace& grace_;
     std::size_t least_, at_once_;
     std::size_t added_ = 0;
     // Of the current batch:
@@ -397,18 +403,19 @@ class Scanner {
 
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
                    std::size_t max_bytes, Progress& progress, std::size_t least,
-                   const SearchShare& share) {
+                   const SearchShare& share, StopGrace* grace) {
     assert(set.cells() == (views.data().ways != nullptr ? views.data().ways->ways().pieces.size()
                                                         : views.data().grid.size()));
     const StackedViews one{&views};
-    return addCandidates(set, std::span(&one, 1), sites, max_bytes, progress, least, share);
+    return addCandidates(set, std::span(&one, 1), sites, max_bytes, progress, least, share, grace);
 }
 
 bool addCandidates(PosedCandidates& set, std::span<const StackedViews> stack,
                    std::span<const Site> sites, std::size_t max_bytes, Progress& progress,
-                   std::size_t least, const SearchShare& share) {
+                   std::size_t least, const SearchShare& share, StopGrace* grace) {
     progress.begin("scanning candidates", static_cast<std::int64_t>(sites.size()));
-    const bool is_complete = Scanner(set, stack, sites, least, progress, share).run(max_bytes);
+    const bool is_complete =
+        Scanner(set, stack, sites, least, progress, share, grace).run(max_bytes);
     progress.end();
     return is_complete;
 }

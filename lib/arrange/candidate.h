@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -95,9 +97,27 @@ class CandidateViews {
     std::unique_ptr<Data> data_;
 };
 
-/// Minimum number of sites that yield candidates, however early the search is stopped, so that it
-/// has some choice. Takes milliseconds.
+/// Number of sites that yield candidates even if the search is stopped early, so that it has some
+/// choice. Takes milliseconds; in rooms where a view takes longer, as many as StopGrace allows.
 constexpr std::size_t kMinPlaces = 64;
+
+/// Time that a stopped search still takes to make its first candidates, once for all kinds.
+/// Thread-safe.
+class StopGrace {
+  public:
+    /// Returns true once the grace since the first call is over.
+    [[nodiscard]] bool isOver() {
+        constexpr auto kGrace = std::chrono::milliseconds(400);
+        using Clock = std::chrono::steady_clock;
+        const auto now = Clock::now().time_since_epoch().count();
+        auto begun = begun_.load();
+        if (begun == 0 && begun_.compare_exchange_strong(begun, now)) begun = now;
+        return Clock::duration(now - begun) > kGrace;
+    }
+
+  private:
+    std::atomic<std::chrono::steady_clock::rep> begun_ = 0;
+};
 
 /// Appends the candidates of all sites, in order: each site becomes one site of the set, with a
 /// candidate per heading (only the first if views.isRound()). Scans a few sites at a time in
@@ -110,7 +130,7 @@ constexpr std::size_t kMinPlaces = 64;
 /// candidates scans only its share of the sites: its candidates at all others have empty views.
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
                    std::size_t max_bytes, Progress& progress, std::size_t least = kMinPlaces,
-                   const SearchShare& share = SearchShare());
+                   const SearchShare& share = SearchShare(), StopGrace* grace = nullptr);
 
 /// The views of one case, and where its cells begin in the set, see CaseRoom.
 struct StackedViews {
@@ -121,7 +141,7 @@ struct StackedViews {
 /// \pre the views are of one device, height, tilt and roll
 bool addCandidates(PosedCandidates& set, std::span<const StackedViews> stack,
                    std::span<const Site> sites, std::size_t max_bytes, Progress& progress,
-                   std::size_t least, const SearchShare& share);
+                   std::size_t least, const SearchShare& share, StopGrace* grace);
 
 /// Returns the sites without the headings from which a sensor sees a counted cell, and without
 /// sites that have no heading left.

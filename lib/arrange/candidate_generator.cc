@@ -75,6 +75,7 @@ struct CandidatePool::Data {
     std::map<double, std::unique_ptr<SiteValidity>> validities = {};
     std::map<double, std::vector<std::unique_ptr<SiteValidity>>> other_validities = {};
     std::size_t bytes = 0;  // of the sets built so far
+    StopGrace grace = {};
 
     const SiteValidity& validityAt(double height) {
         std::unique_ptr<SiteValidity>& validity = validities[height];
@@ -247,7 +248,7 @@ struct CandidatePool::Data {
               const Pose3& mount, std::span<const Site> sites, std::size_t least) {
         if (rooms.empty())
             return addCandidates(set, views, sites, options.max_bytes - bytes, progress, least,
-                                 options.search.share);
+                                 options.search.share, &grace);
         std::vector<std::unique_ptr<CandidateViews>> all;
         std::vector<StackedViews> stack;
         for (const auto& room : rooms) {
@@ -258,7 +259,7 @@ struct CandidatePool::Data {
             stack.push_back({all.back().get(), room->firsts});
         }
         return addCandidates(set, stack, sites, options.max_bytes - bytes, progress, least,
-                             options.search.share);
+                             options.search.share, &grace);
     }
 
     /// Adds candidates at these sites for each tilt. Returns false if progress says stop: then adds

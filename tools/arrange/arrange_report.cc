@@ -136,8 +136,13 @@ std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
     if (work.how.objective.isCoverage()) return std::nullopt;
     const Scene scene = withPlaced(work.input.scene, work.groups, arrangement.sensors);
     Worlds worlds(scene.environment);
+    // Positions are judged by cells; the regions for ways may take longer than a limit of time
+    // allows.
+    const bool needs_regions =
+        work.how.objective.of == ObjectiveChoice::Of::Path && arrangement.is_complete;
     const Coverage coverage = measureCoverage(
-        scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
+        scene, worlds,
+        {.plane = work.how.plane, .density = work.how.pixel_density, .exact = needs_regions});
     return objectivesOf(work.how.objective, work.how.redundancy, scene, coverage);
 }
 
