@@ -38,6 +38,7 @@ RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys) {
     std::map<std::string, std::size_t> known;  // members by id
     bool is_first = true;
     for (const RunCoverage& storey : storeys) {
+        sum.unreached.insert(sum.unreached.end(), storey.unreached.begin(), storey.unreached.end());
         if (storey.members.empty()) continue;
         sum.begin = is_first ? storey.begin : std::min(sum.begin, storey.begin);
         sum.end = std::max(sum.end, storey.end);
@@ -48,7 +49,6 @@ RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys) {
             addMetrics(sum.members[at->second], member);
         }
         addMetrics(sum.all, storey.all);
-        sum.unreached.insert(sum.unreached.end(), storey.unreached.begin(), storey.unreached.end());
     }
     for (RunCoverageMetrics& member : sum.members) {
         turnIntoShares(member.time_shares, member.duration);
@@ -56,6 +56,8 @@ RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys) {
     }
     turnIntoShares(sum.all.time_shares, sum.all.duration);
     turnIntoShares(sum.all.way_shares, sum.all.length);
+    std::stable_sort(sum.unreached.begin(), sum.unreached.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     return sum;
 }
 

@@ -182,7 +182,7 @@ TEST(CameraRules, PrivacyDoesNotDependOnTheRange) {
             "fence id=w path=0,0;6,0;6,4;0,4 closed=yes height=2.5\n"
             "door wall=w at=3,0 size=1,0.2 height=2.1 open=yes\ninside at=1,1\n"
             "zone id=desk path=1,0.5;4.3,0.7;3.9,2.9;1.2,3\n"
-            "camera id=c at=3,3.9,2 heading=-97 fov=50 pixels=800,600 range=" +
+            "camera id=c at=3,3.9,2 heading=-97 tilt=-35 fov=50 pixels=800,600 range=" +
             range + '\n');
         const std::vector<PrivacyRule> rules = {parsePrivacy("desk")};
         return measurePrivacy(scene, 0, rules).front().seen.value();

@@ -307,10 +307,13 @@ TEST(BuildingRun, ARiderWhoseLandingIsOccupiedTurnsBack) {
     const auto end = await(run, "ground/r1", 300);
     ASSERT_TRUE(end) << "it does not wait for ever";
     EXPECT_EQ(end->outcome, Outcome::Unreached);
-    ASSERT_EQ(events.next(), 1);
-    EXPECT_EQ(events.at(0).id, "ground/r1");
-    EXPECT_EQ(events.at(0).other, "upper");
-    EXPECT_EQ(events.at(0).place, (Point2{9, 6})) << "the goal, not where it clears the landing";
+    std::vector<Event> told;
+    for (std::int64_t i = 0; i < events.next(); ++i)
+        if (events.at(i).kind == EventKind::Unreached) told.push_back(events.at(i));
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told[0].id, "ground/r1");
+    EXPECT_EQ(told[0].other, "upper");
+    EXPECT_EQ(told[0].place, (Point2{9, 6})) << "the goal, not where it clears the landing";
     EXPECT_EQ(run.roomOf("ground/r1"), 0U);
     // The lift serves others once the landing is free.
     ASSERT_EQ(run.travel("upper/parked", {{{1, {9, 7}}}}).refusal, "");

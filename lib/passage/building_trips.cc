@@ -279,7 +279,7 @@ void BuildingRun::Data::clearLanding(Traveller& who, BuildingTrip& trip) {
                                               .wayBetween(statusOf(who).pose.position, *trip.spot)
                                         : std::vector<Point2>();
     if (way.empty()) return finish(who.id, *trip.ending);
-    trip.given_up = trip.plan.points[trip.goal];
+    if (!trip.given_up) trip.given_up = trip.plan.points[trip.goal];
     trip.plan = {.points = {{landing->storey, *trip.spot}}};
     trip.goal = 0;
     send(who, trip, way, who.ability.speed);

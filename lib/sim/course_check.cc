@@ -108,7 +108,7 @@ class CourseCheck {
         world.command(0, pathCommand(std::move(plan)));
         // It makes progress, if slowly.
         const double most = 120 + 10 * distance(from.position, goal) / mover.model.speed;
-        while (seconds(world.time()) < most) {
+        while (seconds(world.time()) < most && steps_ <= kMaxSteps) {
             world.step();
             ++steps_;
             if (!world.unreached().empty()) return world.status(0).pose;

@@ -133,7 +133,8 @@ void Navigator::walk(const SteeringState& helm, Motion& motion) {
     const Angle direct = Angle::radians(std::atan2(way.y, way.x));
     // Walls about a point turn the mover aside, so that it circles there: it goes straight on.
     constexpr double kLast = 0.5;  // metres
-    if (stops && left < kLast && helm.time - gained_ > kCircling && steering.isFree(way)) {
+    if (stops && left < std::min(kLast, speed_ * horizon(speed_)) &&
+        helm.time - gained_ > kCircling && steering.isFree(way)) {
         bumped_ = true;
         return go(motion, direct, speed_, left);
     }

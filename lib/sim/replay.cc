@@ -190,9 +190,9 @@ void Replay::giveUp(const World& world) {
 bool Replay::step(World& world) { return step(world, true); }
 
 bool Replay::step(World& world, bool reads) {
-    if (!is_ahead_ && !is_joined_) return false;
     points_.clear();
     unreached_.clear();
+    if (!is_ahead_ && !is_joined_) return false;
     const SimTime now = world.time() + step_;
     const SimTime time = is_ahead_ ? recordedTime(reader_.time()) : now;
     const bool is_empty = isEmptyAt(now) && (time - now) % step_ == SimTime(0);

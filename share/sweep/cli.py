@@ -49,6 +49,10 @@ def main(version: str, arguments: Sequence[str] | None = None) -> int:
     except DataError as error:
         say(error.findings, 1)
         return 1
+    except BrokenPipeError:  # the reader of the output has ended: as by default
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+        os.kill(os.getpid(), signal.SIGPIPE)
+        return 128 + signal.SIGPIPE
     except OSError as error:
         name = f"{os.fsdecode(error.filename)}: " if error.filename else ""
         say([f"{name}error: {os.strerror(error.errno or 0)}"], 1)
@@ -218,6 +222,9 @@ def _run_jobs(sweep: Sweep, options: argparse.Namespace, version: str, say: _Spe
     from . import parts
     from .run import run
 
+    if os.path.isabs(sweep.folder):
+        raise UsageError(f"{sweep.file}: `folder: {sweep.folder}`: run needs a relative folder")
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # of a tool that has ended; Popen gives jobs the default
     share = parts.Share(*(_shard(options.shard) if options.shard else (1, 1)), tuple(options.only))
     size = int(options.threads) if options.threads else _cores()
     failed = run(sweep, _chosen(sweep, options), share, options.output, version, max(1, size), options.retry, say)

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import base64
+import collections
+import heapq
 import json
 import os
 from dataclasses import dataclass
@@ -83,7 +85,7 @@ class Part:
                 if not row.endswith(b"\n"):
                     return
                 try:
-                    found = json.loads(row)
+                    found = json.loads(row.decode("utf-8", "surrogateescape"))
                     found["job"], found["status"], found["values"]
                 except (ValueError, KeyError, TypeError, RecursionError):
                     raise DataError([f"{self.path}:{number}:1: error: no line of {SCHEMA}"]) from None
@@ -133,10 +135,23 @@ def in_order(paths: Sequence[str]) -> list[Part]:
 def rows(parts: Sequence[Part]) -> Iterator[dict[str, Any]]:
     """The lines of all parts in the order of jobs. Throws DataError for a job that is in two parts."""
     last, where = 0, ""
-    for part in parts:
-        for row in part.lines():
-            if row["job"] <= last:
-                raise DataError([f"{part.path}: error: job {row['job']} comes after job {last} of {where}: give each "
-                                 "part once"])
-            last, where = row["job"], part.path
-            yield row
+    waiting = collections.deque(parts)  # by their first jobs; opened when one is due
+    due: list[tuple[int, int, Part, Iterator[dict[str, Any]], dict[str, Any]]] = []
+
+    def push(order: int, part: Part, lines: Iterator[dict[str, Any]]) -> None:
+        row = next(lines, None)
+        if row is not None:
+            heapq.heappush(due, (row["job"], order, part, lines, row))
+
+    while waiting or due:
+        while waiting and (not due or int(waiting[0].head.get("first") or 0) <= due[0][0]):
+            part = waiting.popleft()
+            push(len(waiting), part, part.lines())
+        if not due:
+            break
+        job, order, part, lines, row = heapq.heappop(due)
+        if job <= last:
+            raise DataError([f"{part.path}: error: job {job} comes after job {last} of {where}: give each part once"])
+        last, where = job, part.path
+        yield row
+        push(order, part, lines)

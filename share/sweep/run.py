@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import collections
 import concurrent.futures
+import contextlib
 import fcntl
 import json
 import os
@@ -74,12 +75,7 @@ class _Target:
             self.write(head.encode() + b"\n")
             return
         self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o666)
-        try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise DataError([f"{path}: error: another run is writing it"]) from None
-        except OSError:
-            pass  # a file system without locks
+        _lock(self._file, path)
         if self._first_line() == head + "\n":
             self._continue()
         elif os.fstat(self._file).st_size and not self._is_torn(head):
@@ -126,6 +122,16 @@ class _Target:
         os.close(self._file)
 
 
+def _lock(file: int, path: str) -> None:
+    """Locks a part, until it is closed. Throws DataError if another run has it."""
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise DataError([f"{path}: error: another run is writing it"]) from None
+    except OSError:
+        pass  # a file system without locks
+
+
 def _not_ours(path: str) -> DataError:
     return DataError([f"{path}: error: holds something else than this share of this sweep; move it away, or give -o "
                       "another name"])
@@ -134,7 +140,7 @@ def _not_ours(path: str) -> DataError:
 def _job_and_status(row: bytes, path: str, number: int) -> tuple[int, int]:
     """Those of a line, which begins with them."""
     try:
-        found = json.loads(row)
+        found = json.loads(row.decode("utf-8", "surrogateescape"))
         return int(found["job"]), int(found["status"])
     except (ValueError, KeyError, TypeError):
         raise DataError([f"{path}:{number}:1: error: no line of {parts.SCHEMA}: move the file away"]) from None
@@ -203,6 +209,7 @@ class _Earlier:
     def __init__(self, path: str, head: str) -> None:
         self._places: dict[int, tuple[int, int]] = {}
         self._file = open(path, "rb")
+        _lock(self._file.fileno(), path)  # as of a run, or another retry
         if self._file.readline(parts.LONGEST_HEADER).decode("utf-8", "replace").rstrip("\n") != head:
             raise _not_ours(path)
         begin = self._file.tell()
@@ -237,7 +244,10 @@ def run(sweep: Sweep, jobs: Jobs, share: parts.Share, path: str, version: str, s
         with open(beside, "wb"):
             pass
     target = _Target(beside, head)
-    tally = Tally(None if path == "-" else path, len(jobs))
+    if earlier:  # until the end the part stays as it was: `status` counts it
+        with contextlib.suppress(OSError):
+            os.unlink(path + STATUS)
+    tally = Tally(None if path == "-" or earlier else path, len(jobs))
     tally.resume(target.done, target.failed)
     tally.tell()
     crew = _Crew(sweep, max(1, min(size, len(jobs) - target.done)))

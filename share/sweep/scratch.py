@@ -49,6 +49,13 @@ class Scratch:
         """Replaces the scratch folder by the current one in a message."""
         return text.replace(self.path + os.sep, "").replace(self._root, "")
 
+    def free(self, path: str) -> None:
+        """Makes room for a file of a job: one of that name in the real folder stays as it is."""
+        here = os.path.join(self.path, path)
+        if os.path.islink(here):
+            os.unlink(here)
+        self._kept.discard(os.path.basename(path))
+
     def empty(self) -> None:
         """Removes the files of a job."""
         with os.scandir(self._folder) as entries:

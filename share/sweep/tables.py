@@ -50,7 +50,7 @@ class Table:
     def __init__(self, axes: Sequence[str], rows: Iterable[Row]) -> None:
         self.axes = list(axes)
         self.count = 0
-        self._spool = tempfile.TemporaryFile("w+", encoding="utf-8")
+        self._spool = tempfile.TemporaryFile("w+", encoding="utf-8", errors="surrogateescape")
         results: dict[str, Column] = {}
         order: list[str] = []
         fixed = self._fixed()
@@ -113,10 +113,10 @@ def to_csv(table: Table, write: Write, raw: bool = False) -> None:
     for row in table.rows():
         writer.writerow([cell(column.value(row)) for column in table.columns])
         if out.tell() > 1 << 16:
-            write(out.getvalue().encode())
+            write(out.getvalue().encode("utf-8", "surrogateescape"))
             out.seek(0)
             out.truncate()
-    write(out.getvalue().encode())
+    write(out.getvalue().encode("utf-8", "surrogateescape"))
 
 
 def _spreadsheet_cell(value: Value) -> str:
@@ -134,11 +134,11 @@ def _cell(value: Value) -> str:
 def to_jsonl(table: Table, write: Write, sweep: str, digest: str, version: str) -> None:
     """Schema ispace-sweep/1: a header line, then a line for each job."""
     write((dump({"schema": "ispace-sweep/1", "tool": "ispace-sweep", "version": version, "sweep": sweep,
-                 "digest": digest, "axes": table.axes}) + "\n").encode())
+                 "digest": digest, "axes": table.axes}) + "\n").encode("utf-8", "surrogateescape"))
     for row in table.rows():
         write((dump({"job": row.number, "name": row.name, "values": row.values, "results": row.results,
                      "digest": row.digest, "seed": row.seed, "version": row.version, "history": row.history,
-                     "commands": row.commands}) + "\n").encode())
+                     "commands": row.commands}) + "\n").encode("utf-8", "surrogateescape"))
 
 
 def to_npz(table: Table, write: Write) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 from typing import Sequence
 
@@ -80,7 +81,7 @@ class Worker:
                 tool.kill()
         other = self._other
         if other:
-            other.kill()
+            _end(other)
 
     def close(self) -> None:
         for tool in self._tools.values():
@@ -93,6 +94,9 @@ class Worker:
         outcome = Outcome()
         for file in self._sweep.inputs(job):
             self._scratch.mirror(file)
+        for step in self._sweep.steps:
+            for suffix in step.makes:
+                self._scratch.free(job.path(suffix))
         try:
             for step in self._sweep.steps:
                 outcome.commands.append(self._plain.words(job, step))
@@ -169,7 +173,9 @@ class Worker:
         try:
             with open(errors, "wb") as said, open(output or os.devnull, "wb") as told:
                 self._other = subprocess.Popen(words, cwd=self._scratch.path, stdin=subprocess.DEVNULL, stdout=told,
-                                               stderr=said)
+                                               stderr=said, start_new_session=True)
+                if self._is_killed:  # kill() came while it began
+                    _end(self._other)
                 status = self._other.wait()
         except OSError as error:
             with open(errors, "w", encoding="utf-8") as said_of_us:
@@ -178,6 +184,14 @@ class Worker:
         finally:
             self._other = None
         return status if status >= 0 else 128 - status
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Ends a process and those that it began."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except OSError:
+        pass  # it has ended
 
 
 def _serves(program: str) -> bool:

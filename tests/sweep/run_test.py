@@ -183,6 +183,40 @@ def failures(folder):
     check("not written by this step" in folder.talk, folder.talk)
 
 
+def others(folder):
+    """What lies in the folder already stays, and is no result of a job."""
+    folder.write("sweep.yaml", "run: sh -c 'test $0 = 2 || echo new $0' {n} > {out}.txt\naxes: {n: 1..2}\n")
+    for number in (1, 2):
+        folder.write(f"results/n{number}.txt", "old\n")
+    sweep(folder, "run", "-o", "part.jsonl", status=1)
+    jobs = lines(folder.read("part.jsonl"))[1:]
+    same("statuses", [0, 1], [job["status"] for job in jobs])
+    same("the new file", "new 1\n", jobs[0]["files"][".txt"])
+    same("the old files", [b"old\n"] * 2, [folder.read(f"results/n{number}.txt") for number in (1, 2)])
+    # Two at a time on one part: the second is refused, and the first loses no line.
+    folder.write("sweep.yaml", "run: sh -c 'sleep 0.2; test -e {fixed} && echo $0' {n} > {out}.txt\n"
+                 "axes: {n: 1..6, fixed: [FIXED]}\n".replace("FIXED", json.dumps(folder / "fixed")))
+    sweep(folder, "run", "-o", "again.jsonl", "-q", status=1)
+    folder.write("fixed", "")
+    with subprocess.Popen([PROGRAM, "run", "sweep.yaml", "--retry", "-j", "1", "-o", "again.jsonl"],
+                          cwd=folder.path) as first:
+        time.sleep(0.8)
+        for words in (["--retry"], []):
+            sweep(folder, "run", "-o", "again.jsonl", *words, status=1)
+            check("another run is writing it" in folder.talk, folder.talk)
+        same("the first retry", 0, first.wait())
+    same("its lines", list(range(1, 7)), [job["job"] for job in lines(folder.read("again.jsonl"))[1:]])
+    # Parts of --only interleave.
+    folder.write("sweep.yaml", "run: echo {m} {n} > {out}.txt\naxes: {m: [x, y], n: 1..2}\n")
+    for number in (1, 2):
+        sweep(folder, "run", "--only", f"n={number}", "-o", f"only{number}.jsonl")
+    joined = sweep(folder, "join", "only2.jsonl", "only1.jsonl")
+    same("numbers of interleaved parts", ["1", "2", "3", "4"], [row.split(",")[0] for row in joined.splitlines()[1:]])
+    folder.write("sweep.yaml", f"run: echo {{n}} > {{out}}.txt\naxes: {{n: 1..2}}\nfolder: {folder / 'there'}\n")
+    sweep(folder, "run", status=2)
+    check("run needs a relative folder" in folder.talk, folder.talk)
+
+
 def errors(folder):
     folder.write("sweep.yaml", "run: cp rooms/a.env {out}.{n}.env\naxes: {n: 1}\n".replace("{out}.{n}.env", "{out}.env")
                  .replace("cp", "cp -{n}").replace("axes: {n: 1}", "axes: {n: [f, p]}"))
@@ -209,7 +243,7 @@ def errors(folder):
     check("stdout: error: No space left" in folder.talk, folder.talk)
 
 
-for part in (equals_files, shares, ends_in_the_middle, failures, errors):
+for part in (equals_files, shares, ends_in_the_middle, failures, others, errors):
     with Folder() as scratch_folder:
         whole = scratch_folder.path
         rooms(scratch_folder)

@@ -222,7 +222,7 @@ IfcArea band(const std::vector<Point3>& line, double thickness) {
 namespace {
 
 /// Points of curves and profiles that are kept for the next use.
-constexpr std::size_t kMaxKept = 10'000'000;
+constexpr std::size_t kMaxKeptPoints = 10'000'000;
 
 std::size_t pointsIn(const IfcCurves::Points& points) { return points.size(); }
 std::size_t pointsIn(const IfcArea& area) {
@@ -255,7 +255,7 @@ IfcCurves::Made<T> IfcCurves::make(Known<T>& known, StepId id, int depth, const 
         const std::uint64_t units = compute(*result);
         const std::size_t points = pointsIn(*result);
         Made<T> made{std::move(result), units};
-        if (kept_ + points <= kMaxKept) {
+        if (kept_ + points <= kMaxKeptPoints) {
             kept_ += points;
             known[id] = made;
         } else {

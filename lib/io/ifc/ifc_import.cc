@@ -125,8 +125,14 @@ std::vector<bool> storeysWithOuterDoors(const Building& building) {
     std::vector<std::vector<Region>> spaces(building.storeys.size());
     for (const BuildingSpace& space : building.spaces)
         for (Region& part : areaOf(space.outline)) spaces[space.storey].push_back(std::move(part));
+    // Each door is compared with all walls or corners: of very many none decides.
+    std::size_t tests = 200'000'000, each = 1 + building.walls.size();
+    for (const std::vector<Region>& regions : spaces)
+        for (const Region& region : regions) each += region.outline.size();
     for (const BuildingOpening& door : building.openings) {
         if (door.kind != BuildingOpening::Kind::Door || outer[door.storey]) continue;
+        if (tests < each) return std::vector<bool>(building.storeys.size(), false);
+        tests -= each;
         const BuildingBox& box = door.box;
         const Vec2 across = box.length >= box.width ? perpendicular(box.along) : box.along;
         const double off = std::min(box.length, box.width) / 2 + kBeside;

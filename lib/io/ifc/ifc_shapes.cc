@@ -10,7 +10,7 @@ namespace ispace {
 namespace {
 
 /// Corners of mapped shapes that are kept for the next use.
-constexpr std::size_t kMaxKept = 10'000'000;
+constexpr std::size_t kMaxKeptCorners = 10'000'000;
 /// Corners that are copied and cut in the time of one unit of Budget.
 constexpr std::size_t kCornersPerUnit = 4;
 /// Beyond any building, in metres: how far limits of half-spaces are drawn out.
@@ -138,7 +138,7 @@ void IfcShapes::addMapped(const StepInstance& item, IfcShape& shape, int depth) 
         addItems(frames_.file().read(map[1].reference()), read, depth + 1);
         const std::size_t corners = cornersOf(read);
         part = std::make_shared<const IfcShape>(std::move(read));
-        if (kept_ + corners <= kMaxKept) {
+        if (kept_ + corners <= kMaxKeptCorners) {
             kept_ += corners;
             mapped_[source] = part;
         } else {

@@ -102,7 +102,10 @@ std::string unzippedIfc(std::string_view bytes, const std::string& operand, Budg
     std::string text(info.uncompressed_size, '\0');
     std::size_t read = 0;
     if (unzOpenCurrentFile(zip.get()) != UNZ_OK)
-        failFile(operand, entry + " in the archive is packed in an unknown way: pack it with zip");
+        failFile(operand,
+                 info.compression_method != 0 && info.compression_method != Z_DEFLATED
+                     ? entry + " in the archive is packed in an unknown way: pack it with zip"
+                     : "a damaged zip archive: " + entry + " cannot be unpacked");
     constexpr std::size_t kPiece = 1 << 20;
     while (read < text.size()) {
         const int count =

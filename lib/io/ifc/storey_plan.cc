@@ -424,6 +424,7 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) 
         for (std::vector<Polygon>& part : partsOf(wall.section))
             pieces.push_back({std::move(part)});
         for (const Polygon& sheet : wall.section.sheets) {
+            if (sheet.empty()) continue;
             Polygon line{wholeMicrometres(sheet.front())};
             for (const Point2 p : sheet)
                 if (distance(p, line.back()) > kSameCorner) line.push_back(wholeMicrometres(p));

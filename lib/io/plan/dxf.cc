@@ -130,13 +130,13 @@ class Expander {
     /// is called as furniture and the layer not as walls.
     [[nodiscard]] const std::string& layerOf(const std::string& layer) {
         if (blocks_.empty() || layers_.isHidden(layer) || layers_.isNamed(layer)) return layer;
-        if (!isCalled(layer).walls)
-            for (const std::string* block : blocks_)
-                if (isCalled(*block).thing) return *block;
-        const auto named =
-            std::find_if(blocks_.rbegin(), blocks_.rend(),
-                         [this](const std::string* block) { return layers_.isNamed(*block); });
-        return named == blocks_.rend() ? layer : **named;
+        bool may_be_thing = !isCalled(layer).walls;
+        for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) {
+            if (layers_.isNamed(**block)) return **block;
+            may_be_thing = may_be_thing && !isCalled(**block).walls;
+            if (may_be_thing && isCalled(**block).thing) return **block;
+        }
+        return layer;
     }
 
     /// Returns the layer, or the innermost enclosing block, with a name of walls; "" if there is

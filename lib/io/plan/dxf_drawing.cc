@@ -285,6 +285,9 @@ std::vector<DxfPolyline> mlineOf(const Entity& entity) {
 /// Pieces of an ellipse in the boundary of a hatch, a whole turn: of 4 m radius within 0.6 mm.
 constexpr double kEllipsePieces = 180;
 
+/// Returns true for a number that may be converted to an integer of this range.
+bool isIn(double value, int least, int most) { return value >= least && value <= most; }
+
 /// An edge of a hatch's boundary, as its groups are read.
 struct HatchEdge {
     enum Kind { Line = 1, Arc, Ellipse, Spline };
@@ -308,7 +311,8 @@ struct HatchEdge {
             if (code == 40) size = value;
             return;
         }
-        if (code == 94) spline.degree = static_cast<int>(value);
+        constexpr int kMaxDegree = 100;
+        if (code == 94) spline.degree = isIn(value, 1, kMaxDegree) ? static_cast<int>(value) : 0;
         if (code == 40) spline.knots.push_back(value);
         if (code == 42) spline.weights.push_back(value);
         if (code == 10) spline.controls.push_back({value, 0});
@@ -360,13 +364,19 @@ struct HatchEdge {
     static constexpr std::size_t kMaxSplinePoints = 10'000;
 };
 
-/// Returns the rings of a hatch. Damaged ones are left out.
-std::vector<DxfPolyline> hatchOf(const Entity& entity) {
+/// Returns the rings of a hatch; none if they have more than `most` vertices, which an edge of few
+/// bytes makes many of. Damaged rings are left out. \param most less those of the rings, afterwards
+std::vector<DxfPolyline> hatchOf(const Entity& entity, std::size_t& most) {
     std::vector<DxfPolyline> rings;
     bool is_path = false, is_polyline = false, is_damaged = false;
     std::optional<HatchEdge> edge;
     const auto end_edge = [&] {
-        if (edge && !edge->appendTo(rings.back().vertices)) is_damaged = true;
+        if (edge && most > 0) {
+            auto& vertices = rings.back().vertices;
+            const std::size_t before = vertices.size();
+            is_damaged = !edge->appendTo(vertices) || is_damaged;
+            most -= std::min(most, vertices.size() - before);
+        }
         edge.reset();
     };
     const auto end_path = [&] {
@@ -379,7 +389,9 @@ std::vector<DxfPolyline> hatchOf(const Entity& entity) {
             end_path();
             rings.push_back({{}, true});
             is_path = true;
-            is_polyline = (static_cast<int>(value) & kPolylinePath) != 0;
+            constexpr int kMaxFlags = 65535;
+            is_polyline =
+                isIn(value, 0, kMaxFlags) && (static_cast<int>(value) & kPolylinePath) != 0;
         }
         if (code == 75 || code == 98) end_path();
         if (!is_path) continue;
@@ -392,7 +404,8 @@ std::vector<DxfPolyline> hatchOf(const Entity& entity) {
         } else if (code == 72) {
             end_edge();
             edge.emplace();
-            edge->kind = static_cast<int>(value);
+            edge->kind =
+                isIn(value, HatchEdge::Line, HatchEdge::Spline) ? static_cast<int>(value) : 0;
             is_damaged =
                 is_damaged || edge->kind < HatchEdge::Line || edge->kind > HatchEdge::Spline;
         } else if (code == 97) {
@@ -402,6 +415,7 @@ std::vector<DxfPolyline> hatchOf(const Entity& entity) {
         }
     }
     end_path();
+    if (most == 0) rings.clear();
     std::erase_if(rings, [](const DxfPolyline& ring) { return ring.vertices.size() < 3; });
     return rings;
 }
@@ -761,7 +775,7 @@ class DxfReader {
     void addSequence() {
         const std::string layer = text_.decoded(entity_.layer);
         if (entity_.kind->name == "HATCH") {
-            DxfHatch hatch{hatchOf(entity_)};
+            DxfHatch hatch{hatchOf(entity_, hatch_vertices_)};
             if (hatch.rings.empty() || hatch.rings.size() > kMaxRings) return leaveOut("HATCH");
             entities().push_back({std::move(hatch), layer, *side() < 0, entity_.line});
             return;
@@ -830,6 +844,7 @@ class DxfReader {
     bool in_polyline_ = false;   // the last entity is a POLYLINE that takes the VERTEXes behind it
     DxfBlock* block_ = nullptr;  // between BLOCK and ENDBLK
     Entity entity_;
+    std::size_t hatch_vertices_ = 4'000'000;  // that boundaries of hatches may still have
 };
 
 }  // namespace

@@ -107,7 +107,10 @@ class GalleryReader {
 /// Moves a gallery in surveyors' coordinates to the origin. Doubles less whole metres are exact.
 void moveHome(Region& region, const std::string& name, ImportRecords& out) {
     const Box2 box = bounds(region.outline);
-    if (std::max(box.width(), box.depth()) > kMaxPlanCoordinate)
+    Box2 all = box;
+    for (const Polygon& hole : region.holes)
+        for (const Point2 p : hole) all.add(p);
+    if (std::max(all.width(), all.depth()) > kMaxPlanCoordinate)
         failFile(name, "the gallery is wider than 900 km: is it in metres?");
     const auto way = wayFromSurvey(box.low);
     if (!way) return;

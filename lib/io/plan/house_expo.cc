@@ -209,8 +209,14 @@ class HousePlanHandler : public nlohmann::json_sax<nlohmann::json> {
 void moveHome(HousePlan& plan, const std::string& name, ImportRecords& out) {
     Box2 box;
     for (const Point2 p : plan.outline) box.add(p);
-    if (!box.empty() && std::max(box.width(), box.depth()) > kMaxPlanCoordinate)
-        failFile(name, "`verts`: the outline is wider than 900 km: is it in metres?");
+    Box2 all = box;
+    for (const Polygon& hole : plan.holes)
+        for (const Point2 p : hole) all.add(p);
+    for (const Box& room : plan.boxes)
+        for (std::size_t i = 0; i + 1 < room.corners.size(); i += 2)
+            all.add({room.corners[i], room.corners[i + 1]});
+    if (!all.empty() && std::max(all.width(), all.depth()) > kMaxPlanCoordinate)
+        failFile(name, "the plan is wider than 900 km: is it in metres?");
     const auto way = plan.outline.empty() ? std::nullopt : wayFromSurvey(box.low);
     if (!way) return;
     for (Point2& p : plan.outline) p = p - *way;

@@ -148,7 +148,11 @@ std::optional<IsoLayer> isoLayer(std::string_view name) {
             return is_digit(c) || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
         }))
         return std::nullopt;
-    const bool has_element = is_digit(name[2]) && is_digit(name[3]);
+    // Six digits, or fewer and filling: A-01-WALLS is no such name.
+    const bool has_element = is_digit(name[2]) && is_digit(name[3]) &&
+                             std::all_of(name.begin() + 4, name.begin() + 8, [&](char c) {
+                                 return is_digit(c) || c == '-' || c == '_';
+                             });
     if (!has_element && name.substr(2, 6) != "------") return std::nullopt;
     if (std::string_view("-EMATHDJKGUYPBFVIL").find(name[8]) == std::string_view::npos)
         return std::nullopt;
@@ -188,6 +192,15 @@ std::vector<std::string> wordsOf(std::string_view name) {
         if (is_letter) words.back() += c;
     }
     return words;
+}
+
+/// Returns true if a word means wall, whatever the others mean.
+bool hasWallWord(const std::vector<std::string>& words) {
+    return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+        return isOneOf(kWallWords, word) ||
+               std::any_of(kWallEnds.begin(), kWallEnds.end(),
+                           [&](std::string_view end) { return word.ends_with(end); });
+    });
 }
 
 }  // namespace
@@ -233,11 +246,7 @@ bool isWallName(std::string_view name) {
     if (std::any_of(words.begin(), words.end(),
                     [](const std::string& word) { return isOneOf(kOtherWords, word); }))
         return false;
-    return std::any_of(words.begin(), words.end(), [](const std::string& word) {
-        return isOneOf(kWallWords, word) ||
-               std::any_of(kWallEnds.begin(), kWallEnds.end(),
-                           [&](std::string_view end) { return word.ends_with(end); });
-    });
+    return hasWallWord(words);
 }
 
 bool isNoWallName(std::string_view name) {
@@ -252,8 +261,9 @@ bool isNoWallName(std::string_view name) {
 
 bool isDoorName(std::string_view name) {
     if (const auto iso = isoLayer(name)) return showsElements(*iso) && iso->element == 32;
-    if (isNoWallName(name)) return false;
     const std::vector<std::string> words = wordsOf(name);
+    // Walls and doors on one layer are walls.
+    if (isNoWallName(name) || hasWallWord(words)) return false;
     return hasWordOf(words, kDoorWords, kDoorStems) ||
            std::any_of(words.begin(), words.end(), [](const std::string& word) {
                return std::any_of(kDoorEnds.begin(), kDoorEnds.end(),

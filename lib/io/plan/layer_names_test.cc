@@ -37,6 +37,20 @@ TEST(LayerNames, OfStandards) {
         EXPECT_FALSE(isNoWallName(name)) << name;
 }
 
+TEST(LayerNames, NumberedWallsAreNoCodes) {
+    for (const char* const name : {"A-01-WALLS", "A-01-WALLS-EXT", "A_00_WALLS"})
+        EXPECT_TRUE(isWallName(name)) << name;
+    EXPECT_FALSE(isNoWallName("A-02-PARTITION"));
+    EXPECT_FALSE(isWallName("A-320---E-"));
+    EXPECT_TRUE(isWallName("A-210---E-"));
+}
+
+TEST(LayerNames, WallsAndDoorsOnOneLayerAreWalls) {
+    for (const char* const name :
+         {"Wände und Türen", "Murs et portes", "Muros y puertas", "Interior walls and doors"})
+        EXPECT_FALSE(isDoorName(name)) << name;
+}
+
 TEST(LayerNames, OfBlocks) {
     for (const char* name : {"Bed-Double", "SOFA_3_SEATS", "M_Chair", "Schrank", "马桶", "A-FURN"})
         EXPECT_TRUE(isThingName(name)) << name;

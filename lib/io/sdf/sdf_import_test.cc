@@ -59,13 +59,13 @@ TEST(SdfImport, CapsulesConesAndEllipsoidsAreTheCylindersAroundThem) {
                     geometry + "</geometry></collision></link></model>"));
     };
     EXPECT_EQ(record("<cone><radius>0.5</radius><length>1</length></cone>"),
-              "cylinder id=a at=1,2,0 size=1,1,1\n");
+              "cylinder id=a at=1,2 size=1,1,1\n");
     EXPECT_EQ(record("<capsule><radius>0.3</radius><length>0.4</length></capsule>"),
-              "cylinder id=a at=1,2,0 size=0.6,0.6,1\n");
+              "cylinder id=a at=1,2 size=0.6,0.6,1\n");
     EXPECT_EQ(record("<ellipsoid><radii>0.4 0.4 0.5</radii></ellipsoid>"),
-              "cylinder id=a at=1,2,0 size=0.8,0.8,1\n");
+              "cylinder id=a at=1,2 size=0.8,0.8,1\n");
     EXPECT_EQ(record("<ellipsoid><radii>0.6 0.4 0.5</radii></ellipsoid>"),
-              "cube id=a at=1,2,0 size=1.2,0.8,1\n");
+              "cube id=a at=1,2 size=1.2,0.8,1\n");
 }
 
 TEST(SdfImport, BoxesStandWhereAllPosesTogetherPutThem) {

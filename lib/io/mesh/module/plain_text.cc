@@ -30,8 +30,10 @@ std::optional<std::string> withoutBlanks(std::string_view xml) {
 
 std::optional<std::string> plainMeshText(MeshFormat format, std::string_view bytes) {
     if (format == MeshFormat::Collada) return withoutBlanks(bytes);
-    if (format != MeshFormat::Stl || !isTextStl(bytes) || bytes.starts_with("solid"))
-        return std::nullopt;
+    constexpr std::size_t kBeginning = 4096;
+    const bool is_plain = bytes.starts_with("solid") &&
+                          bytes.substr(0, kBeginning).find("FACET") == std::string_view::npos;
+    if (format != MeshFormat::Stl || !isTextStl(bytes) || is_plain) return std::nullopt;
     std::string text(bytes.substr(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size())));
     for (char& c : text)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
