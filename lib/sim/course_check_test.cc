@@ -37,7 +37,7 @@ TEST(CourseCheck, ALegThroughAWallIsFound) {
 }
 
 TEST(CourseCheck, AClosedDoorIsFound) {
-    const std::string room = kHall + "wall id=w from=6,0 to=6,8\n";
+    const std::string room = kHall + "wall id=w from=6,0 to=6,8\ninside at=3,4\ninside at=9,4\n";
     const std::string person = "human id=p at=3,2 path=9,2\n";
     EXPECT_EQ(found(room + "door id=d wall=w at=6,2 size=1,2\n", person),
               "human p has a path whose leg from (3.0, 2.0) to (9.0, 2.0) crosses door d and is "
