@@ -25,14 +25,14 @@ strategies, optimizers = choices("--strategy"), choices("--optimize")
 proofs = choices("--proof")
 assert len(strategies) >= 6 and len(optimizers) >= 3 and len(proofs) >= 2, (strategies, optimizers, proofs)
 laser, uwb = "laser,range=8,fov=180:2", "uwb:3"
-objectives = {"coverage": [], "localise": ["--objective", "localise"], "path": ["--objective", "path:a,b"]}
+objectives = {"coverage": [], "localise": ["--objective", "localise"]}
 
 runs = [[laser, "--strategy", s] for s in strategies if s != "list"]
 runs += [[uwb, "--strategy", s, *objectives["localise"]] for s in strategies if s != "list"]
 runs += [[uwb, "--strategy", "list", "--places", "places.csv"]]
 runs += [[sensor, *how] for sensor in (laser, uwb) for how in objectives.values()]
 runs += [[laser, "--optimize", o] for o in optimizers]
-runs += [[laser, "--proof", p] for p in proofs]
+runs += [[laser, "--proof", p] for p in proofs if p != "poses"]  # not of walls without thickness
 runs += [[laser, "--redundancy", "2"], [laser, "--refine"], [laser, "--robust", "mounting:5cm,3deg"],
          [laser, "--alternatives", "2"]]
 slowest, wrong = (0, []), []

@@ -206,5 +206,5 @@ assert (second["severity"], second["file"], second["line"]) == ("error", "outsid
 assert second["message"].startswith("coverage is 50.00%"), second
 assert last["status"] == 3, last
 END
-coverage --batch outside 2>&1 >/dev/null | grep -q '^coverage: outside:1: out.3dm:3:1: warning: laser l2' ||
+coverage --batch outside 2>&1 >/dev/null | has '^coverage: outside:1: out.3dm:3:1: warning: laser l2' ||
     fail "the line for people"

@@ -203,6 +203,12 @@ bool hasWallWord(const std::vector<std::string>& words) {
     });
 }
 
+/// Names are shorter: of more, no word is looked for.
+std::string_view beginning(std::string_view name) {
+    constexpr std::size_t kLongest = 255;  // bytes, of a layer in DXF
+    return name.substr(0, kLongest);
+}
+
 }  // namespace
 
 std::string lowerCased(std::string_view text) {
@@ -239,7 +245,8 @@ bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer)
     });
 }
 
-bool isWallName(std::string_view name) {
+bool isWallName(std::string_view full_name) {
+    const std::string_view name = beginning(full_name);
     if (const auto iso = isoLayer(name))
         return showsElements(*iso) && (iso->element == 21 || iso->element == 22);
     const std::vector<std::string> words = wordsOf(name);
@@ -249,7 +256,8 @@ bool isWallName(std::string_view name) {
     return hasWallWord(words);
 }
 
-bool isNoWallName(std::string_view name) {
+bool isNoWallName(std::string_view full_name) {
+    const std::string_view name = beginning(full_name);
     if (const auto iso = isoLayer(name)) {
         const int group = iso->element / 10;
         return !showsElements(*iso) || group >= 4 ||
@@ -259,7 +267,8 @@ bool isNoWallName(std::string_view name) {
     return isOtherDiscipline(name) || hasWordOf(wordsOf(name), kNoWallWords, kNoWallStems);
 }
 
-bool isDoorName(std::string_view name) {
+bool isDoorName(std::string_view full_name) {
+    const std::string_view name = beginning(full_name);
     if (const auto iso = isoLayer(name)) return showsElements(*iso) && iso->element == 32;
     const std::vector<std::string> words = wordsOf(name);
     // Walls and doors on one layer are walls.
@@ -271,13 +280,15 @@ bool isDoorName(std::string_view name) {
            });
 }
 
-bool isWindowName(std::string_view name) {
+bool isWindowName(std::string_view full_name) {
+    const std::string_view name = beginning(full_name);
     if (const auto iso = isoLayer(name)) return showsElements(*iso) && iso->element == 31;
     return !isNoWallName(name) && !isDoorName(name) &&
            hasWordOf(wordsOf(name), kWindowWords, kWindowStems);
 }
 
-bool isThingName(std::string_view name) {
+bool isThingName(std::string_view full_name) {
+    const std::string_view name = beginning(full_name);
     const std::vector<std::string> words = wordsOf(name);
     return !isWallName(name) &&
            (hasWordOf(words, kThingWords, std::array<std::string_view, 0>()) || isNoWallName(name));

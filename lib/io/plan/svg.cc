@@ -66,6 +66,21 @@ struct Around {
     bool is_used = false;  ///< by `use`
 };
 
+/// Makes names printable. Neighbours share theirs, which may be long.
+class PrintableNames {
+  public:
+    const std::string& of(std::string_view name) {
+        if (name != last_) {
+            last_ = name;
+            text_ = printable(last_);
+        }
+        return text_;
+    }
+
+  private:
+    std::string last_, text_;
+};
+
 class SvgReader {
   public:
     /// \param metres_per_unit if empty, from the options or the drawing's size
@@ -312,8 +327,8 @@ class SvgReader {
         const std::string_view walls = around.names.walls == nullptr ? "" : around.names.walls;
         spend(1 + Budget::unitsOf(layer.size() + walls.size()));
         PlanShape shape;
-        shape.layer = printable(layer);
-        shape.walls_in = printable(walls);
+        shape.layer = layer_text_.of(layer);
+        shape.walls_in = walls_text_.of(walls);
         shape.path.line = file_.lineOf(node);
         shape.path.closed = path.closed;
         Polygon& points = shape.path.points;
@@ -375,6 +390,7 @@ class SvgReader {
     SvgBox page_;
     Affine page_frame_;
     SvgDrawing drawing_;
+    PrintableNames layer_text_, walls_text_;
 };
 
 /// A drawing's document, and its room.
