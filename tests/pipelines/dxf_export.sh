@@ -125,7 +125,7 @@ if /usr/bin/python3 -c 'import ezdxf' 2>/dev/null; then
     fact "area free $want"
     facts map
     fact 'errors 0'
-    fact 'views LWPOLYLINE 2'
+    fact 'views LWPOLYLINE 3'
     # The fillings have the areas of the report: shares of the indoor floor by how many see it. Their
     # chords are within 0.1 mm of the arcs.
     python3 - <<'END' || fail "other areas: $(grep area facts) $(cat report.json)"

@@ -47,7 +47,7 @@ import os, signal, socket, subprocess, sys
 ours, theirs = socket.socketpair()
 with open('slow.jpg') as picture:
     reader = subprocess.Popen([sys.argv[1], str(os.getpid()),
-                               str(os.path.getsize('slow.jpg')), str(4 << 30), '1', '1000000'],
+                               str(os.path.getsize('slow.jpg')), str(4 << 30), '1', '1000000', '0'],
                               stdin=picture, stdout=theirs)
 status = reader.wait(timeout=100)
 assert status == -signal.SIGXCPU, status
