@@ -305,7 +305,13 @@ class RoomBuilder {
             const Point2 origin = placeOf(storey, {0, 0}), ahead = placeOf(storey, {1, 0});
             for (const double value : {origin.x, origin.y, ahead.x, ahead.y}) add(value);
         };
-        for (const auto* openings : {&floor_, &ceiling_, &sides_, &steps_}) {
+        std::vector<const FloorOpening*> beside;  // that cut the other storeys of the room
+        for (const FloorOpening* const opening : open_)
+            if ((opening->above != own_ && isHere(opening->above)) ||
+                (opening->below != own_ && isHere(opening->below)))
+                beside.push_back(opening);
+        for (const auto* openings :
+             {&floor_, &ceiling_, &sides_, &steps_, &std::as_const(beside)}) {
             add(static_cast<double>(openings->size()));
             for (const FloorOpening* const opening : *openings) {
                 add_outline(opening->outline);

@@ -206,5 +206,29 @@ TEST(Coupling, StepsStopSoundInRunsAsWell) {
     EXPECT_NEAR(sound_to(*coupling.surroundings(0), nullptr), met, 1e-5);
 }
 
+TEST(Coupling, StoreysWithHolesElsewhereShareNoFloor) {
+    // Equal storeys, whose sensor looks over the walls: holes lie in the floors above it.
+    const std::string room =
+        "[{fence: {id: f, path: [[0, 0], [8, 0], [8, 6], [0, 6]], closed: yes, height: 2.9}}, "
+        "{camera: {id: c, at: [4, 3, 3.4], tilt: -90, fov: 120}}]";
+    std::string text = "- storey: {id: s0, height: 3, records: &room " + room + "}\n";
+    for (int i = 1; i < 6; ++i)
+        text += "- storey: {id: s" + std::to_string(i) + ", z: " + std::to_string(3 * i) +
+                ", height: 3, records: *room}\n";
+    const auto floors = [&](const std::string& second) {
+        const BuildingScene building = makeBuildingScene(
+            readBuilding(text +
+                             "- shaft: {storeys: 's0,s1', path: [[3, 2], [5, 2], [5, 4], [3, 4]]}\n"
+                             "- shaft: {storeys: 's2,s3', path: " +
+                             second + "}\n",
+                         "tower.yaml", {}),
+            {}, {});
+        const Coupling coupling(building);
+        return coupling.floor(2) == coupling.floor(0);
+    };
+    EXPECT_FALSE(floors("[[6, 1], [7, 1], [7, 2], [6, 2]]"));
+    EXPECT_TRUE(floors("[[3, 2], [5, 2], [5, 4], [3, 4]]")) << "equal holes";
+}
+
 }  // namespace
 }  // namespace ispace
