@@ -141,6 +141,15 @@ def ends_in_the_middle(folder):
     same("another file", b"mine\n", folder.read("part.jsonl"))
 
 
+def until(is_so):
+    """Waits for a minute at most."""
+    for _ in range(1200):
+        if is_so():
+            return
+        time.sleep(0.05)
+    sys.exit("failed: in vain")
+
+
 def folder_size(folder, name):
     try:
         return os.path.getsize(folder / name)
@@ -194,16 +203,18 @@ def others(folder):
     same("the new file", "new 1\n", jobs[0]["files"][".txt"])
     same("the old files", [b"old\n"] * 2, [folder.read(f"results/n{number}.txt") for number in (1, 2)])
     # Two at a time on one part: the second is refused, and the first loses no line.
-    folder.write("sweep.yaml", "run: sh -c 'sleep 0.2; test -e {fixed} && echo $0' {n} > {out}.txt\n"
-                 "axes: {n: 1..6, fixed: [FIXED]}\n".replace("FIXED", json.dumps(folder / "fixed")))
+    step = "test -e {fixed} || exit 1; while ! test -e {fixed}.go; do sleep 0.05; done; echo $0"
+    folder.write("sweep.yaml", f"run: sh -c '{step}' {{n}} > {{out}}.txt\n"
+                 f"axes: {{n: 1..6, fixed: [{json.dumps(folder / 'fixed')}]}}\n")
     sweep(folder, "run", "-o", "again.jsonl", "-q", status=1)
     folder.write("fixed", "")
     with subprocess.Popen([PROGRAM, "run", "sweep.yaml", "--retry", "-j", "1", "-o", "again.jsonl"],
                           cwd=folder.path) as first:
-        time.sleep(0.8)
+        until(lambda: os.path.exists(folder / "again.jsonl.retry"))
         for words in (["--retry"], []):
             sweep(folder, "run", "-o", "again.jsonl", *words, status=1)
             check("another run is writing it" in folder.talk, folder.talk)
+        folder.write("fixed.go", "")
         same("the first retry", 0, first.wait())
     same("its lines", list(range(1, 7)), [job["job"] for job in lines(folder.read("again.jsonl"))[1:]])
     # Parts of --only interleave.
@@ -222,7 +233,7 @@ def errors(folder):
                  .replace("cp", "cp -{n}").replace("axes: {n: 1}", "axes: {n: [f, p]}"))
     sweep(folder, "run", "-o", "part.jsonl")
     with subprocess.Popen(["flock", "part.jsonl", "sleep", "30"], cwd=folder.path) as holder:
-        time.sleep(0.5)
+        until(lambda: subprocess.run(["flock", "-n", "part.jsonl", "true"], cwd=folder.path, check=False).returncode)
         sweep(folder, "run", "-o", "part.jsonl", status=1)
         check("another run is writing it" in folder.talk, folder.talk)
         holder.kill()
