@@ -17,10 +17,13 @@
 #include "record/text.h"
 #include "scene/sensor/field_of_view.h"
 #include "sense/detection.h"
+#include "support/test_cast.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
 namespace {
+
+using testing::castTo;
 
 constexpr const char* kFence =
     "{fence: {id: f, path: [[0, 0], [8, 0], [8, 6], [0, 6]], closed: yes, height: 2.5}}";
@@ -201,16 +204,6 @@ TEST(BuildingSight, AgreesWithRaysOfBothRooms) {
     }
     EXPECT_GT(seen_cells, 1000U);
     EXPECT_LE(wrong, 4U);  // on the rim, where rays and areas round differently
-}
-
-/// Returns the distance to the first surface along a vector.
-double castTo(const Environment& room, Point3 from, Vec3 way) {
-    Directions directions;
-    directions.resize(1);
-    directions.set(0, 1 / length(way) * way);
-    std::array<float, 1> range{};
-    RayWorld::ofEnvironment(room).cast(from, directions, 100, range);
-    return static_cast<double>(range[0]);
 }
 
 /// Returns the share of a grid on the floor of a storey that rays of its only sensor, which looks

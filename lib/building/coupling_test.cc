@@ -14,10 +14,13 @@
 #include "building/building_coverage.h"
 #include "building/building_sight.h"
 #include "coverage/coverage.h"
+#include "support/test_cast.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
 namespace {
+
+using testing::castTo;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 const std::string kSquare =
@@ -45,16 +48,6 @@ BuildingScene twoStoreys(const Room& ground, const Room& upper, const std::strin
                          "}\n" + passages,
                      "house.yaml", {}),
         {}, {});
-}
-
-/// Returns the distance to the first surface along a vector.
-double castTo(const Environment& room, Point3 from, Vec3 way) {
-    Directions directions;
-    directions.resize(1);
-    directions.set(0, 1 / length(way) * way);
-    std::array<float, 1> range{};
-    RayWorld::ofEnvironment(room).cast(from, directions, 100, range);
-    return static_cast<double>(range[0]);
 }
 
 double areaOfGround(const BuildingScene& building) {
