@@ -2,12 +2,14 @@
 """The Python module against running servers and tools, which ctest puts into PATH."""
 
 import contextlib
+import inspect
 import json
 import math
 import os
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 import unittest.mock
 from pathlib import Path
@@ -484,7 +486,104 @@ class Replays(unittest.TestCase):
                 world.seek(1)
 
 
+class Threads(unittest.TestCase):
+    """Several threads share a connection, and none gets the answer to the question of another."""
+
+    def setUp(self):
+        self.run_ = ispace.simrun(DATA / "square.env", DATA / "session.3dm", clock="step", quiet=True)
+        self.addCleanup(self.run_.close)
+        self.world = self.run_.world()
+        self.addCleanup(self.world.close)
+
+    def together(self, *tasks):
+        failures = []
+
+        def guarded(task):
+            try:
+                task()
+            except BaseException as error:
+                failures.append(error)
+
+        threads = [threading.Thread(target=guarded, args=[task]) for task in tasks]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(60)
+            self.assertFalse(thread.is_alive())
+        self.assertEqual(failures, [])
+
+    def test_each_gets_its_own_answer(self):
+        with self.run_.robot("r1") as robot:
+            motion = robot.forward(0.3)
+            self.world.advance(4)
+            self.assertTrue(robot.wait(motion, 5).done)
+            status, odometry, sonar = robot.status(), robot.odometry(), robot.sonar()
+
+            def ask(question, answer):
+                for _ in range(200):
+                    self.assertEqual(question(), answer)
+
+            self.together(
+                lambda: ask(robot.status, status),
+                lambda: ask(robot.odometry, odometry),
+                lambda: ask(robot.odometry, odometry),
+                lambda: ask(robot.sonar, sonar),
+            )
+
+    def test_one_waits_for_a_motion_while_others_ask(self):
+        with self.run_.robot("r1") as robot:
+            first = robot.forward(0.2)
+            ends = []
+
+            def drive():
+                while robot.status().time < 8:
+                    self.world.advance(0.1)
+
+            def follow_up():
+                ends.append(robot.wait(first, 60))
+                ends.append(robot.wait(robot.left(20), 60))
+
+            def look():
+                for _ in range(300):
+                    robot.ended(first)  # leaves the end to the thread that waits for it, and reads in its stead
+                    self.assertEqual(robot.odometry().pose.y, 0)
+
+            self.together(follow_up, drive, look)
+            self.assertEqual([end.done for end in ends], [True, True])
+
+    def test_a_late_answer_is_that_of_its_own_question(self):
+        with self.run_.world() as world, self.run_.robot("r1") as robot:
+            world.connection.ask("TIME")
+            for _ in range(20):
+                with self.assertRaises(ispace.Timeout):
+                    robot.connection.ask("STATUS", 0)
+                self.assertEqual(robot.odometry().pose, (0, 0, 0))
+
+    def test_closing_ends_the_wait_of_another(self):
+        robot = self.run_.robot("r1")
+        motion = robot.forward(1)
+
+        def wait():
+            with self.assertRaises(ispace.ConnectionFailed):
+                robot.wait(motion)
+
+        self.together(wait, robot.close)
+
+
 class Complete(unittest.TestCase):
+    def test_each_public_entry_is_documented(self):
+        silent = []
+        for name in ispace.__all__:
+            entry = getattr(ispace, name)
+            if not inspect.isclass(entry):
+                continue
+            for key, value in vars(entry).items():
+                value = getattr(value, "__func__", value)
+                if not key.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):
+                    if not inspect.getdoc(value):
+                        silent.append(f"{name}.{key}")
+        self.assertEqual(silent, [])
+
     def test_both_clients_have_every_request(self):
         client = SOURCE / "lib" / "client"
         sources = {
@@ -510,7 +609,8 @@ class Server(unittest.TestCase):
         with ispace.simrun(DATA / "square.env", DATA / "session.3dm") as one:
             with ispace.simrun(DATA / "square.env", DATA / "session.3dm") as two:
                 self.assertNotEqual(one.address, two.address)
-            self.assertEqual(two.status, 0)
+                os.kill(two.pid, 0)
+            self.assertEqual((two.status, two.pid), (0, None))
             with one.world() as world:
                 self.assertGreaterEqual(world.time(), 0)
         self.assertEqual(one.status, 0)

@@ -12,6 +12,8 @@ import csv
 import sys
 from collections import Counter, defaultdict
 
+if len(sys.argv) != 2:
+    sys.exit("usage: read_week.py FOLDER, a run that simrun --record has written")
 folder = sys.argv[1]
 with open(f"{folder}/states.csv", newline="") as file:
     motions = [(float(row["t"]), row["id"]) for row in csv.DictReader(file)

@@ -6,12 +6,15 @@ from __future__ import annotations
 import math
 import select
 import socket
+import threading
 import time
 from collections import deque
-from typing import Any, Deque, Optional, Tuple, Union
+from typing import Any, Callable, Deque, List, Optional, Tuple, TypeVar, Union
 
 from ._message import Message, parse_message
 from .errors import ConnectionFailed, Error, ProtocolError, Refused, Timeout
+
+T = TypeVar("T")
 
 #: ``"127.0.0.1:7001"``, a pair of host and port, or what has such an ``address`` (a Simrun).
 Address = Union[str, Tuple[str, int], Any]
@@ -31,8 +34,9 @@ def host_and_port(address: Address) -> Tuple[str, int]:
 class Connection:
     """Sends requests, reads their answers, and stores messages that arrive in between.
 
-    One thread at a time may use it: open a connection for each robot and sensor. Times to wait are seconds of wall
-    time; infinity waits for ever.
+    Threads may share one: requests are sent one after another, and each caller gets the answer to its own, also while
+    another waits for a motion or an event. Of the threads that wait, one reads for all. Times to wait are seconds of
+    wall time; infinity waits for ever.
     """
 
     _MOST_KEPT = 10000  # events and ends without a request
@@ -50,10 +54,15 @@ class Connection:
             raise ConnectionFailed(f"{host}:{port}: {error.strerror or error}{hint}") from None
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._socket.setblocking(False)
+        self._sending = threading.Lock()  # held while a request is written
+        # Guards all that follows but the buffer, which belongs to the thread that reads.
+        self._changed = threading.Condition(threading.RLock())
+        self._reading = False
         self._buffer = bytearray()
         self._searched = 0  # bytes of the buffer before this have no end of line
-        self._awaited = 0  # answers to requests that were sent
-        self._answers: Deque[Message] = deque()
+        # For each request that was sent and not answered, in order: the list that takes its answer. One whose caller
+        # has given up remains, so that its late answer is not taken for that of the next.
+        self._awaited: Deque[List[Message]] = deque()
         self._ends: Deque[Message] = deque(maxlen=self._MOST_KEPT)
         self._events: Deque[Message] = deque(maxlen=self._MOST_KEPT)
         self._scans: Deque[Message] = deque(maxlen=self._MOST_SCANS)
@@ -68,19 +77,35 @@ class Connection:
         if "\n" in request:
             raise Error(f"a request is one line, found two in {request!r}")
         end = time.monotonic() + (self.timeout if timeout is None else timeout)
-        self._send(request.encode() + b"\n", end)
-        self._awaited += 1
-        while not self._answers or self._awaited > 1:
-            if self._answers:  # of an earlier request whose caller did not wait for it
-                self._answers.popleft()
-                self._awaited -= 1
-            elif not self._take(end):
-                raise Timeout(f"no answer in time to {request}")
-        answer = self._answers.popleft()
-        self._awaited -= 1
+        answers: List[Message] = []
+        if not self._sending.acquire(timeout=min(max(0, end - time.monotonic()), threading.TIMEOUT_MAX)):
+            raise Timeout(f"another thread is still sending; no time for {request}")
+        try:
+            with self._changed:
+                self._awaited.append(answers)
+            self._send(request.encode() + b"\n", end)
+        finally:
+            self._sending.release()
+        answer = self._until(lambda: answers[0] if answers else None, end)
+        if answer is None:
+            raise Timeout(f"no answer in time to {request}")
         if answer.word(0) == "ERR":
             raise _refusal(answer)
         return answer
+
+    def take(self, found: Callable[[], Optional[T]], timeout: float) -> Optional[T]:
+        """Reads until ``found`` returns something other than None, and returns it; None after the timeout.
+
+        ``found`` is called once at first and after each message, by one thread at a time, and must not wait.
+        """
+        return self._until(found, time.monotonic() + timeout)
+
+    def ends(self) -> List[Message]:
+        """Removes and returns the DONE and FAIL that have been read; for the ``found`` of take()."""
+        with self._changed:
+            ends = list(self._ends)
+            self._ends.clear()
+        return ends
 
     def next_end(self, timeout: float) -> Optional[Message]:
         """Returns the next DONE or FAIL; None after the timeout."""
@@ -96,14 +121,15 @@ class Connection:
 
     def drop_scans(self) -> None:
         """Removes the unread scans of a stream."""
-        self._scans.clear()
+        with self._changed:
+            self._scans.clear()
 
     def close(self) -> None:
         """Sends QUIT, so that its robot is free when this returns."""
         if self._socket is None:
             return
         try:
-            if self._awaited == 0:
+            if not self._awaited:
                 self.ask("QUIT", 1)
         except Error:
             pass  # gone already
@@ -121,20 +147,38 @@ class Connection:
             self.ask("TOKEN " + token)
 
     def _drop(self) -> None:
-        if self._socket is not None:
-            self._socket.close()
-            self._socket = None
+        sock, self._socket = self._socket, None
+        if sock is not None:
+            try:
+                sock.shutdown(socket.SHUT_RDWR)  # wakes a thread that reads
+            except OSError:
+                pass  # closed by the server
+            sock.close()
 
     def _next(self, queue: Deque[Message], timeout: float) -> Optional[Message]:
-        end = time.monotonic() + timeout
-        while not queue:
-            if not self._take(end):
-                return None
-        return queue.popleft()
+        return self.take(lambda: queue.popleft() if queue else None, timeout)
 
-    def _take(self, end: float) -> bool:
-        """Reads one message and stores it by its kind; False after the timeout."""
-        message = self._read(end)
+    def _until(self, found: Callable[[], Optional[T]], end: float) -> Optional[T]:
+        with self._changed:
+            while (result := found()) is None:
+                if self._reading:
+                    left = min(end - time.monotonic(), threading.TIMEOUT_MAX)
+                    if left <= 0 or not self._changed.wait(left):
+                        return found()
+                elif not self._store_next(end):
+                    return None
+        return result
+
+    def _store_next(self, end: float) -> bool:
+        """Reads one message for all threads and stores it by its kind; False after the timeout."""
+        self._reading = True
+        self._changed.release()
+        try:
+            message = self._read(end)
+        finally:
+            self._changed.acquire()
+            self._reading = False
+            self._changed.notify_all()
         if message is None:
             return False
         kind = message.word(0)
@@ -145,10 +189,12 @@ class Connection:
         elif kind == "SCAN" and "stream" in message.fields:
             self._scans.append(message)
         elif kind in ("OK", "ERR", "SCAN"):
-            # The server speaks first only to close: of too many clients, of one without a role.
-            if self._awaited == 0 and kind == "ERR":
+            if self._awaited:
+                self._awaited.popleft().append(message)
+            elif kind == "ERR":  # the server speaks first only to close: of too many clients, of one without a role
                 raise _refusal(message)
-            self._answers.append(message)
+            else:
+                raise ProtocolError(f"the server answers `{message.line[:60]}` to no request")
         else:
             raise ProtocolError(f"the server says `{message.line[:60]}`")
         return True

@@ -60,12 +60,15 @@ class Fields(Dict[str, str]):
         raise ProtocolError(f"the server's answer has no `{key}`")
 
     def number(self, key: str) -> float:
+        """A number; infinity where the server writes ``-``."""
         return number_of(self[key])
 
     def integer(self, key: str) -> int:
+        """A whole number."""
         return round(self.number(key))
 
     def flag(self, key: str) -> bool:
+        """Whether it is 1."""
         return self[key] == "1"
 
     def list(self, key: str) -> List[str]:
@@ -73,9 +76,11 @@ class Fields(Dict[str, str]):
         return split(self[key], ",")
 
     def numbers(self, key: str) -> List[float]:
+        """Numbers between commas."""
         return [number_of(part) for part in self.list(key)]
 
     def pose(self) -> Pose:
+        """The pose in x=, y= and heading=."""
         return Pose(self.number("x"), self.number("y"), self.number("heading"))
 
 
@@ -89,6 +94,7 @@ class Message:
     data: bytes = b""  #: the bytes behind a line with ``bytes=``, or in its ``base64=``
 
     def word(self, i: int) -> str:
+        """Word i of the line, counted from 0 without the pairs; empty beyond the last."""
         return self.words[i] if i < len(self.words) else ""
 
 

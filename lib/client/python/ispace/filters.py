@@ -109,6 +109,7 @@ class Layout:
         return {}
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes a ``.3dm``."""
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.text)
 

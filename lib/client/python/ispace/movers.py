@@ -5,12 +5,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import time
 from dataclasses import dataclass
 from typing import Dict, Iterable, List, Optional, Tuple, Type
 
 from ._connection import Address, Client
-from ._message import Fields, Message, Pose, number_of, split, text_of
+from ._message import Fields, Pose, number_of, split, text_of
 from .errors import ProtocolError, Timeout
 from .readings import R, Scan
 
@@ -183,35 +182,33 @@ class Mover(Client):
 
     def wait(self, motion: Motion, timeout: float = math.inf) -> End:
         """Waits for the end of a motion, for seconds of wall time; raises Timeout."""
-        end = time.monotonic() + timeout
-        while motion.id not in self._ended:
-            message = self.connection.next_end(max(0, end - time.monotonic()))
-            if message is None:
-                raise Timeout(f"{self.id} is still moving (motion {motion.id})")
-            self._keep(message)
-        return self._ended.pop(motion.id)
+        end = self.connection.take(lambda: self._known().pop(motion.id, None), timeout)
+        if end is None:
+            raise Timeout(f"{self.id} is still moving (motion {motion.id})")
+        return end
 
     def ended(self, motion: Motion) -> bool:
         """Whether a motion has ended, as far as the server has said; wait() then returns at once."""
-        while (message := self.connection.next_end(0)) is not None:
-            self._keep(message)
-        return motion.id in self._ended
+        return self.connection.take(lambda: motion.id in self._known() or None, 0) is not None
 
     def _begin(self, request: str) -> Motion:
         fields = self._ask(request).fields
         return Motion(fields.integer("id"), fields.number("length") if "length" in fields else 0)
 
-    def _keep(self, message: Message) -> None:
-        fields = message.fields
-        end = End(
-            fields.integer("id"),
-            message.word(0) == "DONE",
-            fields.get("reason", ""),
-            fields.number("t"),
-        )
-        self._ended[end.id] = end
-        if len(self._ended) > 10000:  # nobody may ever ask for most of them
-            del self._ended[min(self._ended)]
+    def _known(self) -> Dict[int, End]:
+        """The ends that were read and not waited for."""
+        for message in self.connection.ends():
+            fields = message.fields
+            end = End(
+                fields.integer("id"),
+                message.word(0) == "DONE",
+                fields.get("reason", ""),
+                fields.number("t"),
+            )
+            self._ended[end.id] = end
+            if len(self._ended) > 10000:  # nobody may ever ask for most of them
+                del self._ended[min(self._ended)]
+        return self._ended
 
 
 class Robot(Mover):
@@ -232,6 +229,7 @@ class Robot(Mover):
         return kind.from_message(self._ask(f"SCAN {sensor}"))
 
     def odometry(self) -> Odometry:
+        """Where the robot believes it is, by its wheels."""
         fields = self._ask("ODOMETRY").fields
         return Odometry(
             fields.number("t"), fields.pose(), fields.number("speed"), fields.number("rotspeed")

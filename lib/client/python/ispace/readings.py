@@ -78,6 +78,7 @@ class Reading:
 
     @classmethod
     def from_message(cls: Type[R], message: Message) -> R:
+        """Reads the answer to SCAN; raises ProtocolError if it is of another kind."""
         fields = message.fields
         reading = cls(
             message.word(1), fields.number("t"), fields.integer("seq"), fields, message.data
@@ -163,6 +164,7 @@ class Depths(Reading):
             self.depths = self.depths.reshape(self.height, self.width)
 
     def at(self, column: int, row: int) -> float:
+        """Depth of a pixel, m; columns from the left, rows from the top."""
         if numpy is not None:
             return float(self.depths[row, column])
         return float(self.depths[row * self.width + column])

@@ -76,25 +76,37 @@ class Simrun:
             return self._said
         return os.pread(self._errors.fileno(), 1 << 20, 0).decode(errors="replace")
 
+    @property
+    def pid(self) -> Optional[int]:
+        """The process id of a running simrun, to watch or to signal it; None once it has ended."""
+        return None if self._process is None else self._process.pid
+
     def robot(self, id: str) -> Robot:
+        """Takes the role of a robot."""
         return Robot(self.address, id)
 
     def person(self, id: str) -> Person:
+        """Takes the role of a person."""
         return Person(self.address, id)
 
     def laser(self, id: str) -> LaserSensor:
+        """Reads a laser."""
         return LaserSensor(self.address, id)
 
     def camera(self, id: str) -> Camera:
+        """Reads a camera."""
         return Camera(self.address, id)
 
     def ranger(self, id: str) -> Ranger:
+        """Reads a ranger."""
         return Ranger(self.address, id)
 
     def sensor(self, id: str) -> Sensor:
+        """Reads a sensor of any kind."""
         return Sensor(self.address, id)
 
     def world(self) -> World:
+        """Watches and controls the world and its clock."""
         return World(self.address)
 
     def __enter__(self) -> Simrun:

@@ -59,6 +59,7 @@ class World(Client):
         return self._ask("TIME").fields.number("t")
 
     def steps(self) -> int:
+        """Steps since the run began."""
         return self._ask("TIME").fields.integer("steps")
 
     def end(self) -> float:
@@ -99,6 +100,7 @@ class World(Client):
         self._ask("PAUSE")
 
     def resume(self) -> None:
+        """Lets a paused clock go on."""
         self._ask("RESUME")
 
     def step(self, steps: int = 1, timeout: float = math.inf) -> int:
@@ -147,6 +149,7 @@ class World(Client):
         return self._change(f"ADD {record}")["id"]
 
     def remove(self, id: str) -> None:
+        """Deletes a thing, sensor, robot or person."""
         self._change(f"DELETE {id}")
 
     def load(
@@ -175,6 +178,7 @@ class World(Client):
         self._ask("EVENTS " + ",".join(kinds) if kinds else "EVENTS")
 
     def unfollow(self) -> None:
+        """Ends follow()."""
         self._ask("EVENTS off")
 
     def next_event(self, timeout: float = math.inf) -> Optional[Event]:
