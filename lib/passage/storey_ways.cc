@@ -120,7 +120,7 @@ void StoreyWays::addStairs(const BuildingScene& building, std::size_t index) {
         const Pose2 from = inFrameOf(building.document.storeys[storey], end);
         const auto p = freeBefore(storey, from);
         if (!p) return;
-        const double room = size_.radius + WayFinder::kMargin + kRoom;
+        const double room = widthToWalk(size_.radius) / 2;
         landings_.push_back({.passage = index,
                              .stop = stop,
                              .storey = storey,
@@ -193,6 +193,10 @@ std::vector<Segment2> StoreyWays::waysOut(const Landing& landing) const {
     return out;
 }
 
+double StoreyWays::widthToWalk(double radius) { return 2 * (radius + WayFinder::kMargin + kRoom); }
+
+double StoreyWays::widthToPass(double radius) { return widthToWalk(radius) + 4 * radius; }
+
 /// Finds points near a landing that leave the way to the passages free.
 void StoreyWays::addSpots(Landing& landing) const {
     const WayFinder& finder = finders_[landing.storey];
@@ -228,7 +232,10 @@ void StoreyWays::addSpots(Landing& landing) const {
                             [&](const Segment2& out) { return distance(p, out) < wide + kRoom; });
             (is_in_way_out ? in_ways : found).emplace_back(*way, p.x, p.y);
         }
-    if (found.empty()) found = std::move(in_ways);
+    if (found.empty()) {
+        landing.waits_in_way = true;
+        found = std::move(in_ways);
+    }
     std::sort(found.begin(), found.end());
     for (const auto& [way, x, y] : found) {
         const Point2 p{x, y};

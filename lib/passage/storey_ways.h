@@ -50,6 +50,7 @@ struct Landing {
     double lane = 0;            ///< of a lift: metres from its door
     bool is_tight = false;      ///< bodies are so near that steering would avoid it
     std::vector<Point2> spots;  ///< where movers wait, the best first
+    bool waits_in_way = false;  ///< all spots are in the ways of those that come off stairs
     WayFinder::Field ways;      ///< from there
 };
 
@@ -76,6 +77,11 @@ class StoreyWays {
   public:
     StoreyWays(const BuildingScene& building, const std::vector<StoreyLink>& passages,
                const MoverSize& size);
+
+    /// Returns the width in metres in which a mover walks freely, and that in which it passes one
+    /// that waits beside its way.
+    static double widthToWalk(double radius);
+    static double widthToPass(double radius);
 
     [[nodiscard]] const std::vector<Landing>& landings() const { return landings_; }
     [[nodiscard]] const Landing* landing(std::size_t passage, std::size_t stop) const;

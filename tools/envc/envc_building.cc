@@ -20,6 +20,7 @@
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "passage/building_run.h"
+#include "passage/landing_check.h"
 #include "record/text.h"
 #include "scene/findings/findings.h"
 #include "scene/placement_schemas.h"
@@ -128,6 +129,7 @@ void check(const EnvcOptions& options, const BuildingScene& building, const Impo
     for (Diagnostic& finding : checkBuilding(building)) findings.add(std::move(finding));
     for (Diagnostic& finding : BuildingRun::tripFindings(building))
         findings.add(std::move(finding));
+    for (Diagnostic& finding : landingFindings(building)) findings.add(std::move(finding));
     findings.throwIfAny();
     logInfo(options.common, "envc", "nothing found");
 }

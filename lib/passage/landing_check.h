@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "base/error.h"
+#include "building/building_scene.h"
+
+namespace ispace {
+
+/// Reports landings of stairs at which movers hinder each other in runs: those that are less deep
+/// than one mover needs to walk freely, and those where all that wait stand in the way of those
+/// that come off. It judges the widest mover that climbs, a person at least, by the ways and the
+/// spots of BuildingRun. Computes the ways over all storeys.
+std::vector<Diagnostic> landingFindings(const BuildingScene& building);
+
+}  // namespace ispace
