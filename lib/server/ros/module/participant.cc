@@ -1,20 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The module that links Cyclone DDS, opened by `simrun --ros2`.
+// The module that links Cyclone DDS, opened by `simrun --ros2`. Uses internals of it, see
+// opaque_type.cc.
+#include <arpa/inet.h>
 #include <dds/dds.h>
+#include <dds/ddsi/ddsi_guid.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
+#include <dds/ddsi/q_thread.h>
 #include <dds/ddsrt/log.h>
+#include <dds/ddsrt/time.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstring>
 #include <map>
 #include <mutex>
+#include <set>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "server/ros/module/dds_participant.h"
 #include "server/ros/module/opaque_type.h"
 #include "server/ros/module/packet_filter.h"
+
+/// Of dds/ddsi/ddsi_proxy_participant.h of version 0.10, which is no C++.
+// NOLINTNEXTLINE(readability-identifier-naming): a name of Cyclone's
+extern "C" int ddsi_delete_proxy_participant_by_guid(ddsi_domaingv* domain, const ddsi_guid* guid,
+                                                     ddsrt_wctime_t timestamp, int is_implicit);
 
 namespace ispace {
 
@@ -125,6 +140,128 @@ void arrived(dds_entity_t /*reader*/, void* end) {
     own.changes->note();
 }
 
+void peersChanged(dds_entity_t /*reader*/, void* flag) {
+    auto& [has_changed, changes] = *static_cast<std::pair<std::atomic<bool>, Changes*>*>(flag);
+    has_changed = true;
+    changes->note();
+}
+
+using GuidPrefix = std::array<std::uint8_t, 12>;
+
+GuidPrefix prefixOf(const dds_guid_t& guid) {
+    GuidPrefix prefix{};
+    std::copy_n(guid.v, prefix.size(), prefix.begin());
+    return prefix;
+}
+
+/// Makes DDS forget a participant of others, as if its lease had ended: its next announcement makes
+/// it known again.
+void forget(ddsi_domaingv* domain, const dds_guid_t& guid) {
+    ddsi_guid own{};
+    std::array<std::uint32_t, 4> words{};
+    std::memcpy(words.data(), guid.v, sizeof guid.v);
+    for (std::size_t i = 0; i < 3; ++i) own.prefix.u[i] = ntohl(words[i]);
+    own.entityid.u = ntohl(words[3]);
+    thread_state* const thread = lookup_thread_state();
+    thread_state_awake(thread, domain);
+    ddsi_delete_proxy_participant_by_guid(domain, &own, ddsrt_time_wallclock(), 0);
+    thread_state_asleep(thread);
+}
+
+/// Anyone may announce any number of participants, each of which costs memory, announcements in
+/// return, and time at the end: at most kMost stay. Those without an end that an end of ours meets
+/// go first, oldest first, then the newest of the others.
+class Peers {
+  public:
+    explicit Peers(Changes& changes) : flag_(false, &changes) {}
+
+    /// \throws std::runtime_error
+    void watch(dds_entity_t participant, CycloneLog& log) {
+        const std::unique_ptr<dds_listener_t, FreeListener> listener(dds_create_listener(&flag_));
+        dds_lset_data_available(listener.get(), peersChanged);
+        reader_ = checked(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr,
+                                            listener.get()),
+                          log, "cannot watch the participants");
+        dds_get_guid(participant, &own_);
+    }
+
+    /// \param ends entities of writers and readers \param type registered; null without a topic
+    void bound(const std::vector<dds_entity_t>& ends, const ddsi_sertype* type) {
+        constexpr std::size_t kSpare = 32;
+        if (!flag_.first.exchange(false)) return;
+        update();
+        if (known_.size() <= kMost + kSpare || type == nullptr) return;
+        auto* const domain = static_cast<ddsi_domaingv*>(
+            ddsrt_atomic_ldvoidp(const_cast<ddsrt_atomic_voidp_t*>(&type->gv)));
+        if (domain == nullptr) return;
+        const std::set<GuidPrefix> met = metBy(ends);
+        // The first to go last.
+        std::vector<std::tuple<bool, std::int64_t, GuidPrefix>> order;
+        for (const auto& [prefix, peer] : known_) {
+            const bool is_met = met.contains(prefix);
+            order.emplace_back(!is_met, is_met ? peer.second : -peer.second, prefix);
+        }
+        std::sort(order.begin(), order.end());
+        for (; order.size() > kMost; order.pop_back()) {
+            const auto peer = known_.find(std::get<2>(order.back()));
+            forget(domain, peer->second.first);
+            known_.erase(peer);
+        }
+    }
+
+  private:
+    static constexpr std::size_t kMost = 256;
+
+    /// Takes the news about participants.
+    void update() {
+        constexpr std::size_t kAtOnce = 64;
+        std::array<void*, kAtOnce> samples{};
+        std::array<dds_sample_info_t, kAtOnce> infos{};
+        dds_return_t count = 0;
+        do {
+            samples.fill(nullptr);
+            count = dds_take(reader_, samples.data(), infos.data(), kAtOnce, kAtOnce);
+            for (std::size_t i = 0; count > 0 && i < static_cast<std::size_t>(count); ++i) {
+                const auto& guid =
+                    static_cast<const dds_builtintopic_participant_t*>(samples[i])->key;
+                const GuidPrefix prefix = prefixOf(guid);
+                if (infos[i].instance_state != DDS_ALIVE_INSTANCE_STATE)
+                    known_.erase(prefix);
+                else if (prefix != prefixOf(own_))
+                    known_.try_emplace(prefix, guid, next_++);
+            }
+            if (count > 0) dds_return_loan(reader_, samples.data(), count);
+        } while (count == static_cast<dds_return_t>(kAtOnce));
+    }
+
+    static std::set<GuidPrefix> metBy(const std::vector<dds_entity_t>& ends) {
+        std::set<GuidPrefix> met;
+        std::vector<dds_instance_handle_t> others(1024);
+        for (const dds_entity_t end : ends) {
+            const bool is_reader = dds_get_matched_publications(end, nullptr, 0) >= 0;
+            const dds_return_t count =
+                is_reader ? dds_get_matched_publications(end, others.data(), others.size())
+                          : dds_get_matched_subscriptions(end, others.data(), others.size());
+            for (std::size_t i = 0;
+                 count > 0 && i < std::min(others.size(), static_cast<std::size_t>(count)); ++i) {
+                dds_builtintopic_endpoint_t* const other =
+                    is_reader ? dds_get_matched_publication_data(end, others[i])
+                              : dds_get_matched_subscription_data(end, others[i]);
+                if (other == nullptr) continue;
+                met.insert(prefixOf(other->participant_key));
+                dds_builtintopic_free_endpoint(other);
+            }
+        }
+        return met;
+    }
+
+    std::pair<std::atomic<bool>, Changes*> flag_;
+    dds_entity_t reader_ = 0;
+    dds_guid_t own_{};
+    std::map<GuidPrefix, std::pair<dds_guid_t, std::int64_t>> known_;  // and a number, by age
+    std::int64_t next_ = 0;
+};
+
 class Participant final : public DdsParticipant {
   public:
     explicit Participant(const DdsSettings& settings) : changes_(settings.wake) {
@@ -139,6 +276,7 @@ class Participant final : public DdsParticipant {
             participant_ =
                 checked(dds_create_participant(settings.domain, qos.get(), nullptr), log_,
                         "cannot take part in domain " + std::to_string(settings.domain));
+            peers_.watch(participant_, log_);
         } catch (...) {
             dds_delete(domain_);
             throw;
@@ -160,7 +298,15 @@ class Participant final : public DdsParticipant {
     [[nodiscard]] DdsGuid guid() const override { return guidOf(participant_); }
     [[nodiscard]] DdsGuid guid(int end) const override { return guidOf(ends_.at(end).entity); }
 
-    bool changed() override { return changes_.is_noted.exchange(false); }
+    bool changed() override {
+        const bool has_changed = changes_.is_noted.exchange(false);
+        if (has_changed) {
+            std::vector<dds_entity_t> entities;
+            for (const auto& [number, end] : ends_) entities.push_back(end.entity);
+            peers_.bound(entities, ends_.empty() ? nullptr : ends_.begin()->second.type);
+        }
+        return has_changed;
+    }
 
     [[nodiscard]] bool isRead(int writer) const override { return ends_.at(writer).is_read; }
 
@@ -228,6 +374,7 @@ class Participant final : public DdsParticipant {
 
     CycloneLog log_;
     Changes changes_;
+    Peers peers_{changes_};
     dds_entity_t domain_ = 0, participant_ = 0;
     std::map<int, End> ends_;  // which never move: threads of DDS know their addresses
     int next_ = 1;
