@@ -163,7 +163,30 @@ cd ..
 cp -r "$source_dir/share/examples/shares" shares
 cp "$scenes/l-room.env" shares
 sed -i 's/1\.\.400/1..40/' shares/sweep.yaml
-(cd shares && ./slurm.sh 4) >out 2>err || fail "$(cat err; tail -n 20 shares/slurm-*.txt)"
-(cd shares && ispace-sweep run sweep.yaml -q -o whole.jsonl && ispace-sweep join whole.jsonl -o whole.csv)
+# node2 comes back, and dies in the middle of its shares: they continue behind their last lines on node1.
+slurmd -N node2 -f "$SLURM_CONF"
+eventually "node2 again" sh -c '[ "$(sinfo -h -N -o %t | grep -cx idle)" -eq 2 ]'
+: >begun
+(cd shares && exec ./slurm.sh 4) >out 2>err &
+submitted=$!
+eventually "two jobs of a share on node2" sh -c "[ \"\$(grep -c ' node2 0 ' begun)\" -ge 2 ]"
+share=$(awk '$2 == "node2" { print $1; exit }' begun)
+eventually "a line of share $share" sh -c "[ \"\$(wc -l <shares/part$share.jsonl)\" -ge 2 ]"
+kill -9 "$(cat "$cluster/run/slurmd.node2.pid")"
+kill_tasks node2
+lines=$(wc -l <"shares/part$share.jsonl")
+[ "$lines" -lt 11 ] || fail "share $share was done before the node died"
+status=0
+wait "$submitted" || status=$?
+[ "$status" -eq 0 ] || fail "status $status: $(cat err; tail -n 20 shares/slurm-*.txt)"
+grep -q "^$share node1 [1-9]" begun || fail "share $share was not requeued: $(cat begun)"
+(
+    cd shares
+    for i in 1 2 3 4; do ispace-sweep run sweep.yaml --shard "$i/4" -q -o "whole$i.jsonl"; done
+    ispace-sweep join whole*.jsonl -o whole.csv
+)
+for i in 1 2 3 4; do
+    expect_same "shares/whole$i.jsonl" "shares/part$i.jsonl" "share $i of an array has other bytes"
+done
 expect_same shares/whole.csv shares/table.csv "the shares of an array are not the whole"
-echo "node2 died after $at_death of 100 jobs; requeued: $(awk '$3 > 0 { print $1 }' begun | sort -nu | tr '\n' ' ')"
+echo "share $share continued behind its line $lines; node2 died after $at_death of 100 jobs; requeued: $(awk '$3 > 0 { print $1 }' begun | sort -nu | tr '\n' ' ')"
