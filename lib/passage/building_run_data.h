@@ -47,7 +47,8 @@ enum class TripState {
     Climbing,
     Leaving,  ///< out of the cabin, to the lane
     AtEnd,    ///< in the lane or on the last step, until the landing is free
-    Pausing   ///< at a point of the plan
+    Pausing,  ///< at a point of the plan
+    Turning   ///< to the heading of the plan, at its last point
 };
 
 struct BuildingTrip {
@@ -148,6 +149,7 @@ struct BuildingRun::Data {
     void enterFlight(Traveller& who, BuildingTrip& trip);
     void tryAgain(Traveller& who, BuildingTrip& trip, Outcome outcome);
     void arriveAtGoal(Traveller& who, BuildingTrip& trip);
+    bool turnAtGoal(Traveller& who, BuildingTrip& trip);
     void goToNextGoal(Traveller& who, BuildingTrip& trip);
     [[nodiscard]] bool isNearLanding(const Traveller& who, const BuildingTrip& trip) const;
     void climb(Traveller& who, BuildingTrip& trip);

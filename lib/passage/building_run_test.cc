@@ -49,7 +49,29 @@ TEST(BuildingRun, ARobotTakesTheLift) {
     EXPECT_EQ(end->outcome, Outcome::Done);
     EXPECT_EQ(end->id, 1);
     EXPECT_EQ(rooms, (std::vector<std::size_t>{0, 2, 1}));
-    EXPECT_NEAR(distance(poseOf(run, "ground/r1").position, {9, 6}), 0, 0.02);
+    EXPECT_NEAR(distance(poseOf(run, "ground/r1").position, Point2{9, 6}), 0, 0.02);
+}
+
+TEST(BuildingRun, ATripEndsWithAHeading) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    BuildingRun run(building, optionsOf());
+    TripPlan plan{.points = {{1, {9, 6}}}};
+    plan.heading = Angle::degrees(-120);
+    const TripAnswer answer = run.travel("ground/r1", plan);
+    const auto end = await(run, "ground/r1", 120, [] {});
+    ASSERT_TRUE(end);
+    EXPECT_EQ(end->outcome, Outcome::Done);
+    EXPECT_EQ(end->id, answer.id);
+    EXPECT_NEAR(poseOf(run, "ground/r1").heading.degrees(), -120, 1e-6);
+    // A motion ends the turn, and the trip.
+    plan.points = {{1, {9.5, 6}}};
+    plan.heading = Angle::degrees(60);
+    ASSERT_EQ(run.travel("ground/r1", plan).refusal, "");
+    while (distance(poseOf(run, "ground/r1").position, Point2{9.5, 6}) > 0.005) step(run);
+    for (int i = 0; i < 20; ++i) step(run);
+    EXPECT_EQ(run.endTrip("ground/r1", Outcome::Replaced), "");
+    ASSERT_EQ(run.tripEnds().size(), 1U);
+    EXPECT_EQ(run.tripEnds().front().outcome, Outcome::Replaced);
 }
 
 TEST(Cabin, TheLastRiderInCanAlwaysLeave) {
@@ -94,7 +116,7 @@ TEST(BuildingRun, TripsOfRecordsBeginWithTheRun) {
     ASSERT_TRUE(end);
     EXPECT_EQ(end->outcome, Outcome::Done);
     EXPECT_EQ(run.roomOf("ground/r1"), 1U);
-    EXPECT_NEAR(distance(poseOf(run, "ground/r1").position, {9, 6}), 0, 0.02);
+    EXPECT_NEAR(distance(poseOf(run, "ground/r1").position, Point2{9, 6}), 0, 0.02);
     // The person goes down and up again and again.
     std::size_t changes = 0;
     std::size_t room = run.roomOf("upper/h").value();
@@ -208,7 +230,7 @@ TEST(BuildingRun, GoesThroughPointsOfSeveralStoreys) {
     EXPECT_EQ(answer.via, "s1,s1");
     ASSERT_TRUE(await(run, "ground/h", 120));
     EXPECT_EQ(run.roomOf("ground/h"), 0U);
-    EXPECT_NEAR(distance(poseOf(run, "ground/h").position, {2.5, 7}), 0, 0.02);
+    EXPECT_NEAR(distance(poseOf(run, "ground/h").position, Point2{2.5, 7}), 0, 0.02);
 }
 
 TEST(BuildingRun, EndsATripForAnotherCommand) {
@@ -287,7 +309,7 @@ TEST(BuildingRun, AnAbandonedTripEndsBehindTheLift) {
     ASSERT_TRUE(end);
     EXPECT_EQ(end->outcome, Outcome::Stopped);
     ASSERT_EQ(run.roomOf("ground/r1"), 1U);
-    const double from_door = distance(poseOf(run, "ground/r1").position, {2.1, 4});
+    const double from_door = distance(poseOf(run, "ground/r1").position, Point2{2.1, 4});
     EXPECT_GT(from_door, 0.9) << "it leaves the landing to others";
     EXPECT_LT(from_door, 5);
     // On a storey it ends at once.

@@ -19,6 +19,8 @@ constexpr int kMaxAttempts = 5;
 constexpr double kCrowd = 3;
 /// A mover goes straight on to a point to which it turns by less, in degrees, or that is nearer.
 constexpr double kTurned = 0.5, kStraight = 1e-3;
+/// Degrees: a smaller turn at the goal is none.
+constexpr double kLeastTurn = 1e-9;
 
 }  // namespace
 
@@ -179,6 +181,7 @@ void BuildingRun::Data::advanceTrip(const std::string& id, BuildingTrip& trip) {
         case TripState::Setting:
             return setOut(who, trip);
         case TripState::Walking:
+        case TripState::Turning:
         case TripState::Nearing:
         case TripState::Entering:
         case TripState::Climbing:
@@ -287,10 +290,24 @@ void BuildingRun::Data::clearLanding(Traveller& who, BuildingTrip& trip) {
 
 void BuildingRun::Data::arriveAtGoal(Traveller& who, BuildingTrip& trip) {
     const bool is_last = trip.goal + 1 == trip.plan.points.size() && !trip.plan.loop;
+    if (is_last && !trip.ending && trip.state != TripState::Turning && turnAtGoal(who, trip))
+        return;
     if (is_last) return finish(who.id, trip.ending.value_or(Outcome::Done));
     trip.state = TripState::Pausing;
     trip.pause_until = rooms.front().world->time() + simSeconds(trip.plan.pause);
     if (!(trip.plan.pause > 0)) goToNextGoal(who, trip);
+}
+
+/// Turns to the heading of the plan. \returns false if it has none, or the mover heads there
+bool BuildingRun::Data::turnAtGoal(Traveller& who, BuildingTrip& trip) {
+    if (!trip.plan.heading) return false;
+    const double turn = wrapped(*trip.plan.heading - statusOf(who).pose.heading).degrees();
+    if (std::abs(turn) < kLeastTurn) return false;
+    World& world = worldOf(who);
+    trip.state = TripState::Turning;
+    trip.running = world.command(world.moverNamed(who.id).value(),
+                                 {turn > 0 ? Verb::Left : Verb::Right, std::abs(turn)});
+    return true;
 }
 
 void BuildingRun::Data::goToNextGoal(Traveller& who, BuildingTrip& trip) {
@@ -310,6 +327,8 @@ void BuildingRun::Data::step(Traveller& who, BuildingTrip& trip) {
         case TripState::Walking:
             if (trip.leg < trip.legs.size()) return queueUp(who, trip);
             return arriveAtGoal(who, trip);
+        case TripState::Turning:
+            return arriveAtGoal(who, trip);
         case TripState::Nearing:
             return enter(who, trip);
         case TripState::Entering: {
@@ -327,6 +346,7 @@ void BuildingRun::Data::step(Traveller& who, BuildingTrip& trip) {
 
 /// After a command that failed: another mover may have been in the way.
 void BuildingRun::Data::tryAgain(Traveller& who, BuildingTrip& trip, Outcome outcome) {
+    if (trip.state == TripState::Turning) return finish(who.id, outcome);
     trip.steps.clear();
     const bool has_leg = trip.leg < trip.legs.size();
     if (const auto& storey = rooms[who.room].storey) {

@@ -17,8 +17,6 @@ namespace {
 /// Metres ahead in which a mover that is stuck asks others to step aside, and within which they
 /// find a place to wait.
 constexpr double kAskAhead = 3, kMostAside = 8;
-/// Metres per second below which a mover stands.
-constexpr double kStands = 0.02;
 
 /// Returns the distance of a point from a way that begins at `from`.
 double distanceToWay(Point2 p, Point2 from, const std::vector<Point2>& way) {
@@ -38,14 +36,8 @@ std::vector<Point2> BuildingRun::Data::wayTo(const Traveller& who, const Buildin
     const WayFinder& finder = waysOf(who).finder(*rooms[who.room].storey);
     const Point2 at = statusOf(who).pose.position;
     if (trip.attempts == 0) return finder.wayBetween(at, to);
-    std::vector<WayFinder::Spot> standing;
-    const auto movers = world.movers();
-    for (std::size_t i = 0; i < movers.size(); ++i) {
-        const RobotStatus status = world.status(i);
-        if (movers[i].id != who.id && std::abs(status.speed) + std::abs(status.sidespeed) < kStands)
-            standing.push_back({status.pose.position, movers[i].model.radius});
-    }
-    std::vector<Point2> way = finder.around(standing).wayBetween(at, to);
+    std::vector<Point2> way =
+        finder.around(world.standingBeside(world.moverNamed(who.id).value())).wayBetween(at, to);
     return way.empty() ? finder.wayBetween(at, to) : way;
 }
 

@@ -112,7 +112,7 @@ TEST(StandingRoom, IsKeptOnWaysAroundShafts) {
         const Point2 at = poseOf(run, "upper/r1").position;
         ASSERT_GT(std::hypot(apart(at.x), apart(at.y)), radius) << at.x << ',' << at.y;
     }
-    EXPECT_LT(distance(poseOf(run, "upper/r1").position, {5, 8}), 0.05);
+    EXPECT_LT(distance(poseOf(run, "upper/r1").position, Point2{5, 8}), 0.05);
     // The ground has floor there.
     const BuildingScene below = buildingOf("robot id=ground/r1 at=7,2\n", kOpenBuilding);
     BuildingRun straight(below, optionsOf());

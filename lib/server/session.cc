@@ -65,7 +65,7 @@ std::span<const Session::Request> Session::requests() {
         {"ROTSPEED", "deg/s", Role::Robot, 0, kAny, &C::command},
         {"SIDESPEED", "m/s", Role::Robot, 0, kAny, &C::command},
         {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Robot, 0, kAny, &C::command},
-        {"GOTO", "[storey/]x,y [speed=v]", Role::Robot, 1, 2, &C::goTo},
+        {"GOTO", "[storey/]x,y[,heading] [speed=v]", Role::Robot, 1, 2, &C::goTo},
         {"RIDE", "lift storey", Role::Robot, 2, 2, &C::ride},
         {"STOP", "", Role::Robot, 0, kAny, &C::command},
         {"STATUS", "", Role::Robot, 0, 0, &C::status},
@@ -81,7 +81,7 @@ std::span<const Session::Request> Session::requests() {
         {"ROTSPEED", "deg/s", Role::Person, 0, kAny, &C::command},
         {"SIDESPEED", "m/s", Role::Person, 0, kAny, &C::command},
         {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Person, 0, kAny, &C::command},
-        {"GOTO", "[storey/]x,y [speed=v]", Role::Person, 1, 2, &C::goTo},
+        {"GOTO", "[storey/]x,y[,heading] [speed=v]", Role::Person, 1, 2, &C::goTo},
         {"RIDE", "lift storey", Role::Person, 2, 2, &C::ride},
         {"STOP", "", Role::Person, 0, kAny, &C::command},
         {"STATUS", "", Role::Person, 0, 0, &C::status},
@@ -402,9 +402,9 @@ void Session::help(Words /*words*/) {
         const bool changes = request.answer == &Session::change || request.answer == &Session::act;
         if (changes && !state_->mayChange()) continue;
         if (request.answer == &Session::seek && !state_->simulation().maySeek()) continue;
-        const bool is_of_rooms =
-            request.answer == &Session::goTo || request.answer == &Session::ride ||
-            request.answer == &Session::call || request.answer == &Session::lifts;
+        const bool is_of_rooms = request.answer == &Session::ride ||
+                                 request.answer == &Session::call ||
+                                 request.answer == &Session::lifts;
         if (is_of_rooms && rooms() == nullptr) continue;
         if (request.verb == "LOAD" && rooms() != nullptr) continue;  // refused in buildings
         if (request.answer == &Session::token && state_->limits().token.empty()) continue;

@@ -75,7 +75,7 @@ bool Session::seize(Role role, std::string_view id, std::size_t mover) {
 
 void Session::command(Words words) {
     if (isTrip(words)) return startTrip(words);
-    const ParsedCommand parsed = parseCommand(textOf(words));
+    ParsedCommand parsed = parseCommand(textOf(words));
     if (!parsed.command) {
         const bool range = parsed.error.kind == CommandError::Kind::Range;
         return error(range ? 416 : 400, {parsed.error.message});
@@ -89,6 +89,9 @@ void Session::command(Words words) {
             rooms()->worlds->endTrip(id_, stops ? Outcome::Stopped : Outcome::Replaced);
         if (!busy.empty()) return error(409, {busy});
     }
+    if (parsed.command->verb == Verb::Goto)
+        if (const std::string none = world().findWay(subject_, *parsed.command); !none.empty())
+            return error(409, {none});
     double value = parsed.command->value;
     if (parsed.command->verb == Verb::Path)  // the whole path, from here
         value +=
@@ -100,7 +103,8 @@ void Session::command(Words words) {
         out_.append(" id=").append(std::to_string(id));
     }
     if (const std::string_view name = valueNameOf(parsed.command->verb); !name.empty())
-        out_.append(" ").append(name).append("=").append(formatDouble(value));
+        out_.append(" ").append(name).append("=").append(
+            parsed.command->verb == Verb::Goto ? measured(value) : formatDouble(value));
     out_ += '\n';
 }
 

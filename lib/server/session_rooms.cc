@@ -323,8 +323,7 @@ bool Session::mayMove() {
 }
 
 void Session::goTo(Words words) {
-    if (rooms() == nullptr)
-        return error(405, {words[0], " is for the runs of buildings: PATH leads over points"});
+    if (rooms() == nullptr) return command(words);
     startTrip(words);
 }
 

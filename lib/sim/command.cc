@@ -25,6 +25,7 @@ namespace {
 constexpr double kMaxPath = 1e6;
 
 constexpr std::string_view kPathExample = "PATH 1,0;1,2 speed=0.3";
+constexpr std::string_view kGotoExample = "GOTO 1,2 speed=0.3";
 
 struct VerbFacts {
     Verb verb;
@@ -36,7 +37,7 @@ struct VerbFacts {
 };
 
 /// In the order of Verb.
-constexpr std::array<VerbFacts, 9> kVerbs = {{
+constexpr std::array<VerbFacts, 10> kVerbs = {{
     {Verb::Forward, "FORWARD", "distance", "metres", "BACKWARD", "FORWARD 1.5"},
     {Verb::Backward, "BACKWARD", "distance", "metres", "FORWARD", "BACKWARD 1.5"},
     {Verb::Left, "LEFT", "angle", "degrees", "RIGHT", "LEFT 90"},
@@ -46,6 +47,7 @@ constexpr std::array<VerbFacts, 9> kVerbs = {{
     {Verb::Sidespeed, "SIDESPEED", "speed", "metres a second", "", "SIDESPEED 0.3"},
     {Verb::Stop, "STOP", "", "", "", "STOP"},
     {Verb::Path, "PATH", "length", "", "", kPathExample},
+    {Verb::Goto, "GOTO", "length", "", "", kGotoExample},
 }};
 
 const VerbFacts& factsOf(Verb verb) { return kVerbs[static_cast<std::size_t>(verb)]; }
@@ -136,7 +138,52 @@ ParsedCommand parsePath(std::span<const Piece> words) {
     return {std::move(command), {}};
 }
 
+ParsedCommand parseGoto(std::span<const Piece> words) {
+    const auto refused = [](CommandError::Kind kind, std::string_view message) {
+        return refuse(kind, join({message, ", like ", kGotoExample}));
+    };
+    constexpr auto kSyntax = CommandError::Kind::Syntax;
+    if (words.empty()) return refused(kSyntax, "GOTO wants a point x,y or x,y,heading in metres");
+    const std::string_view text = words.front().text;
+    const auto goal = parseDestination(text);
+    if (!goal && text.find('/') != std::string_view::npos)
+        return refused(kSyntax, join({"this run is of one room, without the storey of ",
+                                      excerpt(text), ": GOTO takes x,y"}));
+    if (!goal)
+        return refused(kSyntax,
+                       join({"GOTO wants a point x,y or x,y,heading in metres and degrees, found ",
+                             excerpt(text)}));
+    if (!(std::abs(goal->at.x) <= kMaxPath && std::abs(goal->at.y) <= kMaxPath))
+        return refuse(CommandError::Kind::Range,
+                      join({"GOTO goes at most ", formatDouble(kMaxPath), " metres"}));
+    Command command{Verb::Goto, 0, {.path = {goal->at}}};
+    command.heading = goal->heading;
+    for (const Piece& word : words.subspan(1))
+        if (!word.text.starts_with("speed=") || !applyPathKey(word.text, command).empty())
+            return refused(kSyntax,
+                           join({"GOTO takes speed= in metres a second above 0 behind its point, "
+                                 "found ",
+                                 excerpt(word.text)}));
+    return {std::move(command), {}};
+}
+
 }  // namespace
+
+std::optional<Destination> parseDestination(std::string_view text) {
+    std::vector<double> numbers;
+    for (bool is_last = false; !is_last;) {
+        const std::size_t end = std::min(text.find(','), text.size());
+        const auto number = parseDouble(text.substr(0, end));
+        if (!number || numbers.size() == 3) return std::nullopt;
+        numbers.push_back(*number);
+        is_last = end == text.size();
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    if (numbers.size() < 2) return std::nullopt;
+    Destination goal{{numbers[0], numbers[1]}};
+    if (numbers.size() == 3) goal.heading = Angle::degrees(numbers[2]);
+    return goal;
+}
 
 std::string applyPathKey(std::string_view text, Command& command) {
     const std::size_t sign = std::min(text.find('='), text.size());
@@ -165,7 +212,9 @@ Command pathCommand(MotionPlan course, double speed) {
     return {Verb::Path, length, std::move(course), speed};
 }
 
-bool comesToAnEnd(Verb verb) { return !factsOf(verb).opposite.empty() || verb == Verb::Path; }
+bool comesToAnEnd(Verb verb) {
+    return !factsOf(verb).opposite.empty() || verb == Verb::Path || verb == Verb::Goto;
+}
 
 std::string_view nameOf(Verb verb) { return factsOf(verb).name; }
 
@@ -185,6 +234,7 @@ ParsedCommand parseCommand(std::string_view text) {
     const auto verb = verbNamed(words.front().text);
     if (!verb) return refuse(CommandError::Kind::Unknown, unknownCommand(words.front().text));
     if (*verb == Verb::Path) return parsePath(std::span(words).subspan(1));
+    if (*verb == Verb::Goto) return parseGoto(std::span(words).subspan(1));
     const VerbFacts& facts = factsOf(*verb);
     const std::size_t wanted = facts.value_name.empty() ? 1 : 2;
     if (words.size() < wanted) {
@@ -308,14 +358,21 @@ void ScriptReader::read(std::string_view line, int number) {
     }
     if (upperCase(words[2].text) == "ACT") {
         const auto change = readAct(words);
-        if (time && change) commands_.push_back({*time, 0, {}, *change});
+        if (!time || !change) return;
+        TimedCommand& timed = commands_.emplace_back();
+        timed.time = *time;
+        timed.change = *change;
         return;
     }
     const auto robot = readMover(words[1]);
     const auto begin = static_cast<std::size_t>(words[2].column) - 1;
     const auto command =
         readCommand(line.substr(begin), std::span<const Piece>(words).subspan(2), robot);
-    if (time && robot && command) commands_.push_back({*time, *robot, *command});
+    if (!time || !robot || !command) return;
+    TimedCommand& timed = commands_.emplace_back();
+    timed.time = *time;
+    timed.robot = *robot;
+    timed.command = *command;
 }
 
 std::vector<TimedCommand> ScriptReader::take() {

@@ -16,10 +16,10 @@ namespace ispace {
 class World;
 
 /// Verbs of the thesis' Command System, table 3.5. Sidespeed requires an omnidirectional robot;
-/// Path follows a list of points.
-enum class Verb { Forward, Backward, Left, Right, Speed, Rotspeed, Sidespeed, Stop, Path };
+/// Path follows a list of points, and Goto a way round bodies to one point.
+enum class Verb { Forward, Backward, Left, Right, Speed, Rotspeed, Sidespeed, Stop, Path, Goto };
 
-/// Returns true for Forward, Backward, Left and Right (the thesis' "OK commands"), and for Path.
+/// Returns true for Forward, Backward, Left and Right (the thesis' "OK commands"), Path and Goto.
 bool comesToAnEnd(Verb verb);
 /// Returns the name of a verb: "FORWARD".
 std::string_view nameOf(Verb verb);
@@ -29,19 +29,31 @@ std::string_view valueNameOf(Verb verb);
 std::optional<Verb> verbNamed(std::string_view name);
 
 /// One command to a mover. `value` is in the units of the protocol: metres, degrees, m/s, deg/s. It
-/// is not negative for Forward to Right; for Path it holds the length of the path.
+/// is not negative for Forward to Right; for Path and Goto it holds the length of the path.
 struct Command {
     Verb verb = Verb::Stop;
     double value = 0;
-    MotionPlan course = {};  ///< of Path: at least one point
-    double speed = 0;        ///< of Path, m/s; 0: the default
+    /// Of Path: at least one point. Of Goto: the goal, and once World::findWay() has found the way
+    /// to it, all points after the start.
+    MotionPlan course = {};
+    double speed = 0;  ///< of Path and Goto, m/s; 0: the default
     /// Of Path: one attempt of several, whose failure World::unreached() leaves out.
     bool is_attempt = false;
+    std::optional<Angle> heading = {};  ///< of Goto, to which it turns at the goal
     friend bool operator==(const Command&, const Command&) = default;
 };
 
 /// Creates a Path over these points. \pre the plan has at least one
 Command pathCommand(MotionPlan course, double speed = 0);
+
+/// A goal to which a mover finds its way.
+struct Destination {
+    Point2 at;
+    std::optional<Angle> heading = {};  ///< to which it turns there
+};
+
+/// Parses "1.5,2" or, with a heading in degrees, "1.5,2,90".
+std::optional<Destination> parseDestination(std::string_view text);
 
 /// Parses a key of PATH, as "speed=0.3". Returns the reason why it is none, or "".
 std::string applyPathKey(std::string_view text, Command& command);

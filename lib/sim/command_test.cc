@@ -17,7 +17,7 @@ namespace {
 using Kind = CommandError::Kind;
 
 constexpr Verb kAll[] = {Verb::Forward,  Verb::Backward,  Verb::Left, Verb::Right, Verb::Speed,
-                         Verb::Rotspeed, Verb::Sidespeed, Verb::Stop, Verb::Path};
+                         Verb::Rotspeed, Verb::Sidespeed, Verb::Stop, Verb::Path,  Verb::Goto};
 
 void expectRefused(std::string_view text, Kind kind, std::string_view message) {
     const ParsedCommand parsed = parseCommand(text);
@@ -39,7 +39,7 @@ TEST(Verb, NamesReadBack) {
 
 TEST(Verb, SomeComeToAnEnd) {
     for (const Verb verb : kAll)
-        EXPECT_EQ(comesToAnEnd(verb), verb <= Verb::Right || verb == Verb::Path) << nameOf(verb);
+        EXPECT_EQ(comesToAnEnd(verb), verb <= Verb::Right || verb >= Verb::Path) << nameOf(verb);
 }
 
 TEST(ParseCommand, TakesAVerbAndItsValue) {
@@ -67,7 +67,7 @@ TEST(ParseCommand, HelpsWithUnknownOnes) {
     expectRefused("Stop", Kind::Unknown, "unknown command `Stop`, did you mean `STOP`?");
     expectRefused("JUMP 1", Kind::Unknown,
                   "unknown command `JUMP`, wanted one of FORWARD BACKWARD LEFT RIGHT SPEED "
-                  "ROTSPEED SIDESPEED STOP PATH");
+                  "ROTSPEED SIDESPEED STOP PATH GOTO");
     expectRefused("FORWARD1.5", Kind::Unknown,
                   "unknown command `FORWARD1.5`, did you mean `FORWARD`?");
 }
@@ -251,7 +251,7 @@ TEST_F(ScriptTest, ReportsAllFindingsTogether) {
               "2.5 or 500ms\n"
               "run.txt:1:3: error: unknown robot or person `r9`, did you mean `r1`?\n"
               "run.txt:1:6: error: unknown command `fly`, wanted one of FORWARD BACKWARD LEFT "
-              "RIGHT SPEED ROTSPEED SIDESPEED STOP PATH\n"
+              "RIGHT SPEED ROTSPEED SIDESPEED STOP PATH GOTO\n"
               "run.txt:3:3: error: a command is missing, wanted TIME ROBOT COMMAND, like 2.5 r1 "
               "FORWARD 1\n");
     std::string many;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/message.h"
-#include "base/number.h"
 #include "sim/command.h"
 
 namespace ispace {
@@ -14,9 +13,11 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 8;
 
-/// Adds the points of "upper/1,2;3,4". Returns the reason why the text holds none, or "".
+/// Adds the points of "upper/1,2;3,4", and of a single one "upper/1,2,90" the heading. Returns the
+/// reason why the text holds none, or "".
 std::string addPoints(std::string_view text, std::span<const JoinedRoom> rooms, std::size_t room,
-                      std::vector<RoomPoint>& points) {
+                      TripPlan& plan) {
+    std::vector<RoomPoint>& points = plan.points;
     for (;;) {
         const std::string_view one = text.substr(0, text.find(';'));
         std::string_view point = one;
@@ -28,14 +29,12 @@ std::string addPoints(std::string_view text, std::span<const JoinedRoom> rooms, 
             room = static_cast<std::size_t>(named - rooms.begin());
             point = one.substr(slash + 1);
         }
-        const auto comma = point.find(',');
-        const auto x = parseDouble(point.substr(0, comma));
-        const auto y =
-            comma == std::string_view::npos ? std::nullopt : parseDouble(point.substr(comma + 1));
-        if (!x || !y) return "wanted a point like upper/1,2, found " + excerpt(one);
+        const auto goal = parseDestination(point);
+        if (!goal) return "wanted a point like upper/1,2, found " + excerpt(one);
         if (points.size() == kMaxPoints)
             return "a trip has at most " + std::to_string(kMaxPoints) + " points";
-        points.push_back({room, {*x, *y}});
+        points.push_back({room, goal->at});
+        if (goal->heading) plan.heading = goal->heading;
         if (one.size() == text.size()) return "";
         text.remove_prefix(one.size() + 1);
     }
@@ -53,8 +52,10 @@ ParsedTrip parseTrip(std::span<const std::string_view> words, std::span<const Jo
         return trip;
     };
     std::vector<RoomPoint>& points = trip.plan.points;
-    if (std::string fault = addPoints(words[1], rooms, room, points); !fault.empty())
+    if (std::string fault = addPoints(words[1], rooms, room, trip.plan); !fault.empty())
         return fail(1, std::move(fault));
+    if (is_path && trip.plan.heading)
+        return fail(1, "points of PATH are x,y: GOTO x,y,heading turns at its point");
     if (!is_path && points.size() > 1) return fail(1, "GOTO leads to one point, PATH to several");
     Command keys;
     for (std::size_t i = 2; i < words.size(); ++i) {

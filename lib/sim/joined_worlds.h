@@ -37,9 +37,10 @@ struct RoomPoint {
 /// Points to which a mover goes, one after another.
 struct TripPlan {
     std::vector<RoomPoint> points;
-    double speed = 0;   ///< m/s; 0: the mover's
-    double pause = 0;   ///< seconds to stay at each point
-    bool loop = false;  ///< from the last point to the first, repeatedly
+    double speed = 0;                   ///< m/s; 0: the mover's
+    double pause = 0;                   ///< seconds to stay at each point
+    bool loop = false;                  ///< from the last point to the first, repeatedly
+    std::optional<Angle> heading = {};  ///< to which it turns at the last point
 };
 
 /// A plan, or the reason why a text is none, and the word that is at fault.
@@ -49,7 +50,7 @@ struct ParsedTrip {
     std::size_t word = 0;
 };
 
-/// Parses the words of `GOTO upper/1,2 speed=0.3`, or of `PATH upper/1,2;3,4` with the keys of
+/// Parses the words of `GOTO upper/1,2,90 speed=0.3`, or of `PATH upper/1,2;3,4` with the keys of
 /// PATH. A point without a room is one of that of the point before, at first of `room`. \pre there
 /// are two words or more
 ParsedTrip parseTrip(std::span<const std::string_view> words, std::span<const JoinedRoom> rooms,

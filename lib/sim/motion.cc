@@ -334,6 +334,7 @@ void Motion::command(const Command& command) {
             return;
         case Verb::Stop:
         case Verb::Path:
+        case Verb::Goto:
             drive.goal = turn.goal = side.goal = {};
             return;
     }

@@ -2,9 +2,11 @@
 // Private to lib/sim: autonomous movers.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "geom/point.h"
@@ -54,6 +56,10 @@ class Navigator {
     [[nodiscard]] State state() const { return state_; }
     [[nodiscard]] const MotionPlan& course() const { return course_; }
     [[nodiscard]] double speed() const { return speed_; }
+    /// Returns the points of the path from the next one on.
+    [[nodiscard]] std::span<const Point2> ahead() const {
+        return std::span(course_.path).subspan(std::min(next_, course_.path.size()));
+    }
 
     /// Returns true if steer() is due at that time, or earlier because its goals are reached.
     [[nodiscard]] bool isDue(SimTime time, const Motion& motion) const {

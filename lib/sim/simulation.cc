@@ -109,8 +109,26 @@ void Simulation::giveScripted() {
         }
         const auto mover = world_->changes() == 0 ? std::optional(timed.robot)
                                                   : world_->moverNamed(scripted_[timed.robot]);
-        if (mover && world_->refusal(*mover, timed.command).empty())
-            world_->command(*mover, timed.command);
+        if (!mover || !world_->refusal(*mover, timed.command).empty()) continue;
+        Command command = timed.command;
+        if (command.verb == Verb::Goto) {
+            if (std::string none = world_->findWay(*mover, command); !none.empty()) {
+                script_events_.push_back({.kind = EventKind::Unreached,
+                                          .id = world_->movers()[*mover].id,
+                                          .place = command.course.path.back(),
+                                          .text = std::move(none)});
+                continue;
+            }
+        }
+        world_->command(*mover, command);
+    }
+}
+
+/// Tells of the commands of the script that could not be carried out.
+void Simulation::tellScripted() {
+    for (Event& event : std::exchange(script_events_, {})) {
+        events_.add(EventKind::Mark, "script: " + event.text, event.id);
+        events_.tell(std::move(event));
     }
 }
 
@@ -233,6 +251,7 @@ bool Simulation::seekSome(SimTime time, WallTime until) {
 }
 
 void Simulation::step() {
+    tellScripted();  // those of the start, before there were subscribers
     for (const auto& preparer : preparers_) preparer();
     if (replay_ != nullptr) {
         replay_->prepareAll(*world_, {}, [this] { tellReplayed(false); });
@@ -253,6 +272,7 @@ void Simulation::step() {
     for (Simulation* const other : followers_) other->step();
     endIfReached();
     if (!finished_) giveScripted();
+    tellScripted();
     if (!finished_ && director_) director_->stepped(*this);
     for (const auto& observer : observers_) observer();
 }

@@ -177,6 +177,7 @@ class Simulation {
     bool finishStep(WallTime until);
     [[nodiscard]] bool awaitsFrames() const;
     void giveScripted();
+    void tellScripted();
     void step();
     void endIfReached();
     /// Returns true after the last moment of all records.
@@ -199,6 +200,7 @@ class Simulation {
     std::size_t next_ = 0;               // of script_
     std::shared_ptr<ActivityDirector> director_;  // of people with a plan; null: none
     std::deque<std::string> due_changes_;         // of the script
+    std::vector<Event> script_events_;  // of its commands, told in the next step at the latest
     Recorder* recorder_ = nullptr;
     Replay* replay_ = nullptr;
     bool holds_ = false;        // at the end of the record

@@ -15,8 +15,9 @@ namespace {
 constexpr double kMaxCells = 2.5e5;
 /// Costs of a side and of a corner.
 constexpr std::int32_t kSide = 12, kCorner = 17;
-/// A point may lie this far from the nearest free cell, in metres: movers stand at walls.
-constexpr double kNear = 0.5;
+/// A point may lie this far from the nearest free cell, in metres: movers stand at walls. No body
+/// that is thicker than kThin lies between them.
+constexpr double kNear = 0.5, kThin = 0.01;
 
 Grid gridOver(const Box2& box) {
     const double width = std::max(box.width(), WayFinder::kCell);
@@ -161,6 +162,7 @@ std::optional<std::size_t> WayFinder::cellNear(Point2 p) const {
             const std::size_t cell = cellOf(c, r);
             const double apart = distance(p, centerOf(cell));
             if (free_[cell] == 0 || apart >= least) continue;
+            if (apart > kThin && obstacles_->near({p, centerOf(cell)}, kThin)) continue;
             least = apart;
             best = cell;
         }

@@ -209,7 +209,8 @@ std::string World::refusal(std::size_t mover, const Command& command) const {
     };
     if (command.verb == Verb::Speed && !(std::abs(value) <= model.max_speed))
         return goes_at_most(model.max_speed);
-    if (command.verb == Verb::Path && !(command.speed <= model.max_speed))
+    if ((command.verb == Verb::Path || command.verb == Verb::Goto) &&
+        !(command.speed <= model.max_speed))
         return goes_at_most(model.max_speed);
     if (command.verb == Verb::Sidespeed && !(std::abs(value) <= model.max_sidespeed))
         return model.drive == Drive::Omni ? goes_at_most(model.max_sidespeed) + " sideways"
@@ -230,14 +231,17 @@ int World::command(std::size_t mover, const Command& command) {
         data.end(mover, command.verb == Verb::Stop ? Outcome::Stopped : Outcome::Replaced);
     }
     state.stall = false;
+    state.trip.reset();
     if (std::exchange(state.own_limits, std::nullopt))
         state.limits = limitsOf(data.movers[mover].model, 0);
     data.tell(mover);
     data.motions[mover].command(command);
     data.pilots[mover].turnOff();
-    if (command.verb == Verb::Path) {
+    const bool goes = command.verb == Verb::Goto;
+    if (goes || command.verb == Verb::Path) {
         const double speed = command.speed > 0 ? command.speed : data.movers[mover].model.speed;
-        data.pilots[mover].follow(command.course, speed, true, command.is_attempt);
+        data.pilots[mover].follow(command.course, speed, true, goes || command.is_attempt);
+        if (goes) state.trip = {{command.course.path.back(), command.heading}, speed};
     }
     if (comesToAnEnd(command.verb)) state.running = ++state.ids;
     return state.running;
@@ -246,6 +250,7 @@ int World::command(std::size_t mover, const Command& command) {
 void World::follow(std::size_t mover, const MotionPlan& plan) {
     Data& data = *data_;
     if (data.states[mover].running != 0) data.end(mover, Outcome::Replaced);
+    data.states[mover].trip.reset();
     data.pilots[mover].follow(plan, data.movers[mover].model.speed, false);
 }
 
@@ -257,6 +262,7 @@ void World::steer(std::size_t robot, const WheelOrder& order) {
     Data& data = *data_;
     MoverState& state = data.states[robot];
     if (state.running != 0) data.end(robot, Outcome::Replaced);
+    state.trip.reset();
     if (order.drive) state.stall = false;
     state.own_limits = {order.drive_limits, order.turn_limits, {}};
     data.motions[robot].steer(order);

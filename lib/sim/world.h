@@ -17,6 +17,7 @@
 #include "sim/mover.h"
 #include "sim/sensor_reading.h"
 #include "sim/sim_time.h"
+#include "sim/way_finder.h"
 
 namespace ispace {
 
@@ -189,8 +190,17 @@ class World {
     [[nodiscard]] std::string refusal(std::size_t mover, const Command& command) const;
     /// Gives a command; the running one ends as Replaced, or Stopped by Stop. Speed, Rotspeed and
     /// Sidespeed keep the goals set by the others. \returns for a command that comes to an end its
-    /// id, counting from 1 for each mover; else 0. \pre refusal() is empty
+    /// id, counting from 1 for each mover; else 0. \pre refusal() is empty, and findWay() has found
+    /// the way of a Goto
     int command(std::size_t mover, const Command& command);
+    /// Finds the way of a Goto from where the mover is round bodies, not round other movers, and
+    /// writes its points and its length into the command. A mover that does not get on tries it
+    /// anew, round those that stand, and a change that blocks its way leads it round the change.
+    /// \returns the reason why there is no way, or "". O(cells) the first time after a change of
+    /// the world
+    [[nodiscard]] std::string findWay(std::size_t mover, Command& command);
+    /// Returns the circles of all other movers that stand.
+    [[nodiscard]] std::vector<WayFinder::Spot> standingBeside(std::size_t mover) const;
     /// Returns the id of the command under way that comes to an end, 0 without one.
     [[nodiscard]] int running(std::size_t mover) const;
     /// Starts a mover on a plan like that of its record, until a command ends it. A running command
@@ -267,7 +277,7 @@ class World {
     /// Returns the cancelled moves of the last step, in settling order: each began a stall.
     [[nodiscard]] std::span<const Collision> collisions() const;
     /// Returns the points that movers gave up in the last step, in settling order: of their
-    /// records' paths, and of commands that are no attempts.
+    /// records' paths, the goals of Goto, and those of Paths that are no attempts.
     [[nodiscard]] std::span<const UnreachedPoint> unreached() const;
     /// Returns the sensors read in the last step (before the first step: all that are not heavy),
     /// ascending.

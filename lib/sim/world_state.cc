@@ -290,16 +290,20 @@ std::shared_ptr<World::Data> World::Data::next(
             state.recorded_bumpers = states[*old].recorded_bumpers;
             state.own_limits = states[*old].own_limits;
             after->motions[i] = motions[*old];
-            if (after->movers[i].course == movers[*old].course)
+            if (after->movers[i].course == movers[*old].course) {
                 after->pilots[i] = pilots[*old];
-            else if (state.running != 0 && (after->pilots[i].isOn() || pilots[*old].isOn()))
+                state.trip = states[*old].trip;
+            } else if (state.running != 0 && (after->pilots[i].isOn() || pilots[*old].isOn())) {
                 after->end(i, Outcome::Replaced);
+            }
             after->keepGait(i, *this, *old);
             if (i < after->odometers.size()) after->odometers[i] = odometers[*old];
         } else if (state.running != 0) {
             after->end(i, Outcome::Stopped);
         }
     }
+    for (std::size_t i = 0; i < after->states.size(); ++i)
+        if (after->states[i].trip) after->avoidChange(i);
     after->sensors.follow(sensors, stayers, time, after->where());
     after->sensors.begin(time, after->where());
     return after;

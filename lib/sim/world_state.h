@@ -23,6 +23,7 @@
 #include "sim/odometry.h"
 #include "sim/sensor_scheduler.h"
 #include "sim/sonar_vicinity.h"
+#include "sim/way_finder.h"
 #include "sim/world.h"
 #include "trace/ray_world.h"
 
@@ -69,6 +70,14 @@ struct BumpContact {
     }
 };
 
+/// A Goto under way.
+struct GotoState {
+    Destination goal;
+    double speed = 0;  ///< m/s
+    int attempts = 0;  ///< that failed
+    int returns = 0;   ///< to the goal, after it went past
+};
+
 /// Non-kinematic state of a mover.
 struct MoverState {
     const Obstacles* obstacles = nullptr;
@@ -77,10 +86,11 @@ struct MoverState {
     Vicinity echoes_near;               // lines of these
     MotionLimits limits;
     std::optional<MotionLimits> own_limits;  // from orders to its wheels
-    double clearance = 0;  // distance that it can go before it meets an obstacle, at least
-    double room = 0;       // no other mover's circle is nearer
-    int ids = 0;           // issued so far
-    int running = 0;       // id of the command that comes to an end, or 0
+    double clearance = 0;           // distance that it can go before it meets an obstacle, at least
+    double room = 0;                // no other mover's circle is nearer
+    int ids = 0;                    // issued so far
+    int running = 0;                // id of the command that comes to an end, or 0
+    std::optional<GotoState> trip;  // of a Goto, until it stands at its goal
     // Number of moments at which it was given commands, and the first and last of them.
     std::int64_t told = 0;
     SimTime told_first{}, told_last{};
@@ -151,6 +161,13 @@ struct World::Data {
     void walk(std::size_t mover);
     void keepGait(std::size_t mover, const Data& before, std::size_t old);
     void end(std::size_t mover, Outcome outcome);
+    /// Returns the ways of a mover's size, found anew after a change. O(cells) the first time
+    const WayFinder& finderOf(std::size_t mover);
+    [[nodiscard]] std::vector<WayFinder::Spot> standingBeside(std::size_t mover) const;
+    /// Goes on with a Goto whose way came to an end. \returns false if that ends the command
+    bool continueTrip(std::size_t mover, Outcome outcome);
+    /// After a change: finds another way if bodies stand in the present one.
+    void avoidChange(std::size_t mover);
     void prepareEchoes();
     /// Finds the surroundings of a robot's sonars, among all bodies, which `grid` holds. Several
     /// threads may call it for different robots. \pre prepareEchoes()
@@ -181,7 +198,8 @@ struct World::Data {
     std::vector<Gait> gaits;    // of people
     std::vector<Angle> swings;  // of their limbs
     std::vector<Navigator> pilots;
-    std::vector<Odometer> odometers;       // of robots
+    std::map<std::pair<const Obstacles*, double>, WayFinder> finders;  // by bodies and radius
+    std::vector<Odometer> odometers;                                   // of robots
     std::vector<std::size_t> kept_starts;  // start errors lead to no free position
     std::vector<Move> moves;
     std::optional<double> longest_step;  // while it is valid

@@ -209,6 +209,12 @@ void World::Data::apply() {
         unreached.insert(unreached.end(), chunk.unreached.begin(), chunk.unreached.end());
     }
     if (moved) sensors.moved();
+    const auto is_under_way = [this](const CommandEnd& end) {
+        return states[end.robot].trip && continueTrip(end.robot, end.outcome);
+    };
+    ends.erase(std::remove_if(ends.begin() + static_cast<std::ptrdiff_t>(before), ends.end(),
+                              is_under_way),
+               ends.end());
     std::sort(unreached.begin(), unreached.end(),
               [&](const UnreachedPoint& a, const UnreachedPoint& b) {
                   return traffic.rank(a.mover) < traffic.rank(b.mover);

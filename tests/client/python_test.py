@@ -358,15 +358,34 @@ class Sensors(unittest.TestCase):
                 self.assertEqual(picture.pixels.shape, (6, 8, 3))
 
 
+class Goto(unittest.TestCase):
+    """A room alone."""
+
+    def test_finds_its_way(self):
+        with ispace.simrun(DATA / "square.env", DATA / "session.3dm", clock="step", quiet=True) as run, \
+                run.world() as world, run.robot("r1") as robot:
+            trip = robot.goto(-1, -1.5, heading=180, speed=0.4)
+            world.advance(20)
+            self.assertTrue(robot.wait(trip).done)
+            x, y, heading = robot.status().pose
+            self.assertAlmostEqual(x, -1, places=1)
+            self.assertAlmostEqual(y, -1.5, places=1)
+            self.assertAlmostEqual(abs(heading), 180, places=2)
+            with self.assertRaises(ispace.Refused) as refused:
+                robot.goto(9, 9)
+            self.assertEqual(refused.exception.code, 409)
+
+
 class Building(unittest.TestCase):
     """Two storeys with a lift and stairs."""
 
     def test_trips_and_lifts(self):
         with ispace.simrun(DATA / "tower.yaml", DATA / "tower.3dm", clock="step", quiet=True) as run, \
                 run.world() as world, run.robot("ground/r1") as robot:
-            trip = robot.go_to("upper", 9, 6)
-            world.advance(70)
+            trip = robot.goto(9, 6, heading=90, storey="upper")
+            world.advance(75)
             self.assertTrue(robot.wait(trip).done)
+            self.assertAlmostEqual(robot.status().pose[2], 90, places=2)
             self.assertEqual((robot.status().storey, robot.status().passage), ("upper", ""))
             world.call("l1", "ground")
             lift, = world.lifts()

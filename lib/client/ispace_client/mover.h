@@ -75,6 +75,13 @@ struct PathOptions {
     bool loop = false;  ///< repeats from the last point to the first
 };
 
+/// How to go to a point.
+struct GoOptions {
+    double speed = 0;                                           ///< m/s; 0: the mover's own speed
+    double heading = std::numeric_limits<double>::quiet_NaN();  ///< to turn to there, degrees
+    std::string storey = std::string();  ///< of the point, in a building; "": that of the mover
+};
+
 /// A robot or person driven by this client. Only one client can drive it; others are refused (409).
 /// When the object is destroyed, or its program dies, the robot brakes and is released. A new
 /// motion replaces the current one.
@@ -118,11 +125,23 @@ class Mover {
         if (options.loop) request += " loop=yes";
         return begin(request);
     }
+    /// Goes round walls, furniture and robots that stand to a point of the room, or of the storey
+    /// on which it is. \throws Refused (409) without a way
+    Motion goTo(const Point& point, const GoOptions& options = GoOptions()) {
+        std::string request = "GOTO ";
+        if (!options.storey.empty()) request += options.storey + "/";
+        request += textOf(point.x) + "," + textOf(point.y);
+        if (!std::isnan(options.heading)) request += "," + textOf(options.heading);
+        if (options.speed > 0) request += " speed=" + textOf(options.speed);
+        return begin(request);
+    }
     /// Goes by the fastest way to a point of a storey, in the run of a building.
     /// \param speed m/s; 0: its own
     Motion goTo(const std::string& storey, const Point& point, double speed = 0) {
-        return begin("GOTO " + storey + "/" + textOf(point.x) + "," + textOf(point.y) +
-                     (speed > 0 ? " speed=" + textOf(speed) : ""));
+        GoOptions options;
+        options.speed = speed;
+        options.storey = storey;
+        return goTo(point, options);
     }
     /// Takes a lift to a storey, in the run of a building.
     Motion ride(const std::string& lift, const std::string& storey) {

@@ -257,7 +257,7 @@ TEST(RosRooms, InitialPosesFindTheirStorey) {
     place("", {9, 3, 2.5}, 30);
     ASSERT_TRUE(served.worlds.placed && served.worlds.turned);
     EXPECT_EQ(served.worlds.placed->room, 1U);
-    EXPECT_NEAR(distance(served.worlds.placed->at, {3, 1}), 0, 1e-9);
+    EXPECT_NEAR(distance(served.worlds.placed->at, Point2{3, 1}), 0, 1e-9);
     EXPECT_NEAR(served.worlds.turned->degrees(), -60, 1e-9);
     place("upper", {2, 1, 0}, 0);
     ASSERT_TRUE(served.worlds.placed);

@@ -140,10 +140,22 @@ class Mover(Client):
             request += f" pause={text_of(pause)}"
         return self._begin(request + (" loop=yes" if loop else ""))
 
+    def goto(
+        self, x: float, y: float, heading: Optional[float] = None, speed: Optional[float] = None, storey: str = ""
+    ) -> Motion:
+        """To a point in m round walls, furniture and robots that stand; there it turns to ``heading`` in degrees.
+
+        ``storey`` is that of the point in the run of a building, by default that on which it is; ``speed`` in m/s.
+        Raises Refused (409) without a way.
+        """
+        request = f"GOTO {storey}{'/' if storey else ''}{text_of(x)},{text_of(y)}"
+        if heading is not None:
+            request += f",{text_of(heading)}"
+        return self._begin(request if speed is None else f"{request} speed={text_of(speed)}")
+
     def go_to(self, storey: str, x: float, y: float, speed: Optional[float] = None) -> Motion:
         """By the fastest way to a point of a storey, in the run of a building."""
-        request = f"GOTO {storey}/{text_of(x)},{text_of(y)}"
-        return self._begin(request if speed is None else f"{request} speed={text_of(speed)}")
+        return self.goto(x, y, speed=speed, storey=storey)
 
     def ride(self, lift: str, storey: str) -> Motion:
         """By a lift to a storey, in the run of a building."""

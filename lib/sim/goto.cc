@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Goto: ways of movers of a world to a point, round bodies and movers that stand.
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "base/number.h"
+#include "sim/world.h"
+#include "sim/world_state.h"
+
+namespace ispace {
+
+namespace {
+
+/// A way that fails is tried anew as often; each failure takes Navigator::kPatience.
+constexpr int kMaxAttempts = 2;
+/// Metres per second below which a mover stands.
+constexpr double kStands = 0.02;
+/// Degrees: a smaller turn at the goal is none.
+constexpr double kTurned = 1e-9;
+/// A mover that stands farther from its goal, in metres, as its way was bent there and it went
+/// past, returns as often.
+constexpr double kNear = 0.02;
+constexpr int kMaxReturns = 3;
+
+double lengthOf(Point2 from, const std::vector<Point2>& way) {
+    double sum = 0;
+    for (const Point2 to : way) {
+        sum += distance(from, to);
+        from = to;
+    }
+    return sum;
+}
+
+}  // namespace
+
+const WayFinder& World::Data::finderOf(std::size_t mover) {
+    const double radius = movers[mover].model.radius;
+    const Obstacles& bodies = *states[mover].obstacles;
+    const auto found = finders.find({&bodies, radius});
+    if (found != finders.end()) return found->second;
+    return finders
+        .try_emplace({&bodies, radius}, bodies, bounds(scene->environment.indoor()), radius)
+        .first->second;
+}
+
+std::vector<WayFinder::Spot> World::Data::standingBeside(std::size_t mover) const {
+    std::vector<WayFinder::Spot> standing;
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+        const Motion& motion = motions[i];
+        if (i != mover && std::abs(motion.drive.speed) + std::abs(motion.side.speed) < kStands)
+            standing.push_back({motion.pose.position, movers[i].model.radius});
+    }
+    return standing;
+}
+
+std::vector<WayFinder::Spot> World::standingBeside(std::size_t mover) const {
+    return data_->standingBeside(mover);
+}
+
+std::string World::findWay(std::size_t mover, Command& command) {
+    assert(command.verb == Verb::Goto && !command.course.path.empty());
+    Data& data = *data_;
+    const Point2 goal = command.course.path.back();
+    const auto goal_text = [goal] { return formatDouble(goal.x) + ',' + formatDouble(goal.y); };
+    const Mover& who = data.movers[mover];
+    if (const auto body = data.states[mover].obstacles->overlap(goal, who.model.radius))
+        return who.id + " has no room at " + goal_text() + ": " + data.elements()[*body].id +
+               " stands there";
+    const Point2 at = data.motions[mover].pose.position;
+    std::vector<Point2> way = data.finderOf(mover).wayBetween(at, goal);
+    if (way.empty()) return "no way for " + who.id + " to " + goal_text();
+    command.value = lengthOf(at, way);
+    command.course.path = std::move(way);
+    return "";
+}
+
+bool World::Data::continueTrip(std::size_t mover, Outcome outcome) {
+    GotoState& trip = *states[mover].trip;
+    Motion& motion = motions[mover];
+    const auto go = [&](std::vector<Point2> way) {
+        MotionPlan plan;
+        plan.path = std::move(way);
+        pilots[mover].follow(plan, trip.speed, true, true);
+        return true;
+    };
+    if (outcome == Outcome::Done && !motion.arrived()) {
+        motion.command({Verb::Stop, 0});  // finish() reports that it stands
+        return true;
+    }
+    const bool is_past = distance(motion.pose.position, trip.goal.at) > kNear;
+    if ((outcome == Outcome::Done && is_past) || outcome == Outcome::Stall) {
+        if (trip.returns++ < kMaxReturns) {
+            states[mover].stall = false;
+            return go({trip.goal.at});
+        }
+    }
+    if (outcome == Outcome::Done && trip.goal.heading) {
+        const double turn = wrapped(*trip.goal.heading - motion.pose.heading).degrees();
+        states[mover].trip.reset();
+        if (std::abs(turn) < kTurned) return false;
+        motion.command({turn > 0 ? Verb::Left : Verb::Right, std::abs(turn)});
+        return true;
+    }
+    if (outcome == Outcome::Unreached) {
+        if (trip.attempts++ < kMaxAttempts) {
+            const WayFinder& finder = finderOf(mover);
+            const Point2 at = motion.pose.position;
+            std::vector<Point2> way =
+                finder.around(standingBeside(mover)).wayBetween(at, trip.goal.at);
+            // Those in the way may leave it.
+            if (way.empty()) way = finder.wayBetween(at, trip.goal.at);
+            if (!way.empty()) return go(std::move(way));
+        }
+        unreached.push_back({mover, trip.goal.at});
+    }
+    states[mover].trip.reset();
+    return false;
+}
+
+void World::Data::avoidChange(std::size_t mover) {
+    // Half of the margin by which ways keep away from bodies, as the mover strays from its way.
+    const double reach = movers[mover].model.radius + WayFinder::kMargin / 2;
+    const Obstacles& bodies = *states[mover].obstacles;
+    const Point2 at = motions[mover].pose.position;
+    Point2 from = at;
+    bool is_blocked = false;
+    for (const Point2 to : pilots[mover].ahead()) {
+        is_blocked = is_blocked || bodies.near({from, to}, reach);
+        from = to;
+    }
+    if (!is_blocked) return;
+    const GotoState& trip = *states[mover].trip;
+    MotionPlan plan;
+    plan.path = finderOf(mover).wayBetween(at, trip.goal.at);
+    if (!plan.path.empty()) pilots[mover].follow(plan, trip.speed, true, true);
+}
+
+}  // namespace ispace
