@@ -191,7 +191,7 @@ if [ -s other.jsonl.resume ]; then
     expect_same kept other.jsonl.resume "a checkpoint of another run was touched"
 fi
 
-# As JSON a message has the severity and the place of its own; one without a place has that of the line.
+# As JSON a message has its own severity and place; one without a place has that of the line.
 printf '#env 1\nispace size=8,6\n' >plain.env
 printf '#3dm 1\nlaser id=l1 at=0,0\nlaser id=l2 at=90,1\n' >out.3dm
 echo 'plain.env out.3dm' >outside
