@@ -101,6 +101,7 @@ std::span<const Session::Request> Session::requests() {
         {"CALL", "lift storey", Role::World, 2, 2, &C::call},
         {"PAUSE", "", Role::World, 0, 0, &C::pause},
         {"RESUME", "", Role::World, 0, 0, &C::resume},
+        {"RATE", "x", Role::World, 1, 1, &C::rate},
         {"STEP", "[n]", Role::World, 0, 1, &C::step},
         {"SEEK", "t", Role::World, 1, 1, &C::seek},
         {"RESET", "", Role::World, 0, 0, &C::change, true},
@@ -401,6 +402,9 @@ void Session::help(Words /*words*/) {
         if (request.answer == &Session::shutdown && !state_->limits().shutdown) continue;
         const bool changes = request.answer == &Session::change || request.answer == &Session::act;
         if (changes && !state_->mayChange()) continue;
+        if (request.answer == &Session::rate &&
+            state_->simulation().clock().kind != Clock::Kind::Real)
+            continue;
         if (request.answer == &Session::seek && !state_->simulation().maySeek()) continue;
         const bool is_of_rooms = request.answer == &Session::ride ||
                                  request.answer == &Session::call ||

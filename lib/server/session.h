@@ -191,6 +191,7 @@ class Session {
     void states(Words words);
     void pause(Words words);
     void resume(Words words);
+    void rate(Words words);
     void seek(Words words);
     void step(Words words);
     void shutdown(Words words);

@@ -244,6 +244,21 @@ void Session::resume(Words words) {
     out_.append("OK RESUME t=").append(formatMilliseconds(world().time())).append("\n");
 }
 
+void Session::rate(Words words) {
+    Simulation& simulation = state_->simulation();
+    if (simulation.clock().kind != Clock::Kind::Real)
+        return error(405, {"only the clock `real` has a rate"});
+    const auto rate = parseClockRate(words[1]);
+    if (!rate)
+        return error(416, {excerpt(words[1]),
+                           " is no number of simulated seconds in a second, above 0 and at most "
+                           "1000000"});
+    if (!mayAskFor(words.front())) return;
+    simulation.setRate(*rate, std::chrono::steady_clock::now());
+    out_.append("OK RATE t=").append(formatMilliseconds(world().time()));
+    out_.append(" rate=").append(formatDouble(*rate)).append("\n");
+}
+
 void Session::seek(Words words) {
     Simulation& simulation = state_->simulation();
     if (!simulation.isReplay())

@@ -338,6 +338,23 @@ TEST(Session, BehavedPausesAreNotNoticed) {
     }
 }
 
+TEST(Session, TheRateOfARealClockMayBeChanged) {
+    Talk talk({Clock::Kind::Real, 20});
+    Session& world = talk.client("WORLD");
+    EXPECT_EQ(talk.ask(world, "RATE 0.5"), "OK RATE t=0.000 rate=0.5\n");
+    EXPECT_EQ(talk.room.simulation.clock().rate, 0.5);
+    EXPECT_NE(talk.ask(world, "HELP").find(" | RATE x | "), std::string::npos);
+    for (const char* wrong : {"0", "-1", "nan", "inf", "2e6", "fast"})
+        EXPECT_EQ(talk.ask(world, std::string("RATE ") + wrong),
+                  std::string("ERR 416 `") + wrong +
+                      "` is no number of simulated seconds in a second, above 0 and at most "
+                      "1000000\n");
+    EXPECT_EQ(talk.room.simulation.clock().rate, 0.5);
+    Talk fast({Clock::Kind::Fast, 1});
+    EXPECT_EQ(fast.ask(fast.client("WORLD"), "RATE 2"),
+              "ERR 405 only the clock `real` has a rate\n");
+}
+
 TEST(Session, ShutdownMayBeRefused) {
     ServerLimits limits;
     limits.shutdown = false;

@@ -22,6 +22,8 @@ using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
 constexpr double kFastestRate = 1e6;
+/// 64 bits hold every nanosecond, and a slow clock may have its next step beyond all of them.
+constexpr long double kMaxAhead = 3e18L;  // 95 years
 constexpr nanoseconds kMaxLag = std::chrono::milliseconds(250);
 constexpr std::string_view kReal = "real:";
 
@@ -33,8 +35,8 @@ nanoseconds threadTime() {
 }
 
 double parseRate(std::string_view text) {
-    const auto rate = parseDouble(text);
-    if (!rate || *rate <= 0 || *rate > kFastestRate) {
+    const auto rate = parseClockRate(text);
+    if (!rate) {
         throw UsageError(excerpt(text) +
                          " is no rate of the clock, wanted simulated seconds in a "
                          "second, above 0 and at most " +
@@ -44,6 +46,11 @@ double parseRate(std::string_view text) {
 }
 
 }  // namespace
+
+std::optional<double> parseClockRate(std::string_view text) {
+    const auto rate = parseDouble(text);
+    return rate && *rate > 0 && *rate <= kFastestRate ? rate : std::nullopt;
+}
 
 Clock parseClock(const std::string& text) {
     if (text == "real") return {Clock::Kind::Real, 1};
@@ -81,9 +88,25 @@ void Simulation::resume(WallTime now) {
     if (isHeld()) return;
     paused_ = false;
     owed_ = 0;
+    goOnAt(now);
+}
+
+void Simulation::goOnAt(WallTime now) {
     startAt(now);
     // Otherwise pauses in quick succession would stop the world.
     if (ahead_) started_.value() -= dueAt() - now - *std::exchange(ahead_, std::nullopt);
+}
+
+void Simulation::setRate(double rate, WallTime now) {
+    assert(clock_.kind == Clock::Kind::Real && rate > 0);
+    if (started_ && !paused_) ahead_ = dueAt() - now;
+    if (ahead_ && ahead_->count() > 0) {
+        const long double wall = static_cast<long double>(ahead_->count()) * clock_.rate /
+                                 static_cast<long double>(rate);
+        ahead_ = nanoseconds(static_cast<std::int64_t>(std::min(wall, kMaxAhead)));
+    }
+    clock_.rate = rate;
+    if (started_ && !paused_) goOnAt(now);
 }
 
 void Simulation::allow(std::int64_t count) {
@@ -283,13 +306,11 @@ void Simulation::startAt(WallTime now) {
 }
 
 WallTime Simulation::dueAt() const {
-    // Computed from the start each time, so that rounding errors do not add up. 64 bits hold every
-    // nanosecond, and a slow clock may have its next step beyond all of them.
-    constexpr long double kMaxDistance = 3e18L;  // 95 years
+    // Computed from the start each time, so that rounding errors do not add up.
     const auto simulated = (world_->time() - start_time_ + world_->stepLength()).count();
     const long double wall =
         std::ceil(static_cast<long double>(simulated) / static_cast<long double>(clock_.rate));
-    return started_.value() + nanoseconds(static_cast<std::int64_t>(std::min(wall, kMaxDistance)));
+    return started_.value() + nanoseconds(static_cast<std::int64_t>(std::min(wall, kMaxAhead)));
 }
 
 std::optional<WallTime> Simulation::due() const {

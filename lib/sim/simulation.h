@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct Clock {
 
 /// Parses `real`, `real:20`, `fast`, `step`. \throws UsageError
 Clock parseClock(const std::string& text);
+/// Parses a rate of the clock Real: above 0, at most a million; empty for other texts.
+std::optional<double> parseClockRate(std::string_view text);
 
 /// Drives a world: script, clock, pauses, end.
 class Simulation {
@@ -50,6 +53,9 @@ class Simulation {
     [[nodiscard]] World& world() { return *world_; }
     [[nodiscard]] const World& world() const { return *world_; }
     [[nodiscard]] const Clock& clock() const { return clock_; }
+    /// Changes the rate of the clock Real from now on: the share of a step that has passed stays
+    /// passed, and steps that were due stay due. \pre the clock is Real; rate > 0
+    void setRate(double rate, WallTime now);
 
     /// Returns the events, updated after every step, before it is recorded.
     [[nodiscard]] EventLog& events() { return events_; }
@@ -62,6 +68,8 @@ class Simulation {
 
     /// Makes people follow a plan of their days. Call it before the first step.
     void follow(DayPlan plan);
+    /// Returns true if people do, so that the time of day matters.
+    [[nodiscard]] bool followsDays() const { return director_ != nullptr; }
     /// Asks for a change of the world, as the script does: a request of the protocol.
     void askChange(std::string request) { due_changes_.push_back(std::move(request)); }
     /// Returns the next change of the script that is due, a request of the protocol, and removes
@@ -187,6 +195,8 @@ class Simulation {
     void tellReplayed(bool seeks);
     /// Aligns simulated time with wall time from here on.
     void startAt(WallTime now);
+    /// As startAt(), with the next step as far ahead as it was.
+    void goOnAt(WallTime now);
     /// Returns the wall time of the next step by the clock Real. \pre it is started
     [[nodiscard]] WallTime dueAt() const;
     void noteLateness();

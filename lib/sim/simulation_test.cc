@@ -113,6 +113,43 @@ TEST_F(SimulationTest, RealNeitherDriftsNorRunsAhead) {
     }
 }
 
+TEST_F(SimulationTest, ARateChangesFromItsMomentOn) {
+    start(milliseconds(10));
+    Simulation simulation = this->simulation(kRealTime);
+    simulation.run(kStart, kLong);
+    simulation.run(kStart + milliseconds(24), kLong);
+    EXPECT_EQ(world_->steps(), 2);
+    // 4 of the 10 ms of the next step have passed; the rest takes a tenth.
+    simulation.setRate(10, kStart + milliseconds(24));
+    EXPECT_EQ(simulation.clock().rate, 10);
+    EXPECT_EQ(simulation.due(), kStart + milliseconds(24) + std::chrono::microseconds(600));
+    simulation.run(kStart + milliseconds(25), kLong);
+    EXPECT_EQ(world_->steps(), 3);
+    simulation.run(kStart + milliseconds(25) + milliseconds(100), kLong);
+    EXPECT_EQ(world_->steps(), 103);
+
+    // In a pause, too.
+    const auto then = kStart + milliseconds(126);
+    simulation.run(then, kLong);
+    const std::int64_t steps = world_->steps();
+    const auto ahead = *simulation.due() - then;
+    simulation.pause(then);
+    simulation.setRate(0.5, then + hours(1));
+    simulation.resume(then + hours(2));
+    EXPECT_EQ(simulation.due(), then + hours(2) + 20 * ahead);
+    EXPECT_EQ(world_->steps(), steps);
+}
+
+TEST_F(SimulationTest, AFasterRateMakesNoStepLate) {
+    start(milliseconds(10));
+    Simulation simulation = this->simulation(kRealTime);
+    simulation.run(kStart, kLong);
+    // Steps that were due at the old rate stay due, and no more.
+    simulation.setRate(1000, kStart + milliseconds(35));
+    simulation.run(kStart + milliseconds(35), kLong);
+    EXPECT_EQ(world_->steps(), 3);
+}
+
 TEST_F(SimulationTest, ASlowClockHasItsNextStepFarAway) {
     Simulation simulation = this->simulation({Clock::Kind::Real, 1e-300});
     const auto again = simulation.run(kStart, kLong);

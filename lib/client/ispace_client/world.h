@@ -103,6 +103,8 @@ class World {
     /// Stops the clock, for all clients.
     void pause() { ask("PAUSE"); }
     void resume() { ask("RESUME"); }
+    /// Of the clock `real`: so many simulated seconds pass in a second from now on.
+    void setRate(double rate) { ask("RATE " + textOf(rate)); }
     /// Advances a world that is paused or has the clock `step`, and waits until it has.
     /// \param timeout seconds of wall time
     /// \return steps taken: fewer if another client pauses or the run ends

@@ -39,10 +39,14 @@ std::optional<std::string> requestToSet(const Simulation& simulation, bool with_
     const std::vector<RosParameter> all = rosParameters(simulation, with_things);
     const auto known = std::find_if(all.begin(), all.end(),
                                     [&](const RosParameter& one) { return one.name == name; });
-    if (known == all.end() || name == kRate) return std::nullopt;
+    if (known == all.end()) return std::nullopt;
     if (name == kPaused) {
         if (!value.is_boolean()) return std::nullopt;
         return value.get<bool>() ? "PAUSE" : "RESUME";
+    }
+    if (name == kRate) {
+        if (!value.is_number()) return std::nullopt;
+        return "RATE " + formatDouble(value);
     }
     const auto text_of = [](const nlohmann::json& number) { return formatDouble(number); };
     if (std::holds_alternative<double>(known->value)) {

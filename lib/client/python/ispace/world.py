@@ -103,6 +103,10 @@ class World(Client):
         """Lets a paused clock go on."""
         self._ask("RESUME")
 
+    def set_rate(self, rate: float) -> None:
+        """Of the clock ``real``: so many simulated seconds pass in a second from now on, for all clients."""
+        self.rate = self._ask(f"RATE {text_of(rate)}").fields.number("rate")
+
     def step(self, steps: int = 1, timeout: float = math.inf) -> int:
         """Advances a paused world, or one with the clock ``step``, and waits for its last step.
 
