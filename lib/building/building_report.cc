@@ -139,24 +139,9 @@ namespace {
 Record footprintOn(const Storey& storey, const StoreyPassage& passage) {
     Record zone(*sceneSchemas().find("zone"));
     zone.set("id", passage.id);
-    const Record& record = passage.record;
-    if (record.keyword() == "shaft") {
-        TupleList path;
-        for (const Tuple& corner : record.list("path")) {
-            const Point2 p = inStorey(storey, {corner[0], corner[1]});
-            path.push_back({p.x, p.y});
-        }
-        zone.set("path", path);
-        return zone;
-    }
-    const Tuple &at = record.tuple("at"), &size = record.tuple("size");
-    const Vec2 ahead = Pose2{{}, record.angle("heading")} * Vec2{1, 0};
-    Point2 center{at[0], at[1]};
-    if (record.keyword() == "stairs") center = center + size[1] / 2 * ahead;
-    center = inStorey(storey, center);
-    zone.set("at", Tuple{center.x, center.y});
-    zone.set("heading", (record.angle("heading") - storey.building_from_storey.heading).degrees());
-    zone.set("size", Tuple{size[1], size[0]});
+    TupleList path;
+    for (const Point2 corner : footprintOf(passage, storey)) path.push_back({corner.x, corner.y});
+    zone.set("path", path);
     return zone;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/message.h"
+#include "env/walls.h"
 #include "io/glb/glb_write.h"
 
 namespace ispace {
@@ -41,6 +42,23 @@ Point2 inStorey(const Storey& storey, Point2 p) {
     const Frame3 axes({{frame.position.x, frame.position.y, 0}, frame.heading, {}, {}});
     const Vec3 local = axes.toLocal({p.x, p.y, 0});
     return {local.x, local.y};
+}
+
+Polygon footprintOf(const StoreyPassage& passage, const Storey& storey) {
+    const Record& record = passage.record;
+    Polygon outline;
+    if (record.keyword() == "shaft") {
+        for (const Tuple& corner : record.list("path")) outline.push_back(pointOf(corner));
+    } else {
+        const Pose2 frame{pointOf(record.tuple("at")), record.angle("heading")};
+        const double width = record.tuple("size")[0], length = record.tuple("size")[1];
+        // Stairs begin at their place, lifts lie about it.
+        const double back = record.keyword() == "stairs" ? 0 : -length / 2;
+        outline = {frame * Point2{back, -width / 2}, frame * Point2{back + length, -width / 2},
+                   frame * Point2{back + length, width / 2}, frame * Point2{back, width / 2}};
+    }
+    for (Point2& corner : outline) corner = inStorey(storey, corner);
+    return outline;
 }
 
 std::vector<Document> layoutsOf(const Document& layout, const StoreyedDocument& building) {

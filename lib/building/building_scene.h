@@ -29,6 +29,10 @@ struct BuildingScene {
 /// Converts a point of the building to the frame of a storey.
 Point2 inStorey(const Storey& storey, Point2 p);
 
+/// Returns the outline of a passage on a storey, in its frame. Of stairs: from the foot's right
+/// corner to the head's, its left one, and that of the foot.
+Polygon footprintOf(const StoreyPassage& passage, const Storey& storey);
+
 /// Returns the id of a thing across the building: "ground/d1".
 inline std::string wholeId(const Storey& storey, const std::string& id) {
     return storey.id + '/' + id;

@@ -299,6 +299,19 @@ std::string BuildingRun::whereText(std::size_t room) const {
     return "storey=" + storey_id(nearest) + " in=" + in.id + " z=" + formatFixed(z, 3);
 }
 
+std::vector<PassageOutline> BuildingRun::passageOutlines(std::size_t room) const {
+    std::vector<PassageOutline> found;
+    const std::optional<std::size_t> storey = data_->rooms[room].storey;
+    if (!storey) return found;
+    for (const StoreyPassage& passage : data_->building.document.passages) {
+        const std::vector<std::size_t>& joined = passage.storeys;
+        if (std::find(joined.begin(), joined.end(), *storey) == joined.end()) continue;
+        found.push_back({passage.id, passage.record.keyword(),
+                         footprintOf(passage, data_->building.document.storeys[*storey])});
+    }
+    return found;
+}
+
 RoomFrame BuildingRun::frameOf(std::size_t room) const {
     const Data::Room& in = data_->rooms[room];
     const std::vector<Storey>& storeys = data_->building.document.storeys;

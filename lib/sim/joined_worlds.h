@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geom/point.h"
+#include "geom/polygon.h"
 #include "geom/pose.h"
 #include "scene/room_state.h"
 #include "sim/simulation.h"
@@ -82,6 +83,15 @@ struct LiftState {
     std::vector<std::string> calls;  ///< storeys, in the order in which it serves them
 };
 
+/// Stairs, a lift or a shaft, on the floor of a room, for plans.
+struct PassageOutline {
+    std::string id;
+    std::string kind;  ///< its keyword
+    /// In the room. Of stairs: from the foot's right corner to the head's, its left one, and that
+    /// of the foot.
+    Polygon outline;
+};
+
 /// Returns its states, as those of sensors: `storey`, and `open`, 1 unless its door is closed.
 std::vector<RoomState> statesOf(const LiftState& lift);
 
@@ -98,6 +108,8 @@ class JoinedWorlds {
     /// "storey=upper in=l1 z=2.100".
     [[nodiscard]] virtual std::string whereText(std::size_t room) const = 0;
     [[nodiscard]] virtual RoomFrame frameOf(std::size_t room) const = 0;
+    /// Returns the passages that lead from a room to others.
+    [[nodiscard]] virtual std::vector<PassageOutline> passageOutlines(std::size_t room) const = 0;
 
     /// Sends a mover by the fastest way to the points of a plan. \pre the speed is one that it can
     /// go

@@ -43,7 +43,7 @@ mote id=m2 at=-1,1,1
 def shown(page):
     """The states on the page: {"l1 on": "false", "l1 level": "1", ...}"""
     return page.browser.execute_script("""
-        return Object.fromEntries([...document.querySelectorAll('#state-list li > *')].map(part => {
+        return Object.fromEntries([...document.querySelectorAll('#state-list li > :first-child')].map(part => {
           const field = part.querySelector('input'), text = part.querySelector('.model');
           const name = part.firstChild.textContent.trim();
           return [name, field ? field.value : text.textContent || part.getAttribute('aria-pressed')];

@@ -46,11 +46,11 @@ class Page:
         check(False, f"no {mover} in the list")
 
     def facts(self):
-        """The page's data of the selected mover: {"x": 2.0, …}"""
+        """The page's data of the selected mover: {"x": 2.0, …}; {} if it is in another room"""
         rows = self.browser.execute_script(
             "return [...document.querySelectorAll('#facts > *')].map(e => e.textContent)")
         return {name: float(value.split()[0].rstrip("°/s"))
-                for name, value in zip(rows[::2], rows[1::2])}
+                for name, value in zip(rows[::2], rows[1::2]) if name != "in"}
 
     def colors(self):
         """How many pixels of the map have which colour, "#rrggbb"."""

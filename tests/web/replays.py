@@ -53,10 +53,10 @@ with tempfile.TemporaryDirectory() as scratch:
         slider = page.part("seek")
         check(slider.is_displayed(), "there is no slider")
         slider.send_keys(Keys.HOME)
-        eventually("the beginning", lambda: page.text("time") == "0.00 s" and page.facts()["x"] == 2)
+        eventually("the beginning", lambda: page.text("time") == "0.000 s" and page.facts()["x"] == 2)
         for _ in range(20):
             slider.send_keys(Keys.ARROW_RIGHT)
-        eventually("0.2 s later", lambda: page.text("time") == "0.20 s")
+        eventually("0.2 s later", lambda: page.text("time") == "0.200 s")
         slider.send_keys(Keys.END)
         eventually("the end again", lambda: abs(page.facts()["x"] - end_of_r1(folder)) < 0.002)
 
@@ -66,6 +66,6 @@ with tempfile.TemporaryDirectory() as scratch:
             wide = phone.browser.execute_script("return document.documentElement.scrollWidth")
             check(wide <= 400, f"the page is {wide} pixels wide")
             slider.send_keys(Keys.HOME)
-            eventually("the beginning", lambda: phone.text("time") == "0.00 s")
-            eventually("the other page", lambda: page.text("time") == "0.00 s")
+            eventually("the beginning", lambda: phone.text("time") == "0.000 s")
+            eventually("the other page", lambda: page.text("time") == "0.000 s")
             phone.screenshot("replay_400.png")

@@ -61,13 +61,13 @@ human id=h1 at=3.2,3.9 heading=200
 class Run:
     """A simrun that serves a page; it ends with the block that uses it."""
 
-    def __init__(self, *arguments, environment=ENVIRONMENT, layout=LAYOUT):
+    def __init__(self, *arguments, environment=ENVIRONMENT, layout=LAYOUT, web="127.0.0.1:0"):
         self.folder = tempfile.mkdtemp()
         for name, text in (("office.env", environment), ("office.3dm", layout)):
             with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
         self.process = subprocess.Popen(
-            ["simrun", "office.env", "office.3dm", "-q", "--web", "127.0.0.1:0", *arguments],
+            ["simrun", "office.env", "office.3dm", "-q", "--web", web, *arguments],
             cwd=self.folder, stdout=subprocess.PIPE, text=True)
         self.announced = json.loads(self.process.stdout.readline())
         self.url = self.announced["web"]

@@ -62,6 +62,9 @@ class ThreeRooms final : public JoinedWorlds {
         if (room == 1) return {{{10, 0, 3}, Angle::degrees(90), {}, {}}, true};
         return {{}, true};
     }
+    [[nodiscard]] std::vector<PassageOutline> passageOutlines(std::size_t /*room*/) const override {
+        return {};
+    }
     TripAnswer travel(const std::string& /*mover*/, TripPlan /*plan*/) override { return {}; }
     TripAnswer ride(const std::string& /*mover*/, std::string_view /*lift*/,
                     std::string_view /*storey*/) override {

@@ -65,12 +65,15 @@ export class Cameras {
     const {part} = this;
     const ids = sensors.filter(({kind}) => kind === 'camera').map(({id}) => id).slice(0, 100);
     part('cameras').hidden = ids.length === 0;
-    part('lenses').replaceChildren(...ids.map(id => {
-      const button = document.createElement('button');
-      button.textContent = id;
-      button.onclick = () => this.look(id);
-      return button;
-    }));
+    if (ids.join() !== this.ids?.join()) {
+      this.ids = ids;
+      part('lenses').replaceChildren(...ids.map(id => {
+        const button = document.createElement('button');
+        button.textContent = id;
+        button.onclick = () => this.look(id);
+        return button;
+      }));
+    }
     if (this.shown && !ids.includes(this.shown.id)) this.look();
     this.mark();
   }

@@ -49,11 +49,13 @@ export class Driver {
     return new Promise(tell => { this.command = {id: keysOf(answer).id, tell}; });
   }
 
-  /** Goes straight to a place. */
+  /** Goes to a place, round walls and things where the run finds ways, else straight. */
   async goTo(x, y) {
     const goal = this.goal = {x, y}, {mover} = this;
     this.changed();
-    const end = await this.run(`PATH ${x.toFixed(3)},${y.toFixed(3)}`);
+    this.help ??= await this.ask('HELP') ?? '';
+    const place = `${x.toFixed(3)},${y.toFixed(3)}`;
+    const end = await this.run(/\bGOTO\b/.test(this.help) ? `GOTO ${Link.whole(place)}` : `PATH ${place}`);
     if (this.goal !== goal) return;  // a newer one
     this.goal = null;
     if (end) this.tell(end === 'done' ? `${mover.id} has arrived` : `${mover.id} did not arrive: ${end}`, end !== 'done');

@@ -10,7 +10,7 @@ const kTexts = {
   leave: ({id, zone}) => `${id} leaves ${zone}`,
   mat: ({id, who, on}) => `${who} steps ${on === '1' ? 'on' : 'off'} ${id}`,
   activity: ({id, name, on, text}) => `${id} ${on === '1' ? 'begins' : 'ends'} ${name}: ${text}`,
-  state: ({id, t, ...state}) => Object.entries(state).map(([key, value]) => `${id}: ${key} ${value}`).join(', '),
+  state: ({id, t, room, ...state}) => Object.entries(state).map(([key, value]) => `${id}: ${key} ${value}`).join(', '),
   gate: ({id, who, way}) => `${who} goes ${way} through ${id}`,
   seen: ({id, by}) => `${id} is in sight of ${by}`,
   lost: ({id}) => `${id} is out of sight`,
@@ -23,6 +23,7 @@ export function eventText(line) {
   const [, kind] = /^EVENT (\w+)/.exec(line) ?? [];
   if (!kTexts[kind]) return {};
   const keys = keysOf(line);
+  if (keys.room && keys.id && !keys.id.includes('/')) keys.id = `${keys.room}/${keys.id}`;
   for (const rest of ['text', 'what']) if (rest in keys) keys[rest] = line.split(` ${rest}=`)[1];  // of the line
   return {text: `${Number(keys.t).toFixed(1)} s  ${kTexts[kind](keys)}`, bad: kind === 'collision' || kind === 'unreached'};
 }

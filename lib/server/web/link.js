@@ -10,6 +10,8 @@ export class Link {
   /** The rooms of a building and the one that is shown; none and '' where the run has one world. */
   static rooms = [];
   static room = '';
+  /** Called with each answer that wants a token, or another one. */
+  static refused = () => {};
   /** The id of something in the room, as requests want it. */
   static whole(id) { return Link.room && !id.includes('/') ? `${Link.room}/${id}` : id; }
 
@@ -22,6 +24,7 @@ export class Link {
     this.socket.binaryType = 'arraybuffer';
     this.socket.onopen = () => this.on.open?.();
     this.socket.onclose = event => {
+      this.isClosed = true;
       for (const tell of this.waiting.splice(0)) tell('ERR 0 the connection is closed');
       this.on.close?.(event.code);
     };
@@ -33,6 +36,7 @@ export class Link {
     if (data.startsWith('{')) return this.on.json?.(JSON.parse(data));
     for (const line of data.split('\n')) {
       if (line === '' || line.startsWith('ISPACE ')) continue;
+      if (line.startsWith('ERR 401 ')) Link.refused(line);
       if (isAnswer(line)) this.waiting.shift()?.(line);
       else this.on.line?.(line);
     }
@@ -48,12 +52,23 @@ export class Link {
   }
 
   /** The answer to the request for a role. Where the run has a token, the page's address gives it:
-   * `#token=…`, which stays in the browser. */
-  takeRole(request) {
-    const token = /#token=(.+)/.exec(location.hash)?.[1];
-    if (token) this.ask(`TOKEN ${decodeURIComponent(token)}`);
-    return this.ask(request);
+   * `#token=…`, which stays in the browser. A token that is refused is the answer, also where none is needed. */
+  async takeRole(request) {
+    const token = Link.token;
+    const admitted = token ? this.ask(`TOKEN ${token}`) : 'OK', role = this.ask(request);
+    const refusal = await admitted;
+    return refusal.startsWith('ERR') ? refusal : role;
   }
+
+  static get token() {
+    const text = /#token=(.+)/.exec(location.hash)?.[1] ?? '';
+    try {
+      return decodeURIComponent(text);
+    } catch {
+      return text;
+    }
+  }
+  static set token(text) { history.replaceState(null, '', `#token=${encodeURIComponent(text)}`); }
 
   /** The answer to a request, as it comes. */
   ask(request) {

@@ -9,31 +9,47 @@ import {Cameras} from './camera.js';
 import {eventText} from './events.js';
 import {SeekBar} from './seek.js';
 import {States} from './states.js';
+import {History} from './history.js';
+import {Building} from './building.js';
+import {Pace} from './pace.js';
+import {dayText, timeText} from './clock.js';
 
 const part = id => document.getElementById(id);
 const canvas = part('map'), context = canvas.getContext('2d');
 const view = new View(canvas);
 const drivers = new Map();  // by id
 const cameras = new Cameras(part, why => tell(why, true));
-const states = new States(part, tell);
+const history = new History(part);
+const states = new States(part, tell, history, redraw);
 const seekBar = new SeekBar(part('seek'), tell);
-let plan, movers, frame, selected, following = false, fitted = false;
-let link, dirty = false, asked = false;
+const building = new Building(moved);
+const pace = new Pace();
+const buttons = new Map();  // of the movers in the list, by id
+let plan, movers, frame;
+let chosen;  // the id of what is selected, wherever it is
+let selected;  // it, if it is in the room that is shown
+let following = false, untouched = true;  // untouched: the map shows the whole room, as nobody has moved it
+let link, dt = 0, dirty = false, asked = false, ended = false;
 
 // What the server says.
 
 function connect() {
   link = new Link({
     open: () => {
+      if (ended) return location.reload();  // another run, perhaps of another version
       banner('');
+      pace.reset();
+      const begun = link;
       link.takeRole('WORLD').then(answer => {
-        if (answer.startsWith('ERR')) tell(complaint(answer), true);
-        else {
-          link.ask('EVENTS');
-          link.ask('LIST').then(listRooms);
-          states.open(link);
-          seekBar.open(link);
-        }
+        if (begun !== link) return;
+        if (answer.startsWith('ERR')) return tell(complaint(answer), true);
+        dt = Number(keysOf(answer).dt);
+        link.ask('EVENTS');
+        link.ask('LIST').then(list => {
+          if (begun === link && building.open(link, list)) listRooms();
+        });
+        states.open(link);
+        seekBar.open(link);
       });
       link.send('FRAME');
       asked = true;
@@ -45,48 +61,83 @@ function connect() {
       if (text) tell(text, bad);
     },
     close: code => {
-      banner(code === 1001 ? 'The run has ended.' : 'No connection to simrun: trying again…');
+      building.close();
+      ended ||= code === 1001;
+      banner(ended ? 'The run has ended. The next one here is shown as soon as it begins.'
+                   : 'No connection to simrun: trying again…');
       document.body.classList.add('paused');
-      if (code !== 1001) setTimeout(connect, 2000);
+      if (part('token').hidden) setTimeout(connect, 2000);
     },
   });
 }
 
+// Where the run wants a token that the address does not give, or refuses the one that it gives: a form.
+
+Link.refused = answer => {
+  part('token').hidden = false;
+  part('token-later').hidden = !plan;
+  part('token-why').textContent = Link.token ? `${complaint(answer)}.` : 'This run wants its token.';
+  part('token-text').focus();
+};
+
+part('token').addEventListener('submit', event => {
+  event.preventDefault();
+  Link.token = part('token-text').value.trim();
+  part('token').hidden = true;
+  reconnect();
+});
+part('token-later').onclick = () => { part('token').hidden = true; };
+
+function reconnect() {
+  const old = link;
+  old.on = {};
+  building.close();
+  old.close();
+  connect();
+}
+
 /** The rooms of a building, to choose from. */
-function listRooms(answer) {
-  const rooms = keysOf(answer).rooms?.split(',') ?? [];
-  if (rooms.length === 0 || Link.rooms.length > 0) return;
-  Link.rooms = rooms;
-  Link.room = rooms[0];
-  part('rooms').replaceChildren(...rooms.map(room => new Option(room)));
-  part('rooms').hidden = false;
+function listRooms() {
+  part('rooms').replaceChildren(...Link.rooms.map(room => new Option(room)));
+  part('rooms').value = Link.room;
+  part('rooms').hidden = Link.rooms.length === 0;
+}
+
+function showRoom(room) {
+  if (room === Link.room) return;
+  Link.room = part('rooms').value = room;
+  selected = null;
+  untouched = true;
+  reconnect();
 }
 
 part('rooms').addEventListener('change', () => {
-  Link.room = part('rooms').value;
-  selected = null;
-  fitted = false;
-  const old = link;
-  old.on = {};
-  old.close();
-  connect();
+  follow(false);
+  showRoom(part('rooms').value);
 });
 
+/** Somebody has come to another room: the list says so, and the map goes along with whom it follows. */
+function moved() {
+  listMovers();
+  if (following && building.where.has(chosen)) showRoom(building.where.get(chosen));
+}
+
 function takeScene(scene) {
-  const id = selected?.id;
   plan = new Plan(scene);
-  movers = new Movers(scene);
-  frame = null;
-  selected = movers.byId.get(id);
+  movers = new Movers(scene, movers);
+  selected = movers.byId.get(chosen);
+  for (const [id, driver] of drivers) driver.mover = movers.byId.get(id) ?? driver.mover;
   part('title').textContent = document.title = scene.title || 'simrun';
-  if (!fitted) {
-    view.measure();
-    view.fit(plan.box);
-    fitted = true;
-  }
+  fitUntouched();
   listMovers();
   cameras.list(movers.sensors);
   states.know(movers.sensors);
+}
+
+/** Unless people have moved the map, it shows the whole room. */
+function fitUntouched() {
+  view.measure();
+  if (untouched || !view.meets(plan.box)) view.fit(plan.box);
 }
 
 function takeFrame(next) {
@@ -107,9 +158,17 @@ function tell(text, bad = false) {
   const item = document.createElement('li');
   item.textContent = text;
   item.classList.toggle('bad', bad);
+  item.hidden = !isWanted(item);
   part('log').prepend(item);
   if (part('log').children.length > 100) part('log').lastChild.remove();
 }
+
+/** Whether a line has what people look for in the log. */
+function isWanted(item) { return item.textContent.toLowerCase().includes(part('log-find').value.trim().toLowerCase()); }
+
+part('log-find').addEventListener('input', () => {
+  for (const item of part('log').children) item.hidden = !isWanted(item);
+});
 
 // Drawing: once for each picture the browser shows, and only then the next frame is asked for.
 
@@ -127,7 +186,7 @@ function draw() {
   const shown = name => part(name).checked;
   plan.draw(context, view, shown('names'));
   if (frame) {
-    movers.draw(context, view, {scans: shown('scans'), trails: shown('trails'), names: shown('names'), selected});
+    movers.draw(context, view, {scans: shown('scans'), trails: shown('trails'), names: shown('names'), selected, isOn: id => states.isOn(id)});
     for (const driver of drivers.values()) drawGoal(driver.mover, driver.goal, '#0072b2');
     if (drag?.x !== undefined && drag.moved) drawGoal(drag.mover, drag, '#d55e00');
   }
@@ -155,31 +214,42 @@ function drawGoal(mover, goal, color) {
 
 // Beside the map.
 
-let pace = null;
-/** How fast the world goes, once a second. */
-function paceOf(next) {
-  const now = performance.now();
-  if (!frame || next.paused || next.t < pace?.t) pace = null;
-  if (!pace || now - pace.now > 1000) {
-    const rate = pace ? (next.t - pace.t) / (now - pace.now) * 1000 : 0;
-    pace = {now, t: next.t, rate};
-  }
-  const digits = pace.rate >= 9.5 ? 0 : pace.rate >= 0.95 ? 1 : 2;
-  // One that has just begun has none yet.
-  return pace.rate < 0.005 ? '' : `${pace.rate.toFixed(digits)} × real time`;
-}
+/** Whether the hour matters: people follow days, or the record of such a run lasts a day. */
+function lived(next) { return next.days || seekBar.end >= 86400; }
 
 function showClock(next) {
-  part('time').textContent = `${next.t.toFixed(2)} s`;
+  part('time').textContent = lived(next) ? dayText(next.t) : timeText(next.t, dt);
+  part('time').title = lived(next) ? timeText(next.t, dt) : '';
   seekBar.show(next.t);
-  const rate = paceOf(next);
-  part('pace').textContent = (next.replay ? 'record, ' : '') + (next.over ? 'at its end' : next.paused ? 'paused' : rate);
+  history.tick(next.t);
+  if (next.paused || next.t < frame?.t) pace.reset();
+  else pace.add(next.t, performance.now());
+  const {rate} = pace, digits = rate >= 9.5 ? 0 : rate >= 0.95 ? 1 : 2;
+  const going = rate < 0.005 ? '' : `${rate.toFixed(digits)} × real time`;  // not yet known
+  part('pace').textContent = (next.replay ? 'record, ' : '') + (next.over ? 'at its end' : next.paused ? 'paused' : going);
   document.body.classList.toggle('paused', next.paused);
+  showRate(next);
   part('run').textContent = next.paused ? 'Resume' : 'Pause';
   part('run').disabled = next.clock === 'step' || next.over;
   part('step').disabled = !next.paused || next.over;
   if (next.replay !== frame?.replay) showHelp(next.replay);
 }
+
+const kRates = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 300];
+
+/** The rate of the clock, to choose from; one that is none of ours joins them. */
+function showRate({clock, rate}) {
+  const list = part('rate');
+  list.hidden = clock !== 'real';
+  if (list.hidden || Number(list.value) === rate || document.activeElement === list) return;
+  const rates = [...new Set([...kRates, rate])].sort((a, b) => a - b);
+  list.replaceChildren(...rates.map(one => new Option(`${one} ×`, one, false, one === rate)));
+}
+
+part('rate').addEventListener('change', () => {
+  pace.reset();
+  request(`RATE ${part('rate').value}`);
+});
 
 /** Who is in a record goes where it went. */
 function showHelp(is_replay) {
@@ -191,34 +261,59 @@ function showHelp(is_replay) {
     `Arrow keys drive${selected.side > 0 ? ', Q and E go sideways' : ''}, Escape stops. Drag ${selected.id} to where it is to go.`;
 }
 
+/** Those of all rooms, in the order of the record; what is in the list stays there, with the focus. */
 function listMovers() {
-  part('movers').replaceChildren(...movers.all.slice(0, 500).map(mover => {
-    const item = document.createElement('li'), button = document.createElement('button');
-    const model = document.createElement('span');
-    model.className = 'model';
-    model.textContent = mover.model ?? '';
-    button.append(mover.id, model);
-    button.classList.add(mover.kind);
-    button.onclick = () => select(mover === selected ? undefined : mover);
-    mover.button = button;
-    item.append(button);
-    return item;
-  }));
-  select(selected);
+  const others = [...building.where.keys()].filter(id => !movers?.byId.has(id));
+  const ids = [...movers?.all.map(({id}) => id) ?? [], ...others].slice(0, 500);
+  for (const [id, button] of buttons) {
+    if (ids.includes(id)) continue;
+    button.parentNode.remove();
+    buttons.delete(id);
+  }
+  for (const id of ids) if (!buttons.has(id)) addButton(id);
+  part('others').hidden = buttons.size === 0;
+  select(chosen);
+}
+
+function addButton(id) {
+  const item = document.createElement('li'), button = document.createElement('button');
+  const note = document.createElement('span');
+  note.className = 'model';
+  button.append(id, note);
+  button.onclick = () => {
+    if (id === chosen) return select();
+    select(id);
+    if (building.where.has(id)) showRoom(building.where.get(id));
+  };
+  buttons.set(id, button);
+  item.append(button);
+  part('movers').append(item);
+}
+
+/** What the list says of each: that it stands, its model, or in which other room it is. */
+function showNotes() {
+  for (const [id, button] of buttons) {
+    const mover = movers.byId.get(id), room = building.where.get(id) ?? '';
+    const note = !mover ? room : mover.stall ? 'stalled' : mover.model ?? '';
+    const kind = mover?.kind ?? (button.classList.contains('person') ? 'person' : 'robot');
+    const look = `${kind}${mover?.stall ? ' stall' : ''}${mover ? '' : ' away'}`;
+    if (button.lastChild.textContent !== note) button.lastChild.textContent = note;
+    if (button.className !== look) button.className = look;
+  }
+}
+
+function factsOf({x, y, heading, speed, rotspeed}) {
+  return [
+    ['x', `${x.toFixed(3)} m`], ['y', `${y.toFixed(3)} m`], ['heading', `${heading.toFixed(1)}°`],
+    ['speed', `${speed.toFixed(2)} m/s`], ['turn', `${rotspeed.toFixed(0)}°/s`],
+  ];
 }
 
 function showDetails() {
-  for (const {button, stall, model} of movers.all) {
-    if (!button || button.classList.contains('stall') === Boolean(stall)) continue;
-    button.classList.toggle('stall', stall);
-    button.lastChild.textContent = stall ? 'stalled' : model ?? '';
-  }
-  part('name').textContent = selected ? selected.id : 'Nothing selected';
-  const facts = selected?.x === undefined ? [] : [
-    ['x', `${selected.x.toFixed(3)} m`], ['y', `${selected.y.toFixed(3)} m`],
-    ['heading', `${selected.heading.toFixed(1)}°`],
-    ['speed', `${selected.speed.toFixed(2)} m/s`], ['turn', `${selected.rotspeed.toFixed(0)}°/s`],
-  ];
+  showNotes();
+  part('name').textContent = chosen ?? 'Nothing selected';
+  const facts = selected ? (selected.x === undefined ? [] : factsOf(selected)) :
+    building.where.has(chosen) ? [['in', building.where.get(chosen)]] : [];
   const list = part('facts');
   while (list.children.length > 2 * facts.length) list.lastChild.remove();
   facts.forEach(([name, value], i) => {
@@ -228,22 +323,25 @@ function showDetails() {
   });
 }
 
-function select(mover) {
-  for (const [id, driver] of drivers) {
-    if (id === mover?.id || driver.busy) continue;
+/** Selects by id; none: nothing. */
+function select(id) {
+  for (const [known, driver] of drivers) {
+    if (known === id || driver.busy) continue;
     driver.release();
-    drivers.delete(id);
+    drivers.delete(known);
   }
-  selected = mover;
-  for (const {button, id} of movers.all) button?.setAttribute('aria-pressed', id === mover?.id);
+  selected = movers?.byId.get(id);
+  chosen = selected || building.where.has(id) ? id : undefined;
+  for (const [known, button] of buttons) button.setAttribute('aria-pressed', known === chosen);
+  if (!chosen) follow(false);
+  if (!movers) return;
   showHelp(frame?.replay);
-  if (!mover) follow(false);
   showDetails();
   redraw();
 }
 
 function follow(on) {
-  following = on && Boolean(selected);
+  following = on && chosen !== undefined;
   part('follow').setAttribute('aria-pressed', following);
   redraw();
 }
@@ -271,14 +369,29 @@ const actions = {
   run: () => { if (frame && frame.clock !== 'step') request(frame.paused ? 'RESUME' : 'PAUSE'); },
   step: () => { if (frame?.paused) request('STEP'); },
   follow: () => follow(!following),
-  fit: () => { follow(false); view.fit(plan.box); redraw(); },
-  closer: () => { view.zoom(1.3); redraw(); },
-  farther: () => { view.zoom(1 / 1.3); redraw(); },
+  fit: () => { follow(false); untouched = true; view.fit(plan.box); redraw(); },
+  closer: () => zoomed(1.3),
+  farther: () => zoomed(1 / 1.3),
 };
+
+function zoomed(factor, ...at) {
+  untouched = false;
+  view.zoom(factor, ...at);
+  redraw();
+}
+
+function panned(dx, dy) {
+  untouched = false;
+  view.pan(dx, dy);
+  redraw();
+}
+
 for (const [id, act] of Object.entries(actions)) part(id).onclick = () => plan && act();
 for (const id of ['scans', 'trails', 'names']) part(id).onchange = redraw;
 
 const shortcuts = {' ': 'run', '.': 'step', f: 'follow', 0: 'fit', '+': 'closer', '=': 'closer', '-': 'farther'};
+/** Of keys that seek in a record, how many seconds. */
+const jumps = {'[': -1, ']': 1, '{': -60, '}': 60};
 /** Of keys that drive, how far they move the map when nobody is selected. */
 const arrows = {ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60], q: [0, 0], e: [0, 0]};
 
@@ -290,8 +403,7 @@ function key(name, down, repeated = false) {
     if (selected && !frame?.replay) {
       if (!repeated) driverOf(selected).press(name, down);
     } else if (down) {
-      view.pan(...arrows[name]);
-      redraw();
+      panned(...arrows[name]);
     }
     return true;
   }
@@ -303,14 +415,16 @@ function key(name, down, repeated = false) {
     return true;
   }
   if (name in shortcuts) actions[shortcuts[name]]();
-  return name in shortcuts;
+  if (name in jumps) seekBar.move(jumps[name]);
+  return name in shortcuts || name in jumps;
 }
 
 window.addEventListener('keydown', event => {
   if (!plan || event.ctrlKey || event.metaKey || event.altKey) return;
-  if (event.target.matches?.('#state-list input')) return;  // typed there
+  if (event.target.matches?.('select, input:not([type=checkbox], [type=range])')) return;  // typed there
+  if (event.target.matches?.('#state-list input') && event.key in arrows) return;  // moves that slider
   const onButton = event.target.closest?.('button, input');
-  if (onButton && event.key === ' ') return;  // presses that
+  if (onButton && (event.key === ' ' || event.key === 'Enter')) return;  // presses that
   if (onButton === part('seek') && event.key in arrows) return;  // moves that
   if (key(keyName(event), true, event.repeat)) event.preventDefault();
 });
@@ -324,6 +438,15 @@ for (const button of part('pad').children) {
   });
   for (const name of ['pointerup', 'pointercancel'])
     button.addEventListener(name, () => { if (button.dataset.key in arrows) key(button.dataset.key, false); });
+  // Space or Enter drive as long as they are down, as a finger does.
+  const pressed = (event, down) => {
+    if (event.key !== ' ' && event.key !== 'Enter') return;
+    event.preventDefault();
+    if (!event.repeat && (down || button.dataset.key in arrows)) key(button.dataset.key, down);
+  };
+  button.addEventListener('keydown', event => pressed(event, true));
+  button.addEventListener('keyup', event => pressed(event, false));
+  button.addEventListener('blur', () => { if (button.dataset.key in arrows) key(button.dataset.key, false); });
 }
 
 // The map under a pointer or two.
@@ -348,7 +471,7 @@ canvas.addEventListener('pointerdown', event => {
     return;
   }
   drag = {px, py, mover: movers.at(view, px, py), moved: false};
-  if (drag.mover && drag.mover !== selected) select(drag.mover);
+  if (drag.mover && drag.mover !== selected) select(drag.mover.id);
 });
 
 function spanOf() {
@@ -362,25 +485,33 @@ canvas.addEventListener('pointermove', event => {
   if (pointers.has(event.pointerId)) pointers.set(event.pointerId, [px, py]);
   if (pinch && pointers.size === 2) {
     const span = spanOf();
-    view.pan(span.x - pinch.x, span.y - pinch.y);
-    view.zoom(span.length / pinch.length, span.x, span.y);
+    panned(span.x - pinch.x, span.y - pinch.y);
+    zoomed(span.length / pinch.length, span.x, span.y);
     pinch = span;
   } else if (drag) {
     drag.moved ||= Math.hypot(px - drag.px, py - drag.py) > 6;
     if (drag.mover && !frame?.replay) Object.assign(drag, {x, y});
     else if (drag.moved) {
       follow(false);
-      view.pan(px - drag.px, py - drag.py);
+      panned(px - drag.px, py - drag.py);
       Object.assign(drag, {px, py});
     }
   }
   const over = movers.at(view, px, py) ?? movers.cameraAt(view, px, py);
-  canvas.classList.toggle('over', Boolean(over));
+  const is_switch = !over && switchAt(px, py) !== undefined;
+  canvas.classList.toggle('over', Boolean(over) || is_switch);
   canvas.classList.toggle('moving', Boolean(drag?.moved));
-  const what = over?.id ?? plan.titleAt(x, y);
+  const what = over?.id ?? switchAt(px, py) ?? plan.titleAt(x, y);
   part('place').textContent = `${x.toFixed(2)}, ${y.toFixed(2)}${what ? ` · ${what}` : ''}`;
   if (drag || pinch) redraw();
 });
+
+/** The id of what a press on the map switches: a lamp, a door. */
+function switchAt(px, py) {
+  const fits = id => states.switchOf(id) !== undefined;
+  const actuator = movers.actuatorAt(view, px, py);
+  return actuator && fits(actuator.id) ? actuator.id : plan.idAt(...view.toWorld(px, py), fits);
+}
 
 function letGo(event) {
   pointers.delete(event.pointerId);
@@ -391,7 +522,9 @@ function letGo(event) {
   if (event.type === 'pointerup' && done?.x !== undefined && done.moved) driverOf(done.mover).goTo(done.x, done.y);
   else if (event.type === 'pointerup' && done && !done.mover && !done.moved) {
     const camera = movers.cameraAt(view, ...placeOf(event));
+    const thing = switchAt(...placeOf(event));
     if (camera) cameras.look(camera.id);
+    else if (thing) states.press(thing);
     else select();
   }
   redraw();
@@ -401,14 +534,11 @@ canvas.addEventListener('pointercancel', letGo);
 canvas.addEventListener('pointerleave', () => { if (!drag) part('place').textContent = ''; });
 canvas.addEventListener('wheel', event => {
   event.preventDefault();
-  view.zoom(Math.exp(-event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.0015)), ...(following ? [] : placeOf(event)));
-  redraw();
+  zoomed(Math.exp(-event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.0015)), ...(following ? [] : placeOf(event)));
 }, {passive: false});
 new ResizeObserver(() => {
   if (!plan) return;
-  const before = view.width;
-  view.measure();
-  if (before <= 1) view.fit(plan.box);
+  fitUntouched();
   redraw();
 }).observe(canvas);
 

@@ -14,8 +14,10 @@ function stateOf([x, y, heading, speed, rotspeed, stall, phase]) {
 }
 
 export class Movers {
-  constructor(scene) {
+  /** before: the movers of the scene that this one replaces; who is in both stays where it is, with its trail */
+  constructor(scene, before) {
     this.colors = scene.colors;
+    this.actuators = scene.actuators ?? [];
     this.all = scene.movers;
     this.sensors = scene.sensors;
     const seers = scene.sensors.filter(sensor => sensor.view);
@@ -23,7 +25,10 @@ export class Movers {
     this.scans = new Map();
     this.floor = new Map();  // PIR sensors, mats and gates
     this.byId = new Map(this.all.map(mover => [mover.id, mover]));
-    for (const mover of this.all) mover.trail = [];
+    for (const mover of this.all) {
+      const {x, y, heading, speed, rotspeed, stall, phase, trail = []} = before?.byId.get(mover.id) ?? {};
+      Object.assign(mover, {x, y, heading, speed, rotspeed, stall, phase, trail});
+    }
   }
 
   take(frame) {
@@ -69,8 +74,10 @@ export class Movers {
     return {area, hits};
   }
 
-  draw(context, view, {scans, trails, names, selected}) {
+  /** isOn(id): whether something is switched on */
+  draw(context, view, {scans, trails, names, selected, isOn}) {
     this.drawFloorSensors(context, view);
+    this.drawActuators(context, view, isOn);
     if (scans) this.drawScans(context, view, selected);
     if (trails) this.drawTrails(context, view, selected);
     this.drawSensors(context, view);
@@ -134,6 +141,41 @@ export class Movers {
       context.strokeRect(-size[0] / 2, -size[1] / 2, size[0], size[1]);
       context.setLineDash([]);
     }
+  }
+
+  /** A bulb, or a box with a bar, filled while it is on. */
+  drawActuators(context, view, isOn) {
+    const size = 7 / view.scale;
+    for (const {id, kind, at} of this.actuators) {
+      const is_on = isOn(id);
+      view.inMetres(context);
+      context.translate(...at);
+      context.fillStyle = is_on ? '#f0b429' : '#fff';
+      context.strokeStyle = this.colors.ink;
+      context.lineWidth = 1.3 / view.scale;
+      context.beginPath();
+      if (kind === 'lamp') {
+        context.arc(0, 0, size, 0, 2 * Math.PI);
+        for (const turn of [1, 3]) {
+          const [x, y] = [size * Math.cos(turn * Math.PI / 4), size * Math.sin(turn * Math.PI / 4)];
+          context.moveTo(-x, -y);
+          context.lineTo(x, y);
+        }
+      } else {
+        context.rect(-size, -0.7 * size, 2 * size, 1.4 * size);
+      }
+      context.fill();
+      context.stroke();
+    }
+  }
+
+  /** The actuator at a pixel. */
+  actuatorAt(view, px, py) {
+    const kFinger = 14;
+    return this.actuators.find(({at}) => {
+      const [x, y] = view.toPage(...at);
+      return Math.hypot(px - x, py - y) <= kFinger;
+    });
   }
 
   /** Those with a place of their own: a dot, and where they look. */

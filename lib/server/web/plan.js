@@ -54,6 +54,9 @@ export class Plan {
         shapes: shapes.map(shape => ({path: pathOf(shape), inks: shape.inks})),
       })),
     }));
+    this.passages = (scene.passages ?? []).map(({id, kind, outline}) => ({
+      id, kind, outline, path: pathOf({area: [outline]}), box: boxOf([{area: [outline]}]),
+    }));
     this.cache = document.createElement('canvas');
   }
 
@@ -85,6 +88,7 @@ export class Plan {
       }
       if (name === 'floor') this.grid(context, view, [x0, y0, x1, y1]);
     }
+    for (const passage of this.passages) this.passage(context, passage, pen);
     view.inPixels(context);
     if (withNames) this.zoneNames(context, view);
     this.scaleBar(context, view);
@@ -103,6 +107,38 @@ export class Plan {
       }
     }
     context.setLineDash([]);
+  }
+
+  /** As plans have them: steps and the way up, the cross of a cabin, the dashed rim of an opening. */
+  passage(context, {kind, outline, path}, pen) {
+    const corner = i => outline.slice(2 * i, 2 * i + 2);
+    const between = ([x0, y0], [x1, y1], share) => [x0 + share * (x1 - x0), y0 + share * (y1 - y0)];
+    const line = (from, to) => {
+      context.moveTo(...from);
+      context.lineTo(...to);
+    };
+    context.fillStyle = '#ffffff80';
+    context.strokeStyle = this.colors.faint;
+    context.lineWidth = 1.2 * pen;
+    context.fill(path);
+    if (kind === 'shaft') context.setLineDash([6 * pen, 4 * pen]);
+    context.stroke(path);
+    context.setLineDash([]);
+    if (outline.length !== 8) return;
+    context.beginPath();
+    if (kind === 'lift') {
+      line(corner(0), corner(2));
+      line(corner(1), corner(3));
+    } else if (kind === 'stairs') {
+      const [right, head, left, foot] = [0, 1, 2, 3].map(corner);
+      const length = Math.hypot(head[0] - right[0], head[1] - right[1]), steps = Math.max(2, Math.round(length / 0.28));
+      for (let i = 1; i < steps; ++i) line(between(right, head, i / steps), between(foot, left, i / steps));
+      const from = between(right, foot, 0.5), to = between(head, left, 0.5), tip = between(to, from, 0.2 / length);
+      line(from, to);
+      line(between(tip, between(right, head, 1 - 0.2 / length), 0.4), to);
+      line(between(tip, between(foot, left, 1 - 0.2 / length), 0.4), to);
+    }
+    context.stroke();
   }
 
   grid(context, view, [x0, y0, x1, y1]) {
@@ -127,7 +163,7 @@ export class Plan {
     context.font = '12px system-ui, sans-serif';
     context.fillStyle = this.colors.faint;
     context.textAlign = 'left';
-    for (const {id, box} of zones?.groups ?? []) {
+    for (const {id, box} of [...zones?.groups ?? [], ...this.passages]) {
       const [x, y] = view.toPage(box[0], box[1]);
       if ((box[2] - box[0]) * view.scale > context.measureText(id).width + 10) context.fillText(id, x + 6, y - 6);
     }
@@ -149,10 +185,27 @@ export class Plan {
     context.fillText(`${+length.toPrecision(2)} m`, x + length * view.scale + 6, y + 1);
   }
 
+  /** The id of the smallest thing at a place that fits; thin ones are as wide as a finger. */
+  idAt(x, y, fits) {
+    const kFinger = 0.15;  // metres
+    let best, least = Infinity;
+    for (const {groups} of this.layers) {
+      for (const {id, box: [x0, y0, x1, y1]} of groups) {
+        const size = (x1 - x0) * (y1 - y0);
+        const is_there = x >= x0 - kFinger && x <= x1 + kFinger && y >= y0 - kFinger && y <= y1 + kFinger;
+        if (!id || !is_there || size >= least || !fits(id)) continue;
+        least = size;
+        best = id;
+      }
+    }
+    return best;
+  }
+
   /** What stands at a place, the smallest first; for people. */
   titleAt(x, y) {
     let best, least = Infinity;
-    for (const {groups} of this.layers) {
+    const passages = this.passages.map(({id, kind, box}) => ({id, title: `${kind} ${id}`, box}));
+    for (const {groups} of [...this.layers, {groups: passages}]) {
       for (const {id, title, box} of groups) {
         const size = (box[2] - box[0]) * (box[3] - box[1]);
         if (!id || x < box[0] || x > box[2] || y < box[1] || y > box[3] || size >= least) continue;

@@ -9,6 +9,7 @@ export class SeekBar {
     this.tell = tell;
     this.wanted = null;  // a time to be asked for
     this.busy = false;
+    this.end = 0;  // of the record, s
     input.addEventListener('input', () => {
       this.wanted = Number(input.value);
       this.go();
@@ -19,8 +20,17 @@ export class SeekBar {
   async open(link) {
     this.link = link;
     const help = await link.ask('HELP'), end = Number(keysOf(await link.ask('TIME')).end);
-    this.input.hidden = !/\bSEEK\b/.test(help) || !(end > 0);
+    this.end = end > 0 ? end : 0;
+    this.input.hidden = !/\bSEEK\b/.test(help) || !this.end;
     if (!this.input.hidden) this.input.max = end;
+  }
+
+  /** Goes so many seconds on, or back. */
+  move(seconds) {
+    if (this.input.hidden) return;
+    const from = this.wanted ?? Number(this.input.value);
+    this.input.value = this.wanted = Math.min(Number(this.input.max), Math.max(0, from + seconds));
+    this.go();
   }
 
   /** The world's time. */

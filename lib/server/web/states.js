@@ -11,21 +11,33 @@ function statesOf(answer) {
   });
 }
 
-/** The state of an EVENT state. */
+/** The state of an EVENT state, if it is of the room that is shown. */
 function changeOf(line) {
-  const {t, id, ...state} = keysOf(line);
-  return [[id, ...Object.entries(state)[0]]];
+  const {t, id, room, ...state} = keysOf(line);
+  return (room ?? '') === Link.room ? [[id, ...Object.entries(state)[0]]] : [];
 }
 
 const SWITCHES = new Set(['on', 'open', 'blind', 'motion']);
 
+/** #rrggbb of a colour in shares, and back. */
+function hexOf(color) {
+  const parts = color.split(',').map(part => Math.round(255 * Math.min(1, Math.max(0, Number(part) || 0))));
+  return `#${parts.map(part => part.toString(16).padStart(2, '0')).join('')}`;
+}
+function sharesOf(hex) { return [1, 3, 5].map(i => +(parseInt(hex.slice(i, i + 2), 16) / 255).toFixed(3)).join(); }
+
 export class States {
-  constructor(part, tell) {
+  /** part(id): an element of the page; tell(text, bad): says something to people; changed(): the map shows one */
+  constructor(part, tell, history, changed) {
     this.section = part('states');
     this.list = part('state-list');
     this.tell = tell;
+    this.history = history;
+    this.changed = changed;
     this.shown = new Map();  // by id.key: shows a value
+    this.values = new Map();  // likewise
     this.sensors = new Set();
+    part('state-find').addEventListener('input', () => this.find(part('state-find').value));
   }
 
   /** Those of a world whose role the link has. */
@@ -33,15 +45,16 @@ export class States {
     this.link = link;
     const answer = await link.ask('STATE');
     if (!answer.startsWith('OK')) return;
-    const states = statesOf(answer);
+    const states = statesOf(answer), t = Number(keysOf(answer).t);
     // Those of a changed room are mostly the same: a field keeps its text.
     const names = states.map(([id, key]) => `${id}.${key} ${this.sensors.has(id)}`).join();
     if (names !== this.names) {
       this.list.replaceChildren();
       this.shown.clear();
+      this.values.clear();
       this.names = names;
     }
-    this.take(states);
+    this.take(states, t);
   }
 
   /** Sensors report, and nobody presses them. */
@@ -50,19 +63,55 @@ export class States {
     if (this.link) this.open(this.link);
   }
 
-  line(line) { if (line.startsWith('EVENT state ')) this.take(changeOf(line)); }
+  line(line) { if (line.startsWith('EVENT state ')) this.take(changeOf(line), Number(keysOf(line).t)); }
 
-  take(states) {
-    for (const [id, key, value] of states) (this.shown.get(`${id}.${key}`) ?? this.add(id, key))(value);
+  take(states, t) {
+    for (const [id, key, value] of states) {
+      const name = `${id}.${key}`;
+      this.values.set(name, value);
+      this.history.add(`${id} ${key}`, t, value);
+      (this.shown.get(name) ?? this.add(id, key))(value);
+    }
     this.section.hidden = this.shown.size === 0;
+    this.changed();
+  }
+
+  /** The switch of a thing of the plan: its key; none: it has none that people press. */
+  switchOf(id) {
+    return this.sensors.has(id) ? undefined : ['on', 'open', 'blind'].find(key => this.values.has(`${id}.${key}`));
+  }
+
+  /** Whether it is pressed. */
+  isOn(id) { return this.values.get(`${id}.${this.switchOf(id)}`) === '1'; }
+
+  /** Presses that. */
+  press(id) {
+    const key = this.switchOf(id);
+    if (key) this.set(id, key, this.values.get(`${id}.${key}`) === '1' ? '0' : '1');
+  }
+
+  /** Lists those whose names have a text, and hides the others. */
+  find(text) {
+    const wanted = text.trim().toLowerCase();
+    for (const item of this.list.children) item.hidden = !item.dataset.name.includes(wanted);
   }
 
   add(id, key) {
     const item = document.createElement('li'), is_fixed = this.sensors.has(id);
+    item.dataset.name = `${id} ${key}`.toLowerCase();
     const show = SWITCHES.has(key) || is_fixed ? this.addButton(item, id, key) : this.addField(item, id, key);
-    this.shown.set(`${id}.${key}`, show);
+    const course = document.createElement('button');
+    course.textContent = '∿';
+    course.className = 'course';
+    course.title = course.ariaLabel = `course of ${id} ${key}`;
+    course.onclick = () => this.history.show(`${id} ${key}`);
+    item.append(course);
+    this.shown.set(`${id}.${key}`, value => {
+      course.hidden = !this.history.has(`${id} ${key}`);
+      show(value);
+    });
     this.list.append(item);
-    return show;
+    return this.shown.get(`${id}.${key}`);
   }
 
   addButton(item, id, key) {
@@ -90,15 +139,33 @@ export class States {
     };
     label.append(`${id} ${key} `, field);
     item.append(label);
+    const more = key === 'level' ? this.addSlider(item, id, key) : key === 'color' ? this.addColor(item, id, key) : () => {};
     return value => {
       known = value;
       if (document.activeElement !== field) field.value = value;
+      more(value);
     };
   }
 
+  addSlider(item, id, key) {
+    const slider = Object.assign(document.createElement('input'), {type: 'range', min: 0, max: 1, step: 0.01});
+    slider.ariaLabel = `${id} ${key}`;
+    slider.onchange = () => this.set(id, key, slider.value);
+    item.append(slider);
+    return value => { slider.value = value; };
+  }
+
+  addColor(item, id, key) {
+    const color = Object.assign(document.createElement('input'), {type: 'color'});
+    color.ariaLabel = `${id} ${key}`;
+    color.onchange = () => this.set(id, key, sharesOf(color.value));
+    item.append(color);
+    return value => { color.value = hexOf(value); };
+  }
+
   async set(id, key, value) {
-    const answer = await this.link.ask(`ACT ${id} ${key}=${value}`);
+    const answer = await this.link.ask(`ACT ${Link.whole(id)} ${key}=${value}`);
     if (!answer.startsWith('OK')) this.tell(complaint(answer), true);
-    else if (SWITCHES.has(key)) this.take([[id, key, value]]);
+    else if (SWITCHES.has(key)) this.take([[id, key, value]], Number(keysOf(answer).t));
   }
 }

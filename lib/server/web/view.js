@@ -29,6 +29,12 @@ export class View {
     this.scaleTo(Math.min((this.width - rim) / (x1 - x0), (this.height - rim) / (y1 - y0)));
   }
 
+  /** Whether any of a box is shown. */
+  meets([x0, y0, x1, y1]) {
+    const [left, top] = this.toWorld(0, 0), [right, bottom] = this.toWorld(this.width, this.height);
+    return x0 < right && x1 > left && y0 < top && y1 > bottom;
+  }
+
   scaleTo(scale) { this.scale = Math.min(kMaxScale, Math.max(kMinScale, scale)); }
 
   /** Zooms; what lies at a pixel stays there. */

@@ -25,6 +25,10 @@ ISPACE_WEB_FILE(kWebEvents, "events.js");
 ISPACE_WEB_FILE(kWebCamera, "camera.js");
 ISPACE_WEB_FILE(kWebSeek, "seek.js");
 ISPACE_WEB_FILE(kWebStates, "states.js");
+ISPACE_WEB_FILE(kWebBuilding, "building.js");
+ISPACE_WEB_FILE(kWebPace, "pace.js");
+ISPACE_WEB_FILE(kWebHistory, "history.js");
+ISPACE_WEB_FILE(kWebClock, "clock.js");
 
 namespace ispace {
 
@@ -33,7 +37,7 @@ const WebFile* webFile(std::string_view path) {
         return std::string_view(begin, static_cast<std::size_t>(end - begin));
     };
     constexpr std::string_view kScript = "text/javascript; charset=utf-8";
-    static const std::array<WebFile, 13> files = {{
+    static const std::array<WebFile, 17> files = {{
         {"/", "text/html; charset=utf-8", between(kWebPage, kWebPageEnd)},
         {"/style.css", "text/css; charset=utf-8", between(kWebStyle, kWebStyleEnd)},
         {"/icon.svg", "image/svg+xml", between(kWebIcon, kWebIconEnd)},
@@ -47,6 +51,10 @@ const WebFile* webFile(std::string_view path) {
         {"/camera.js", kScript, between(kWebCamera, kWebCameraEnd)},
         {"/seek.js", kScript, between(kWebSeek, kWebSeekEnd)},
         {"/states.js", kScript, between(kWebStates, kWebStatesEnd)},
+        {"/building.js", kScript, between(kWebBuilding, kWebBuildingEnd)},
+        {"/history.js", kScript, between(kWebHistory, kWebHistoryEnd)},
+        {"/pace.js", kScript, between(kWebPace, kWebPaceEnd)},
+        {"/clock.js", kScript, between(kWebClock, kWebClockEnd)},
     }};
     const auto* const found = std::find_if(files.begin(), files.end(),
                                            [&](const WebFile& file) { return file.path == path; });

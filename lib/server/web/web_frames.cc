@@ -14,6 +14,7 @@
 #include "drawing/color.h"
 #include "drawing/plan/plan.h"
 #include "drawing/plan/plan_json.h"
+#include "scene/room_state.h"
 #include "sense/formats/reading_fields.h"
 #include "sim/mover.h"
 #include "sim/sim_time.h"
@@ -89,15 +90,46 @@ void addColors(JsonWriter& json) {
     json.endArray().endObject();
 }
 
+/// Lamps, heaters and others that people switch and that have a place of their own: doors, windows
+/// and blinds are parts of the plan.
+void addActuators(JsonWriter& json, const Scene& scene) {
+    json.key("actuators").beginArray();
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        const Record& record = scene.records[i];
+        if (!isActuator(record.keyword()) || !record.has("at")) continue;
+        if (record.keyword() == "door" || record.keyword() == "window") continue;
+        const Tuple& at = record.tuple("at");
+        json.beginObject().key("id").value(scene.ids[i]).key("kind").value(record.keyword());
+        json.key("at").beginArray().value(rounded(at[0])).value(rounded(at[1])).endArray();
+        json.endObject();
+    }
+    json.endArray();
+}
+
+void addPassages(JsonWriter& json, const std::vector<PassageOutline>& passages) {
+    json.key("passages").beginArray();
+    for (const PassageOutline& passage : passages) {
+        json.beginObject().key("id").value(passage.id).key("kind").value(passage.kind);
+        json.key("outline").beginArray();
+        for (const Point2 corner : passage.outline)
+            json.value(rounded(corner.x)).value(rounded(corner.y));
+        json.endArray().endObject();
+    }
+    json.endArray();
+}
+
 }  // namespace
 
-std::string webScene(const Scene& scene, std::int64_t version, const std::string& title) {
+std::string webScene(const Scene& scene, std::int64_t version, const std::string& title,
+                     const std::vector<PassageOutline>& passages) {
     JsonWriter json;
     json.beginObject().key("schema").value("ispace-web-scene/1").key("scene").value(version);
     json.key("title").value(title).key("plan");
     writePlan(json, scene);
     addMovers(json, scene);
     addSensors(json, scene);
+    addActuators(json, scene);
+    addPassages(json, passages);
     addColors(json);
     json.endObject();
     return json.take();
@@ -221,7 +253,7 @@ WebFrames::Text WebFrames::frame(std::int64_t known) {
 WebFrames::Text WebFrames::scene() {
     if (std::exchange(scene_version_, sceneVersion()) != sceneVersion() || !scene_)
         scene_ = std::make_shared<const std::string>(
-            webScene(simulation_->world().scene(), scene_version_, title_));
+            webScene(simulation_->world().scene(), scene_version_, title_, passages_));
     return scene_;
 }
 
@@ -237,6 +269,7 @@ std::string WebFrames::stateText() const {
                : clock.kind == Clock::Kind::Fast ? "fast"
                                                  : "step");
     out.append("\",\"rate\":").append(formatDouble(clock.rate));
+    out.append(",\"days\":").append(leader_->followsDays() ? "true" : "false");
     out.append(",\"paused\":").append(leader_->paused() ? "true" : "false");
     out.append(",\"replay\":").append(leader_->isReplay() ? "true" : "false");
     out.append(",\"over\":").append(leader_->isHeld() ? "true" : "false");

@@ -7,14 +7,16 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
 
 namespace ispace {
 
 /// Writes the static data of a scene for browsers, see share/schemas/web-scene.json: the plan (see
 /// writePlan), movers and their sizes, sensors, colours. \param version its name in state frames
-/// \param title e.g. base name of ENV
-std::string webScene(const Scene& scene, std::int64_t version, const std::string& title);
+/// \param title e.g. base name of ENV \param passages to other rooms
+std::string webScene(const Scene& scene, std::int64_t version, const std::string& title,
+                     const std::vector<PassageOutline>& passages = {});
 
 /// The state of the world for browsers, formatted once for all of them.
 ///
@@ -27,9 +29,13 @@ class WebFrames {
     using Text = std::shared_ptr<const std::string>;
 
     /// \param leader has the clock of the simulation, and may be that itself
-    /// \param title of the page, e.g. base name of ENV
-    WebFrames(const Simulation& simulation, const Simulation& leader, std::string title)
-        : simulation_(&simulation), leader_(&leader), title_(std::move(title)) {}
+    /// \param title of the page, e.g. base name of ENV \param passages to other rooms
+    WebFrames(const Simulation& simulation, const Simulation& leader, std::string title,
+              std::vector<PassageOutline> passages = {})
+        : simulation_(&simulation),
+          leader_(&leader),
+          title_(std::move(title)),
+          passages_(std::move(passages)) {}
 
     /// Builds a new frame if the world has changed, at most some 30 a second, and fewer if they
     /// take much of the world's time.
@@ -54,6 +60,7 @@ class WebFrames {
 
     const Simulation *simulation_, *leader_;
     std::string title_;
+    std::vector<PassageOutline> passages_;
     WallTime next_look_{};
     std::int64_t number_ = 0;
     std::int64_t steps_ = -1, version_ = -1;  // of the world at the newest frame

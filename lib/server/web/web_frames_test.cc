@@ -44,11 +44,12 @@ struct Watched : TestWorld {
 TEST(WebFrames, TellWhereEverythingIs) {
     Watched world("human id=h1 at=-1,1.5 heading=90\n");
     const std::string frame = world.next();
-    EXPECT_TRUE(frame.starts_with(
-        "{\"schema\":\"ispace-web-frame/1\",\"frame\":1,\"scene\":0,"
-        "\"t\":0.000,\"steps\":0,\"clock\":\"step\",\"rate\":1,"
-        "\"paused\":true,\"replay\":false,\"over\":false,\"movers\":[[0,0,0,0,0,0,0],"
-        "[2000,1500,9000,0,0,0,0],[-1000,1500,9000,0,0,0,0]],"))
+    EXPECT_TRUE(
+        frame.starts_with("{\"schema\":\"ispace-web-frame/1\",\"frame\":1,\"scene\":0,"
+                          "\"t\":0.000,\"steps\":0,\"clock\":\"step\",\"rate\":1,"
+                          "\"days\":false,\"paused\":true,\"replay\":false,\"over\":false,"
+                          "\"movers\":[[0,0,0,0,0,0,0],"
+                          "[2000,1500,9000,0,0,0,0],[-1000,1500,9000,0,0,0,0]],"))
         << frame;
     EXPECT_TRUE(has(frame,
                     "{\"id\":\"l1\",\"pose\":[-3000,-2000,0,0,0],\"first\":-2,\"step\":2,"
@@ -61,7 +62,8 @@ TEST(WebFrames, TellTheClockOfTheLeadingSimulation) {
     Simulation led(world.world, {}, {Clock::Kind::Fast, 1}, {});
     WebFrames frames(led, world.simulation, "upper");
     frames.look(WallTime{} + std::chrono::hours(1));
-    EXPECT_TRUE(has(*frames.frame(0), "\"clock\":\"step\",\"rate\":1,\"paused\":true"));
+    EXPECT_TRUE(
+        has(*frames.frame(0), "\"clock\":\"step\",\"rate\":1,\"days\":false,\"paused\":true"));
 }
 
 TEST(WebFrames, HaveMatsAndGates) {

@@ -155,7 +155,8 @@ WebPage::WebPage(ServerState& state, const std::string& title) {
         ServerState& one = *rooms->states[i];
         const std::string& id = rooms->worlds->rooms()[i].id;
         rooms_.push_back({&one, WebFrames(one.simulation(), state.simulation(),
-                                          std::string(title).append(", ").append(id))});
+                                          std::string(title).append(", ").append(id),
+                                          rooms->worlds->passageOutlines(i))});
     }
 }
 
@@ -179,8 +180,10 @@ WebAdmission WebPage::open(const WebRequest& request) {
         return {.status = 404, .why = "the WebSocket is /ws"};
     if (!origin_->mayConnect(request.origin))
         return {.status = 403, .why = "only the page of this server may connect"};
-    Room& chosen = rooms_[static_cast<std::size_t>(*room)];
-    return {.dialogue = std::make_unique<PageDialogue>(*chosen.state, chosen.frames, request.peer)};
+    // Requests are about the run, whose clock is that of its first room, whichever room is drawn.
+    WebFrames& frames = rooms_[static_cast<std::size_t>(*room)].frames;
+    return {.dialogue =
+                std::make_unique<PageDialogue>(*rooms_.front().state, frames, request.peer)};
 }
 
 void WebPage::lookAtEnd() {
