@@ -107,7 +107,8 @@ std::vector<ArrangeOptions> Adviser::goalsOf(const MeasuredState& now,
         ArrangeOptions& goal = goals.emplace_back(options);
         goal.facing = {rule};
         goal.weights = {};
-        goal.weights.targets = {readZone(rule.zone, now.scene.environment)};
+        for (const FacingPart& part : rule.parts)
+            goal.weights.targets.push_back(namedZone(rule.zone, part.outline));
     }
     const bool is_for_floor =
         goals.empty() || std::any_of(options_.requirements.begin(), options_.requirements.end(),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrange/facing_cells.h"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -11,24 +12,27 @@ namespace ispace {
 
 FacingCells::FacingCells(const Environment& environment, const Target& target,
                          std::span<const FacingRule> rules)
-    : grid_(target.grid), rules_(rules.begin(), rules.end()), all_(target.grid.size()) {
-    for (const FacingRule& rule : rules_) {
-        const std::vector<double> weights =
-            weightsOfCells(target, {.targets = {readZone(rule.zone, environment)}, .weights = {}});
-        CellSet& cells = cells_.emplace_back(target.grid.size());
-        for (std::size_t i = 0; i < weights.size(); ++i)
-            if (weights[i] > 0) cells.set(i);
-        all_ |= cells;
-    }
+    : grid_(target.grid), all_(target.grid.size()) {
+    for (const FacingRule& rule : facingIn(environment, rules))
+        for (const FacingPart& part : rule.parts) {
+            const NamedZone zone = namedZone(rule.zone, part.outline);
+            const std::vector<double> weights =
+                weightsOfCells(target, {.targets = {zone}, .weights = {}});
+            Part& added =
+                parts_.emplace_back(Part{part.heading, rule.within, CellSet(target.grid.size())});
+            for (std::size_t i = 0; i < weights.size(); ++i)
+                if (weights[i] > 0) added.cells.set(i);
+            all_ |= added.cells;
+        }
 }
 
 bool FacingCells::isKept(bool is_camera, Point2 place, std::size_t cell) const {
     if (!all_.test(cell)) return true;
     if (!is_camera) return false;
     const Point2 center = grid_.center(cell);
-    for (std::size_t i = 0; i < rules_.size(); ++i)
-        if (cells_[i].test(cell) && isFaced(rules_[i], center, place)) return true;
-    return false;
+    return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+        return part.cells.test(cell) && isFaced(part.heading, part.within, center, place);
+    });
 }
 
 void FacingCells::keepFaces(const SensorModel& sensor, Point2 place, CellSet& cells) const {

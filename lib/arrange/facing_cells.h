@@ -27,9 +27,13 @@ class FacingCells {
   private:
     [[nodiscard]] bool isKept(bool is_camera, Point2 place, std::size_t cell) const;
 
+    struct Part {
+        Angle heading, within;
+        CellSet cells;
+    };
+
     Grid grid_;
-    std::vector<FacingRule> rules_;
-    std::vector<CellSet> cells_;  // by rule
+    std::vector<Part> parts_;
     CellSet all_;
 };
 

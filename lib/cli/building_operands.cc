@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/glob.h"
 #include "base/message.h"
 #include "base/run_files.h"
 #include "building/building_sight.h"
@@ -288,6 +289,48 @@ std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
     return input;
 }
 
+namespace {
+
+/// Returns the storeys whose ids match a glob before a slash, and which have the doors behind it.
+/// \throws UsageError with the doors of all storeys if there are none
+std::vector<std::size_t> storeysWithDoors(const std::string& text, std::size_t slash,
+                                          const BuildingScene& building) {
+    const StoreyedDocument& document = building.document;
+    const Glob named(text.substr(0, slash));
+    const std::string doors = text.substr(slash + 1);
+    const std::size_t comma = doors.rfind(',');
+    // Without a distance it is no zone, as its reader says.
+    const std::string glob = comma == std::string::npos
+                                 ? "*"
+                                 : doors.substr(kDoorPrefix.size(), comma - kDoorPrefix.size());
+    const Glob wanted(glob);
+    std::vector<std::size_t> storeys;
+    std::string list;
+    bool is_named = false;
+    for (std::size_t i = 0; i < document.storeys.size(); ++i) {
+        const Environment& room = building.scenes[i]->environment;
+        const std::string& id = document.storeys[i].id;
+        if (const std::string its = doorList(room, id + '/'); !its.empty())
+            list += (list.empty() ? "" : ", ") + its;
+        if (!named.matches(id)) continue;
+        is_named = true;
+        const std::vector<Doorway> all = doorwaysOf(room);
+        if (std::any_of(all.begin(), all.end(),
+                        [&](const Doorway& door) { return wanted.matches(door.id); }))
+            storeys.push_back(i);
+    }
+    if (!is_named)
+        static_cast<void>(
+            ofOption("--zone", [&] { return &document.storey(text.substr(0, slash)); }));
+    if (storeys.empty())
+        throw UsageError(
+            "--zone: " + excerpt(text) + " meets no door" +
+            (list.empty() ? ": the building has none" : "; the doors of the building: " + list));
+    return storeys;
+}
+
+}  // namespace
+
 void addZones(std::span<const std::string> zones, BuildingScene& building) {
     const StoreyedDocument& document = building.document;
     std::map<std::size_t, std::vector<std::string>> by_storey;
@@ -296,6 +339,11 @@ void addZones(std::span<const std::string> zones, BuildingScene& building) {
         if (slash == std::string::npos)
             throw UsageError("--zone: " + excerpt(text) + " names no storey, as in " +
                              document.storeys.front().id + "/rect:0,0,1,1");
+        if (text.substr(slash + 1).starts_with(kDoorPrefix)) {
+            for (const std::size_t storey : storeysWithDoors(text, slash, building))
+                by_storey[storey].push_back(text.substr(slash + 1));
+            continue;
+        }
         const Storey* const storey =
             ofOption("--zone", [&] { return &document.storey(text.substr(0, slash)); });
         by_storey[static_cast<std::size_t>(storey - document.storeys.data())].push_back(

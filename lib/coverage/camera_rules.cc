@@ -47,14 +47,9 @@ bool isAngle(std::string_view text) {
 /// Returns the zones that match. \throws UsageError if none does
 std::vector<Zone> matchingZones(const std::string& pattern, const Environment& environment) {
     std::vector<Zone> zones = zonesOf(environment);
-    std::vector<std::string> known;
-    known.reserve(zones.size());
-    for (const Zone& zone : zones) known.push_back(zone.id);
     const Glob glob(pattern);
     std::erase_if(zones, [&glob](const Zone& zone) { return !glob.matches(zone.id); });
-    if (zones.empty())
-        throw UsageError("the room has no zone `" + printable(pattern) + '`' +
-                         didYouMean(pattern, known));
+    if (zones.empty()) throw UsageError(unknownZoneText(pattern, environment));
     return zones;
 }
 
@@ -65,9 +60,8 @@ struct AreaInZone {
     double zone = 0, seen = 0;
 };
 
-AreaInZone areasIn(const Environment& environment, const Zone& zone,
+AreaInZone areasIn(const Environment& environment, Polygon outline,
                    const std::vector<std::vector<Curve>>& views) {
-    Polygon outline = zone.outline;
     if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
     std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoorMark),
                                  markLayer({curveOf(outline)}, kZoneMark)};
@@ -85,14 +79,14 @@ AreaInZone areasIn(const Environment& environment, const Zone& zone,
 
 /// Returns the points within `reach` of the camera from which the direction to it is within an
 /// angle of the heading, counter-clockwise.
-Polygon wedgeOf(Point2 camera, const FacingRule& rule, double reach) {
+Polygon wedgeOf(Point2 camera, Angle heading, Angle within, double reach) {
     constexpr double kStep = 45;  // degrees: chords stay beyond 0.9 of the radius
-    const double half = rule.within.degrees();
+    const double half = within.degrees();
     const int steps = static_cast<int>(std::ceil(2 * half / kStep));
     Polygon wedge;
     if (half < 180) wedge.push_back(camera);
     for (int i = half < 180 ? 0 : 1; i <= steps; ++i) {
-        const Angle angle = rule.heading + Angle::degrees(180 - half + 2 * half * i / steps);
+        const Angle angle = heading + Angle::degrees(180 - half + 2 * half * i / steps);
         wedge.push_back(camera + reach * Vec2{cos(angle), sin(angle)});
     }
     return wedge;
@@ -108,6 +102,53 @@ std::vector<Curve> facedPart(const std::vector<Curve>& view, const Polygon& wedg
 
 }  // namespace
 
+namespace {
+
+/// Metres from doors, and degrees, unless given.
+constexpr double kFromDoor = 1.5, kFaceDegrees = 45;
+
+std::optional<double> metresOf(std::string_view text) {
+    const KeySpec key{.name = "distance",
+                      .type = KeyType::Number,
+                      .unit = Unit::Length,
+                      .help = "",
+                      .lower = 0.001,
+                      .upper = 100};
+    try {
+        return std::get<double>(parseValue(key, text));
+    } catch (const FormatError&) {
+        return std::nullopt;
+    }
+}
+
+/// Parses the pieces behind the glob of `door:GLOB[,M][,DEG[,HEADING]]`. \param wanted a message
+void parseDoorPieces(std::span<const std::string_view> pieces, const std::string& text,
+                     FacingRule& rule) {
+    const auto fail = [&text](const std::string& why) {
+        throw UsageError(
+            '`' + text + "`: " + why +
+            "; doors take door:GLOB[,M][,DEG[,HEADING]], as in door:Front*,1.5m,45deg");
+    };
+    double metres = kFromDoor;
+    if (!pieces.empty())
+        if (const auto distance = metresOf(pieces.front())) {
+            if (pieces.size() == 1 && isAngle(pieces.front()))
+                fail('`' + std::string(pieces.front()) +
+                     "` may be metres or degrees, write its unit");
+            metres = *distance;
+            pieces = pieces.subspan(1);
+        }
+    if (pieces.size() > 2) fail("there is too much behind the doors");
+    for (const std::string_view piece : pieces)
+        if (!isAngle(piece)) fail('`' + std::string(piece) + "` is no angle");
+    rule.zone += ',' + formatDouble(metres);
+    rule.within = pieces.empty() ? Angle::degrees(kFaceDegrees) : angleOf(pieces.front());
+    rule.is_by_doors = pieces.size() < 2;
+    if (!rule.is_by_doors) rule.heading = angleOf(pieces.back());
+}
+
+}  // namespace
+
 FacingRule parseFacing(std::string_view text) {
     const std::string wanted = '`' + std::string(text) +
                                "` is not ZONE,DEG[,HEADING][=SHARE], as in entrance,45deg,180=90%";
@@ -117,6 +158,21 @@ FacingRule parseFacing(std::string_view text) {
         rule.required = parseShare(rest.substr(equals + 1));
         if (!rule.required) throw UsageError(wanted);
         rest = rest.substr(0, equals);
+    }
+    const auto check_angle = [&] {
+        if (!(rule.within.degrees() > 0 && rule.within.degrees() <= 180))
+            throw UsageError('`' + std::string(text) +
+                             "`: the angle is not above 0, up to 180 degrees");
+    };
+    if (rest.starts_with(kDoorPrefix)) {
+        std::vector<std::string_view> pieces;
+        for (auto comma = rest.find(','); comma != std::string_view::npos;
+             comma = rest.find(',', comma + 1))
+            pieces.push_back(rest.substr(comma + 1, rest.find(',', comma + 1) - comma - 1));
+        rule.zone = rest.substr(0, rest.find(','));
+        parseDoorPieces(pieces, std::string(text), rule);
+        check_angle();
+        return rule;
     }
     const auto last = rest.rfind(',');
     if (last == std::string_view::npos || rest.front() == ',') throw UsageError(wanted);
@@ -130,9 +186,7 @@ FacingRule parseFacing(std::string_view text) {
         rest.substr(end + 1, rule.is_by_doors ? std::string_view::npos : last - first - 1);
     rule.within = angleOf(within);
     if (!rule.is_by_doors) rule.heading = angleOf(rest.substr(last + 1));
-    if (!(rule.within.degrees() > 0 && rule.within.degrees() <= 180))
-        throw UsageError('`' + std::string(text) +
-                         "`: the angle is not above 0, up to 180 degrees");
+    check_angle();
     return rule;
 }
 
@@ -158,24 +212,75 @@ std::vector<std::string> privateZones(const PrivacyRule& rule, const Environment
 
 namespace {
 
+/// A side of a door that is indoors.
+struct DoorSide {
+    Point2 inside;  ///< a point there, kAtDoor from the opening
+    Vec2 out;       ///< unit vector away from the door
+    [[nodiscard]] Angle heading() const {
+        return wrapped(Angle::degrees(std::atan2(out.y, out.x) * 180 / std::numbers::pi));
+    }
+};
+
+std::vector<DoorSide> indoorSides(const Environment& environment, const Doorway& door) {
+    const Point2 middle = door.line.a + 0.5 * (door.line.b - door.line.a);
+    const Vec2 way = door.line.b - door.line.a;
+    const Vec2 across = (1 / length(way)) * Vec2{-way.y, way.x};
+    std::vector<DoorSide> sides;
+    for (const double side : {1.0, -1.0}) {
+        const Vec2 out = side * across;
+        const Point2 inside = middle + (kAtDoor + door.thickness / 2) * out;
+        if (environment.indoorIndex().locate(inside) == Side::Inside)
+            sides.push_back({inside, out});
+    }
+    return sides;
+}
+
 /// Returns the heading in which people walk through a door into the zone; empty if it is not on the
 /// border.
 std::optional<Angle> headingInto(const Environment& environment, const Zone& zone,
                                  const Doorway& door) {
-    const Point2 middle = door.line.a + 0.5 * (door.line.b - door.line.a);
-    const Vec2 way = door.line.b - door.line.a;
-    const Vec2 across = (1 / length(way)) * Vec2{-way.y, way.x};
-    std::optional<Angle> heading;
-    for (const double side : {1.0, -1.0}) {
-        const Point2 inside = middle + side * (kAtDoor + door.thickness / 2) * across;
-        if (locate(zone.outline, inside) != Side::Inside ||
-            environment.indoorIndex().locate(inside) != Side::Inside)
-            continue;
-        if (heading) return std::nullopt;  // on both sides
-        heading = wrapped(
-            Angle::degrees(std::atan2(side * across.y, side * across.x) * 180 / std::numbers::pi));
+    std::vector<DoorSide> sides = indoorSides(environment, door);
+    std::erase_if(sides, [&zone](const DoorSide& side) {
+        return locate(zone.outline, side.inside) != Side::Inside;
+    });
+    return sides.size() == 1 ? std::optional(sides.front().heading()) : std::nullopt;
+}
+
+/// Returns the part of a convex outline beyond a line, where dot(p - from, out) > 0.
+Polygon partBeyond(const Polygon& outline, Point2 from, Vec2 out) {
+    Polygon part;
+    forEachEdge(outline, [&](const Segment2& edge) {
+        const double a = dot(edge.a - from, out), b = dot(edge.b - from, out);
+        if (a > 0) part.push_back(edge.a);
+        if ((a > 0 && b < 0) || (a < 0 && b > 0))
+            part.push_back(edge.a + a / (a - b) * (edge.b - edge.a));
+        else if (a == 0)
+            part.push_back(edge.a);
+    });
+    return part;
+}
+
+/// Adds a rule for each door of a zone of doors, with a part for each side that is indoors.
+void addDoorRules(const Environment& environment, const FacingRule& rule,
+                  std::vector<FacingRule>& all) {
+    const std::string_view words = std::string_view(rule.zone).substr(kDoorPrefix.size());
+    const std::size_t comma = words.rfind(',');
+    const double metres = metresOf(words.substr(comma + 1)).value();
+    for (const Doorway& door :
+         doorsNamed(std::string(words.substr(0, comma)), rule.zone, environment)) {
+        FacingRule own = rule;
+        own.zone = std::string(kDoorPrefix) + door.id + ',' + formatDouble(metres);
+        own.door = door.id;
+        own.is_by_doors = false;
+        const Polygon floor = floorAround(door, metres);
+        for (const DoorSide& side : indoorSides(environment, door))
+            own.parts.push_back({partBeyond(floor, door.line.a, side.out),
+                                 rule.is_by_doors ? side.heading() : rule.heading});
+        if (own.parts.empty())
+            throw UsageError("no floor of the room is at the door " + printable(door.id));
+        if (rule.is_by_doors) own.heading = own.parts.front().heading;
+        all.push_back(std::move(own));
     }
-    return heading;
 }
 
 }  // namespace
@@ -183,10 +288,23 @@ std::optional<Angle> headingInto(const Environment& environment, const Zone& zon
 std::vector<FacingRule> facingIn(const Environment& environment,
                                  std::span<const FacingRule> rules) {
     std::vector<FacingRule> all;
-    for (const FacingRule& rule : rules)
+    for (const FacingRule& rule : rules) {
+        if (!rule.parts.empty()) {
+            all.push_back(rule);
+            continue;
+        }
+        if (rule.zone.starts_with(kDoorPrefix)) {
+            addDoorRules(environment, rule, all);
+            continue;
+        }
         for (const Zone& zone : matchingZones(rule.zone, environment)) {
             FacingRule own = rule;
             own.zone = zone.id;
+            own.parts = {{zone.outline, rule.heading}};
+            if (signedArea(zone.outline) < 0) {
+                Polygon& outline = own.parts.front().outline;
+                std::reverse(outline.begin(), outline.end());
+            }
             if (!rule.is_by_doors) {
                 all.push_back(own);
                 continue;
@@ -195,22 +313,24 @@ std::vector<FacingRule> facingIn(const Environment& environment,
             const std::size_t before = all.size();
             for (const Doorway& door : doorwaysOf(environment))
                 if (const auto heading = headingInto(environment, zone, door)) {
-                    own.heading = *heading;
+                    own.heading = own.parts.front().heading = *heading;
+                    own.door = door.id;
                     all.push_back(own);
                 }
             if (all.size() == before)
                 throw UsageError("no door is on the border of zone " + printable(zone.id) +
                                  ": give the heading of people, as in " + zone.id + ",45deg,180");
         }
+    }
     return all;
 }
 
-bool isFaced(const FacingRule& rule, Point2 place, Point2 camera) {
+bool isFaced(Angle heading, Angle within, Point2 place, Point2 camera) {
     constexpr double kRounding = 1e-9;  // degrees
     const Vec2 to = camera - place;
-    const double heading = std::atan2(to.y, to.x) * 180 / std::numbers::pi;
-    const Angle off = wrapped(Angle::degrees(heading) - rule.heading);
-    return std::abs(off.degrees()) <= rule.within.degrees() + kRounding;
+    const double direction = std::atan2(to.y, to.x) * 180 / std::numbers::pi;
+    const Angle off = wrapped(Angle::degrees(direction) - heading);
+    return std::abs(off.degrees()) <= within.degrees() + kRounding;
 }
 
 std::vector<FacingResult> measureFacing(const Scene& scene, const Coverage& coverage,
@@ -218,10 +338,11 @@ std::vector<FacingResult> measureFacing(const Scene& scene, const Coverage& cove
     std::vector<FacingResult> results;
     const Box2& limits = scene.environment.limits();
     for (const FacingRule& rule : facingIn(scene.environment, rules)) {
-        for (const Zone& zone : matchingZones(rule.zone, scene.environment)) {
-            FacingResult result{rule};
+        FacingResult result{rule};
+        double seen = 0;
+        bool is_known = true;
+        for (const FacingPart& part : rule.parts) {
             std::vector<std::vector<Curve>> faced;
-            bool is_known = true;
             for (const SensorView& view : coverage.sensors) {
                 if (!scene.sensors[view.index].is<Camera>()) continue;
                 if (!view.region) {
@@ -235,13 +356,15 @@ std::vector<FacingResult> measureFacing(const Scene& scene, const Coverage& cove
                       Point2{limits.high.x, limits.low.y}})
                     reach = std::max(reach, distance(camera, corner));
                 constexpr double kBeyond = 1.2;
-                faced.push_back(facedPart(*view.region, wedgeOf(camera, rule, kBeyond * reach)));
+                faced.push_back(facedPart(
+                    *view.region, wedgeOf(camera, part.heading, rule.within, kBeyond * reach)));
             }
-            const AreaInZone areas = areasIn(scene.environment, zone, faced);
-            result.area = areas.zone;
-            if (is_known) result.share = shareOf(areas.seen, areas.zone);
-            results.push_back(std::move(result));
+            const AreaInZone areas = areasIn(scene.environment, part.outline, faced);
+            result.area += areas.zone;
+            seen += areas.seen;
         }
+        if (is_known) result.share = shareOf(seen, result.area);
+        results.push_back(std::move(result));
     }
     return results;
 }
@@ -265,11 +388,11 @@ std::vector<PrivacyResult> measurePrivacy(const Scene& scene, double plane,
             for (const auto& [id, region] : views) {
                 is_known &= region.has_value();
                 if (!region) continue;
-                if (areasIn(scene.environment, zone, {*region}).seen > kMinPiece)
+                if (areasIn(scene.environment, zone.outline, {*region}).seen > kMinPiece)
                     result.cameras.push_back(id);
                 all.push_back(*region);
             }
-            const AreaInZone areas = areasIn(scene.environment, zone, all);
+            const AreaInZone areas = areasIn(scene.environment, zone.outline, all);
             result.area = areas.zone;
             if (is_known) result.seen = areas.seen;
             results.push_back(std::move(result));

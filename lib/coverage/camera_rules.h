@@ -14,13 +14,22 @@
 
 namespace ispace {
 
+/// Floor on which people walk in one heading.
+struct FacingPart {
+    Polygon outline;
+    Angle heading;
+};
+
 /// A face at a point of the zone counts as seen by a camera only if the level direction from the
 /// point to the camera is within an angle of the heading in which people walk there.
 struct FacingRule {
-    std::string zone;
+    std::string zone;  ///< its id, or the text of a zone of doors
     Angle within, heading;
     std::optional<double> required = {};  ///< share of the zone
     bool is_by_doors = false;             ///< `heading` follows from doors, see facingIn()
+    // As facingIn() sets them.
+    std::string door = {};               ///< id of the door that gave the headings
+    std::vector<FacingPart> parts = {};  ///< of the zone
 };
 
 /// Cameras must not see these zones, or only with fewer pixels a metre.
@@ -30,17 +39,22 @@ struct PrivacyRule {
 };
 
 /// Parses `entrance,45deg,180` and `zone:entrance,45deg,180=90%`; without heading it is that of
-/// doors. \throws UsageError
+/// doors. `door:GLOB[,M][,DEG[,HEADING]]` is the floor within M of doors, 1.5 m by default, and
+/// within 45 degrees by default. \throws UsageError
 FacingRule parseFacing(std::string_view text);
 /// Largest distance of a door's opening from the zones that it leads into, metres.
 constexpr double kAtDoor = 0.3;
-/// Returns a rule for each zone that matches and, without a heading, for each door on its border:
-/// people walk into the zone, straight through the door. A door is on the border of a zone if it is
-/// within kAtDoor of it and indoor floor of the zone lies on one side of the door alone.
+/// Returns a rule with its parts for each zone that matches and, without a heading, for each door
+/// on its border: people walk into the zone, straight through the door. A door is on the border of
+/// a zone if it is within kAtDoor of it and indoor floor of the zone lies on one side of the door
+/// alone. A zone of doors is one for each door that matches; at each side of the door that is
+/// indoors people walk away from it, or all in the heading that is given. Rules that have parts
+/// stay as they are.
 /// \throws UsageError for an unknown zone, and for one without such a door
 std::vector<FacingRule> facingIn(const Environment& environment, std::span<const FacingRule> rules);
-/// Returns true if a camera at this point sees faces at a point of the zone from ahead.
-bool isFaced(const FacingRule& rule, Point2 place, Point2 camera);
+/// Returns true if a camera at this point sees faces from ahead at a point where people walk in a
+/// heading.
+bool isFaced(Angle heading, Angle within, Point2 place, Point2 camera);
 /// Returns the ids of the zones of a rule of privacy. \throws UsageError for a glob that matches
 /// none
 std::vector<std::string> privateZones(const PrivacyRule& rule, const Environment& environment);

@@ -84,11 +84,73 @@ TEST(CameraRules, HeadingsFollowFromTheDoorsOfAZone) {
     EXPECT_EQ(headings("left"), std::vector<double>{180});
     EXPECT_THROW(headings("south"), UsageError);  // floor on both sides
     EXPECT_THROW(headings("bed"), UsageError);
-    FacingRule rule = parseFacing("entrance,45deg,-90");
-    EXPECT_TRUE(isFaced(rule, {-2, 2}, {-2, 0}));
-    EXPECT_TRUE(isFaced(rule, {-2, 2}, {-1, 1}));
-    EXPECT_FALSE(isFaced(rule, {-2, 2}, {-0.9, 1}));
-    EXPECT_FALSE(isFaced(rule, {-2, 2}, {-2, 3}));
+    const Angle south = Angle::degrees(-90), within = Angle::degrees(45);
+    EXPECT_TRUE(isFaced(south, within, {-2, 2}, {-2, 0}));
+    EXPECT_TRUE(isFaced(south, within, {-2, 2}, {-1, 1}));
+    EXPECT_FALSE(isFaced(south, within, {-2, 2}, {-0.9, 1}));
+    EXPECT_FALSE(isFaced(south, within, {-2, 2}, {-2, 3}));
+}
+
+TEST(CameraRules, ParsesFacingAtDoors) {
+    const auto parsed = [](const char* text) {
+        const FacingRule rule = parseFacing(text);
+        return rule.zone + ' ' + std::to_string(std::lround(rule.within.degrees())) +
+               (rule.is_by_doors ? "" : ' ' + std::to_string(std::lround(rule.heading.degrees())));
+    };
+    EXPECT_EQ(parsed("door:*"), "door:*,1.5 45");
+    EXPECT_EQ(parsed("door:Front*,60deg"), "door:Front*,1.5 60");
+    EXPECT_EQ(parsed("zone:door:Front*,80cm=50%"), "door:Front*,0.8 45");
+    EXPECT_EQ(parsed("door:f,2,30"), "door:f,2 30");
+    EXPECT_EQ(parsed("door:f,2m,30deg,180"), "door:f,2 30 180");
+    EXPECT_EQ(parsed("door:f,30deg,-90"), "door:f,1.5 30 -90");
+    for (const char* text : {"door:f,1.5", "door:f,x", "door:f,1,2,3,4", "door:f,1,0deg"})
+        EXPECT_THROW(parsed(text), UsageError) << text;
+}
+
+TEST(CameraRules, ADoorIsOneRuleOfTheFloorAtItsIndoorSides) {
+    // The wall of the door `within` stands in the room; people come in by `north`.
+    const std::string room =
+        "fence id=f path=-4,-3;4,-3;4,3;-4,3 closed=yes\nwall id=w from=0,-3 to=0,0\n"
+        "door id=north from=-2.5,3 to=-1.5,3\ndoor id=within from=0,-2.5 to=0,-1.5\n";
+    const Scene scene = sceneOf(room);
+    const FacingRule any = parseFacing("door:*,0.4,45deg");
+    const std::vector<FacingRule> rules = facingIn(scene.environment, {&any, 1});
+    ASSERT_EQ(rules.size(), 2U);
+    EXPECT_EQ(rules[0].zone, "door:north,0.4");
+    ASSERT_EQ(rules[0].parts.size(), 1U);
+    EXPECT_NEAR(rules[0].parts[0].heading.degrees(), -90, 1e-9);
+    ASSERT_EQ(rules[1].parts.size(), 2U);
+    EXPECT_NEAR(std::abs(rules[1].parts[0].heading.degrees() - rules[1].parts[1].heading.degrees()),
+                180, 1e-9);
+    // Half of a stadium of 1 m by 0.4 m; both halves of the other, without its wall.
+    const auto alone = measureFacing(scene, measuredFor(scene), {&any, 1});
+    const double pi = std::acos(-1);
+    EXPECT_NEAR(alone[0].area, 0.4 + 0.08 * pi, 0.002);
+    EXPECT_EQ(alone[0].share, 0);
+    // A camera south of the door sees those that come in; one in the north corner sees none.
+    const auto share = [&](const std::string& at) {
+        const Scene seen = sceneOf(room + domeAt("c", at));
+        return measureFacing(seen, measuredFor(seen), {&any, 1}).front().share.value();
+    };
+    EXPECT_NEAR(share("-2,-1"), 1, 1e-6);
+    EXPECT_NEAR(share("-3.9,2.9"), 0, 1e-6);
+}
+
+TEST(CameraRules, UnknownDoorsAndZonesAreListed) {
+    const Scene scene = sceneOf(
+        "fence id=f path=-4,-3;4,-3;4,3;-4,3 closed=yes\ndoor id=north from=-2.5,3 to=-1.5,3\n"
+        "zone id=hall path=-3,1;3,1;3,2;-3,2\n");
+    const auto refusal = [&](const char* text) -> std::string {
+        const FacingRule rule = parseFacing(text);
+        try {
+            static_cast<void>(facingIn(scene.environment, {&rule, 1}));
+        } catch (const UsageError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refusal("door:Front*"), "the room has no door `Front*`; its doors: north (1.00 m)");
+    EXPECT_EQ(refusal("lobby,45deg"), "the room has no zone `lobby`; its zones: hall");
 }
 
 TEST(CameraRules, FacesAreSeenFromAhead) {

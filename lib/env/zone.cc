@@ -103,27 +103,42 @@ const Element* zoneRecord(std::string_view id, const Environment& environment) {
     return nullptr;
 }
 
-UsageError unknownZone(std::string_view text, const Environment& environment) {
-    std::vector<std::string> known;
-    for (const Element& element : environment.elements())
-        if (element.record.keyword() == "zone") known.push_back(element.id);
-    return UsageError("the room has no zone " + excerpt(text) + didYouMean(text, known) +
-                      "; write the id of a zone, rect:X,Y,X,Y, poly:X,Y;X,Y;X,Y or door:GLOB,M");
+constexpr std::size_t kMaxListed = 20;  // doors or zones in a message
+
+/// Returns "a, b and 3 more"; "" for no things.
+std::string listed(const std::vector<std::string>& things) {
+    std::string list;
+    for (std::size_t i = 0; i < std::min(kMaxListed, things.size()); ++i)
+        list += (i == 0 ? "" : ", ") + things[i];
+    if (things.size() > kMaxListed)
+        list += " and " + std::to_string(things.size() - kMaxListed) + " more";
+    return list;
 }
 
 }  // namespace
 
+std::string unknownZoneText(std::string_view text, const Environment& environment) {
+    std::vector<std::string> known;
+    for (const Element& element : environment.elements())
+        if (element.record.keyword() == "zone") known.push_back(element.id);
+    return "the room has no zone " + excerpt(text) + didYouMean(text, known) +
+           (known.empty() ? "" : "; its zones: " + listed(known));
+}
+
 NamedZone readZone(std::string_view text, const Environment& environment) {
+    if (const Element* const element = zoneRecord(text, environment))
+        return namedZone(text, zoneOutline(element->record));
+    if (text.starts_with(kRectangle) || text.starts_with(kPolygon))
+        return namedZone(text, parsedOutline(text));
+    throw UsageError(unknownZoneText(text, environment) +
+                     "; write the id of a zone, rect:X,Y,X,Y, poly:X,Y;X,Y;X,Y or door:GLOB,M");
+}
+
+NamedZone namedZone(std::string_view text, Polygon outline) {
     NamedZone zone;
     zone.name = text;
-    if (const Element* const element = zoneRecord(text, environment))
-        zone.outline = zoneOutline(element->record);
-    else if (text.starts_with(kRectangle) || text.starts_with(kPolygon))
-        zone.outline = parsedOutline(text);
-    else
-        throw unknownZone(text, environment);
+    zone.outline = std::move(outline);
     mustEnclose(zone.outline, text);
-
     zone.inside = centerOfGravity(zone.outline);
     zone.is_center_outside = locate(zone.outline, zone.inside) != Side::Inside;
     if (!zone.is_center_outside) return zone;
@@ -137,9 +152,7 @@ NamedZone readZone(std::string_view text, const Environment& environment) {
 
 namespace {
 
-constexpr std::string_view kDoor = "door:";
-constexpr int kChords = 16;             // per quarter circle
-constexpr std::size_t kMaxListed = 20;  // doors in a message
+constexpr int kChords = 16;  // per quarter circle
 
 }  // namespace
 
@@ -162,10 +175,29 @@ std::vector<Doorway> doorwaysOf(const Environment& environment) {
     return doors;
 }
 
-namespace {
+std::string doorList(const Environment& environment, std::string_view prefix) {
+    std::vector<std::string> doors;
+    for (const Doorway& door : doorwaysOf(environment))
+        doors.push_back(std::string(prefix) + door.id + " (" +
+                        formatFixed(distance(door.line.a, door.line.b), 2) + " m)");
+    return listed(doors);
+}
 
-/// Returns all points within the distance of the doorway, counter-clockwise.
-Polygon around(const Doorway& door, double distance_from_it) {
+std::vector<Doorway> doorsNamed(const std::string& glob, std::string_view text,
+                                const Environment& environment) {
+    std::vector<Doorway> doors = doorwaysOf(environment);
+    std::vector<std::string> known;
+    for (const Doorway& door : doors) known.push_back(door.id);
+    const Glob wanted(glob);
+    std::erase_if(doors, [&](const Doorway& door) { return !wanted.matches(door.id); });
+    if (!doors.empty()) return doors;
+    throw UsageError(known.empty()
+                         ? "the room has no doors, which " + excerpt(text) + " is about"
+                         : "the room has no door " + excerpt(glob) + didYouMean(glob, known) +
+                               "; its doors: " + doorList(environment));
+}
+
+Polygon floorAround(const Doorway& door, double distance_from_it) {
     const Vec2 way = door.line.b - door.line.a;
     const Vec2 along = 1 / length(way) * way, across = perpendicular(along);
     const Vec2 aside = door.thickness / 2 * across;
@@ -186,6 +218,8 @@ Polygon around(const Doorway& door, double distance_from_it) {
     return outline;
 }
 
+namespace {
+
 /// \throws UsageError
 std::pair<std::string, double> parsedDoors(std::string_view text) {
     constexpr double kMaxDistance = 100;
@@ -195,7 +229,7 @@ std::pair<std::string, double> parsedDoors(std::string_view text) {
                       .help = "",
                       .lower = 0.001,
                       .upper = kMaxDistance};
-    const std::string_view words = text.substr(kDoor.size());
+    const std::string_view words = text.substr(kDoorPrefix.size());
     const std::size_t comma = words.rfind(',');
     if (comma == std::string_view::npos || comma == 0)
         throw UsageError(excerpt(text) + " is no zone: wanted door:GLOB,M, such as door:*,0.8");
@@ -215,36 +249,19 @@ struct DoorZone {
 
 std::vector<DoorZone> doorZones(std::string_view text, const Environment& environment) {
     const auto [glob, metres] = parsedDoors(text);
-    const Glob doors(glob);
     std::vector<DoorZone> zones;
-    std::vector<std::string> known;
-    std::string list;
-    for (const Doorway& door : doorwaysOf(environment)) {
-        if (known.size() < kMaxListed)
-            list += (known.empty() ? "" : ", ") + door.id + " (" +
-                    formatFixed(distance(door.line.a, door.line.b), 2) + " m)";
-        known.push_back(door.id);
-        if (!doors.matches(door.id)) continue;
+    for (const Doorway& door : doorsNamed(glob, text, environment))
         zones.push_back(
             {door.id,
-             {std::string(kDoor) + door.id + ',' + formatDouble(metres), around(door, metres),
-              door.line.a + 0.5 * (door.line.b - door.line.a), false}});
-    }
-    if (zones.empty())
-        throw UsageError(
-            known.empty() ? "the room has no doors, which " + excerpt(text) + " is about"
-                          : "the room has no door " + excerpt(glob) + didYouMean(glob, known) +
-                                "; its doors: " + list +
-                                (known.size() > kMaxListed
-                                     ? " and " + std::to_string(known.size() - kMaxListed) + " more"
-                                     : ""));
+             {std::string(kDoorPrefix) + door.id + ',' + formatDouble(metres),
+              floorAround(door, metres), door.line.a + 0.5 * (door.line.b - door.line.a), false}});
     return zones;
 }
 
 }  // namespace
 
 std::vector<NamedZone> readZones(std::string_view text, const Environment& environment) {
-    if (!text.starts_with(kDoor)) return {readZone(text, environment)};
+    if (!text.starts_with(kDoorPrefix)) return {readZone(text, environment)};
     std::vector<NamedZone> zones;
     for (DoorZone& at : doorZones(text, environment)) zones.push_back(std::move(at.zone));
     return zones;
@@ -264,7 +281,7 @@ std::vector<Record> zoneRecords(std::span<const std::string> texts, const Enviro
         record.set("path", std::move(path));
     };
     for (const std::string& text : texts) {
-        if (!text.starts_with(kDoor)) {
+        if (!text.starts_with(kDoorPrefix)) {
             const NamedZone zone = readZone(text, environment);
             if (ids.count(text) == 0) add(zone.outline, "");
             continue;

@@ -26,6 +26,10 @@ struct NamedZone {
 /// \throws UsageError for an unknown zone (with the nearest name), a polygon of fewer than three
 ///         corners, without area, or that crosses itself
 NamedZone readZone(std::string_view text, const Environment& environment);
+/// Returns the zone of an outline. \throws UsageError as readZone()
+NamedZone namedZone(std::string_view text, Polygon outline);
+/// Returns "the room has no zone `x`, did you mean …; its zones: a, b".
+std::string unknownZoneText(std::string_view text, const Environment& environment);
 
 /// Reads all zones of a text: `door:GLOB,M` means one zone for each door with a matching id: the
 /// floor within M of its opening, walls ignored. Any other text is one zone, as of readZone().
@@ -41,6 +45,17 @@ struct Doorway {
 };
 /// Returns the doors, in the order of their records.
 std::vector<Doorway> doorwaysOf(const Environment& environment);
+/// Begins a zone of doors.
+constexpr std::string_view kDoorPrefix = "door:";
+/// Returns the doors whose ids match. \param text that is about them, for messages
+/// \throws UsageError with doorList() if there are none
+std::vector<Doorway> doorsNamed(const std::string& glob, std::string_view text,
+                                const Environment& environment);
+/// Returns the doors with their widths, up to twenty: "ground/front (0.90 m), ground/back (1.00
+/// m)". \param prefix before each id
+std::string doorList(const Environment& environment, std::string_view prefix = "");
+/// Returns all points within the distance of the doorway, counter-clockwise and convex.
+Polygon floorAround(const Doorway& door, double distance);
 
 /// Returns records for these zones, skipping zones that are records already; those at doors have
 /// the id DOOR-zone, or DOOR-zone-2 and so on. \throws UsageError as readZones()

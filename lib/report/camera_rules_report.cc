@@ -2,9 +2,12 @@
 #include "report/camera_rules_report.h"
 
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "base/message.h"
 #include "base/number.h"
+#include "env/zone.h"
 #include "report/coverage_report.h"
 
 namespace ispace {
@@ -22,10 +25,17 @@ void writeNumber(JsonWriter& json, const char* key, const std::optional<double>&
 }
 
 JudgedRule judged(const FacingResult& result) {
-    JudgedRule rule{"facing " + printable(result.rule.zone) + " within " +
-                        ruleDegrees(result.rule.within) + " degrees of " +
-                        ruleDegrees(result.rule.heading),
-                    isMet(result), result.rule.required.has_value(), ""};
+    const FacingRule& facing = result.rule;
+    const bool is_of_door = facing.zone.starts_with(kDoorPrefix);
+    std::string name = "facing " + printable(facing.zone);
+    if (!is_of_door && !facing.door.empty()) name += " through " + printable(facing.door);
+    name += " within " + ruleDegrees(facing.within) + " degrees of ";
+    std::string_view separator;
+    for (const FacingPart& part : facing.parts) {
+        name.append(separator).append(ruleDegrees(part.heading));
+        separator = " and ";
+    }
+    JudgedRule rule{std::move(name), isMet(result), facing.required.has_value(), ""};
     if (!result.share)
         rule.finding = "is not known: a view is known by cells only";
     else
@@ -71,8 +81,15 @@ void writeCameraRules(JsonWriter& json, const CameraRules& rules) {
         for (const FacingResult& result : rules.facing) {
             json.beginObject();
             json.key("zone").value(result.rule.zone);
+            if (!result.rule.door.empty()) json.key("door").value(result.rule.door);
             writeNumber(json, "within", result.rule.within.degrees());
             writeNumber(json, "heading", result.rule.heading.degrees());
+            if (result.rule.parts.size() > 1) {
+                json.key("headings").beginArray();
+                for (const FacingPart& part : result.rule.parts)
+                    json.value(roundSignificant(part.heading.degrees()));
+                json.endArray();
+            }
             writeNumber(json, "area", result.area);
             writeNumber(json, "coverage", result.share);
             if (result.rule.required) writeNumber(json, "required", result.rule.required);

@@ -313,7 +313,7 @@ void ArrangeCommand::addGoalOptions() {
     line_.texts("--facing", "ZONE,DEG[,HEADING]", options_.zones.facing,
                 "floor of this zone counts only where a camera sees faces: within this angle of "
                 "the heading in which people walk there, by default through the doors on its "
-                "border",
+                "border; door:GLOB[,M][,DEG] is the floor within M of doors (1.5m, 45deg)",
                 Enters::History);
     line_.texts("--privacy", "ZONE[,D]", options_.zones.privacy,
                 "no camera may see these zones (globs allowed), or see them with at least D pixels "

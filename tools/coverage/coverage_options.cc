@@ -196,7 +196,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.texts("--facing", "ZONE,DEG[,HEADING][=SHARE]", words.facing,
                "report the share of a zone where cameras see faces: within this angle of the "
                "heading in which people walk there, by default through the doors on its border; "
-               "exit with 3 if less than SHARE",
+               "door:GLOB[,M][,DEG] is the floor within M of doors (1.5m, 45deg); exit with 3 if "
+               "less than SHARE",
                Enters::History);
     line.texts("--privacy", "ZONE[,D]", words.privacy,
                "exit with 3 if a camera sees some of these zones (globs allowed), or sees it with "
