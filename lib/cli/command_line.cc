@@ -14,6 +14,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "cli/command_text.h"
+#include "cli/guesses.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "record/schema.h"
@@ -103,6 +104,8 @@ struct CommandLine::Data {
     [[nodiscard]] std::string hintFor(const std::string& unknown) const {
         if (const auto hint = renamed.find(unknown); hint != renamed.end())
             return ": " + hint->second;
+        if (const std::string advice = guessAdvice(tool, unknown); !advice.empty())
+            return ": " + advice;
         std::vector<std::string> known;
         for (const Entry& entry : entries)
             for (const std::string& name : entry.option->get_lnames()) known.push_back("--" + name);

@@ -200,6 +200,11 @@ std::string listOf(const std::vector<std::string>& words) {
     return list;
 }
 
+void referToReport(const std::string& output) {
+    if (suffixOf(output) == "html" || suffixOf(output) == "htm")
+        throw UsageError(output + " is a page: --report " + output + " writes it");
+}
+
 std::string outputFormat(const std::optional<std::string>& to, const std::string& output,
                          const std::vector<std::string>& known,
                          const std::vector<SuffixOf>& others) {

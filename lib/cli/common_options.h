@@ -87,6 +87,10 @@ std::string suffixOf(const std::string& output);
 /// Returns "a, b or c".
 std::string listOf(const std::vector<std::string>& words);
 
+/// Refers to --report for a product whose suffix is that of a page: `-o r.html`.
+/// \throws UsageError for such a product
+void referToReport(const std::string& output);
+
 /// The usual suffix of a format if it differs from the name: {"log", "carmen"}; "": it has no
 /// suffix.
 struct SuffixOf {

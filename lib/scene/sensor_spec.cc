@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/sensor_spec.h"
 
-#include <strings.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <utility>
@@ -58,24 +56,52 @@ bool contains(Kinds kinds, std::string_view keyword) {
     return std::find(kinds.begin(), kinds.end(), keyword) != kinds.end();
 }
 
-/// Lists the models of a maker, the first word of their names; "" if there are none.
-std::string modelsBy(const std::string& word, Kinds kinds, const DeviceCatalogue& devices) {
-    std::string models;
-    for (const Record& device : devices.devices()) {
-        if (!contains(kinds, device.keyword()) || !device.has("name")) continue;
-        const std::string maker = split(device.text("name"), ' ').front();
-        if (::strcasecmp(maker.c_str(), word.c_str()) == 0)
-            models += (models.empty() ? "" : ", ") + device.text("model");
+/// Returns the words of a model or a name, in small letters: "URG-04LX" has "urg" and "04lx".
+std::vector<std::string> wordsOfName(const std::string& text) {
+    std::vector<std::string> words(1);
+    for (const char c : text) {
+        const bool is_letter = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.';
+        if (is_letter)
+            words.back() += c;
+        else if (c >= 'A' && c <= 'Z')
+            words.back() += static_cast<char>(c - 'A' + 'a');
+        else if (!words.back().empty())
+            words.emplace_back();
     }
-    return models;
+    if (words.back().empty()) words.pop_back();
+    return words;
+}
+
+/// Lists the models in whose model and name each word of a text begins a word; "" if there are
+/// none.
+std::string modelsLike(const std::string& text, Kinds kinds, const DeviceCatalogue& devices) {
+    constexpr std::size_t kMost = 20;
+    const std::vector<std::string> wanted = wordsOfName(text);
+    std::vector<std::string> models;
+    for (const Record& device : devices.devices()) {
+        if (wanted.empty() || !contains(kinds, device.keyword())) continue;
+        const std::string name = device.has("name") ? device.text("name") : "";
+        const std::vector<std::string> words = wordsOfName(device.text("model") + ' ' + name);
+        if (std::all_of(wanted.begin(), wanted.end(), [&words](const std::string& part) {
+                return std::any_of(words.begin(), words.end(), [&part](const std::string& word) {
+                    return word.starts_with(part);
+                });
+            }))
+            models.push_back(device.text("model"));
+    }
+    std::string list;
+    for (std::size_t i = 0; i < std::min(kMost, models.size()); ++i)
+        list += (i == 0 ? "" : ", ") + models[i];
+    return models.size() > kMost ? list + " and " + std::to_string(models.size() - kMost) + " more"
+                                 : list;
 }
 
 UsageError unknownSensor(const std::string& model, Kinds kinds, const DeviceCatalogue& devices) {
     if (const Record* const other = devices.find(model))
         return UsageError("`" + model + "` is a device of kind " + other->keyword() +
                           ", which this option does not take");
-    if (const std::string models = modelsBy(model, kinds, devices); !models.empty())
-        return UsageError("`" + model + "` makes several sensors, name one of them: " + models);
+    if (const std::string models = modelsLike(model, kinds, devices); !models.empty())
+        return UsageError("`" + model + "` is no sensor by itself, name one of these: " + models);
     return UsageError("unknown sensor `" + model + "`" +
                       didYouMean(model, knownSensors(kinds, devices)) +
                       " (a bare kind of ispace-3dm(5), or a device: scan --list-models names all)");

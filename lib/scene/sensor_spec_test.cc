@@ -61,7 +61,7 @@ TEST(SensorSpec, ErrorsNameWhatIsWrong) {
               "--list-models names all)");
     EXPECT_EQ(
         errorOf("Slamtec"),
-        "`Slamtec` makes several sensors, name one of them: rplidar-a1, rplidar-a2, rplidar-a3");
+        "`Slamtec` is no sensor by itself, name one of these: rplidar-a1, rplidar-a2, rplidar-a3");
     EXPECT_EQ(errorOf("pioneer-2dx"),
               "`pioneer-2dx` is a device of kind robot, which this option does not take");
     EXPECT_EQ(errorOf("sr-3000"),

@@ -40,6 +40,7 @@ void ArrangeCommand::settle() {
     checkBatchOptions(line_, options_.batch, options_.common, options_.operands, kSingle);
     if (!options_.batch.list.empty() && options_.places_file == "-")
         throw UsageError("--places: stdin is not read again for each line of LIST: give a file");
+    referToReport(options_.common.output);
     if (!options_.batch.shard || !options_.batch.list.empty())
         (void)outputFormat({}, options_.common.output, {"3dm"});  // rejects another suffix
     if (!words_.mount.empty()) how.mount.on = valueOf(words_.mount, kMounts);

@@ -113,6 +113,7 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
         const bool is_first = std::none_of(suffixes.begin(), suffixes.end(), is_taken);
         suffixes.push_back({is_first ? std::string(format.suffix) : "", std::string(format.name)});
     }
+    if (to.empty()) referToReport(o.common.output);
     const std::string name = outputFormat(to, o.common.output, formatNames(), suffixes);
     const CoverageFormat& format = coverageFormat(name);
     o.format = &format;
