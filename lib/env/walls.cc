@@ -2,7 +2,11 @@
 #include "env/walls.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -244,6 +248,100 @@ bool same(const WallCrossing& c, const WallCrossing& d) {
     return c.a == d.a && c.b == d.b && c.place == d.place;
 }
 
+/// Finds the lines that may meet a line elsewhere than at a common end. Where hundreds of lines end
+/// at one point only neighbours by direction may, so that a star takes no time for each pair.
+class MeetingLines {
+  public:
+    explicit MeetingLines(std::span<const Segment2> lines) : lines_(lines), hubs_of_(lines.size()) {
+        findHubs();
+        std::vector<std::vector<std::size_t>> parts(hubs_.size() + 1);
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            parts[hubs_of_[i].empty() ? hubs_.size() : hubs_of_[i].front().hub].push_back(i);
+        for (std::vector<std::size_t>& part : parts) {
+            std::vector<Segment2> own;
+            own.reserve(part.size());
+            for (const std::size_t i : part) own.push_back(lines[i]);
+            trees_.push_back({SegmentTree(own), std::move(part)});
+        }
+    }
+
+    /// Calls visit(line) for each line, maybe twice, and for some that do not meet it.
+    template <typename Visit>
+    void search(std::size_t line, Visit visit) const {
+        const std::vector<Place>& own = hubs_of_[line];
+        for (std::size_t t = 0; t < trees_.size(); ++t)
+            if (std::none_of(own.begin(), own.end(), [t](const Place& at) { return at.hub == t; }))
+                trees_[t].tree.search(lines_[line], kWeldDistance,
+                                      [&](std::size_t i) { visit(trees_[t].lines[i]); });
+        for (const Place& at : own) hubs_[at.hub].searchBeside(at.ray, visit);
+    }
+
+  private:
+    static constexpr std::size_t kMany = 64;
+    /// A line among those of a hub.
+    struct Place {
+        std::size_t hub, ray;
+    };
+    static constexpr double kLeastLength = 16 * kWeldDistance;
+
+    /// The lines that end at a point, by their directions.
+    struct Hub {
+        std::vector<std::pair<double, std::size_t>> rays;
+        double shortest = std::numeric_limits<double>::infinity();
+
+        template <typename Visit>
+        void searchBeside(std::size_t at, Visit visit) const {
+            // fanOut() holds beyond this angle, up to that of lines in opposite directions.
+            const double near = std::asin(std::min(1.0, 4 * kWeldDistance / shortest));
+            for (const bool is_left : {true, false})
+                for (std::size_t n = 1; n < rays.size(); ++n) {
+                    const auto& ray = rays[(at + (is_left ? n : rays.size() - n)) % rays.size()];
+                    const double turn =
+                        std::abs(std::remainder(ray.first - rays[at].first, 2 * std::numbers::pi));
+                    if (turn > near) break;
+                    visit(ray.second);
+                }
+        }
+    };
+    struct Part {
+        SegmentTree tree;
+        std::vector<std::size_t> lines;
+    };
+
+    void findHubs() {
+        std::vector<std::pair<Point2, std::size_t>> ends;
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            const auto [a, b] = lines_[i];
+            if (!(distance(a, b) >= kLeastLength)) continue;
+            ends.emplace_back(a, i);
+            ends.emplace_back(b, i);
+        }
+        std::sort(ends.begin(), ends.end(), [](const auto& e, const auto& f) {
+            return e.first != f.first ? lexLess(e.first, f.first) : e.second < f.second;
+        });
+        for (std::size_t from = 0, to = 0; from < ends.size(); from = to) {
+            while (to < ends.size() && ends[to].first == ends[from].first) ++to;
+            if (to - from < kMany) continue;
+            Hub& hub = hubs_.emplace_back();
+            for (std::size_t k = from; k < to; ++k) {
+                const auto& [at, line] = ends[k];
+                const Segment2& s = lines_[line];
+                const Vec2 way = (s.a == at ? s.b : s.a) - at;
+                hub.rays.emplace_back(std::atan2(way.y, way.x), line);
+                hub.shortest = std::min(hub.shortest, length(way));
+            }
+            std::sort(hub.rays.begin(), hub.rays.end());
+            for (std::size_t k = 0; k < hub.rays.size(); ++k)
+                hubs_of_[hub.rays[k].second].push_back({hubs_.size() - 1, k});
+        }
+    }
+
+    std::span<const Segment2> lines_;
+    std::vector<std::vector<Place>> hubs_of_;  // of each line, at most two
+    std::vector<Hub> hubs_;
+    std::vector<Part> trees_;  // of the lines whose first hub it is, then of those without one
+};
+
 /// Finds the crossings of one plan line by line.
 class CrossingFinder {
   public:
@@ -257,7 +355,7 @@ class CrossingFinder {
 
     /// Returns the crossings of the first elements, at most `most`.
     [[nodiscard]] std::vector<WallCrossing> find(std::size_t most) const {
-        const SegmentTree tree(plan_.lines);
+        const MeetingLines lines(plan_.lines);
         std::vector<WallCrossing> found;
         std::vector<std::size_t> later;
         std::size_t sorted = 0;  // number of crossings of earlier elements
@@ -267,10 +365,11 @@ class CrossingFinder {
                 (found.size() == sorted || found.size() / kPerElement >= most))
                 break;
             later.clear();
-            tree.search(plan_.lines[i], kWeldDistance, [&](std::size_t k) {
+            lines.search(i, [&](std::size_t k) {
                 if (k > i && mayCross(i, k)) later.push_back(k);
             });
             std::sort(later.begin(), later.end());
+            later.erase(std::unique(later.begin(), later.end()), later.end());
             for (const std::size_t k : later) add(i, k, found);
         }
         sortFrom(sorted, found);

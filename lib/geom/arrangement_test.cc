@@ -261,6 +261,23 @@ void expectCut(const std::vector<Segment2>& lines, const std::vector<LinePiece>&
     }
 }
 
+TEST(Noding, StarsTakeNoTimeForEachPairOfTheirLines) {
+    // Some of the lines lie on each other.
+    constexpr int kLines = 24'000;
+    Lines lines;
+    for (int i = 0; i < kLines; ++i) {
+        const auto [c, s] = cosSin(Angle::degrees(360.0 * i / kLines));
+        lines.push_back({{0, 0}, {10 * c, 10 * s}});
+        if (i % 1000 == 0) lines.push_back({{5 * c, 5 * s}, {0, 0}});
+    }
+    const auto pieces = noded(linePieces(lines));
+    std::size_t inner = 0;
+    for (const LinePiece& piece : pieces)
+        inner += distance(piece.segment.a, piece.segment.b) < 6 ? 1 : 0;
+    EXPECT_EQ(pieces.size(), kLines + kLines / 1000U);
+    EXPECT_EQ(inner, 2 * (kLines / 1000U));
+}
+
 TEST(Noding, CrossTouchAndOverlap) {
     const std::vector<Segment2> lines{{{0, 0}, {4, 0}}, {{2, -1}, {2, 1}}, {{3, 0}, {3, 2}},
                                       {{1, 0}, {6, 0}}, {{4, 0}, {0, 0}},  {{5, 5}, {5, 5}}};

@@ -5,7 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
+#include <utility>
 
 #include "base/error.h"
 #include "geom/predicates.h"
@@ -22,6 +24,8 @@ using Index = std::uint32_t;
 constexpr std::size_t kGridPairsPerLine = 64, kGridPairsAnyway = 1U << 20;
 /// The same for the tree: only very many lines that cross need more.
 constexpr std::size_t kPairsPerLine = 4096, kPairsAnyway = 1U << 26;
+/// Lines of a cell among which those that share an end are looked for.
+constexpr std::size_t kCrowd = 64;
 /// Rounds of cutting, and how often the distance for merging points is widened if they do not
 /// suffice.
 constexpr int kMaxRounds = 12, kMaxWidenings = 4;
@@ -158,15 +162,93 @@ class Cutter {
     bool meetInGrid() {
         const SegmentGrid grid(segments_, reach_);
         std::size_t pairs = 0;
-        grid.forEachCell(
-            [&](std::span<const Index> cell) { pairs += cell.size() * cell.size() / 2; });
+        std::vector<Fan> fans;  // of the crowded cells, in order
+        grid.forEachCell([&](std::span<const Index> cell) {
+            pairs += cell.size() * cell.size() / 2;
+            if (cell.size() < kCrowd) return;
+            fans.push_back(fanOf(cell));
+            const std::size_t lines = fans.back().lines.size();
+            pairs -= lines * lines / 2;
+        });
         if (pairs > kGridPairsAnyway + kGridPairsPerLine * segments_.size()) return false;
-        grid.forEachCell([this](std::span<const Index> cell) {
-            for (std::size_t i = 0; i < cell.size(); ++i)
-                for (std::size_t k = i + 1; k < cell.size(); ++k) meet(cell[i], cell[k]);
+        auto fan = fans.begin();
+        grid.forEachCell([&](std::span<const Index> cell) {
+            if (cell.size() < kCrowd) {
+                for (std::size_t i = 0; i < cell.size(); ++i)
+                    for (std::size_t k = i + 1; k < cell.size(); ++k) meet(cell[i], cell[k]);
+            } else {
+                meetBeside(*fan, cell);
+                meetInFan(*fan++);
+            }
             checkCuts();
         });
         return true;
+    }
+
+    /// Lines of a cell that share an end.
+    struct Fan {
+        Point2 end;
+        std::vector<Index> lines;  // ascending
+    };
+
+    [[nodiscard]] bool endsAt(Index line, Point2 at) const {
+        return segments_[line].a == at || segments_[line].b == at;
+    }
+
+    /// Returns the most lines of a cell that share an end.
+    [[nodiscard]] Fan fanOf(std::span<const Index> cell) const {
+        std::vector<Point2> all;
+        for (const Index line : cell)
+            for (const Point2 end : {segments_[line].a, segments_[line].b}) all.push_back(end);
+        std::sort(all.begin(), all.end(), [](Point2 p, Point2 q) { return lexLess(p, q); });
+        Fan fan;
+        for (std::size_t from = 0, most = 0, to = 0; from < all.size(); from = to) {
+            while (to < all.size() && all[to] == all[from]) ++to;
+            if (to - from <= most) continue;
+            most = to - from;
+            fan.end = all[from];
+        }
+        for (const Index line : cell)
+            if (endsAt(line, fan.end)) fan.lines.push_back(line);
+        return fan;
+    }
+
+    /// Cuts the lines of a cell where they meet, but for pairs of the fan.
+    void meetBeside(const Fan& fan, std::span<const Index> cell) {
+        std::vector<std::size_t> others;  // places in the cell
+        for (std::size_t i = 0; i < cell.size(); ++i)
+            if (!endsAt(cell[i], fan.end)) others.push_back(i);
+        for (std::size_t i = 0; i < cell.size(); ++i) {
+            if (!endsAt(cell[i], fan.end)) {
+                for (std::size_t k = i + 1; k < cell.size(); ++k) meet(cell[i], cell[k]);
+                continue;
+            }
+            for (auto k = std::upper_bound(others.begin(), others.end(), i); k != others.end(); ++k)
+                meet(cell[i], cell[*k]);
+        }
+    }
+
+    /// Cuts the lines of a fan where the end of one lies on another, which holds for neighbours by
+    /// direction alone.
+    void meetInFan(const Fan& fan) {
+        std::vector<std::pair<double, Index>> rays;  // by their angles
+        double shortest = std::numeric_limits<double>::infinity();
+        for (const Index line : fan.lines) {
+            const Segment2& s = segments_[line];
+            const Vec2 way = (s.a == fan.end ? s.b : s.a) - fan.end;
+            rays.emplace_back(std::atan2(way.y, way.x), line);
+            shortest = std::min(shortest, length(way));
+        }
+        std::sort(rays.begin(), rays.end());
+        // Beyond this angle no end is within reach of another line, with room for rounding.
+        constexpr double kRounding = 1e-12, kTurn = 2 * std::numbers::pi;
+        const double near = 4 * reach_ / shortest + kRounding;
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            for (std::size_t n = 1; n < rays.size(); ++n) {
+                const std::size_t k = (i + n) % rays.size();
+                if (rays[k].first - rays[i].first + (k < i ? kTurn : 0) > near) break;
+                meet(rays[i].second, rays[k].second);
+            }
     }
 
     void meetInTree() {
