@@ -2,6 +2,8 @@
 #include "arrange/cell_floor.h"
 
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,8 +24,10 @@ namespace {
 struct Move {
     int right = 0, up = 0;
 };
+/// Each half of eight: four moves and then the way back of each.
 constexpr Move kMoves[] = {{1, 0}, {1, 1}, {0, 1},  {-1, 1}, {-1, 0},  {-1, -1}, {0, -1}, {1, -1},
                            {2, 1}, {1, 2}, {-1, 2}, {-2, 1}, {-2, -1}, {-1, -2}, {1, -2}, {2, -1}};
+constexpr std::size_t backOf(std::size_t move) { return move ^ 4U; }
 
 /// Returns the cells under a move, each of which holds an equal part of it: those of a knight's
 /// move are the two ends and the two cells between them.
@@ -53,11 +57,17 @@ CellStep stepOf(const Grid& grid, Move move) {
 class Barriers {
   public:
     Barriers(const Environment& environment, double height)
-        : lines_(linesOf(*environment.level(height))), tree_(lines_) {}
+        : lines_(linesOf(*environment.level(height))), grid_(lines_, 0) {}
 
     [[nodiscard]] bool cross(const Segment2& way) const {
+        const Box2 box = bounds(way);
         bool crosses = false;
-        tree_.search(way, 0, [&](std::size_t i) { crosses |= intersects(lines_[i], way); });
+        grid_.searchAlong(way, [&](std::span<const std::uint32_t> lines) {
+            for (std::size_t i = 0; i < lines.size() && !crosses; ++i) {
+                const Segment2& line = lines_[lines[i]];
+                crosses = box.meets(bounds(line)) && intersects(line, way);
+            }
+        });
         return crosses;
     }
 
@@ -70,7 +80,7 @@ class Barriers {
     }
 
     std::vector<Segment2> lines_;
-    SegmentTree tree_;
+    SegmentGrid grid_;
 };
 
 CellSet freeCellsOf(const Environment& environment, const Target& target, const std::string& zone) {
@@ -103,15 +113,16 @@ CellWays cellWaysOf(const Environment& environment, const Target& target, const 
             if (!is_free(column, row)) continue;
             const std::size_t cell = grid.cell(column, row);
             for (std::size_t k = 0; k < std::size(kMoves); ++k) {
+                if (backOf(k) < k) continue;  // steps back are as open as steps there
                 const Move& move = kMoves[k];
                 bool is_open = true;
                 for (const Move& under : cellsUnder(move))
                     is_open = is_open && is_free(column + under.right, row + under.up);
                 if (!is_open) continue;
                 const std::size_t next = grid.cell(column + move.right, row + move.up);
-                // Steps back are as open as steps there.
-                if (!barriers.cross({grid.center(cell), grid.center(next)}))
-                    ways.open[cell] |= std::uint32_t{1} << k;
+                if (barriers.cross({grid.center(cell), grid.center(next)})) continue;
+                ways.open[cell] |= std::uint32_t{1} << k;
+                ways.open[next] |= std::uint32_t{1} << backOf(k);
             }
         }
     return ways;

@@ -56,6 +56,14 @@ def star(count):
             "laser at=-17,-12 range=8\n", [])
 
 
+def star_of(*words):
+    """The same with zones at both sides, for these options."""
+    def row(count):
+        walls, layout, _ = star(count)
+        return walls + "zone id=a at=-17,-12 size=2,2\nzone id=b at=17,12 size=2,2\n", layout, list(words)
+    return row
+
+
 def of_options(word, text):
     """Options of a command, one for each zone of the room."""
     def row(count):
@@ -81,6 +89,8 @@ def lifts(count):
 ROWS = {
     "walls": of_room("wall from={x},{y} to={x},{y}5"),
     "star": star,
+    "star_paths": star_of("--objective", "path:a,b"),
+    "star_crowds": star_of("--crowd", "20"),
     "things": of_room("cube at={x},{y} size=0.2"),
     "zones": of_room("zone id=z{i} at={x},{y} size=0.2,0.2"),
     "doors": of_room("wall id=w{i} from={x},{y} to={x}9,{y}\ndoor wall=w{i} offset=0.002 size=0.004"),
@@ -111,7 +121,7 @@ ROWS = {
 BUILDINGS = ("storeys", "lifts")
 # Rows of options go to the command that has them.
 ONLY = {"requirements": ("coverage", "suggest"), "privacy": ("coverage", "arrange"), "rules": ("arrange",),
-        "weights": ("arrange",)}
+        "weights": ("arrange",), "star_paths": ("arrange",), "star_crowds": ("arrange",)}
 
 # Words of the command; {room} and {layout} are the files, {out} is a file to write.
 COMMANDS = {
