@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <bit>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "arrange/floor_tiles.h"
 #include "arrange/sensor_group.h"
 #include "base/error.h"
 #include "geom/overlay/overlay.h"
@@ -129,6 +131,7 @@ struct ExactGain::Data {
     /// Of prepareAll(), until put(): floor that no sensor sees, and that one of them alone sees.
     bool is_prepared = false;
     std::vector<Missing> unseen = {};
+    std::optional<FloorTiles> unseen_tiles = {};
     std::vector<std::vector<Missing>> alone = {};
 
     [[nodiscard]] View viewOf(const Sensor& sensor) const {
@@ -229,6 +232,9 @@ struct ExactGain::Data {
             }
         };
         add_where(unseen, [](const LayerLabel& label) { return label.count == 0; });
+        unseen_tiles.emplace(floor_box);
+        for (const Missing& floor : unseen)
+            unseen_tiles->add(floor.layer.curves, weightOf(floor.layer.marks));
         std::vector<char> has_own(moving.size() + 1);
         for (const Overlay::Edge& edge : overlay.edges())
             for (const LayerLabel& label : {edge.left, edge.right})
@@ -319,6 +325,15 @@ bool ExactGain::prepareAll() {
             if (view.layer.number != kOneSet) return false;
     data_->prepareAll();
     return true;
+}
+
+double ExactGain::mostMore(const Pose3& pose) const {
+    if (!data_->is_prepared) return std::numeric_limits<double>::infinity();
+    const Sensor& own = data_->sensors[data_->in_hand];
+    const double most = data_->unseen_tiles->mostIn(data_->sight.boxOf({own.id, own.model, pose}));
+    // What it alone sees at its present pose is all that it may see again.
+    constexpr double kNothing = 1e-6, kRounding = 1e-3;  // m2, of overlays
+    return most <= kNothing ? 0 : most + kRounding;
 }
 
 void ExactGain::take(std::size_t sensor) {

@@ -92,6 +92,10 @@ class ExactGain {
     /// of the other sensors'. Returns false, without effect, for receivers and several sensors a
     /// point. O(n log n) in all regions, their crossings and walls.
     bool prepareAll();
+    /// Returns a bound of what the selected sensor gains at a pose over its present one, by the
+    /// unseen floor in a box about its field of view; +infinity unless prepareAll() returned true
+    /// and no sensor was moved since. Thread-safe.
+    [[nodiscard]] double mostMore(const Pose3& pose) const;
     /// Selects the sensor that moves from here on; all others stay.
     void take(std::size_t sensor);
     /// Computes the gain of the selected sensor over the others at each of these poses, on all

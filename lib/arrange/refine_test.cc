@@ -72,8 +72,11 @@ TEST(ExactGain, OfAllAtOnceIsThatOfEach) {
             each.take(i);
             at_once.take(i);
             const auto wanted = each.gains(poses), gains = at_once.gains(poses);
-            for (std::size_t k = 0; k < poses.size(); ++k)
+            for (std::size_t k = 0; k < poses.size(); ++k) {
                 EXPECT_NEAR(gains[k], wanted[k], 1e-6) << i << ' ' << k;
+                EXPECT_LE(gains[k] - gains[0], at_once.mostMore(poses[k]) + 1e-6);
+            }
+            EXPECT_TRUE(std::isinf(each.mostMore(poses[0])));
         }
         // One that moves makes the others' gains anew.
         each.take(3);

@@ -106,6 +106,11 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     const auto attempt = [&](std::vector<Trial> trials, std::optional<Trial>& best) {
         const Sensor& sensor = sensors[trials.front().sensor];
         const double most = rules_of_cameras.mostGain(sensor);
+        const std::pair<double, double> known = best ? best->gain : std::pair(0.0, 0.0);
+        std::erase_if(trials, [&](const Trial& trial) {
+            return std::pair(most, gain.mostMore(poseAfter(sensor.pose, trial))) <= known;
+        });
+        if (trials.empty()) return;
         std::vector<Pose3> poses = {sensor.pose};
         for (const Trial& trial : trials) poses.push_back(poseAfter(poses.front(), trial));
         const std::vector<double> gains = gain.gains(poses);

@@ -2,11 +2,13 @@
 #include "coverage/visible_area.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "coverage/plane_cells.h"
 #include "coverage/sector_cells.h"
 #include "geom/overlay/overlay.h"
+#include "geom/tolerance.h"
 #include "scene/sensor/sensor.h"
 
 namespace ispace {
@@ -61,6 +63,20 @@ std::optional<std::vector<Curve>> VisibleArea::regionOf(const Sensor& sensor) co
     if (scansSlice(sensor)) return regionOfScan(*level, reach_, sensor);
     if (level->isInsideSolid(place.onFloor())) return std::vector<Curve>();
     return shadows_.get([this] { return ShadowCaster(environment_); }).regionSeen(sensor, plane_);
+}
+
+Box2 VisibleArea::boxOf(const Sensor& sensor) const {
+    constexpr double kRounding = 1e-3;
+    const Point2 foot = sensor.pose.position.onFloor();
+    const auto view = fieldOfView(sensor);
+    const double range = view ? view->farthest() : maxRange(sensor.model);
+    const Box2 all = Box2{foot, foot}.expanded(range + kRounding);
+    if (!view || scansSlice(sensor)) return all;
+    const double drop = plane_ - sensor.pose.position.z;
+    if (std::fabs(drop) <= kRayEpsilon) return all;
+    const Box2 box = Footprint(*view, drop, false).box;
+    const Vec2 way = foot - Point2{};
+    return box.empty() ? Box2() : Box2{box.low + way, box.high + way}.expanded(kRounding);
 }
 
 CellSet VisibleArea::cellsOf(const Grid& grid, const Sensor& sensor) const {

@@ -40,6 +40,8 @@ class VisibleArea {
     /// Returns disjoint curves with the seen floor on their left; empty if no closed form is known:
     /// for swept lasers that do not scan a slice. Thread-safe. \throws FormatError as ShadowCaster
     [[nodiscard]] std::optional<std::vector<Curve>> regionOf(const Sensor& sensor) const;
+    /// Returns a box that holds regionOf(), by the field of view and the range alone. Thread-safe.
+    [[nodiscard]] Box2 boxOf(const Sensor& sensor) const;
     /// Returns the cells with their centre in the view. Thread-safe. \pre prepare()
     [[nodiscard]] CellSet cellsOf(const Grid& grid, const Sensor& sensor) const;
 

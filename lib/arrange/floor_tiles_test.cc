@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/floor_tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "geom/curve.h"
+#include "geom/polygon.h"
+
+namespace ispace {
+namespace {
+
+Curve rectangle(double x, double y, double to_x, double to_y) {
+    return curveOf({{x, y}, {to_x, y}, {to_x, to_y}, {x, to_y}});
+}
+
+TEST(FloorTiles, BoundTheFloorInABoxFromAbove) {
+    const Box2 room{{0, 0}, {64, 64}};
+    FloorTiles tiles(room);
+    Curve hole = rectangle(20, 20, 30, 30);
+    std::reverse(hole.begin(), hole.end());
+    for (CurveEdge& edge : hole) std::swap(edge.from, edge.to);
+    tiles.add(std::vector<Curve>{rectangle(10, 10, 40, 40), hole}, 2);
+    EXPECT_NEAR(tiles.mostIn(room), 2 * 800, 1e-9);
+    EXPECT_NEAR(tiles.mostIn({{-5, -5}, {9.5, 90}}), 0, 1e-9);
+    EXPECT_NEAR(tiles.mostIn({{20.5, 20.5}, {29.5, 29.5}}), 0, 1e-9);
+    EXPECT_NEAR(tiles.mostIn({{100, 100}, {120, 120}}), 0, 1e-9);
+    // The tiles of 1 m that it meets hold 3 x 2 m2.
+    EXPECT_NEAR(tiles.mostIn({{10.5, 11.5}, {12.5, 12.5}}), 2 * 6, 1e-9);
+}
+
+TEST(FloorTiles, HoldFloorBeyondChords) {
+    Curve disc;
+    const Point2 corners[] = {{20, 10}, {10, 20}, {0, 10}, {10, 0}};
+    for (std::size_t i = 0; i < 4; ++i)
+        disc.push_back({corners[i], corners[(i + 1) % 4], 10, {10, 10}});
+    FloorTiles tiles({{0, 0}, {20, 20}});
+    tiles.add({&disc, 1}, 1);
+    const double all = tiles.mostIn({{-1, -1}, {21, 21}});
+    EXPECT_GE(all, signedArea(disc));
+    EXPECT_EQ(tiles.mostIn(Box2()), 0);
+}
+
+}  // namespace
+}  // namespace ispace
