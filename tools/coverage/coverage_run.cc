@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "coverage/coverage_run.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,6 +25,7 @@
 #include "record/text.h"
 #include "report/coverage_formats.h"
 #include "report/coverage_report.h"
+#include "report/map/depth_shades.h"
 #include "scene/findings/findings.h"
 #include "scene/scene.h"
 #include "scene/sensor/ultrasound.h"
@@ -270,7 +273,17 @@ Measured measureScene(const CoverageToolOptions& options, const SceneInput& inpu
     for (const Requirement& requirement : options.requirements)
         mustHaveZone(requirement, input.scene.environment);
     warn(options.common, "coverage", sensorFindings(input.scene));
-    Measured measured = measure(options, input.scene, other);
+    const auto& sensors = input.scene.sensors;
+    const auto seeing = static_cast<std::size_t>(
+        std::count_if(sensors.begin(), sensors.end(),
+                      [](const Sensor& sensor) { return kindOf(sensor.model).perceives; }));
+    // A page alone shows depths in a few shades.
+    const bool by_shades =
+        options.measure.keep_depths && options.format == nullptr && seeing > kFewDepths;
+    CoverageToolOptions own = options;
+    own.measure.keep_depths = options.measure.keep_depths && !by_shades;
+    Measured measured = measure(own, input.scene, other);
+    if (by_shades) addDepthShades(measured.coverage, input.scene);
     if (const std::string text = largeCellsText(options.measure, measured.coverage.report.grid);
         !text.empty())
         tell(options.common, "coverage", text);

@@ -101,6 +101,8 @@ std::string reportFile(const CoverageToolOptions& options, const SceneInput& inp
         for (const PresenceRequirement& requirement : options.presence_requirements)
             add(requirementPhrase(requirement), checkRequirement(requirement, *parts.presence));
     page.parts = parts;
+    page.media =
+        suffix == "pdf" ? CoveragePageInput::Media::Paper : CoveragePageInput::Media::Screen;
     const ReportPage pages = coveragePage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }

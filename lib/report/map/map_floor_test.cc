@@ -5,6 +5,8 @@
 
 #include "coverage/pixel_density.h"
 #include "geom/predicates.h"
+#include "report/map/depth_shades.h"
+#include "report/page/indoor_floor.h"
 #include "support/test_map.h"
 
 namespace ispace {
@@ -36,6 +38,29 @@ TEST(MapFloor, RedundancyDarkensTheFloor) {
                             8);
     EXPECT_EQ(pixels.at(-2, 2), pixelOf(sequentialColor(1, 2)));
     EXPECT_EQ(pixels.at(2, 2), pixelOf(sequentialColor(2, 2)));
+}
+
+TEST(MapFloor, ShadesOfManyDepthsAreThoseOfAllDepths) {
+    std::string lasers;
+    for (int i = 0; i < 60; ++i)
+        lasers += "laser at=" + std::to_string(-3.5 + i % 10 * 0.7) + "," +
+                  std::to_string(-3 + i / 10 * 1.1) + " heading=" + std::to_string(37 * i) +
+                  " fov=200 range=2.3\n";
+    const Scene scene =
+        sceneOf("ispace size=8,8\nwall from=-1,-4 to=-1,1\ncube at=2,2 size=0.5\n" + lasers);
+    Worlds worlds(scene.environment);
+    const Coverage all = measureCoverage(scene, worlds, {});
+    CoverageOptions options;
+    options.keep_depths = false;
+    Coverage shaded = measureCoverage(scene, worlds, options);
+    addDepthShades(shaded, scene);
+    ASSERT_GT(all.report.redundancy_exact->size(), 12U);
+    EXPECT_LT(shaded.overlay->edges().size(), all.overlay->edges().size() / 2);
+    EXPECT_EQ(drawCoverageMap(scene, shaded, {}), drawCoverageMap(scene, all, {}));
+    const auto floors = indoorFloors(scene, shaded), wanted = indoorFloors(scene, all);
+    ASSERT_EQ(floors.size(), wanted.size());
+    for (std::size_t i = 0; i < floors.size(); ++i)
+        EXPECT_NEAR(floors[i].alone, wanted[i].alone, 1e-6) << i;
 }
 
 TEST(MapFloor, NoSeamsByCellsNorExact) {

@@ -151,7 +151,11 @@ void addResolution(const Camera& camera, MapSensor& sensor) {
 }
 
 PageSection mapOf(const CoveragePageInput& input) {
-    ScreenMap screen = drawScreenMap(input.scene, input.coverage);
+    using Media = CoveragePageInput::Media;
+    // Maps of thousands of views take more memory than all the rest.
+    const Picture blank(1, 1);
+    ScreenMap screen = input.media == Media::Paper ? ScreenMap{blank, blank, {}}
+                                                   : drawScreenMap(input.scene, input.coverage);
     MapIndex index{screen.view, {}, {"density 2015", "density 2025", "views"}};
     const std::vector<Color> colors = sensorColors(input.coverage);
     for (const SensorView& view : input.coverage.sensors) {
@@ -164,11 +168,11 @@ PageSection mapOf(const CoveragePageInput& input) {
         if (camera != nullptr) addResolution(*camera, index.sensors.back());
     }
     PageSection section{"map", "Map", {}};
-    section.blocks.push_back(
-        PageMap{{"Floor by the number of sensors that see it; coordinates in metres.",
-                 coverageMap(input.scene, input.coverage, {})},
-                std::move(screen.map),
-                std::move(index)});
+    section.blocks.push_back(PageMap{
+        {"Floor by the number of sensors that see it; coordinates in metres.",
+         input.media == Media::Screen ? blank : coverageMap(input.scene, input.coverage, {})},
+        std::move(screen.map),
+        std::move(index)});
     section.blocks.push_back(PageFigure{"", std::move(screen.legend), 1, true});
     return section;
 }

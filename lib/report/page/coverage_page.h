@@ -22,6 +22,9 @@ struct JudgedRequirement {
 };
 
 struct CoveragePageInput {
+    /// Media for which maps are drawn: those of others are blank.
+    enum class Media { Any, Screen, Paper };
+
     const Scene& scene;
     const Coverage& coverage;
     std::string name;     ///< base name of ENV; "" from stdin
@@ -29,6 +32,7 @@ struct CoveragePageInput {
     std::vector<JudgedRequirement> requirements = {};
     ReportParts parts = {};
     std::vector<PageSection> more = {};  ///< of the tool that writes the page, after the map
+    Media media = Media::Any;
 };
 
 /// Builds the table of requirements, with margins in percentage points.
