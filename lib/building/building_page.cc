@@ -37,6 +37,9 @@ PageSection buildingSummary(const BuildingPageInput& input) {
             PageText{"In the run of " + formatFixed(input.run->sum.end - input.run->sum.begin, 2) +
                      " s robots and people on storeys were seen for " +
                      percentText(1 - input.run->sum.all.time_shares.front()) + " of their time."});
+    if (input.run != nullptr)
+        for (PageText& text : incidentsOf(input.run->sum))
+            section.blocks.push_back(std::move(text));
     if (!input.requirements.empty())
         section.blocks.push_back(requirementsTable(input.requirements));
     return section;

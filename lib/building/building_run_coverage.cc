@@ -39,6 +39,7 @@ RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys) {
     bool is_first = true;
     for (const RunCoverage& storey : storeys) {
         sum.unreached.insert(sum.unreached.end(), storey.unreached.begin(), storey.unreached.end());
+        sum.contacts.insert(sum.contacts.end(), storey.contacts.begin(), storey.contacts.end());
         if (storey.members.empty()) continue;
         sum.begin = is_first ? storey.begin : std::min(sum.begin, storey.begin);
         sum.end = std::max(sum.end, storey.end);
@@ -56,8 +57,9 @@ RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys) {
     }
     turnIntoShares(sum.all.time_shares, sum.all.duration);
     turnIntoShares(sum.all.way_shares, sum.all.length);
-    std::stable_sort(sum.unreached.begin(), sum.unreached.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
+    std::stable_sort(sum.unreached.begin(), sum.unreached.end(), earlier);
+    std::stable_sort(sum.contacts.begin(), sum.contacts.end(), earlier);
     return sum;
 }
 

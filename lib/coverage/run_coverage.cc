@@ -263,6 +263,22 @@ void addUnreached(std::vector<UnreachedTarget>& all, const RunUnreached& target,
     ++known->times;
 }
 
+void addContacts(std::vector<RunContact>& all, const RunReader& reader) {
+    for (const RunCollision& collision :
+         reader.collisions().value_or(std::span<const RunCollision>{})) {
+        auto known = std::find_if(all.begin(), all.end(), [&](const RunContact& one) {
+            return one.id == collision.id && one.other == collision.other;
+        });
+        if (known == all.end()) {
+            Point2 at;
+            for (const RunState& state : reader.states())
+                if (reader.members()[state.member].id == collision.id) at = state.pose.position;
+            known = all.insert(known, {collision.id, collision.other, at, reader.time(), 0});
+        }
+        ++known->times;
+    }
+}
+
 }  // namespace
 
 RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions& options,
@@ -304,8 +320,10 @@ RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions
         }
     };
     std::vector<UnreachedTarget> unreached;
+    std::vector<RunContact> contacts;
     do {
         make_changes();
+        addContacts(contacts, reader);
         for (const RunUnreached& target : reader.unreached())
             addUnreached(unreached, target, reader.time());
         Sample sample{
@@ -327,6 +345,7 @@ RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions
     flush(*watch, *members, samples, sum);
     RunCoverage run = sum.finish(reader);
     run.unreached = std::move(unreached);
+    run.contacts = std::move(contacts);
     return run;
 }
 

@@ -57,6 +57,14 @@ struct UnreachedTarget {
     std::size_t times = 0;
 };
 
+/// Collisions of a mover with one thing or mover.
+struct RunContact {
+    std::string id, other;
+    Point2 at;         ///< where the mover was at the first one
+    double first = 0;  ///< seconds
+    std::size_t times = 0;
+};
+
 /// Coverage of a recorded run (the second valuation of the thesis, section 3.1): the number of
 /// sensors that saw each mover, and its unseen intervals.
 struct RunCoverage {
@@ -67,6 +75,7 @@ struct RunCoverage {
     std::vector<SeenWay> ways = {};
     std::vector<TrackLoss> losses = {};           ///< sorted by duration, the longest first
     std::vector<UnreachedTarget> unreached = {};  ///< in the order of their first times
+    std::vector<RunContact> contacts = {};        ///< likewise
 };
 
 /// Computes the coverage of a recorded run by DetectionMonitor. Samples moments at least 0.02 s

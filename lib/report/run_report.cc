@@ -101,15 +101,34 @@ std::string tableOf(const RunCoverage& run, bool is_way) {
     return aligned(rows, sides + "l");
 }
 
+constexpr std::size_t kListed = 20;
+
+std::string timesText(std::size_t times) {
+    return std::to_string(times) + (times == 1 ? " time" : " times");
+}
+
+std::string contactRows(const RunCoverage& run) {
+    std::vector<TextRow> rows;
+    for (const RunContact& contact : run.contacts) {
+        if (rows.size() == kListed) break;
+        rows.push_back({" ", printable(contact.id) + " ran into " + printable(contact.other),
+                        "at " + pointText(contact.at), "t=" + formatFixed(contact.first, 2),
+                        timesText(contact.times)});
+    }
+    std::string text = aligned(rows, "lllrr");
+    if (run.contacts.size() > kListed)
+        text += "   and " + std::to_string(run.contacts.size() - kListed) + " more\n";
+    return text;
+}
+
 std::string unreachedRows(const RunCoverage& run) {
-    constexpr std::size_t kListed = 20;
     std::vector<TextRow> rows;
     for (const UnreachedTarget& target : run.unreached) {
         if (rows.size() == kListed) break;
         const std::string to = printable(target.to) + (target.to.empty() ? "" : " ") +
                                (target.at ? pointText(*target.at) : "");
         rows.push_back({" ", printable(target.id), "to " + to, "t=" + formatFixed(target.first, 2),
-                        std::to_string(target.times) + (target.times == 1 ? " time" : " times")});
+                        timesText(target.times)});
     }
     std::string text = aligned(rows, "lllrr");
     if (run.unreached.size() > kListed)
@@ -149,6 +168,16 @@ void writeRun(JsonWriter& json, const RunCoverage& run) {
         json.key("times").value(target.times);
         json.endObject();
     }
+    json.endArray();
+    json.key("contacts").beginArray();
+    for (const RunContact& contact : run.contacts) {
+        json.beginObject();
+        json.key("id").value(contact.id).key("other").value(contact.other);
+        writeMember(json, "place", {contact.at.x, contact.at.y});
+        writeMember(json, "first", contact.first);
+        json.key("times").value(contact.times);
+        json.endObject();
+    }
     json.endArray().endObject();
 }
 
@@ -156,6 +185,7 @@ std::string runText(const RunCoverage& run) {
     std::string text = "run " + printable(run.name) + ", t=" + formatFixed(run.begin, 2) + " to " +
                        formatFixed(run.end, 2) + " s: seen by so many sensors\n" +
                        tableOf(run, false) + "\n" + tableOf(run, true);
+    if (!run.contacts.empty()) text += "\ncollisions:\n" + contactRows(run);
     if (!run.unreached.empty()) text += "\ngiven up on the way:\n" + unreachedRows(run);
     if (run.losses.empty()) return text;
     text += "\nwhere sight was lost:\n";

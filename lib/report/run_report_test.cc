@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "report/coverage_report.h"
+#include "report/page/coverage_page.h"
 #include "support/test_scenes.h"
 
 namespace ispace {
@@ -54,6 +55,29 @@ TEST(RunReport, TargetsThatWereGivenUp) {
               std::string::npos)
         << json;
     EXPECT_EQ(runText(runOf(1)).find("given up"), std::string::npos);
+}
+
+TEST(RunReport, Collisions) {
+    RunReader reader("t,id,x,y,heading_deg\n0,r1,0,0,0\n1,r1,1,0.5,0\n2,r1,1,0,0\n", "",
+                     "t,kind,id,other,x,y,value,text\n1,collision,r1,side,,,,\n"
+                     "2,collision,r1,side,,,,\n2,collision,r1,h1,,,,\n");
+    const RunCoverage run =
+        measureRun(sceneOf("ispace size=8,6\nrobot id=r1 at=0,0\n"), reader, {});
+    ASSERT_EQ(run.contacts.size(), 2U);
+    EXPECT_EQ(run.contacts[0].at, (Point2{1, 0.5}));
+    const std::string text = runText(run);
+    for (const char* row : {"collisions:", "r1 ran into side", "at (1.00, 0.50)", "t=1.00",
+                            "2 times", "r1 ran into h1"})
+        EXPECT_NE(text.find(row), std::string::npos) << row << '\n' << text;
+    const std::string json = coverageJson({}, {.run = &run});
+    EXPECT_NE(
+        json.find(R"("contacts":[{"id":"r1","other":"side","place":[1,0.5],"first":1,"times":2})"),
+        std::string::npos)
+        << json;
+    const std::vector<PageText> told = incidentsOf(run);
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told.front().text, "Movers collided: r1 into side, r1 into h1.");
+    EXPECT_EQ(runText(runOf(1)).find("collisions"), std::string::npos);
 }
 
 TEST(RunReport, OfAMoment) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "base/message.h"
@@ -94,6 +95,10 @@ PageText sightOf(const CoveragePageInput& input) {
     return {std::move(seen)};
 }
 
+std::string outcomeText(bool is_met, const std::string& finding) {
+    return std::string(is_met ? "met" : "not met") + (finding.empty() ? "." : "; " + finding + ".");
+}
+
 PageSection summaryOf(const CoveragePageInput& input) {
     const CoverageReport& report = input.coverage.report;
     PageSection section{"summary", "Summary", {}};
@@ -114,6 +119,9 @@ PageSection summaryOf(const CoveragePageInput& input) {
                                    2) +
                        " s."
                  : "sight was never lost.")});
+    if (input.parts.run != nullptr)
+        for (PageText& text : incidentsOf(*input.parts.run))
+            section.blocks.push_back(std::move(text));
     std::vector<JudgedRule> rules;
     if (input.parts.rules != nullptr) rules = judgedRules(*input.parts.rules);
     std::erase_if(rules, [](const JudgedRule& rule) { return !rule.is_required; });
@@ -122,15 +130,13 @@ PageSection summaryOf(const CoveragePageInput& input) {
         section.blocks.push_back(
             PageText{"No requirement was given; --require 90% checks one.", Tone::Small});
     for (const JudgedRequirement& one : input.requirements)
-        section.blocks.push_back(PageText{"Required are " + one.requirement + ": " +
-                                              (one.is_met ? "met; " : "not met; ") + one.finding +
-                                              ".",
-                                          one.is_met ? Tone::Good : Tone::Bad});
+        section.blocks.push_back(PageText{
+            "Required are " + one.requirement + ": " + outcomeText(one.is_met, one.finding),
+            one.is_met ? Tone::Good : Tone::Bad});
     for (const JudgedRule& one : rules)
-        section.blocks.push_back(PageText{"Required is " + one.rule + ": " +
-                                              (one.is_met ? "met; " : "not met; ") + one.finding +
-                                              ".",
-                                          one.is_met ? Tone::Good : Tone::Bad});
+        section.blocks.push_back(
+            PageText{"Required is " + one.rule + ": " + outcomeText(one.is_met, one.finding),
+                     one.is_met ? Tone::Good : Tone::Bad});
     return section;
 }
 
@@ -414,6 +420,26 @@ PageSection recordsOf(const CoveragePageInput& input) {
 }
 
 }  // namespace
+
+std::vector<PageText> incidentsOf(const RunCoverage& run) {
+    static constexpr std::size_t kNamed = 3;
+    const auto told = [](const std::string& head, std::span<const std::string> all) {
+        std::string text = head;
+        for (std::size_t i = 0; i < std::min(kNamed, all.size()); ++i)
+            text += (i > 0 ? ", " : " ") + all[i];
+        if (all.size() > kNamed) text += " and " + std::to_string(all.size() - kNamed) + " more";
+        return PageText{text + ".", Tone::Bad};
+    };
+    std::vector<std::string> contacts, targets;
+    for (const RunContact& one : run.contacts) contacts.push_back(one.id + " into " + one.other);
+    for (const UnreachedTarget& one : run.unreached)
+        targets.push_back(one.id + " to " +
+                          (one.to.empty() && one.at ? pointText(*one.at) : one.to));
+    std::vector<PageText> texts;
+    if (!contacts.empty()) texts.push_back(told("Movers collided:", contacts));
+    if (!targets.empty()) texts.push_back(told("Ways were given up:", targets));
+    return texts;
+}
 
 PageTable requirementsTable(std::span<const JudgedRequirement> requirements) {
     PageTable table{"each requirement with its measurement, and the margin in points of a per cent",

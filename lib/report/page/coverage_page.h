@@ -35,6 +35,9 @@ struct CoveragePageInput {
     Media media = Media::Any;
 };
 
+/// Tells of collisions and of targets that were given up; empty without any.
+std::vector<PageText> incidentsOf(const RunCoverage& run);
+
 /// Builds the table of requirements, with margins in percentage points.
 PageTable requirementsTable(std::span<const JudgedRequirement> requirements);
 
