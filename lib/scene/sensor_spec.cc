@@ -72,8 +72,13 @@ std::vector<std::string> wordsOfName(const std::string& text) {
     return words;
 }
 
-/// Lists the models in whose model and name each word of a text begins a word; "" if there are
-/// none.
+/// Returns true for the word itself, and for one that goes on with a number: "lms" of "lms111".
+bool isWordOf(const std::string& part, const std::string& word) {
+    if (!word.starts_with(part)) return false;
+    return word.size() == part.size() || (word[part.size()] >= '0' && word[part.size()] <= '9');
+}
+
+/// Lists the models in whose model and name each word of a text is a word; "" if there are none.
 std::string modelsLike(const std::string& text, Kinds kinds, const DeviceCatalogue& devices) {
     constexpr std::size_t kMost = 20;
     const std::vector<std::string> wanted = wordsOfName(text);
@@ -84,7 +89,7 @@ std::string modelsLike(const std::string& text, Kinds kinds, const DeviceCatalog
         const std::vector<std::string> words = wordsOfName(device.text("model") + ' ' + name);
         if (std::all_of(wanted.begin(), wanted.end(), [&words](const std::string& part) {
                 return std::any_of(words.begin(), words.end(), [&part](const std::string& word) {
-                    return word.starts_with(part);
+                    return isWordOf(part, word);
                 });
             }))
             models.push_back(device.text("model"));

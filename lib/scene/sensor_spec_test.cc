@@ -62,6 +62,10 @@ TEST(SensorSpec, ErrorsNameWhatIsWrong) {
     EXPECT_EQ(
         errorOf("Slamtec"),
         "`Slamtec` is no sensor by itself, name one of these: rplidar-a1, rplidar-a2, rplidar-a3");
+    EXPECT_EQ(errorOf("urg:4").find("`urg` is no sensor by itself, name one of these: urg-04lx"),
+              0U)
+        << errorOf("urg:4");
+    EXPECT_NE(errorOf("lms").find("lms111"), std::string::npos) << errorOf("lms");
     EXPECT_EQ(errorOf("pioneer-2dx"),
               "`pioneer-2dx` is a device of kind robot, which this option does not take");
     EXPECT_EQ(errorOf("sr-3000"),
