@@ -15,64 +15,303 @@ namespace ispace {
 
 namespace {
 
-constexpr std::array<std::string_view, 63> kWallWords{
-    "wall",   "walls",   "wand",   "wände", "waende", "wande",  "mauer",    "mauern", "mauerwerk",
-    "mur",    "murs",    "mura",   "mury",  "muro",   "muros",  "muri",     "muur",   "muren",
-    "parede", "paredes", "pared",  "paret", "parets", "parete", "pareti",   "perete", "pereți",
-    "pereti", "vägg",    "väggar", "vegg",  "vegger", "væg",    "vægge",    "seinä",  "seinät",
-    "stěna",  "stěny",   "stena",  "steny", "zed",    "zdi",    "zid",      "zidovi", "ściana",
-    "ściany", "sciana",  "sciany", "fal",   "falak",  "duvar",  "duvarlar", "τοίχος", "τοίχοι",
-    "стена",  "стены",   "стіна",  "стіни", "墙",     "墙体",   "壁",       "벽",     "벽체"};
+constexpr auto kWallWords = std::to_array<std::string_view>(
+    {"wall",       "walls",      "wand",      "wände",    "waende",   "wande",       "mauer",
+     "mauern",     "mauerwerk",  "mur",       "murs",     "mura",     "mury",        "muro",
+     "muros",      "muri",       "muur",      "muren",    "parede",   "paredes",     "pared",
+     "paret",      "parets",     "parete",    "pareti",   "perete",   "pereți",      "pereti",
+     "vägg",       "väggar",     "vegg",      "vegger",   "væg",      "vægge",       "seinä",
+     "seinät",     "stěna",      "stěny",     "stena",    "steny",    "zed",         "zdi",
+     "zid",        "zidovi",     "ściana",    "ściany",   "sciana",   "sciany",      "fal",
+     "falak",      "duvar",      "duvarlar",  "τοίχος",   "τοίχοι",   "стена",       "стены",
+     "стіна",      "стіни",      "стени",     "стен",     "стін",     "перегородка", "перегородки",
+     "зид",        "зидови",     "қабырға",   "պատ",      "պատեր",    "კედელი",      "კედლები",
+     "partition",  "partitions", "prtn",      "cloison",  "cloisons", "tabique",     "tabiques",
+     "tabiqueria", "tabiquería", "alvenaria", "tramezzi", "tramezzo", "muratura",    "murature",
+     "zdivo",      "příčka",     "příčky",    "pricky",   "ziduri",   "falazat",     "válaszfal",
+     "horma",      "hormak",     "veggur",    "veggir",   "sein",     "seinad",      "siena",
+     "sienas",     "sienos",     "dinding",   "tembok",   "tường",    "ukuta",       "جدار",
+     "جدران",      "حائط",       "حوائط",     "الجدران",  "الحوائط",  "دیوار",       "دیوارها",
+     "קיר",        "קירות",      "दीवार",     "दीवारें",    "দেয়াল",    "சுவர்",        "ผนัง",
+     "กำแพง",      "壁",         "間仕切",    "間仕切り", "隔断",     "벽",          "벽체",
+     "가벽"});
 /// Word endings, as in Innenwand and CURTAINWALL.
-constexpr std::array<std::string_view, 6> kWallEnds{"wall",  "walls",  "wand",
-                                                    "wände", "waende", "mauer"};
+constexpr auto kWallEnds = std::to_array<std::string_view>(
+    {"wall", "walls", "wand", "wände", "waende", "mauer", "vägg", "väggar", "vegg", "vegger", "væg",
+     "vægge", "seinä", "seinät", "muur", "muren"});
+/// Parts of words without blanks between them, as in 外墙 and 承重牆体.
+constexpr auto kWallParts =
+    std::to_array<std::string_view>({"墙", "墻", "牆", "외벽", "내벽", "조적벽", "옹벽", "칸막이",
+                                     "外壁", "内壁", "壁体", "耐力壁"});
+/// Words of fillings, texts, openings, furniture and papers, of which such parts are no walls.
+constexpr auto kOtherParts = std::to_array<std::string_view>(
+    {"填充", "标注", "標注", "尺寸", "文字", "注释", "轴",  "軸", "门",
+     "門",   "窗",   "家具", "柜",   "櫃",   "纸",   "紙",  "漆", "裙",
+     "灯",   "燈",   "치수", "문자", "해치", "寸法", "仕上"});
 /// Words of layers that belong to walls but have no outlines of walls.
-constexpr std::array<std::string_view, 20> kOtherWords{
-    "patt",  "hatch", "hatching", "fill",    "schraffur", "iden",     "text",
-    "texts", "tag",   "tags",     "dim",     "dims",      "note",     "notes",
-    "door",  "doors", "window",   "windows", "glaz",      "furniture"};
+constexpr auto kOtherWords = std::to_array<std::string_view>(
+    {"patt",   "hatch",   "hatching", "fill",      "schraffur", "iden",   "text", "texts",
+     "tag",    "tags",    "dim",      "dims",      "note",      "notes",  "door", "doors",
+     "window", "windows", "glaz",     "furniture", "填充",      "标注",   "標注", "尺寸",
+     "寸法",   "해치",    "치수",     "문자",      "штриховка", "заливка"});
 
 /// Beginnings of words of layers without walls, in lower case: furniture, dimensions, text,
 /// hatching, axes, electrical, plumbing.
-constexpr auto kNoWallStems = std::to_array<std::string_view>(
-    {"furnit",    "möbel",         "moebel",   "mobel",       "mobil",          "mobler",
-     "möbler",    "møbl",          "meubel",   "meubil",      "meubl",          "mebl",
-     "mööbel",    "mēbel",         "kalust",   "huonekal",    "nábyt",          "nabyt",
-     "bútor",     "butor",         "namješ",   "namjes",      "namešt",         "namest",
-     "pohiš",     "baldai",        "mobilya",  "έπιπλ",       "επιπλ",          "мебел",
-     "мебл",      "обзавежд",      "家具",     "가구",        "dimens",         "bemass",
-     "bemaß",     "vermass",       "vermaß",   "cotas",       "cotat",          "cotac",
-     "acotac",    "acotad",        "maatv",    "maatl",       "mitoit",         "wymiar",
-     "ölçü",      "olcu",          "mérete",   "meretez",     "kótov",          "kotov",
-     "размер",    "розмір",        "διαστάσ",  "διαστασ",     "尺寸",           "标注",
-     "標注",      "寸法",          "치수",     "annot",       "beschrift",      "textos",
-     "texto",     "testi",         "tekst",    "szöveg",      "szoveg",         "metin",
-     "teksti",    "текст",         "надпис",   "κείμεν",      "κειμεν",         "文字",
-     "文本",      "注释",          "문자",     "schriftfeld", "plankopf",       "cartigl",
-     "cartouch",  "legend",        "titlebl",  "rotulo",      "rótulo",         "tytuł",
-     "hatch",     "schraff",       "hachur",   "sombread",    "trattegg",       "tratteg",
-     "retino",    "arcer",         "skraver",  "šraf",        "sraf",           "kreskow",
-     "tarama",    "rayado",        "rellen",   "штрих",       "заливк",         "填充",
-     "해치",      "achs",          "eixos",    "axlar",       "tengely",        "osie",
-     "osy",       "axen",          "akslinj",  "akselij",     "axonum",         "осеве",
-     "осевы",     "координационн", "轴线",     "轴网",        "轴号",           "軸線",
-     "통심",      "gridlin",       "elect",    "elekt",       "elett",          "eléct",
-     "élect",     "eletr",         "elett",    "sähkö",       "sahko",          "villany",
-     "elektrik",  "электр",        "електр",   "ηλεκτρ",      "电气",           "電気",
-     "전기",      "照明",          "beleucht", "leucht",      "steckdos",       "enchuf",
-     "lumin",     "belysn",        "освещ",    "освітл",      "plumb",          "sanitär",
-     "sanitaer",  "sanitar",       "sanitair", "sanear",      "fontan",         "plombe",
-     "idraul",    "hidraul",       "hydraul",  "saniteh",     "rohrl",          "vodovod",
-     "kanaliz",   "vízvez",        "tesisat",  "сантех",      "водопр",         "канализ",
-     "υδραυλ",    "给排水",        "給排水",   "卫生",        "洁具",           "衛生",
-     "위생",      "hvac",          "lüftung",  "lueftung",    "heizung",        "klima",
-     "einricht",  "ausstatt",      "titlebl",  "blattrahm",   "zeichnungsrahm", "planrahm",
-     "squadrat",  "viewport",      "рамк",     "图框",        "図枠",           "도곽",
-     "stair",     "trepp",         "escalier", "escaler",     "escada",         "scala",
-     "scalin",    "schod",         "lépcs",    "lepcs",       "merdiven",       "scări",
-     "stubišt",   "лестниц",       "сходи",    "σκάλ",        "σκαλ",           "楼梯",
-     "階段",      "계단",          "ceiling",  "overhead",    "landscap",       "vegetat",
-     "entourage", "roofs",         "cotation", "bemating",    "overordn",       "dimension"});
+constexpr auto kNoWallStems = std::to_array<std::string_view>({"furnit",
+                                                               "möbel",
+                                                               "moebel",
+                                                               "mobel",
+                                                               "mobil",
+                                                               "mobler",
+                                                               "möbler",
+                                                               "møbl",
+                                                               "meubel",
+                                                               "meubil",
+                                                               "meubl",
+                                                               "mebl",
+                                                               "mööbel",
+                                                               "mēbel",
+                                                               "kalust",
+                                                               "huonekal",
+                                                               "nábyt",
+                                                               "nabyt",
+                                                               "bútor",
+                                                               "butor",
+                                                               "namješ",
+                                                               "namjes",
+                                                               "namešt",
+                                                               "namest",
+                                                               "pohiš",
+                                                               "baldai",
+                                                               "mobilya",
+                                                               "έπιπλ",
+                                                               "επιπλ",
+                                                               "мебел",
+                                                               "мебл",
+                                                               "обзавежд",
+                                                               "家具",
+                                                               "가구",
+                                                               "dimens",
+                                                               "bemass",
+                                                               "bemaß",
+                                                               "vermass",
+                                                               "vermaß",
+                                                               "cotas",
+                                                               "cotat",
+                                                               "cotac",
+                                                               "acotac",
+                                                               "acotad",
+                                                               "maatv",
+                                                               "maatl",
+                                                               "mitoit",
+                                                               "wymiar",
+                                                               "ölçü",
+                                                               "olcu",
+                                                               "mérete",
+                                                               "meretez",
+                                                               "kótov",
+                                                               "kotov",
+                                                               "размер",
+                                                               "розмір",
+                                                               "διαστάσ",
+                                                               "διαστασ",
+                                                               "尺寸",
+                                                               "标注",
+                                                               "標注",
+                                                               "寸法",
+                                                               "치수",
+                                                               "annot",
+                                                               "beschrift",
+                                                               "textos",
+                                                               "texto",
+                                                               "testi",
+                                                               "tekst",
+                                                               "szöveg",
+                                                               "szoveg",
+                                                               "metin",
+                                                               "teksti",
+                                                               "текст",
+                                                               "надпис",
+                                                               "κείμεν",
+                                                               "κειμεν",
+                                                               "文字",
+                                                               "文本",
+                                                               "注释",
+                                                               "문자",
+                                                               "schriftfeld",
+                                                               "plankopf",
+                                                               "cartigl",
+                                                               "cartouch",
+                                                               "legend",
+                                                               "titlebl",
+                                                               "rotulo",
+                                                               "rótulo",
+                                                               "tytuł",
+                                                               "hatch",
+                                                               "schraff",
+                                                               "hachur",
+                                                               "sombread",
+                                                               "trattegg",
+                                                               "tratteg",
+                                                               "retino",
+                                                               "arcer",
+                                                               "skraver",
+                                                               "šraf",
+                                                               "sraf",
+                                                               "kreskow",
+                                                               "tarama",
+                                                               "rayado",
+                                                               "rellen",
+                                                               "штрих",
+                                                               "заливк",
+                                                               "填充",
+                                                               "해치",
+                                                               "achs",
+                                                               "eixos",
+                                                               "axlar",
+                                                               "tengely",
+                                                               "osie",
+                                                               "osy",
+                                                               "axen",
+                                                               "akslinj",
+                                                               "akselij",
+                                                               "axonum",
+                                                               "осеве",
+                                                               "осевы",
+                                                               "координационн",
+                                                               "轴线",
+                                                               "轴网",
+                                                               "轴号",
+                                                               "軸線",
+                                                               "통심",
+                                                               "gridlin",
+                                                               "elect",
+                                                               "elekt",
+                                                               "elett",
+                                                               "eléct",
+                                                               "élect",
+                                                               "eletr",
+                                                               "elett",
+                                                               "sähkö",
+                                                               "sahko",
+                                                               "villany",
+                                                               "elektrik",
+                                                               "электр",
+                                                               "електр",
+                                                               "ηλεκτρ",
+                                                               "电气",
+                                                               "電気",
+                                                               "전기",
+                                                               "照明",
+                                                               "beleucht",
+                                                               "leucht",
+                                                               "steckdos",
+                                                               "enchuf",
+                                                               "lumin",
+                                                               "belysn",
+                                                               "освещ",
+                                                               "освітл",
+                                                               "plumb",
+                                                               "sanitär",
+                                                               "sanitaer",
+                                                               "sanitar",
+                                                               "sanitair",
+                                                               "sanear",
+                                                               "fontan",
+                                                               "plombe",
+                                                               "idraul",
+                                                               "hidraul",
+                                                               "hydraul",
+                                                               "saniteh",
+                                                               "rohrl",
+                                                               "vodovod",
+                                                               "kanaliz",
+                                                               "vízvez",
+                                                               "tesisat",
+                                                               "сантех",
+                                                               "водопр",
+                                                               "канализ",
+                                                               "υδραυλ",
+                                                               "给排水",
+                                                               "給排水",
+                                                               "卫生",
+                                                               "洁具",
+                                                               "衛生",
+                                                               "위생",
+                                                               "hvac",
+                                                               "lüftung",
+                                                               "lueftung",
+                                                               "heizung",
+                                                               "klima",
+                                                               "einricht",
+                                                               "ausstatt",
+                                                               "titlebl",
+                                                               "blattrahm",
+                                                               "zeichnungsrahm",
+                                                               "planrahm",
+                                                               "squadrat",
+                                                               "viewport",
+                                                               "рамк",
+                                                               "图框",
+                                                               "図枠",
+                                                               "도곽",
+                                                               "stair",
+                                                               "trepp",
+                                                               "escalier",
+                                                               "escaler",
+                                                               "escada",
+                                                               "scala",
+                                                               "scalin",
+                                                               "schod",
+                                                               "lépcs",
+                                                               "lepcs",
+                                                               "merdiven",
+                                                               "scări",
+                                                               "stubišt",
+                                                               "лестниц",
+                                                               "сходи",
+                                                               "σκάλ",
+                                                               "σκαλ",
+                                                               "楼梯",
+                                                               "階段",
+                                                               "계단",
+                                                               "ceiling",
+                                                               "overhead",
+                                                               "landscap",
+                                                               "vegetat",
+                                                               "entourage",
+                                                               "roofs",
+                                                               "cotation",
+                                                               "bemating",
+                                                               "overordn",
+                                                               "dimension",
+                                                               "أثاث",
+                                                               "اثاث",
+                                                               "الأثاث",
+                                                               "ריהוט",
+                                                               "مبلمان",
+                                                               "เฟอร์นิ",
+                                                               "perabot",
+                                                               "furnitur",
+                                                               "أبعاد",
+                                                               "ابعاد",
+                                                               "الأبعاد",
+                                                               "מידות",
+                                                               "اندازه",
+                                                               "ukuran",
+                                                               "نصوص",
+                                                               "טקסט",
+                                                               "محاور",
+                                                               "المحاور",
+                                                               "צירים",
+                                                               "محور",
+                                                               "كهرباء",
+                                                               "חשמל",
+                                                               "درج",
+                                                               "סניטר",
+                                                               "sanit",
+                                                               "hachag",
+                                                               "hachés"});
 /// The same as whole words, which begin others.
 constexpr auto kNoWallWords = std::to_array<std::string_view>(
     {"furn",        "furniture", "equip",  "appl",   "muebles", "mueble",    "arredi",  "arredo",
@@ -103,7 +342,9 @@ constexpr auto kDoorWords = std::to_array<std::string_view>(
      "usi",   "vrata",  "врата", "门",     "門",      "门窗",    "ドア",   "扉",    "建具",
      "문",    "двері",  "двери", "дверь",  "ușa",     "дверные", "дверей"});
 constexpr auto kDoorStems = std::to_array<std::string_view>(
-    {"carpinter", "serrament", "infiss", "menuiserie", "esquadri", "πόρτ", "θύρ", "πορτ"});
+    {"carpinter", "serrament", "infiss", "menuiserie", "esquadri", "πόρτ", "θύρ",
+     "πορτ",      "أبواب",     "ابواب",  "باب",        "الأبواب",  "درب",  "דלת",
+     "ประตู",      "cửa",       "pintu",  "durvis",     "durys",    "uksed"});
 constexpr auto kDoorEnds = std::to_array<std::string_view>({"türen", "tür", "tueren", "tuer"});
 constexpr auto kWindowWords = std::to_array<std::string_view>(
     {"window",   "windows", "glaz",     "glazing", "fenster", "fenêtre",  "fenêtres", "fenetre",
@@ -113,7 +354,9 @@ constexpr auto kWindowWords = std::to_array<std::string_view>(
      "prozor",   "prozori", "окно",     "окна",    "вікно",   "вікна",    "прозорец", "прозорци",
      "窗",       "窗户",    "窓",       "창",      "창문",    "vitre",    "vitrage"});
 constexpr auto kWindowStems = std::to_array<std::string_view>(
-    {"fereastr", "ferestr", "παράθυρ", "παραθυρ", "verglas", "pencerel"});
+    {"fereastr", "ferestr", "παράθυρ", "παραθυρ", "verglas", "pencerel", "نافذة", "نوافذ", "شباك",
+     "شبابيك", "النوافذ", "پنجره", "חלון", "חלונות", "หน้าต่าง", "jendela", "langas", "langai",
+     "aknad"});
 
 /// Words of blocks and groups of furniture and fixtures.
 constexpr auto kThingWords = std::to_array<std::string_view>(
@@ -138,9 +381,27 @@ struct IsoLayer {
     char presentation = '-';  ///< E element, T text, H hatching, D dimension, and others
 };
 
+/// Parses names of BS 1192, such as A210G701_WALL: an author, three digits of CI/SfB, a graphic (G
+/// or M elements, D dimensions, T text, H hatching) and the digit of a pen. 315 is a door in an
+/// outer wall.
+std::optional<IsoLayer> britishLayer(std::string_view name) {
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    constexpr std::size_t kLeast = 6;
+    if (name.size() < kLeast || std::string_view("AISC").find(name[0]) == std::string_view::npos ||
+        !std::all_of(name.begin() + 1, name.begin() + 4, is_digit) ||
+        std::string_view("ACDGHTZM").find(name[4]) == std::string_view::npos || !is_digit(name[5]))
+        return std::nullopt;
+    const int element = 10 * (name[1] - '0') + (name[2] - '0');
+    constexpr int kOuterOpenings = 31, kInnerOpenings = 32;
+    const bool is_outer_door = element == kOuterOpenings && name[3] == '5';
+    const bool is_element = name[4] == 'G' || name[4] == 'M';
+    return IsoLayer{is_outer_door ? kInnerOpenings : element, is_element ? 'E' : 'T'};
+}
+
 /// Parses names such as A-21----E-: two characters of the agent, six of the element, two of the
 /// presentation.
 std::optional<IsoLayer> isoLayer(std::string_view name) {
+    if (const auto british = britishLayer(name)) return british;
     constexpr std::size_t kLeast = 10;
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     if (name.size() < kLeast || name[0] < 'A' || name[0] > 'Z') return std::nullopt;
@@ -172,6 +433,13 @@ bool isOtherDiscipline(std::string_view name) {
            (name.size() == 6 || name[6] == '-');
 }
 
+/// Returns true for dimensions and hatching of the descriptive BS 1192 (A-Wall-D, A-Wall-H), and
+/// for what the National CAD Standard marks as demolished (A-WALL-D).
+bool isOffPlan(std::string_view name) {
+    return name.size() > 4 && name[0] >= 'A' && name[0] <= 'Z' && name[1] == '-' &&
+           (name.ends_with("-D") || name.ends_with("-H"));
+}
+
 template <typename Words, typename Stems>
 bool hasWordOf(const std::vector<std::string>& words, const Words& whole, const Stems& stems) {
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
@@ -197,9 +465,14 @@ std::vector<std::string> wordsOf(std::string_view name) {
 /// Returns true if a word means wall, whatever the others mean.
 bool hasWallWord(const std::vector<std::string>& words) {
     return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+        const auto has = [&](std::string_view part) {
+            return word.find(part) != std::string::npos;
+        };
         return isOneOf(kWallWords, word) ||
                std::any_of(kWallEnds.begin(), kWallEnds.end(),
-                           [&](std::string_view end) { return word.ends_with(end); });
+                           [&](std::string_view end) { return word.ends_with(end); }) ||
+               (std::any_of(kWallParts.begin(), kWallParts.end(), has) &&
+                std::none_of(kOtherParts.begin(), kOtherParts.end(), has));
     });
 }
 
@@ -247,6 +520,7 @@ bool matchesLayer(const std::vector<std::string>& globs, std::string_view layer)
 
 bool isWallName(std::string_view full_name) {
     const std::string_view name = beginning(full_name);
+    if (isOffPlan(name)) return false;
     if (const auto iso = isoLayer(name))
         return showsElements(*iso) && (iso->element == 21 || iso->element == 22);
     const std::vector<std::string> words = wordsOf(name);
@@ -264,7 +538,8 @@ bool isNoWallName(std::string_view full_name) {
                (group == 2 && iso->element != 21 && iso->element != 22 && iso->element != 28);
     }
     if (isWallName(name)) return false;
-    return isOtherDiscipline(name) || hasWordOf(wordsOf(name), kNoWallWords, kNoWallStems);
+    return isOffPlan(name) || isOtherDiscipline(name) ||
+           hasWordOf(wordsOf(name), kNoWallWords, kNoWallStems);
 }
 
 bool isDoorName(std::string_view full_name) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The names of layers, blocks and groups in drawings, and what they say of their lines: words of
-// two dozen languages, the National CAD Standard (AIA) and ISO 13567.
+// two dozen languages, the National CAD Standard (AIA), ISO 13567 and BS 1192.
 #pragma once
 
 #include <algorithm>

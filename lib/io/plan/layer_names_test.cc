@@ -22,6 +22,23 @@ TEST(LayerNames, DoorsAndWindows) {
         EXPECT_FALSE(isDoorName(name)) << name;
 }
 
+TEST(LayerNames, WallsOfManyLanguages) {
+    for (const char* name :
+         {"墙",        "外墙",      "承重墙体",    "牆",          "壁",      "外壁",     "벽",
+          "외벽",      "СТЕНЫ",     "перегородки", "Стени",       "جدار",    "جدران",    "קירות",
+          "دیوار",     "दीवार",     "ผนัง",         "tường",       "dinding", "sienas",   "sienos",
+          "seinad",    "Innervägg", "ulkoseinä",   "binnenmuren", "příčky",  "cloisons", "tabiques",
+          "alvenaria", "tramezzi",  "A-WALL-PRTN"})
+        EXPECT_TRUE(isWallName(name)) << name;
+    for (const char* name : {"墙体填充", "墙纸", "外墙标注", "벽체 해치", "门窗", "家具", "壁柜",
+                             "轴网", "A-WALL-PATT"})
+        EXPECT_FALSE(isWallName(name)) << name;
+    for (const char* name : {"أبواب", "דלתות", "ประตู", "durvis"})
+        EXPECT_TRUE(isDoorName(name)) << name;
+    for (const char* name : {"أثاث", "ריהוט", "เฟอร์นิเจอร์", "أبعاد", "מידות"})
+        EXPECT_TRUE(isNoWallName(name)) << name;
+}
+
 TEST(LayerNames, OfStandards) {
     for (const char* name : {"A-21----E-", "A-22----E-", "AR210000E-", "I-WALL", "A-WALL-FULL"})
         EXPECT_TRUE(isWallName(name)) << name;
@@ -34,6 +51,20 @@ TEST(LayerNames, OfStandards) {
     }
     for (const char* name :
          {"A-28----E-", "S-COLS", "Partitions", "E-Cloison", "Structural - Bearing"})
+        EXPECT_FALSE(isNoWallName(name)) << name;
+}
+
+TEST(LayerNames, OfBs1192) {
+    for (const char* name : {"A210G701_WALL_L1", "A220G3", "A-Wall-G"})
+        EXPECT_TRUE(isWallName(name)) << name;
+    for (const char* name : {"A210D2", "A210T2", "A760G3", "A350H1", "A-Wall-D", "A-Wall-H"}) {
+        EXPECT_FALSE(isWallName(name)) << name;
+        EXPECT_TRUE(isNoWallName(name)) << name;
+    }
+    EXPECT_TRUE(isDoorName("A315G3"));
+    EXPECT_TRUE(isWindowName("A314G3"));
+    EXPECT_TRUE(isDoorName("A-Door-G"));
+    for (const char* name : {"A101", "A210", "A1234", "L760G3"})
         EXPECT_FALSE(isNoWallName(name)) << name;
 }
 
