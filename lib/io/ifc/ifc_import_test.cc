@@ -69,6 +69,16 @@ TEST_P(Cabin, RoomsDoorsWindowsZonesAndThings) {
     EXPECT_EQ(warningsOf(document).find("warning"), std::string::npos) << warningsOf(document);
 }
 
+TEST(Ifc, ThingsAcrossAWallStandInTheRoomsThatTheyReachInto) {
+    std::string bytes = ifcBytes("cabin-2x3-mm.ifc");
+    const std::string place = "(4600.,3200.,0.)";
+    bytes.replace(bytes.find(place), place.size(), "(3450.,3200.,0.)");  // its middle in a wall
+    EXPECT_EQ(countOf(readIfc(bytes, "a.ifc", {}, sceneSchemas()), "cube"), 1U);
+    const std::string moved = "(3450.,3200.,0.)";
+    bytes.replace(bytes.find(moved), moved.size(), "(8450.,3200.,0.)");  // outside
+    EXPECT_EQ(countOf(readIfc(bytes, "a.ifc", {}, sceneSchemas()), "cube"), 0U);
+}
+
 /// Returns the choices, a line each.
 std::string choicesOf(const ImportReport& report) {
     std::string lines;

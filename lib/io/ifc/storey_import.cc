@@ -251,6 +251,17 @@ class StoreyImport {
         return false;
     }
 
+    /// Returns true if the middle of a box lies in a room, or, of one as long as a wall, most of a
+    /// quarter: its middle may lie in a wall between two rooms.
+    [[nodiscard]] bool reachesRoom(const BuildingBox& box) const {
+        constexpr double kLong = 1, kQuarter = 0.375;  // metres; share of the length
+        if (isKept(box.center) || std::max(box.length, box.width) < kLong)
+            return isKept(box.center);
+        const bool is_along = box.length >= box.width;
+        const Vec2 way = is_along ? box.length * box.along : box.width * perpendicular(box.along);
+        return isKept(box.center + kQuarter * way) || isKept(box.center - kQuarter * way);
+    }
+
     /// Skips walls without a face that bounds the rooms.
     void writeWalls() {
         const std::vector<bool> keep = rooms_.regions.empty()
@@ -395,7 +406,7 @@ class StoreyImport {
         const bool is_here = box.bottom >= floor_ - kBelowFloor || std::string(keyword) == "pillar";
         if (!is_here || bottom >= std::min(height_, ceiling_ - floor_ - kBelowFloor) ||
             top - bottom < kThinnestThing || std::min(box.length, box.width) < kThinnestThing ||
-            !isKept(box.center))
+            !reachesRoom(box))
             return;
         Record& record = out_.add(keyword, 0);
         record.set("id", out_.freeId(name.substr(0, name.find(':')), keyword));
