@@ -44,7 +44,7 @@ STAIR = [[(7.5, .3 + .25 * i), (8.7, .3 + .25 * i)] for i in range(1, 8)]
 UNITS = {"mm": 1000, "cm": 100, "m": 1, "inch": 1 / .0254, "foot": 1 / .3048, "dm": 10}
 CLASSES = {"LINE": "AcDbLine", "LWPOLYLINE": "AcDbPolyline", "POLYLINE": "AcDb2dPolyline", "ARC": "AcDbCircle",
            "VERTEX": "AcDbVertex\n100\nAcDb2dVertex", "CIRCLE": "AcDbCircle", "INSERT": "AcDbBlockReference",
-           "HATCH": "AcDbHatch", "MLINE": "AcDbMline", "TEXT": "AcDbText"}
+           "HATCH": "AcDbHatch", "MLINE": "AcDbMline", "TEXT": "AcDbText", "SPLINE": "AcDbSpline"}
 INSUNITS = {"inch": 1, "foot": 2, "mm": 4, "cm": 5, "m": 6, "dm": 14}
 
 
@@ -433,6 +433,104 @@ def chinese():
     return d
 
 
+def bs1192():
+    """Revit's and AutoCAD Architecture's BS1192 (AUG 2): an author, three digits of CI/SfB, a graphic,
+    a pen (help.autodesk.com, AutoCAD Architecture 2023, "BS1192 - AUG Version 2 Layer Standard")."""
+    d = flat(Dxf("mm", None, "AC1027"), "A210G701_WALL_L1", "A315G3", "A314G3")
+    furniture(d, "A760G3")
+    dimensions(d, "A210D2")
+    axes(d, "A000G2_GRID")
+    return d
+
+
+def bs1192_descriptive():
+    """The same by words: A-Wall-G (help.autodesk.com, "BS1192 - Descriptive Layer Standard")."""
+    d = flat(Dxf("mm", None, "AC1027"), "A-Wall-G", "A-Door-G", "A-Window-G")
+    furniture(d, "A-Furniture-G")
+    dimensions(d, "A-Wall-D")
+    return d
+
+
+def aia_mixed_case():
+    """Architectural Desktop's AIA layers in mixed case: A-Wall, A-Flor-Case, A-Anno-Dims, A-Eqpm."""
+    d = flat(Dxf("inch", None, "AC1015"), "A-Wall", "A-Door", "A-Glaz", "poly", "leaf")
+    furniture(d, "A-Flor-Appl")
+    d.lines("A-Eqpm", SOFA)
+    dimensions(d, "A-Anno-Dims")
+    d.lines("A-Clng-Grid", [(.3, 2), (5, 2)], False)
+    return d
+
+
+def revit_xdata():
+    """Revit adds xdata of the application REVIT to each entity (adndevblog.typepad.com, "Revit DWG/DXF
+    export: specification of the extended data"); its integers are no counts of vertices."""
+    d = revit("foot")
+    tail = "1001\nREVIT\n1070\n1\n1071\n118392\n1070\n2\n1071\n-2000011\n"
+    parts = d.entities.split("0\nLINE\n")
+    d.entities = ("0\nLINE\n").join([parts[0]] + [p if p.startswith("~") else p + tail for p in parts[1:-1]] +
+                                    parts[-1:])
+    return d
+
+
+def inkscape_dxf():
+    """Inkscape's DXF R14 writes curves as SPLINE of degree 3, layers by name, and pixels of 1/90 inch
+    before 0.92 (tim.cexx.org, "Better Better DXF Output"); an arc is one cubic for each quarter."""
+    d = Dxf("mm", 0, "AC1014")
+    for corners in WALLS:
+        d.lines("Walls", corners)
+    for hinge, leaf, latch, width in DOORS:
+        start, end = ends(hinge, leaf, latch, width)
+        d.line("Doors", hinge, start)
+        k = 4 / 3 * math.tan(math.pi / 8) * width
+        turn = 1 if (latch - leaf) % 360 == 90 else -1
+        a, b = (math.radians(x + turn * y) for x, y in ((leaf, 90), (latch, -90)))
+        controls = [start, (start[0] + k * math.cos(a), start[1] + k * math.sin(a)),
+                    (end[0] + k * math.cos(b), end[1] + k * math.sin(b)), end]
+        d.add("SPLINE", "Doors", "70\n8\n71\n3\n72\n8\n73\n4\n74\n0\n" + "".join("40\n%d\n" % v for v in (
+            0, 0, 0, 0, 1, 1, 1, 1)) + "".join(d.x(p) for p in controls))
+    for x0, y0, x1, y1 in WINDOWS:
+        d.lines("Windows", [(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+    return d
+
+
+def plan_pilot():
+    """Layers of a FreeCAD workflow: murs, cloisons, ouvertures, cotations, textes (PlanPilot's export)."""
+    d = Dxf("mm", None, "AC1032")
+    for i, corners in enumerate(WALLS):
+        d.lines("cloisons" if i == 2 else "murs", corners)
+    for hinge, leaf, latch, width in DOORS:
+        d.line("ouvertures", hinge, ends(hinge, leaf, latch, width)[0])
+        d.arc("ouvertures", hinge, width, min(leaf, latch), max(leaf, latch))
+    for x0, y0, x1, y1 in WINDOWS:
+        d.poly("ouvertures", [(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+    dimensions(d, "cotations")
+    furniture(d, "mobilier")
+    return d
+
+
+def on_a_plot(wall="Mauerwerk", plot="Grundstück"):
+    """A house on its plot: the boundary is the largest outline."""
+    d = flat(Dxf("m", None, "AC1027"), wall, "Türen", "Fenster", "poly", "leaf")
+    d.poly(plot, [(-8, -6), (22, -6), (22, 16), (-8, 16)])
+    return d
+
+
+def arabic():
+    d = flat(Dxf("cm", None, "AC1027"), "جدران", "أبواب", "نوافذ")
+    furniture(d, "أثاث")
+    dimensions(d, "أبعاد")
+    return d
+
+
+def upright_face():
+    """An AutoCAD 3D model: a wall's face stands upright, with its own plane as coordinates."""
+    d = Dxf("m")
+    d.poly("A-WALL", AXES_FLOOR)
+    d.add("LWPOLYLINE", "A-WALL", "90\n4\n70\n1\n38\n5\n10\n0\n20\n0\n10\n6.5\n20\n0\n10\n6.5\n20\n2.5\n10\n0\n20\n"
+          "2.5\n210\n1\n220\n0\n230\n0\n")
+    return d
+
+
 OUTSIDE_BAY = [(0, 0), (6, 0), (6, 1)] + [
     (6 + 1.5 * math.cos(math.pi * (i / 400 - .5)), 2.5 + 1.5 * math.sin(math.pi * (i / 400 - .5)))
     for i in range(1, 400)] + [(6, 4), (6, 5), (0, 5)]
@@ -482,6 +580,16 @@ DXF = {
     "frozen": (frozen, "mm", FLOOR, "right"),
     "external": (external, "mm", None, "warned"),
     "solids": (solids, "mm", None, "warned"),
+    "bs1192": (bs1192, "mm", FLOOR, "right"),
+    "bs1192-descriptive": (bs1192_descriptive, "mm", FLOOR, "right"),
+    "aia-mixed-case": (aia_mixed_case, "inch", FLOOR, "right"),
+    "revit-xdata": (revit_xdata, "foot", FLOOR, "right"),
+    "inkscape-r14": (inkscape_dxf, "mm", FLOOR, "right"),
+    "freecad-french": (plan_pilot, "mm", FLOOR, "right"),
+    "on-a-plot": (on_a_plot, "m", FLOOR, "right"),
+    "on-a-plot-unnamed": (lambda: on_a_plot("L1", "L2"), "m", FLOOR, "warned"),
+    "arabic": (arabic, "cm", FLOOR, "right"),
+    "upright-face": (upright_face, "m", None, "warned"),
     "single-lines": (single_lines, "m", AXES_FLOOR, "right"),
     "survey": (survey, "m", FLOOR, "right"),
 }
@@ -667,6 +775,36 @@ def wide_strokes():
     return d
 
 
+def on_paper(scale, head):
+    """A plan at a scale on a page in millimetres, as Inkscape's default page has it (its user unit is a
+    millimetre since 0.92: wiki.inkscape.org, "Units In Inkscape")."""
+    d = Svg(1000 / scale, head)
+    svg_flat(d, inkscape_group, more='style="fill:none;stroke:#000000;stroke-width:0.25"')
+    return svg_things(d, inkscape_group("Furniture"))
+
+
+def paper(scale):
+    return 'width="%gmm" height="%gmm" viewBox="0 0 %%(x)g %%(y)g"' % (12000 / scale, 8000 / scale)
+
+
+def clipped():
+    """Converters from PDF clip each element by a path, here hatching by the outline of a wall."""
+    d = svg_flat(Svg(), id_group, more=THIN)
+    d.body = '<defs><clipPath id="c"><path d="M %s Z"/></clipPath></defs>' % " L ".join(
+        d.at(p) for p in WALLS[1]) + d.body
+    for i in range(12):
+        d.path([(2 + i, -1), (9 + i, 6)], False, 'clip-path="url(#c)" ' + THIN)
+    return d
+
+
+def by_percent():
+    d = Svg(100, 'width="12000mm" height="8000mm" viewBox="0 0 1200 800"')
+    svg_flat(d, id_group, more=THIN)
+    d.body += '<g id="Furniture"><rect x="20%" y="30%" width="10%" height="10%"/></g>'
+    d.body += '<rect width="100%" height="100%" fill="#ffffff00"/>'
+    return d
+
+
 SVG = {
     "inkscape": (inkscape, FLOOR, "right"),
     "inkscape-german": (lambda: inkscape("Möbel", wall="Wände", door="Türen", window="Fenster"), FLOOR, "right"),
@@ -683,6 +821,10 @@ SVG = {
     "uses": (uses, FLOOR, "right"),
     "sweethome3d": (sweethome, FLOOR, "right"),
     "meaning-by-group": (meaning_by_group, FLOOR, "right"),
+    "paper-50": (lambda: on_paper(50, paper(50)), FLOOR, "right"),
+    "paper-100": (lambda: on_paper(100, paper(100)), FLOOR, "right"),
+    "clipped": (clipped, FLOOR, "right"),
+    "by-percent": (by_percent, FLOOR, "right"),
     "wide-strokes": (wide_strokes, MIDDLE, "right"),
 }
 

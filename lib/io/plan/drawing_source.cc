@@ -35,6 +35,25 @@ constexpr double kLeastRoom = 1;
 /// Drawings with more lines of walls are not read again for a message.
 constexpr std::size_t kMaxLinesReadAgain = 100'000;
 
+/// Square metres: walls of a smaller room may be those within a room of other lines.
+constexpr double kLeastHouse = 12;
+/// Metres between an outline around a house and its walls.
+constexpr double kAroundHouse = 0.5;
+
+Box2 boundsOf(const std::vector<PlanRegion>& rooms) {
+    Box2 box;
+    for (const PlanRegion& region : rooms)
+        for (const Region& room : region.rooms)
+            for (const Point2 p : room.outline) box.add(p);
+    return box;
+}
+
+/// Returns true if the box lies within the other one with a distance on all sides.
+bool liesWithin(const Box2& box, const Box2& outer) {
+    return outer.low.x + kAroundHouse <= box.low.x && outer.low.y + kAroundHouse <= box.low.y &&
+           box.high.x + kAroundHouse <= outer.high.x && box.high.y + kAroundHouse <= outer.high.y;
+}
+
 /// As an option takes it in a shell, its glob characters escaped.
 std::string optionText(const std::string& name) {
     std::string glob;
@@ -102,7 +121,8 @@ void checkScale(double extent, const DrawingSource& drawing, const std::string& 
     const std::string metres = extent < kMaxDrawing ? lengthText(extent) : formatFixed(extent, 0);
     failFile(name, "the plan is " + metres + " m wide: is its unit right?" +
                        (hint.empty() ? " Else " + std::string(kScaleHint)
-                                     : hint + "; or say how wide it is, with --width-is 8.3m"));
+                                     : hint + "; or say how wide it is, with --width-is 8.3m") +
+                       drawing.ranking);
 }
 
 void warnOfWallNames(const std::map<std::string, std::size_t>& names, const PlanOutcome& taken,
@@ -128,7 +148,9 @@ void warnOfWallNames(const std::map<std::string, std::size_t>& names, const Plan
         const bool needs_gaps = other.widest_gap > taken.widest_gap;
         const bool is_larger =
             other.area > (1 + (needs_gaps ? kClutteredRoom : kSameRoom)) * taken.area;
-        const bool is_framed = taken.is_frame && other.area < (1 - kSameRoom) * taken.area;
+        const bool is_framed =
+            (taken.is_frame && other.area < (1 - kSameRoom) * taken.area) ||
+            (liesWithin(other.walls, boundsOf(taken.rooms)) && other.area >= kLeastHouse);
         if (drawing.better_layers != nullptr && (is_larger || is_framed)) {
             *drawing.better_layers = from_walls.wall_layers;
             return;

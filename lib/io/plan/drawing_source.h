@@ -11,14 +11,17 @@
 #include "io/importers.h"
 #include "io/plan/layer_names.h"
 #include "io/plan/plan_lines.h"
+#include "io/plan/plan_rooms.h"
 
 namespace ispace {
 
 /// The result of an import, to compare others with.
 struct PlanOutcome {
-    double area = 0;        ///< of the floor, in square metres
-    double widest_gap = 0;  ///< that was closed, in metres
-    bool is_frame = false;  ///< the room is a rectangle around the whole drawing
+    double area = 0;                     ///< of the floor, in square metres
+    double widest_gap = 0;               ///< that was closed, in metres
+    bool is_frame = false;               ///< the room is a rectangle around the whole drawing
+    std::vector<PlanRegion> rooms = {};  ///< that are kept
+    Box2 walls = {};                     ///< bounds of all lines that were read as walls
 };
 
 /// A drawing that can be imported again, so that messages can report the effect of other options.
@@ -28,6 +31,7 @@ struct DrawingSource {
     std::size_t bytes = 0;                             ///< of the file
     std::map<std::string, std::size_t> left_out = {};  ///< what draws no lines, by type or reason
     std::vector<std::string> likely_units = {};  ///< for --units, the most likely first, if known
+    std::string ranking = {};                    ///< of units and scales, see rankingText()
     /// Imports with other options; null omits these messages. \throws FormatError as the import
     /// does
     std::function<PlanOutcome(const ImportOptions&)> import = {};
@@ -60,8 +64,9 @@ void checkScale(double extent, const DrawingSource& drawing, const std::string& 
                 const ImportOptions& options);
 
 /// Compares the room with that of walls from these layers, blocks and groups alone. A larger room,
-/// which other lines clutter, and one in the frame of a sheet are passed to
-/// DrawingSource::better_layers, if there is one; else warns. Rooms below a square metre, and those
+/// which other lines clutter, one in the frame of a sheet, and one off an outline around all of
+/// these walls, as of a parcel, are passed to DrawingSource::better_layers, if there is one; else
+/// warns. Rooms below a square metre, and those
 /// that need wider gaps closed than the one that was taken, are no advice.
 /// \param names with their numbers of lines \param taken the room
 void warnOfWallNames(const std::map<std::string, std::size_t>& names, const PlanOutcome& taken,

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "io/plan/drawing_source.h"
 #include "io/plan/plan_lines.h"
 
 namespace ispace {
@@ -36,11 +37,7 @@ constexpr std::size_t kSureDoors = 2;
 constexpr std::size_t kMaxLines = 20'000;
 
 constexpr std::array<const char*, 5> kCandidates{"m", "mm", "cm", "inch", "foot"};
-
-const LengthUnit* unitNamed(std::string_view name) {
-    return &*std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
-                          [&](const LengthUnit& unit) { return unit.name == name; });
-}
+constexpr std::size_t kListedUnits = 3;
 
 bool isUsual(const UnitEvidence& evidence) {
     return evidence.extent >= kUsualPlan && evidence.extent <= kLargestUsualPlan;
@@ -129,8 +126,22 @@ UnitEvidence evidenceIn(const LengthUnit& unit, LayerSorter::Sorted shapes, Budg
 
 }  // namespace
 
+std::span<const LengthUnit> usualUnits() {
+    static const auto units = [] {
+        std::array<LengthUnit, kCandidates.size()> all{};
+        for (std::size_t i = 0; i < all.size(); ++i)
+            all[i] = *std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
+                                   [&](const LengthUnit& unit) {
+                                       return std::string_view(unit.name) == kCandidates[i];
+                                   });
+        return all;
+    }();
+    return units;
+}
+
 std::vector<UnitEvidence> rankedUnits(const std::function<LayerSorter::Sorted(double)>& read,
-                                      const Budget& work, const LengthUnit* stated) {
+                                      const Budget& work, const LengthUnit* stated,
+                                      std::span<const LengthUnit> candidates) {
     std::vector<UnitEvidence> ranking;
     const auto add = [&](const LengthUnit& unit) {
         const UnitEvidence evidence = evidenceIn(unit, read(unit.metres), work);
@@ -143,8 +154,8 @@ std::vector<UnitEvidence> rankedUnits(const std::function<LayerSorter::Sorted(do
                                  (isUsual(ranking.front()) && ranking.front().walls >= kMostWalls)))
             return ranking;
     }
-    for (const char* name : kCandidates)
-        if (stated == nullptr || std::string_view(stated->name) != name) add(*unitNamed(name));
+    for (const LengthUnit& unit : candidates)
+        if (stated == nullptr || std::string_view(stated->name) != unit.name) add(unit);
     double most_doors = 0, most_walls = kFewWalls;
     for (const UnitEvidence& evidence : ranking) {
         most_doors = std::max(most_doors, static_cast<double>(evidence.doors));
@@ -172,6 +183,25 @@ const UnitEvidence* decidedUnit(const std::vector<UnitEvidence>& ranking,
     if (own == ranking.end()) return &best;
     const bool is_sure = own->doors == 0 && best.doors >= kSureDoors && best.walls >= own->walls;
     return is_sure ? &best : nullptr;
+}
+
+std::string rankingText(const std::vector<UnitEvidence>& ranking) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(ranking.size(), kListedUnits); ++i)
+        text += std::string(i == 0 ? "; most likely is " : ", then ") + ranking[i].unit->name +
+                ", in which " + evidenceText(ranking[i]);
+    return text;
+}
+
+std::string scaleHint(const std::vector<UnitEvidence>& ranking) {
+    if (ranking.empty()) return std::string(": ") + kScaleHint;
+    const UnitEvidence& best = ranking.front();
+    const std::string width = "--width-is " + formatFixed(best.extent, 2);
+    const bool is_scale = std::string_view(best.unit->name).starts_with("1:");
+    return rankingText(ranking) + ": say " +
+           (is_scale ? "how wide it is, for example with " + width
+                     : std::string("its unit, for example with --units ") + best.unit->name +
+                           ", or how wide it is, with " + width);
 }
 
 std::string evidenceText(const UnitEvidence& evidence) {

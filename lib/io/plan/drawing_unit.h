@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,15 +27,17 @@ struct UnitEvidence {
     double score = 0;           ///< doors count 2, walls 1, the extent 1
 };
 
-/// Ranks m, cm, mm, inch and foot, the most likely first, without those in which the drawing has no
-/// plan's size. Drawings of very many lines have extents alone. O(n log n)
+/// Ranks units, the most likely first, without those in which the drawing has no plan's size.
+/// Drawings of very many lines have extents alone. O(n log n)
 /// \param read returns walls and doors at metres a unit
 /// \param work for each reading; with too little, lines are not compared
 /// \param stated the unit that the drawing states, or null; if it has doors, or walls and a usual
 /// size, the others are not tried
+/// \param candidates outlive the result; usualUnits(): m, mm, cm, inch and foot
 std::vector<UnitEvidence> rankedUnits(
     const std::function<LayerSorter::Sorted(double metres_per_unit)>& read, const Budget& work,
-    const LengthUnit* stated);
+    const LengthUnit* stated, std::span<const LengthUnit> candidates);
+std::span<const LengthUnit> usualUnits();
 
 /// Returns the first of the ranking if doors or walls make it much more likely than the others,
 /// else null. \param stated as above: it is believed unless its plan has an impossible size, or no
@@ -43,5 +46,12 @@ const UnitEvidence* decidedUnit(const std::vector<UnitEvidence>& ranking, const 
 
 /// Returns "doors are 0.81 m wide, walls 0.3 m thick and the plan 9.0 m wide".
 std::string evidenceText(const UnitEvidence& evidence);
+
+/// Returns "; most likely is mm, in which doors are 0.81 m wide and the plan 9.0 m wide, then inch,
+/// in which …", of up to three; "" for none.
+std::string rankingText(const std::vector<UnitEvidence>& ranking);
+
+/// Returns such a text and ": say its unit, for example with --units mm, …", with the most likely.
+std::string scaleHint(const std::vector<UnitEvidence>& ranking);
 
 }  // namespace ispace

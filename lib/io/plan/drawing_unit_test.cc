@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "base/number.h"
 #include "io/importers.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
@@ -61,9 +62,11 @@ TEST(DrawingUnit, WallsDecideWithoutDoors) {
     EXPECT_NE(warningsOf(document).find("read in cm, in which walls are 0.24 m thick"),
               std::string::npos);
     // A rectangle may have any size.
-    EXPECT_NE(errorsOf([&] {
-                  read(drawing(rectangle("0", 0, 0, 8, 6), "", 0));
-              }).find("the drawing does not say its unit ($INSUNITS): say its unit"),
+    EXPECT_NE(errorsOf([&] { read(drawing(rectangle("0", 0, 0, 8, 6), "", 0)); })
+                  .find("the drawing does not say its unit ($INSUNITS); most likely is m, in which "
+                        "the plan is 8.0 m wide, then foot, in which the plan is 2.4 m wide: say "
+                        "its unit, for example with --units m, or how wide it is, with --width-is "
+                        "8.00"),
               std::string::npos);
 }
 
@@ -86,6 +89,39 @@ TEST(DrawingUnit, ListsTheCodesThatAreRead) {
     EXPECT_NE(errorsOf([&] { read(drawing(rectangle("0", 0, 0, 8, 6), "", 3)); })
                   .find("$INSUNITS is 3, wanted 1 (inch), 2 (foot), 4 (mm), 5 (cm), 6 (m), 7 (km), "
                         "10 (yard) or 14 (dm)"),
+              std::string::npos);
+}
+
+TEST(DrawingUnit, ScalesOfPaper) {
+    // The flat of OfSvg in centimetres, at a scale on a page.
+    const auto page = [](double scale, const std::string& unit) {
+        const double cm = (unit == "mm" ? 10 : kInch / 100) / scale;
+        const std::string w = formatDouble(900 * cm), h = formatDouble(700 * cm);
+        return "<svg width='" + w + unit + "' height='" + h + unit + "' viewBox='0 0 " + w + ' ' +
+               h + "'><g transform='scale(" + formatDouble(cm) +
+               ")'><path d='M0 0H800V600H0Z M400 0V200 M400 280V600 M400 200H320'/>"
+               "<path d='M320 200A80 80 0 0 0 400 280'/></g></svg>";
+    };
+    for (const auto& [scale, unit] : {std::pair{20.0, "mm"},
+                                      {50.0, "mm"},
+                                      {100.0, "mm"},
+                                      {200.0, "mm"},
+                                      {48.0, "in"},
+                                      {96.0, "in"}}) {
+        const Document document = readSvg(page(scale, unit), "plan.svg", {}, sceneSchemas());
+        EXPECT_NEAR(environmentOf(document).indoor().area(), 48, 1e-3) << scale;
+        EXPECT_NE(warningsOf(document).find("it is read at the scale of 1:" + formatDouble(scale) +
+                                            ", in which doors are 0.80 m wide"),
+                  std::string::npos)
+            << warningsOf(document);
+    }
+    // A rectangle may have any scale.
+    EXPECT_NE(errorsOf([] {
+                  readSvg(
+                      "<svg width='297mm' height='210mm' viewBox='0 0 297 210'><rect x='20' "
+                      "y='20' width='160' height='120'/></svg>",
+                      "plan.svg", {}, sceneSchemas());
+              }).find("; most likely is 1:50, in which the plan is 8.0 m wide, then 1:100"),
               std::string::npos);
 }
 

@@ -37,8 +37,8 @@ constexpr double kThinnestDrawn = 0.04, kThickestDrawn = 0.8;
 /// Metres: hatches with a shorter boundary are no walls.
 constexpr double kLeastAround = 2;
 
-/// Metres: beyond all surveyors' coordinates.
-constexpr double kOffEarth = 1e8;
+/// Units of Budget for an entity that is not read: its names are copied.
+constexpr std::size_t kUnreadWork = 20;
 
 constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
 
@@ -55,32 +55,20 @@ class Expander {
         const Affine metres{{metres_per_unit, 0}, {0, metres_per_unit}, {}};
         shapes_.reserve(drawing_.entities.size());
         add(drawing_.entities, metres, "", 0);
+        addUnread(drawing_.unread, metres, "", 0);
         return std::move(shapes_);
     }
 
-    /// Entities that may be walls and were not read, on layers that are used.
-    [[nodiscard]] std::vector<UnreadThing> unread() const {
-        std::vector<UnreadThing> all;
-        for (const auto* list : {&drawing_.unread, &unread_})
-            for (const UnreadThing& thing : *list)
-                if (layers_.mayBeWall(thing.layer)) all.push_back(thing);
-        return all;
-    }
+    /// Entities that may be walls and were not read, on layers that are used, in metres.
+    [[nodiscard]] const std::vector<UnreadThing>& unread() const { return unread_; }
 
     /// Moves a drawing of which most stands in surveyors' coordinates to the origin. \return by
     /// what \throws FormatError: shapes beyond kMaxPlanCoordinate
-    std::optional<Vec2> moveHome(std::vector<PlanShape>& shapes) const {
-        std::vector<double> x, y;
-        for (const PlanShape& shape : shapes)
-            if (!shape.path.points.empty()) {
-                x.push_back(shape.path.points.front().x);
-                y.push_back(shape.path.points.front().y);
-            }
-        const auto way = wayFromSurvey({median(x), median(y)});
-        for (PlanShape& shape : shapes) {
-            if (way) move(shape, *way);
-            requireWithin(kMaxPlanCoordinate, shape);
-        }
+    std::optional<Vec2> moveHome(std::vector<PlanShape>& shapes) {
+        const auto way = movedHome(shapes, name_);
+        for (UnreadThing& thing : unread_)
+            if (way && !thing.extent.empty())
+                thing.extent = {thing.extent.low - *way, thing.extent.high - *way};
         return way;
     }
 
@@ -89,27 +77,32 @@ class Expander {
         failFile(name_, message, entity.line);
     }
 
-    static double median(std::vector<double>& values) {
-        if (values.empty()) return 0;
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        return *middle;
-    }
+    void spend(const DxfEntity& entity, std::size_t units) { spendAt(entity.line, units); }
 
-    static void move(PlanShape& shape, Vec2 way) {
-        for (Point2& p : shape.path.points) p = p - way;
-        for (PlanChord& chord : shape.chords) {
-            chord.line = {chord.line.a - way, chord.line.b - way};
-            if (chord.center) chord.center = *chord.center - way;
-        }
-    }
-
-    void spend(const DxfEntity& entity, std::size_t units) {
+    void spendAt(int line, std::size_t units) {
         if (!budget_.take(units))
-            fail(entity,
-                 "blocks and curves of the drawing make " + budget_.excess() +
-                     "; is a block inserted by mistake, or in too large a grid? --wall-layer "
-                     "'A-WALL*' leaves layers out");
+            failFile(name_,
+                     "blocks and curves of the drawing make " + budget_.excess() +
+                         "; is a block inserted by mistake, or in too large a grid? --wall-layer "
+                         "'A-WALL*' leaves layers out",
+                     line);
+    }
+
+    /// Adds entities that were not read, in a block on the layer of its insert.
+    void addUnread(const std::vector<UnreadThing>& things, const Affine& frame,
+                   const std::string& layer, int depth) {
+        for (const UnreadThing& thing : things) {
+            spendAt(thing.line, kUnreadWork);
+            const std::string& own = layerOf(depth > 0 && thing.layer == "0" ? layer : thing.layer);
+            if (!layers_.mayBeWall(own)) continue;
+            UnreadThing& placed = unread_.emplace_back(thing);
+            placed.layer = own;
+            placed.extent = Box2();
+            if (thing.extent.empty()) continue;
+            const auto& [low, high] = thing.extent;
+            for (const Point2 corner : {low, high, Point2{low.x, high.y}, Point2{high.x, low.y}})
+                placed.extent.add(frame * corner);
+        }
     }
 
     void add(const std::vector<DxfEntity>& entities, const Affine& outer, const std::string& layer,
@@ -166,11 +159,12 @@ class Expander {
         if (block == drawing_.blocks.end() ||
             (block->second.is_external && block->second.entities.empty())) {
             ++missing_[insert.block];
-            unread_.push_back(
-                {"external reference " + insert.block, layer, insert.at, entity.line, {}});
+            const bool is_external = block != drawing_.blocks.end();
+            addUnread({{(is_external ? "external reference " : "missing block ") + insert.block,
+                        entity.layer, insert.at, entity.line}},
+                      outer, layer, depth);
             return;
         }
-        for (const UnreadThing& thing : block->second.unread) unread_.push_back(thing);
         if (depth == kMaxBlockDepth)
             fail(entity, "blocks in each other more than " + std::to_string(kMaxBlockDepth) +
                              " deep: does " + excerpt(insert.block) + " contain itself?");
@@ -185,6 +179,7 @@ class Expander {
                                   (row * insert.row_step) * across;
                 const Affine placed{x, y, at - (Point2() + base.x * x + base.y * y)};
                 add(block->second.entities, outer * placed, layer, depth + 1);
+                addUnread(block->second.unread, outer * placed, layer, depth + 1);
             }
         blocks_.pop_back();
     }
@@ -208,17 +203,8 @@ class Expander {
             addSpline(entity, *spline, frame);
         else if (const auto* hatch = std::get_if<DxfHatch>(&entity.shape))
             return addHatch(entity, *hatch, frame);
-        requireWithin(kOffEarth, shape_);
+        requireOnEarth(shape_, name_);
         if (shape_.path.points.size() >= 2) shapes_.push_back(std::move(shape_));
-    }
-
-    void requireWithin(double metres, const PlanShape& shape) const {
-        for (const Point2 p : shape.path.points)
-            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= metres))
-                failFile(name_,
-                         "lies more than " + formatDouble(kMaxPlanCoordinate / 1000) +
-                             " km from the origin: are the units right (--units)?",
-                         shape.path.line);
     }
 
     void addPolyline(const DxfEntity& entity, const DxfPolyline& polyline, const Affine& frame) {
@@ -244,7 +230,7 @@ class Expander {
         for (const DxfPolyline& ring : hatch.rings) {
             shape_ = blank;
             addPolyline(entity, ring, frame);
-            requireWithin(kOffEarth, shape_);
+            requireOnEarth(shape_, name_);
             rings.push_back(std::move(shape_));
         }
         double area = 0, around = 0;
@@ -338,7 +324,7 @@ class Expander {
     MissingBlocks& missing_;
     std::vector<const std::string*> blocks_;  // around the entity, the outermost first
     std::unordered_map<std::string, Called> called_;
-    std::vector<UnreadThing> unread_;  // in inserted blocks
+    std::vector<UnreadThing> unread_;
     std::vector<PlanShape> shapes_;
     PlanShape shape_;  // in the making
 };
@@ -402,7 +388,7 @@ class DxfImporter {
                     return {};
                 }
             },
-            Budget(bytes_, options.max_work), stated);
+            Budget(bytes_, options.max_work), stated, usualUnits());
         decided_ = decidedUnit(ranking_, stated);
     }
 
@@ -442,10 +428,6 @@ class DxfImporter {
             out.note("entities left out: " + listText(drawing_.left_out));
         if (!missing.empty())
             out.note("inserts of blocks that the file lacks: " + listText(missing));
-        warnOfUnread(expander.unread(),
-                     "explode it, or bind the reference, in the program that drew it, and export "
-                     "lines; --wall-layer names the layers that count",
-                     out);
         if (is_ours) {
             out.note("a room as envc draws it");
             if (own.inside.empty() && own.known_inside.empty() && own.rooms == RoomChoice::Largest)
@@ -459,6 +441,10 @@ class DxfImporter {
         const PlanOutcome outcome =
             writeLinePlan(std::move(shapes), sorter, name_, own, is_ours ? nullptr : &source, out);
         if (sizes) addDrawnThings(drawing_, *sizes, frame, out);
+        warnOfUnread(expander.unread(), outcome.rooms,
+                     "explode it, or bind the reference, in the program that drew it, and export "
+                     "lines; --wall-layer names the layers that count",
+                     out);
         return {out.take(), outcome};
     }
 
@@ -483,9 +469,9 @@ class DxfImporter {
                          (options.units.empty() ? ", as $INSUNITS of the drawing says"
                                                 : ", as asked for"));
             } else {
-                failFile(name_, (options.units.empty() ? unknownUnitText(drawing_)
-                                                       : "unknown unit " + options.units) +
-                                    ": " + kScaleHint);
+                failFile(name_, options.units.empty()
+                                    ? unknownUnitText(drawing_) + scaleHint(ranking_)
+                                    : "unknown unit " + options.units + ": " + kScaleHint);
             }
             return {unit->name, unit->metres, bytes_};
         }

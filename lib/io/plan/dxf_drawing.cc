@@ -19,6 +19,7 @@
 #include "geom/tolerance.h"
 #include "io/importers.h"
 #include "io/plan/dxf_text.h"
+#include "io/plan/layer_names.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -71,11 +72,55 @@ constexpr int kFrozen = 1, kClosed = 1, kPolyline3d = 8, kGridMesh = 16, kFaceMe
 constexpr int kExternal = 4, kClosedMline = 2, kPolylinePath = 2;
 
 /// Entities that are never walls; all others may be.
-constexpr std::array<std::string_view, 24> kNoWalls{
-    "TEXT",     "MTEXT",  "ATTDEF",    "ATTRIB",      "RTEXT",      "ARCALIGNEDTEXT",
-    "POINT",    "LEADER", "DIMENSION", "MULTILEADER", "MLEADER",    "ARC_DIMENSION",
-    "VIEWPORT", "XLINE",  "RAY",       "TOLERANCE",   "ACAD_TABLE", "LARGE_RADIAL_DIMENSION",
-    "IMAGE",    "LIGHT",  "SUN",       "CAMERA",      "WIPEOUT",    "OLE2FRAME"};
+constexpr auto kNoWalls = std::to_array<std::string_view>({"TEXT",
+                                                           "MTEXT",
+                                                           "ATTDEF",
+                                                           "ATTRIB",
+                                                           "RTEXT",
+                                                           "ARCALIGNEDTEXT",
+                                                           "POINT",
+                                                           "LEADER",
+                                                           "DIMENSION",
+                                                           "MULTILEADER",
+                                                           "MLEADER",
+                                                           "ARC_DIMENSION",
+                                                           "VIEWPORT",
+                                                           "XLINE",
+                                                           "RAY",
+                                                           "TOLERANCE",
+                                                           "ACAD_TABLE",
+                                                           "LARGE_RADIAL_DIMENSION",
+                                                           "IMAGE",
+                                                           "LIGHT",
+                                                           "SUN",
+                                                           "CAMERA",
+                                                           "WIPEOUT",
+                                                           "OLEFRAME",
+                                                           "OLE2FRAME",
+                                                           "SECTIONOBJECT",
+                                                           "GEOPOSITIONMARKER",
+                                                           "POSITIONMARKER",
+                                                           "SHAPE",
+                                                           "COORDINATION MODEL",
+                                                           "AEC_SLAB",
+                                                           "AEC_ROOF",
+                                                           "AEC_ROOFSLAB",
+                                                           "AEC_SPACE",
+                                                           "AEC_COLUMN_GRID",
+                                                           "AEC_CEILING_GRID",
+                                                           "AEC_DIMENSION_GROUP",
+                                                           "AEC_SCHEDULE_TABLE",
+                                                           "AEC_CAMERA",
+                                                           "AEC_MVBLOCK_REF",
+                                                           "AEC_STAIR",
+                                                           "AEC_RAILING"});
+
+/// Entities of which groups 10 and 20 are points of their outline.
+constexpr std::array<std::string_view, 1> kOutlined{"MESH"};
+
+/// Reasons to leave out entities that may be walls.
+constexpr const char* kMesh = "mesh";
+constexpr const char* kTilted = "not in the plane of the plan";
 
 /// Beyond these a hatch is a pattern, not a wall.
 constexpr std::size_t kMaxRings = 100;
@@ -102,6 +147,7 @@ struct Entity {
     std::vector<double> knots, weights;
     std::vector<std::pair<int, double>> sequence;  // numbers of MLINE and HATCH, in order
     double width = 0;                              // of a polyline, the least of its vertices
+    double elevation = 0;
 
     void begin(const Kind* entity_kind, int entity_line) {
         kind = entity_kind;
@@ -113,7 +159,7 @@ struct Entity {
         knots.clear();
         weights.clear();
         sequence.clear();
-        width = 0;
+        width = elevation = 0;
     }
 
     [[nodiscard]] bool has(int code) const {
@@ -524,6 +570,7 @@ class DxfReader {
             }
         }
         endUnread();
+        endUnreadPoints();
         if (!ended) groups_.fail(groups_.line(), "truncated: the drawing ends without `EOF`");
         if (block_ != nullptr) groups_.fail(groups_.line(), "a BLOCK without ENDBLK");
         return std::move(drawing_);
@@ -546,7 +593,10 @@ class DxfReader {
         in_section_name_ = type == "SECTION";
         if (type == "ENDSEC") section_ = {};
         if (section_ == "BLOCKS" && type == "ENDBLK") block_ = nullptr;
-        if (type != "VERTEX") in_polyline_ = in_mesh_ = false;
+        if (type != "VERTEX") {
+            in_polyline_ = in_mesh_ = false;
+            endUnreadPoints();
+        }
         const bool drawn = section_ == "ENTITIES" || (section_ == "BLOCKS" && block_ != nullptr);
         const auto kind = std::find_if(kinds().begin(), kinds().end(),
                                        [type](const Kind& k) { return k.name == type; });
@@ -558,7 +608,9 @@ class DxfReader {
         if (!drawn || wanted || part_of_other) return;
         leaveOut(printable(type.substr(0, 40)));
         if (!contains(kNoWalls, type))
-            unread_ = UnreadThing{printable(type.substr(0, 40)), {}, {}, group.line, {}};
+            unread_ = UnreadThing{printable(type.substr(0, 40)), {}, {}, group.line};
+        is_outlined_ = contains(kOutlined, type);
+        unread_x_.reset();
     }
 
     /// Reads the layer and the place of an entity that is left out, whatever else it has.
@@ -568,8 +620,11 @@ class DxfReader {
         const auto number = parseDouble(group.value);
         if ((group.code == 67 || group.code == 60) && number && *number != 0) unread_.reset();
         if (!unread_ || !number || std::abs(*number) > kMaxDxfNumber) return;
-        if (group.code == 10 && !unread_->at) unread_->at = Point2{*number, 0};
-        if (group.code == 20 && unread_->at && unread_->at->y == 0) unread_->at->y = *number;
+        if (group.code == 10) unread_x_ = *number;
+        if (group.code != 20 || !unread_x_) return;
+        const Point2 p{*unread_x_, *number};
+        if (!unread_->at) unread_->at = p;
+        if (is_outlined_) unread_->extent.add(p);
     }
 
     void endUnread() {
@@ -579,7 +634,7 @@ class DxfReader {
 
     void addUnread(UnreadThing thing) {
         if (block_ == nullptr) return drawing_.unread.push_back(std::move(thing));
-        thing.block = block_name_;
+        thing.owner = "the block " + block_name_;
         thing.at.reset();
         block_->unread.push_back(std::move(thing));
     }
@@ -660,7 +715,7 @@ class DxfReader {
         if (!is_path && entity_.kind->name != "CIRCLE") return;
         DrawnSize& size = drawing_.sizes[entity_.line];
         if (group.code == 39) size.height = *value;
-        if (group.code == (is_path ? 38 : 30)) size.bottom = *value;
+        if (group.code == (is_path ? 38 : 30)) size.bottom = entity_.elevation = *value;
         if (group.code == 43) size.width = entity_.width = *value;
         if (group.code == 1041 && entity_.application == kDxfApplication) size.depth = *value;
     }
@@ -695,10 +750,10 @@ class DxfReader {
         if (kind.shape == solidOf || kind.shape == faceOf)
             for (const int code : {10, 20, 11, 21, 12, 22})
                 if (!entity_.has(code)) return kind.name;
-        if (kind.name == "POLYLINE" && (entity_.flags() & kGridMesh) != 0) return "mesh";
+        if (kind.name == "POLYLINE" && (entity_.flags() & kGridMesh) != 0) return kMesh;
         if (kind.shape == splineOf && entity_.vertices.empty() && entity_.sequence.empty())
             return "SPLINE without points";
-        if (kind.upright_only && !side()) return "not in the plane of the plan";
+        if (kind.upright_only && !side()) return kTilted;
         return "";
     }
 
@@ -742,7 +797,11 @@ class DxfReader {
     void addShape() {
         if (const std::string_view reason = reasonToLeaveOut(); !reason.empty()) {
             leaveOut(std::string(reason));
-            if (reason == "mesh") addUnreadEntity("mesh");
+            if (reason == kMesh) beginUnreadPoints("POLYLINE of a mesh");
+            // Patterns of elevations, and furniture that leans, are no walls.
+            if (reason == kTilted && entity_.kind->shape != sequenceOf &&
+                !(entity_.name && isThingName(text_.decoded(*entity_.name))))
+                beginUnreadPoints(std::string(entity_.kind->name) + ' ' + kTilted);
             return;
         }
         if (entity_.kind->shape == sequenceOf) return addSequence();
@@ -767,8 +826,45 @@ class DxfReader {
             {std::move(shape), text_.decoded(entity_.layer), mirrored, entity_.line});
     }
 
+    /// Begins a thing that lies where its points and the VERTEXes behind it do, seen from above.
+    void beginUnreadPoints(std::string kind) {
+        unread_points_ =
+            UnreadThing{std::move(kind), text_.decoded(entity_.layer), {}, entity_.line};
+        const Vec3 normal{entity_.number(210), entity_.number(220), entity_.number(230, 1)};
+        const double size = std::hypot(normal.x, normal.y, normal.z);
+        is_tilted_ = std::hypot(normal.x, normal.y) > kUprightTolerance * std::abs(normal.z);
+        if (is_tilted_ && size > 0) normal_ = {normal.x / size, normal.y / size, normal.z / size};
+        height_ = entity_.elevation;
+        for (const Vertex& vertex : entity_.vertices)
+            if (vertex.x && vertex.y) addUnreadPoint({*vertex.x, *vertex.y});
+        const double radius =
+            entity_.kind->name == "ARC" || entity_.kind->name == "CIRCLE" ? entity_.number(40) : 0;
+        if (radius > 0)
+            for (const Vec2 spoke : {Vec2{1, 0}, Vec2{0, 1}, Vec2{-1, 0}, Vec2{0, -1}})
+                addUnreadPoint(entity_.point() + radius * spoke);
+    }
+
+    /// Adds a point in the coordinates of the entity: of a tilted one, by the arbitrary axis
+    /// algorithm of DXF.
+    void addUnreadPoint(Point2 p) {
+        if (!is_tilted_) return unread_points_->extent.add(p);
+        constexpr double kNearZ = 1.0 / 64;
+        const Vec3 n = normal_;
+        Vec3 x = std::abs(n.x) < kNearZ && std::abs(n.y) < kNearZ ? Vec3{n.z, 0, -n.x}
+                                                                  : Vec3{-n.y, n.x, 0};
+        const double size = std::hypot(x.x, x.y, x.z);
+        x = {x.x / size, x.y / size, x.z / size};
+        const Vec2 y{n.y * x.z - n.z * x.y, n.z * x.x - n.x * x.z};
+        unread_points_->extent.add(
+            {p.x * x.x + p.y * y.x + height_ * n.x, p.x * x.y + p.y * y.y + height_ * n.y});
+    }
+
+    void endUnreadPoints() {
+        if (unread_points_) addUnread(*std::exchange(unread_points_, std::nullopt));
+    }
+
     void addUnreadEntity(const char* kind) {
-        addUnread({kind, text_.decoded(entity_.layer), {}, entity_.line, {}});
+        addUnread({kind, text_.decoded(entity_.layer), {}, entity_.line});
     }
 
     /// Adds the lines of an MLINE, or the boundary of a HATCH.
@@ -817,6 +913,12 @@ class DxfReader {
     /// A VERTEX belongs to the POLYLINE before it, unless that is left out.
     void addVertex() {
         if (in_mesh_) return addMeshVertex();
+        if (unread_points_) {
+            if (!entity_.vertices.empty() && entity_.vertices.front().x &&
+                entity_.vertices.front().y)
+                addUnreadPoint({*entity_.vertices.front().x, *entity_.vertices.front().y});
+            return;
+        }
         if (!in_polyline_ || (entity_.flags() & kFrameVertex) != 0) return;
         if (entity_.vertices.empty()) groups_.fail(entity_.line, "VERTEX without group 10");
         checkVertices();
@@ -836,7 +938,12 @@ class DxfReader {
     DxfText text_;
     DxfDrawing drawing_;
     std::string_view section_, setting_;
-    std::optional<UnreadThing> unread_;  // the entity being left out
+    std::optional<UnreadThing> unread_;         // the entity being left out
+    std::optional<UnreadThing> unread_points_;  // likewise, with the VERTEXes behind it
+    bool is_outlined_ = false, is_tilted_ = false;
+    std::optional<double> unread_x_;
+    double height_ = 0;  // of the plane of a tilted entity
+    Vec3 normal_{};
     std::string block_name_, mesh_layer_;
     std::vector<Point2> mesh_points_;
     bool in_mesh_ = false;  // the last entity is a polyface mesh

@@ -13,7 +13,7 @@
 #include "geom/point.h"
 #include "io/plan/curves.h"
 #include "io/plan/line_plan.h"
-#include "io/plan/unread.h"
+#include "io/unread.h"
 
 namespace ispace {
 
@@ -73,7 +73,7 @@ struct DxfBlock {
     Point2 base;
     std::vector<DxfEntity> entities;
     bool is_external = false;              ///< an external reference
-    std::vector<UnreadThing> unread = {};  ///< of each insert
+    std::vector<UnreadThing> unread = {};  ///< of each insert; extents in the block's coordinates
 };
 
 /// A DXF file, in its own units.
@@ -84,8 +84,8 @@ struct DxfDrawing {
     std::map<std::string, DxfBlock> blocks;
     std::vector<DxfEntity> entities;
     std::map<std::string, std::size_t> left_out;  ///< entities, by type or reason
-    std::vector<UnreadThing> unread;              ///< of these, those that may be walls
-    std::map<int, DrawnSize> sizes;  ///< of polylines and circles that have any, by their lines
+    std::vector<UnreadThing> unread;  ///< of these, those that may be walls; extents in its units
+    std::map<int, DrawnSize> sizes;   ///< of polylines and circles that have any, by their lines
 };
 
 /// Returns true for a drawing with the layers on which writeDxf() draws a room, see

@@ -61,8 +61,9 @@ TEST(Dxf, Units) {
     options.units = "ell";
     EXPECT_NE(errorOf(drawing(room), options).find("unknown unit ell"), std::string::npos);
     EXPECT_EQ(errorOf(drawing(room, "", 0)),
-              "plan.dxf: error: the drawing does not say its unit ($INSUNITS): say its unit, for "
-              "example with --units cm, or how wide it is, with --width-is 8.3m\n");
+              "plan.dxf: error: the drawing does not say its unit ($INSUNITS); most likely is m, "
+              "in which the plan is 4.0 m wide: say its unit, for example with --units m, or how "
+              "wide it is, with --width-is 4.00\n");
     EXPECT_EQ(errorOf("0\nSECTION\n2\nENTITIES\n" + room + "0\nENDSEC\n0\nEOF\n"),
               errorOf(drawing(room, "", 0)));
     EXPECT_NE(errorOf(drawing(room, "", 12)).find("$INSUNITS is 12, wanted 1 (inch)"),
@@ -101,7 +102,7 @@ TEST(Dxf, SurveyorsCoordinatesMoveToTheOrigin) {
     const std::string text = writeRecordText(moved);
     EXPECT_NE(text.find("path=-0.75,0.5;3.25,0.5;"), std::string::npos) << text;
     EXPECT_NE(text.find("\ndoor "), std::string::npos) << text;
-    // Stray entities decide nothing.
+    // Stray entities do not decide.
     const std::string near = rectangle("W", 0, 0, 4, 3) + rectangle("W", 0, 0, 2, 3);
     EXPECT_NE(warningsOf(read(drawing(near + line("W", 2e6, 2e6, 2e6, 2e6 + 1), "", 6)))
                   .find("left out 1 line far from all others"),
@@ -215,17 +216,47 @@ TEST(Dxf, FramesOfSheetsWarn) {
     const std::string frame = rectangle("W", -3, -3, 11, 8);
     EXPECT_EQ(
         warningsOf(frame + rectangle("W", 0, 0, 8, 5)),
-        "the room is the rectangle around the whole drawing: if that is the frame of a sheet, "
-        "--inside X,Y chooses a room in it, the largest has 40.0 m2 about (4.0, 2.5)\n");
+        "the room is the rectangle around the whole drawing: if that is the frame of a sheet, or a "
+        "plot around a house, --inside X,Y chooses a room in it, the largest has 40.0 m2 about "
+        "(4.0, 2.5)\n");
     // An open plan, with a title block in the corner.
     EXPECT_EQ(
         warningsOf(frame + rectangle("W", 7, -3, 11, -1.5) + line("W", 0, 0, 8, 0) +
                    line("W", 8, 0, 8, 5) + line("W", 8, 5, 0, 5)),
-        "the room is the rectangle around the whole drawing: if that is the frame of a sheet, "
-        "leave it out, for example with --wall-layer\n");
+        "the room is the rectangle around the whole drawing: if that is the frame of a sheet, or a "
+        "plot around a house, leave it out, for example with --wall-layer\n");
+    // A small house on its plot.
+    EXPECT_NE(warningsOf(rectangle("W", -5, -5, 20, 20) + rectangle("W", 0, 0, 8, 6))
+                  .find("a plot around a house, --inside X,Y chooses a room in it, the largest has "
+                        "48.0 m2 about (4.0, 3.0)"),
+              std::string::npos);
+    // The same with a front door, which joins the house and its plot.
+    const std::string house = line("W", 2, 0, 8, 0) + line("W", 8, 0, 8, 6) +
+                              line("W", 8, 6, 0, 6) + line("W", 0, 6, 0, 0) +
+                              line("W", 0, 0, 1.1, 0) + line("W", 1.1, 0, 1.1, 0.9) +
+                              arc("W", 1.1, 0, 0.9, 0, 90);
+    EXPECT_NE(warningsOf(rectangle("W", -5, -5, 20, 20) + house).find("a plot around a house"),
+              std::string::npos);
     // Pillars and rooms at the walls are no drawing in a frame.
     EXPECT_EQ(warningsOf(frame + rectangle("W", 0, 0, 1, 1) + rectangle("W", 6, 4, 7, 5)), "");
     EXPECT_EQ(warningsOf(frame + line("W", -3, 2, 4, 2) + line("W", 4, 2, 4, 8)), "");
+}
+
+TEST(Dxf, WallsByNameOnAPlotAreTaken) {
+    const std::string plot = rectangle("0", -5, -5, 20, 20);
+    for (const char* layer : {"墙", "外墙", "벽", "СТЕНЫ", "جدران", "קירות", "Cloisons"})
+        EXPECT_NEAR(environmentOf(read(drawing(plot + rectangle(layer, 0, 0, 8, 6), "", 6)))
+                        .indoor()
+                        .area(),
+                    48, 1e-9)
+            << layer;
+    // Inner walls of a house that are named, and outer ones that are not.
+    EXPECT_NEAR(
+        environmentOf(
+            read(drawing(rectangle("0", -1, -1, 9, 7) + rectangle("A-WALL", 3, 2, 5, 4), "", 6)))
+            .indoor()
+            .area(),
+        80 - 4, 1e-9);
 }
 
 TEST(Dxf, BlocksInBlocksEnd) {

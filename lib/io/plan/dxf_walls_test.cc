@@ -139,11 +139,52 @@ TEST(DxfWalls, UnreadEntitiesWarn) {
     EXPECT_NE(of("0 3DSOLID 8 W").find("3DSOLID (1)"), std::string::npos);
     EXPECT_NE(of("0 REGION 8 W").find("REGION (1)"), std::string::npos);
     EXPECT_NE(of("0 ACAD_PROXY_ENTITY 8 W").find("ACAD_PROXY_ENTITY (1)"), std::string::npos);
-    EXPECT_NE(of("0 INSERT 8 W 2 shell 10 0 20 0").find("external reference shell (1)"),
+    EXPECT_NE(of("0 INSERT 8 W 2 shell 10 0 20 0").find("missing block shell (1)"),
               std::string::npos);
     EXPECT_EQ(of("0 3DSOLID 8 W 67 1"), "");  // in paper space
     EXPECT_EQ(of("0 3DSOLID 8 A-FURN"), "");  // furniture
     EXPECT_EQ(of("0 MTEXT 8 W 10 1 20 1"), "");
+}
+
+TEST(DxfWalls, UnreadEntitiesWarnWhereWallsMayBe) {
+    const auto warns = [](const std::string& entities, const std::string& head = "") {
+        return warningsOf(read(drawing(kRoom + entities, head, 6)))
+                   .find("not read, though it may be a wall") != std::string::npos;
+    };
+    const auto mesh = [](double x0, double y0, double x1, double y1) {
+        std::string text = groups("0 MESH 8 W 71 2 72 0 91 1 92 4");
+        for (const auto& [x, y] : {std::pair{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}})
+            text += group(10, x) + group(20, y) + group(30, 0.0);
+        return text;
+    };
+    EXPECT_TRUE(warns(mesh(4, 0, 4.2, 6)));
+    EXPECT_FALSE(warns(mesh(4, 1, 4.1, 1.1)));   // smaller than walls
+    EXPECT_FALSE(warns(mesh(14, 0, 14.2, 6)));   // off the room
+    EXPECT_TRUE(warns(mesh(8.1, 0, 8.3, 6)));    // beside it
+    EXPECT_TRUE(warns(mesh(-50, -50, 50, 50)));  // around it
+    // Rows of a mesh, and an outline that stands upright: its x and y are y and z of the world.
+    const std::string rows = groups(
+        "0 POLYLINE 8 W 66 1 70 16 71 2 72 2 0 VERTEX 8 W 10 4 20 0 70 64 0 VERTEX 8 W 10 4 20 6 "
+        "70 64 0 SEQEND 8 W");
+    EXPECT_TRUE(warns(rows));
+    const auto upright = [](const char* layer, double height, double end) {
+        return groups("0 LWPOLYLINE 8 " + std::string(layer) + " 90 2 70 0 210 1 220 0 230 0") +
+               group(38, height) + group(10, 0.0) + group(20, 0.0) + group(10, end) +
+               group(20, 2.5);
+    };
+    EXPECT_TRUE(warns(upright("W", 4, 6)));
+    EXPECT_FALSE(warns(upright("W", 40, 6)));
+    EXPECT_FALSE(warns(upright("W", 4, 0.3)));
+    EXPECT_FALSE(warns(upright("A-FURN", 4, 6)));
+    // In blocks they lie where those are inserted, on their layers.
+    const std::string block = groups("0 SECTION 2 BLOCKS 0 BLOCK 2 part 10 0 20 0 70 0") +
+                              groups("0 MESH 8 0 10 0 20 0 10 0 20 6 0 ENDBLK 0 ENDSEC");
+    const auto insert = [](const char* layer, double x) {
+        return groups("0 INSERT 2 part 8 " + std::string(layer) + " 20 0") + group(10, x);
+    };
+    EXPECT_TRUE(warns(insert("W", 4), block));
+    EXPECT_FALSE(warns(insert("W", 40), block));
+    EXPECT_FALSE(warns(insert("A-FURN", 4), block));
 }
 
 TEST(DxfWalls, LayersThatAreNotPlotted) {

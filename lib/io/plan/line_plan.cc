@@ -68,6 +68,7 @@ class LinePlan {
         paths_ =
             normalisedLines(std::move(drawn.walls), options.snap.value_or(kDefaultSnap), budget);
         pieces_ = pathPieces(paths_);
+        drawn_ = boundsOf(pieces_);
         check(name, options, drawing, budget);
         std::vector<PlanShape> doors = std::move(shapes.doors);
         doors.insert(doors.end(), std::make_move_iterator(drawn.swings.begin()),
@@ -92,7 +93,7 @@ class LinePlan {
     }
 
     [[nodiscard]] PlanOutcome outcome() const {
-        PlanOutcome outcome{rooms_.area(), 0, rooms_.is_frame};
+        PlanOutcome outcome{rooms_.area(), 0, rooms_.is_frame, rooms_.regions, drawn_};
         for (const Segment2& gap : rooms_.closing)
             outcome.widest_gap = std::max(outcome.widest_gap, distance(gap.a, gap.b));
         return outcome;
@@ -317,6 +318,7 @@ class LinePlan {
     std::optional<std::map<int, DrawnSize>> sizes_;
     std::vector<PlanPath> paths_;
     std::vector<Segment2> pieces_;  // of all walls drawn
+    Box2 drawn_;                    // their bounds
     std::vector<PlanOpening> openings_;
     std::vector<LostSymbol> lost_;
     std::size_t unused_symbols_ = 0, dropped_lines_ = 0, dropped_openings_ = 0;
@@ -540,6 +542,54 @@ void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords* out) {
     for (std::size_t i = 0; i < shapes.size(); ++i)
         if (!is_stray[i]) kept.push_back(std::move(shapes[i]));
     shapes = std::move(kept);
+}
+
+namespace {
+
+/// Metres: beyond all surveyors' coordinates.
+constexpr double kOffEarth = 1e8;
+
+void requireWithin(double metres, const PlanShape& shape, const std::string& name) {
+    for (const Point2 p : shape.path.points)
+        if (!(std::max(std::abs(p.x), std::abs(p.y)) <= metres))
+            failFile(name,
+                     "lies more than " + formatDouble(kMaxPlanCoordinate / 1000) +
+                         " km from the origin: are the units right (--units)?",
+                     shape.path.line);
+}
+
+double medianOf(std::vector<double>& values) {
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+void requireOnEarth(const PlanShape& shape, const std::string& name) {
+    requireWithin(kOffEarth, shape, name);
+}
+
+std::optional<Vec2> movedHome(std::vector<PlanShape>& shapes, const std::string& name) {
+    std::vector<double> x, y;
+    for (const PlanShape& shape : shapes)
+        if (!shape.path.points.empty()) {
+            x.push_back(shape.path.points.front().x);
+            y.push_back(shape.path.points.front().y);
+        }
+    const auto way = wayFromSurvey({medianOf(x), medianOf(y)});
+    for (PlanShape& shape : shapes) {
+        if (way) {
+            for (Point2& p : shape.path.points) p = p - *way;
+            for (PlanChord& chord : shape.chords) {
+                chord.line = {chord.line.a - *way, chord.line.b - *way};
+                if (chord.center) chord.center = *chord.center - *way;
+            }
+        }
+        requireWithin(kMaxPlanCoordinate, shape, name);
+    }
+    return way;
 }
 
 double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,

@@ -169,6 +169,14 @@ PlanOutcome writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter,
 /// \param shapes in metres. O(n log n)
 void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords* out = nullptr);
 
+/// Moves a drawing of which most stands in surveyors' coordinates to the origin, by whole metres.
+/// \param name of the file \return by what \throws FormatError: shapes beyond kMaxPlanCoordinate.
+/// O(n)
+std::optional<Vec2> movedHome(std::vector<PlanShape>& shapes, const std::string& name);
+
+/// \throws FormatError: a shape beyond all surveyors' coordinates
+void requireOnEarth(const PlanShape& shape, const std::string& name);
+
 /// Sorts the shapes of a drawing without hidden layers, and writes them. \return the floor area
 /// kept, in square metres
 double writeLinePlan(std::vector<PlanShape> shapes, const std::string& name,

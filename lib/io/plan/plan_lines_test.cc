@@ -192,7 +192,7 @@ TEST(PlanLines, JoiningKeepsEveryPiece) {
 }
 
 TEST(PlanLines, LooseEndsAreBridged) {
-    // The upper right corner is 0.1 m open; nothing else moves.
+    // The upper right corner is 0.1 m open; all others stay.
     const Paths room{open({{0, 0}, {4, 0}}), open({{4, 0}, {4, 2.9}}), open({{4, 3}, {0, 3}}),
                      open({{0, 3}, {0, 0}})};
     const Paths joined = bridged(room, 0.2);

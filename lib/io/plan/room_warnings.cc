@@ -18,6 +18,9 @@ namespace {
 /// A part of the drawing that takes this share of a rectangle around all is no furniture.
 constexpr double kFrameShare = 0.2;
 
+/// Square metres: smaller rooms in a frame are no house.
+constexpr double kLeastHouse = 12;
+
 /// A frame encloses this share of its bounds.
 constexpr double kFrameFilled = 0.85;
 
@@ -81,10 +84,29 @@ bool warnOfFrame(const PlanWalls& plan, std::span<const Segment2> lines, const R
         if (is_inside(line.a) && is_inside(line.b)) within.push_back(line);
     double largest = 0;
     for (const Box2& part : joinedParts(within)) largest = std::max(largest, areaOf(part));
-    if (largest < kFrameShare * areaOf(all)) return false;
+    // Of a plot around a house, the house is a room in a hole, perhaps joined by its front door.
+    const Region& outer = region.rooms.front();
+    const auto is_island = [&](const Region& room, double area) {
+        return area >= kLeastHouse &&
+               std::any_of(outer.holes.begin(), outer.holes.end(), [&](const Polygon& hole) {
+                   return locate(hole, room.outline.front()) != Side::Outside;
+               });
+    };
+    const std::vector<PlanFaces::Group>& groups = taken.faces.groups();
+    const auto listed =
+        groups.begin() + static_cast<std::ptrdiff_t>(std::min(groups.size(), kMaxGroups));
+    const bool has_house =
+        std::any_of(groups.begin(), listed,
+                    [&](const PlanFaces::Group& group) {
+                        return isRoom(plan, taken.faces, group) &&
+                               is_island(taken.faces.faces()[group.faces.front()], group.area);
+                    }) ||
+        std::any_of(region.rooms.begin() + 1, region.rooms.end(),
+                    [&](const Region& room) { return is_island(room, room.area()); });
+    if (largest < kFrameShare * areaOf(all) && !has_house) return false;
     std::string text =
         "the room is the rectangle around the whole drawing: if that is the "
-        "frame of a sheet, ";
+        "frame of a sheet, or a plot around a house, ";
     const auto other = std::find_if(taken.faces.groups().begin(), taken.faces.groups().end(),
                                     [&](const PlanFaces::Group& group) {
                                         return &group != taken.groups.front() &&

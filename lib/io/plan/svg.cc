@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <map>
+#include <memory>
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
@@ -22,8 +24,8 @@
 #include "io/plan/drawing_unit.h"
 #include "io/plan/line_plan.h"
 #include "io/plan/svg.h"
-#include "io/plan/unread.h"
 #include "io/sdf/sdf_files.h"
+#include "io/unread.h"
 
 namespace ispace {
 
@@ -35,7 +37,7 @@ struct SvgDrawing {
     std::string scale;  ///< length of a unit and its source, for a note
     double metres_per_unit = 0;
     std::map<std::string, std::size_t> left_out;  ///< elements, by type or reason
-    std::vector<UnreadThing> unread;              ///< rules that may hide lines
+    std::vector<UnreadThing> unread;              ///< rules that may hide lines, and uses
 };
 
 constexpr int kMaxElementDepth = 200;  // elements in elements, by `use` or not
@@ -51,19 +53,49 @@ constexpr std::array<std::string_view, 3> kOthers{"text", "image", "foreignObjec
 /// Share of the page; a larger rectangle is a drawing with a wrong page.
 constexpr double kMaxBackground = 1.1;
 
+/// Thickness of strokes that are walls, in metres; thinner ones are pens.
+constexpr double kThinnestStroke = 0.08, kThickestStroke = 0.8;
+constexpr const char* kOddClip = "element with a clip-path that is not read";
+/// Units of Budget for an element that is not read: its names are copied.
+constexpr std::size_t kUnreadWork = 20;
+
+/// Scales of plans on paper, and in feet and inches: 1/48 is 1/4" to the foot.
+constexpr std::array<std::pair<const char*, double>, 6> kScales{
+    {{"1:50", 50}, {"1:100", 100}, {"1:200", 200}, {"1:20", 20}, {"1:10", 10}, {"1:500", 500}}};
+constexpr std::array<std::pair<const char*, double>, 5> kInchScales{
+    {{"1:48", 48}, {"1:96", 96}, {"1:24", 24}, {"1:192", 192}, {"1:12", 12}}};
+
 double metresOf(const std::string& unit) {
     for (const LengthUnit& known : kLengthUnits)
         if (unit == known.name) return known.metres;
     throw SvgError("unknown unit " + unit);
 }
 
+/// The visible part of what a `clip-path` clips: the inside of rings by the even-odd rule.
+struct Clip {
+    std::vector<Polygon> rings;  ///< in the plan's frame
+    Box2 box;
+
+    [[nodiscard]] bool shows(Point2 p) const {
+        return box.contains(p) &&
+               std::count_if(rings.begin(), rings.end(),
+                             [p](const Polygon& r) { return locate(r, p) != Side::Outside; }) %
+                       2 ==
+                   1;
+    }
+};
+
 /// The context of an element.
 struct Around {
     Affine frame;
     SvgStyle style;
     SvgNames names;
+    SvgBox view = {};  ///< the nearest viewport, in its inner coordinates
     int depth = 0;
-    bool is_used = false;  ///< by `use`
+    bool is_used = false;          ///< by `use`
+    const char* unread = nullptr;  ///< why the place or the visible part of its shapes is unknown
+    bool has_pen = false;          ///< strokes are as wide on the page whatever the frame
+    std::vector<std::shared_ptr<const Clip>> clips = {};
 };
 
 /// Makes names printable. Neighbours share theirs, which may be long.
@@ -87,6 +119,8 @@ class SvgReader {
     SvgReader(std::string_view bytes, const std::string& name, const ImportOptions& options,
               std::optional<double> metres_per_unit = {})
         : file_(bytes, name),
+          has_sheet_file_(bytes.substr(0, kProlog).find("<?xml-stylesheet") !=
+                          std::string_view::npos),
           options_(options),
           asked_scale_(metres_per_unit),
           budget_(bytes.size(), options.max_work) {}
@@ -97,12 +131,22 @@ class SvgReader {
         listElements(root);
         at(root, [&] {
             page_frame_ = pageOf(root);
-            addChildren(root, {page_frame_, svgStyle({}, svgProperties(root, sheet_)), {}});
+            addChildren(root, {page_frame_, svgStyle({}, svgProperties(root, sheet_)), {}, page_});
         });
         for (const auto& [selector, count] : sheet_.unread())
             for (std::size_t i = 0; i < count; ++i)
                 drawing_.unread.push_back({"the CSS rule `" + printable(selector) + '`'});
+        if (has_sheet_file_) drawing_.unread.push_back({"the file of a style sheet"});
         return std::move(drawing_);
+    }
+
+    /// Sets what rankingText() says, for the message that the drawing has no scale.
+    void setRanking(const std::vector<UnitEvidence>& ranking) { ranking_ = scaleHint(ranking); }
+
+    /// Returns true if the size on paper is in inches or points.
+    [[nodiscard]] bool isInInches() {
+        const std::string_view width = trimmed(file_.root().attribute("width").value());
+        return width.ends_with("in") || width.ends_with("pt");
     }
 
     /// Returns metres a unit by the size on paper, if the drawing has one.
@@ -121,6 +165,8 @@ class SvgReader {
     }
 
   private:
+    static constexpr std::size_t kProlog = 4096;  // bytes before the first element
+
     /// Adds the line of the element to errors in attributes.
     template <typename Read>
     void at(pugi::xml_node node, Read read) {
@@ -183,8 +229,8 @@ class SvgReader {
             drawing_.scale = "a unit of the drawing is 1 " + options_.units + ", as asked for";
         } else if (!has_width && !has_height) {
             throw SvgError("the drawing has no scale, as its size is " +
-                           std::string(width || height ? "in pixels" : "not said") + ": " +
-                           kScaleHint);
+                           std::string(width || height ? "in pixels" : "not said") +
+                           (ranking_.empty() ? std::string(": ") + kScaleHint : ranking_));
         } else {
             const double x = has_width ? *width / page_.width : HUGE_VAL;
             const double y = has_height ? *height / page_.height : HUGE_VAL;
@@ -222,13 +268,101 @@ class SvgReader {
         if (++around.depth > kMaxElementDepth)
             throw SvgError("elements nested more than " + std::to_string(kMaxElementDepth) +
                            " deep: does one use itself?");
-        around.frame = around.frame * element.transform;
+        around.frame = around.frame * transformOf(element, around.view);
         around.style = svgStyle(around.style, element.properties);
         around.names = around.names.with(element.names);
+        around.has_pen = element.properties[SvgProperty::VectorEffect] == "non-scaling-stroke";
+        addClip(element.properties, around);
         if (is_shape) return addShape(node, kind, around);
         if (kind == "use") return addUse(node, around);
-        if (kind == "svg") around.frame = around.frame * viewportOf(node, node);
+        if (kind == "svg") enterViewport(node, node, around);
+        if (kind == "switch") return addSwitch(node, around);
         addChildren(node, around);
+    }
+
+    static Affine transformOf(const SvgElement& element, const SvgBox& view) {
+        const auto origin = svgOrigin(element.properties[SvgProperty::TransformOrigin], view);
+        if (!origin) return element.transform;
+        return Affine{{1, 0}, {0, 1}, *origin} * element.transform *
+               Affine{{1, 0}, {0, 1}, -1 * *origin};
+    }
+
+    /// Adds the first child whose conditions hold, as browsers do that have no extensions.
+    void addSwitch(pugi::xml_node node, const Around& around) {
+        for (const pugi::xml_node child : node.children()) {
+            if (child.type() != pugi::node_element) continue;
+            const std::string_view language = trimmed(child.attribute("systemLanguage").value());
+            if (!trimmed(child.attribute("requiredExtensions").value()).empty()) continue;
+            if (child.attribute("systemLanguage") && !language.starts_with("en")) continue;
+            at(child, [&] { addElement(child, around); });
+            return;
+        }
+    }
+
+    /// Returns the element that `url(#id)` names; none for other text.
+    [[nodiscard]] pugi::xml_node namedBy(std::string_view url) const {
+        const std::size_t mark = url.find('#');
+        if (!url.starts_with("url(") || mark == std::string_view::npos) return {};
+        std::string_view id = url.substr(mark + 1);
+        id = id.substr(0, id.find_first_of(")\"'"));
+        const auto found = ids_.find(std::string(id));
+        return found == ids_.end() ? pugi::xml_node() : found->second;
+    }
+
+    /// Adds the clip and the mask of an element.
+    void addClip(const SvgProperties& properties, Around& around) {
+        if (const std::string_view mask = properties[SvgProperty::Mask];
+            !mask.empty() && mask != "none")
+            around.unread = "element with a mask";
+        const std::string_view box = properties[SvgProperty::TransformBox];
+        if (!box.empty() && box != "view-box" &&
+            !properties[SvgProperty::TransformOrigin].empty() &&
+            !properties[SvgProperty::Transform].empty())
+            around.unread = "element turned about its own box";
+        const std::string_view url = properties[SvgProperty::ClipPath];
+        if (url.empty() || url == "none") return;
+        const pugi::xml_node node = namedBy(url);
+        if (!node || svgName(node) != "clipPath") {
+            if (!url.starts_with("url(")) around.unread = kOddClip;  // shapes of CSS
+            return;
+        }
+        if (std::string_view(node.attribute("clipPathUnits").value()) == "objectBoundingBox") {
+            around.unread = kOddClip;
+            return;
+        }
+        const auto clip = std::make_shared<Clip>();
+        const SvgElement own = readSvgElement(node, sheet_, options_);
+        const Affine frame = around.frame * transformOf(own, around.view);
+        for (const pugi::xml_node child : node.children()) {
+            pugi::xml_node shape = child;
+            if (child.type() != pugi::node_element) continue;
+            spend(kUnreadWork);
+            Affine placed =
+                frame * transformOf(readSvgElement(child, sheet_, options_), around.view);
+            if (svgName(child) == "use") {
+                std::string_view href = child.attribute("href").value();
+                if (href.empty()) href = child.attribute("xlink:href").value();
+                const auto target =
+                    href.starts_with('#') ? ids_.find(std::string(href.substr(1))) : ids_.end();
+                if (target == ids_.end()) continue;
+                shape = target->second;
+                placed = placed *
+                         Affine{{1, 0}, {0, 1}, {svgNumber(child, "x"), svgNumber(child, "y")}} *
+                         transformOf(readSvgElement(shape, sheet_, options_), around.view);
+            }
+            const std::string_view kind = svgName(shape);
+            if (!isOneOf(kShapes, kind)) {
+                around.unread = kOddClip;  // letters
+                return;
+            }
+            for (const SvgSubpath& path : svgPaths(shape, kind, around.view)) {
+                const PlanShape ring = shapeOf(path, placed);
+                if (ring.path.points.size() < 3) continue;
+                for (const Point2 p : ring.path.points) clip->box.add(p);
+                clip->rings.push_back(ring.path.points);
+            }
+        }
+        around.clips.push_back(clip);
     }
 
     /// Returns the element itself; caches it if it may be used again.
@@ -239,31 +373,38 @@ class SvgReader {
         return known->second;
     }
 
-    /// The frame of the view box of an inner `svg` or a `symbol` at `placed`.
-    [[nodiscard]] Affine viewportOf(pugi::xml_node node, pugi::xml_node placed) const {
+    /// Enters the view box of an inner `svg` or a `symbol` at `placed`.
+    void enterViewport(pugi::xml_node node, pugi::xml_node placed, Around& around) const {
         const bool is_use = node != placed;
-        const Affine corner{
-            {1, 0}, {0, 1}, is_use ? Vec2{} : Vec2{svgNumber(placed, "x"), svgNumber(placed, "y")}};
+        const SvgBox& outer = around.view;
+        const Affine corner{{1, 0},
+                            {0, 1},
+                            is_use ? Vec2{}
+                                   : Vec2{svgNumber(placed, "x", 0, outer.width),
+                                          svgNumber(placed, "y", 0, outer.height)}};
         const auto box = svgViewBox(node);
-        if (!box) return corner;
-        const auto size = [&](const char* key, double own, double around) {
+        const auto size = [&](const char* key, double own, double whole) {
             for (const pugi::xml_node element : {placed, node}) {
-                std::string_view text = trimmed(element.attribute(key).value());
-                if (text.empty()) continue;
-                if (!text.ends_with('%')) return svgNumber(element, key);
-                text.remove_suffix(1);
-                const auto share = parseDouble(text);
-                if (share && *share > 0) return around * *share / 100;
+                const std::string_view text = trimmed(element.attribute(key).value());
+                if (text.empty() || text == "auto") continue;
+                const double value = svgNumber(element, key, 0, whole);
+                if (value > 0) return value;
             }
-            return is_use ? own : around;
+            return is_use && box ? own : whole;
         };
-        const double width = size("width", box->width, page_.width);
-        const double height = size("height", box->height, page_.height);
+        const double width = size("width", box ? box->width : 0, outer.width);
+        const double height = size("height", box ? box->height : 0, outer.height);
+        if (!box) {
+            around.frame = around.frame * corner;
+            around.view = {0, 0, width, height};
+            return;
+        }
         Vec2 scale{width / box->width, height / box->height};
         if (!isStretched(node)) scale.x = scale.y = std::min(scale.x, scale.y);
         const Vec2 rest{(width - scale.x * box->width) / 2, (height - scale.y * box->height) / 2};
         const Vec2 origin{scale.x * box->x, scale.y * box->y};
-        return corner * Affine{{scale.x, 0}, {0, scale.y}, rest - origin};
+        around.frame = around.frame * corner * Affine{{scale.x, 0}, {0, scale.y}, rest - origin};
+        around.view = *box;
     }
 
     void addUse(pugi::xml_node node, Around around) {
@@ -273,15 +414,19 @@ class SvgReader {
             href.starts_with('#') ? ids_.find(std::string(href.substr(1))) : ids_.end();
         if (target == ids_.end()) {
             ++drawing_.left_out["uses of what the file lacks"];
+            spend(kUnreadWork);
+            drawing_.unread.push_back({"use of " + excerpt(href), {}, {}, file_.lineOf(node)});
             return;
         }
         around.is_used = true;
-        around.frame =
-            around.frame * Affine{{1, 0}, {0, 1}, {svgNumber(node, "x"), svgNumber(node, "y")}};
+        around.frame = around.frame * Affine{{1, 0},
+                                             {0, 1},
+                                             {svgNumber(node, "x", 0, around.view.width),
+                                              svgNumber(node, "y", 0, around.view.height)}};
         if (svgName(target->second) != "symbol") return addElement(target->second, around);
         const SvgElement& symbol = elementOf(target->second, true);
         spend(symbol.units);
-        around.frame = around.frame * viewportOf(target->second, node);
+        enterViewport(target->second, node, around);
         around.style = svgStyle(around.style, symbol.properties);
         addChildren(target->second, around);
     }
@@ -308,8 +453,10 @@ class SvgReader {
 
     void addShape(pugi::xml_node node, std::string_view kind, const Around& around) {
         const SvgStyle& style = around.style;
-        if (!style.visible ||
-            ((style.no_fill || style.clear_fill) && (style.no_stroke || style.clear_stroke))) {
+        const bool has_no_fill = style.no_fill || style.clear_fill || kind == "line";
+        const bool has_no_stroke =
+            style.no_stroke || style.clear_stroke || !(style.stroke_width.value_or(1) > 0);
+        if (!style.visible || (has_no_fill && has_no_stroke)) {
             ++drawing_.left_out["elements that show nothing"];
             return;
         }
@@ -317,19 +464,17 @@ class SvgReader {
             ++drawing_.left_out["a background"];
             return;
         }
-        for (const SvgSubpath& path : svgPaths(node, kind)) addPath(node, path, around);
+        const Affine& f = around.frame;
+        const double width = style.stroke_width.value_or(0) * std::sqrt(std::abs(cross(f.x, f.y)));
+        const bool is_wall = has_no_fill && style.has_stroke && !has_no_stroke && !around.has_pen &&
+                             width >= kThinnestStroke && width <= kThickestStroke;
+        for (const SvgSubpath& path : svgPaths(node, kind, around.view))
+            addPath(node, path, around, is_wall ? width : 0);
     }
 
-    /// A subpath as it lies in the plan.
-    void addPath(pugi::xml_node node, const SvgSubpath& path, const Around& around) {
-        const Affine& frame = around.frame;
-        const std::string_view layer = around.names.planLayer();
-        const std::string_view walls = around.names.walls == nullptr ? "" : around.names.walls;
-        spend(1 + Budget::unitsOf(layer.size() + walls.size()));
+    /// Converts a subpath to a shape without names.
+    PlanShape shapeOf(const SvgSubpath& path, const Affine& frame) {
         PlanShape shape;
-        shape.layer = layer_text_.of(layer);
-        shape.walls_in = walls_text_.of(walls);
-        shape.path.line = file_.lineOf(node);
         shape.path.closed = path.closed;
         Polygon& points = shape.path.points;
         points.push_back(frame * path.start);
@@ -341,12 +486,106 @@ class SvgReader {
             shape.chords.push_back({{points.back(), points.front()}, {}});
         if (path.closed && points.size() > 1 && points.back() == points.front()) points.pop_back();
         spend(points.size());
-        for (const Point2 p : points)
-            if (!(std::max(std::abs(p.x), std::abs(p.y)) <= kMaxPlanCoordinate))
-                throw SvgError("lies more than " + formatDouble(kMaxPlanCoordinate / 1000) +
-                               " km from the origin: is the unit right (--units)?");
         if (points.size() < 3) shape.path.closed = false;
-        if (points.size() >= 2) drawing_.shapes.push_back(std::move(shape));
+        return shape;
+    }
+
+    /// Adds a subpath as it lies in the plan. \param thickness of the wall; 0: it is a face
+    void addPath(pugi::xml_node node, const SvgSubpath& path, const Around& around,
+                 double thickness) {
+        const std::string_view layer = around.names.planLayer();
+        const std::string_view walls = around.names.walls == nullptr ? "" : around.names.walls;
+        spend(1 + Budget::unitsOf(layer.size() + walls.size()));
+        PlanShape shape = shapeOf(path, around.frame);
+        shape.layer = layer_text_.of(layer);
+        shape.walls_in = walls_text_.of(walls);
+        shape.path.line = file_.lineOf(node);
+        shape.path.thickness = thickness;
+        if (shape.path.points.size() < 2) return;
+        requireOnEarth(shape, file_.name());
+        std::vector<PlanShape> shown{std::move(shape)};
+        for (const auto& clip : around.clips) shown = clipped(std::move(shown), *clip);
+        for (PlanShape& part : shown) {
+            if (around.unread != nullptr) {
+                spend(kUnreadWork);
+                drawing_.unread.push_back(
+                    {around.unread, part.layer, {}, part.path.line, {}, bounds(part.path.points)});
+            }
+            drawing_.shapes.push_back(std::move(part));
+        }
+    }
+
+    /// Returns the parts of the shapes that a clip shows, as open paths where it cuts. Costs the
+    /// product of their points.
+    std::vector<PlanShape> clipped(std::vector<PlanShape> shapes, const Clip& clip) {
+        std::size_t corners = 0;
+        for (const Polygon& ring : clip.rings) corners += ring.size();
+        std::vector<PlanShape> shown;
+        for (PlanShape& shape : shapes) {
+            const PlanPath& path = shape.path;
+            spend(path.points.size() * corners);
+            if (!clip.box.meets(bounds(path.points))) {
+                ++drawing_.left_out["elements outside of their clip-path"];
+                continue;
+            }
+            PlanShape part = blankOf(shape);
+            bool is_whole = true;
+            const auto end_part = [&] {
+                if (part.path.points.size() >= 2) shown.push_back(std::move(part));
+                part = blankOf(shape);
+            };
+            std::vector<PlanShape> before = std::exchange(shown, {});
+            for (std::size_t i = 0; i < path.pieceCount(); ++i) {
+                const Segment2 piece = path.piece(i);
+                for (const auto& [from, to] : clipShares(piece, clip)) {
+                    const Point2 a = piece.a + from * (piece.b - piece.a);
+                    const Point2 b = to == 1 ? piece.b : piece.a + to * (piece.b - piece.a);
+                    if (!clip.shows(a + 0.5 * (b - a))) {
+                        is_whole = false;
+                        end_part();
+                        continue;
+                    }
+                    if (part.path.points.empty()) part.path.points.push_back(a);
+                    part.path.points.push_back(b);
+                    part.chords.push_back({{a, b}, {}});
+                }
+            }
+            end_part();
+            if (is_whole) shown = {std::move(shape)};
+            before.insert(before.end(), std::make_move_iterator(shown.begin()),
+                          std::make_move_iterator(shown.end()));
+            shown = std::move(before);
+        }
+        return shown;
+    }
+
+    static PlanShape blankOf(const PlanShape& shape) {
+        PlanShape blank;
+        blank.layer = shape.layer;
+        blank.walls_in = shape.walls_in;
+        blank.path.line = shape.path.line;
+        blank.path.thickness = shape.path.thickness;
+        return blank;
+    }
+
+    /// Splits a piece where it crosses the clip.
+    static std::vector<std::pair<double, double>> clipShares(const Segment2& piece,
+                                                             const Clip& clip) {
+        std::vector<double> cuts{0, 1};
+        const Vec2 along = piece.b - piece.a;
+        for (const Polygon& ring : clip.rings)
+            forEachEdge(ring, [&](const Segment2& edge) {
+                const Vec2 side = edge.b - edge.a, way = edge.a - piece.a;
+                const double turn = cross(along, side);
+                if (turn == 0) return;
+                const double share = cross(way, side) / turn, across = cross(way, along) / turn;
+                if (share > 0 && share < 1 && across >= 0 && across <= 1) cuts.push_back(share);
+            });
+        std::sort(cuts.begin(), cuts.end());
+        std::vector<std::pair<double, double>> shares;
+        for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
+            if (cuts[i] < cuts[i + 1]) shares.emplace_back(cuts[i], cuts[i + 1]);
+        return shares;
     }
 
     static void addPiece(const SvgLine& line, const Affine& frame, PlanShape& shape) {
@@ -380,6 +619,8 @@ class SvgReader {
     }
 
     XmlFile file_;
+    bool has_sheet_file_;
+    std::string ranking_;
     const ImportOptions& options_;
     std::optional<double> asked_scale_;
     std::unordered_map<std::string, pugi::xml_node> ids_;
@@ -401,18 +642,46 @@ struct SvgImport {
 
 /// The units that a drawing may have, and the decision for one of them.
 struct SvgUnits {
+    std::vector<LengthUnit> candidates;  ///< of the ranking: scales on paper, and units
     std::vector<UnitEvidence> ranking;
     const UnitEvidence* decided = nullptr;
     bool has_size = false;  ///< on paper
 };
+
+/// Returns the usual scales of a drawing on paper, and the units that a unit of the drawing may be,
+/// unless that is a length on paper, as a millimetre.
+std::vector<LengthUnit> candidatesOf(std::optional<double> paper, bool is_in_inches) {
+    std::vector<LengthUnit> all;
+    const auto add = [&](const auto& scales) {
+        for (const auto& [name, factor] : scales) all.push_back({name, factor * *paper, 0});
+    };
+    if (paper && is_in_inches) add(kInchScales);
+    if (paper && !is_in_inches) add(kScales);
+    constexpr double kSame = 1e-3, kInch = 0.0254;
+    const auto lengths = {0.001, 0.01, 1.0, kInch, kInch / 72, kInch / 90, kInch / 96};
+    if (!paper || std::none_of(lengths.begin(), lengths.end(), [&](double length) {
+            return std::abs(*paper - length) <= kSame * length;
+        }))
+        all.insert(all.end(), usualUnits().begin(), usualUnits().end());
+    return all;
+}
+
+/// Returns "its unit is read as 1 cm", or "it is read at the scale of 1:50".
+std::string decisionText(const UnitEvidence& decided) {
+    const std::string unit = decided.unit->name;
+    return unit.starts_with("1:") ? "it is read at the scale of " + unit
+                                  : "its unit is read as 1 " + unit;
+}
 
 /// Decides on the unit of a drawing by its contents if the options do not state it, and its size
 /// on paper is missing or impossible.
 SvgUnits unitsOf(std::string_view bytes, const std::string& name, const ImportOptions& options) {
     SvgUnits units;
     if (!options.units.empty() || options.width_is) return units;
-    const std::optional<double> paper = SvgReader(bytes, name, options).paperScale();
+    SvgReader sized(bytes, name, options);
+    const std::optional<double> paper = sized.paperScale();
     units.has_size = paper.has_value();
+    units.candidates = candidatesOf(paper, sized.isInInches());
     const LengthUnit stated{"its size", paper.value_or(0), 0};
     const LengthUnit* const own = paper ? &stated : nullptr;
     units.ranking = rankedUnits(
@@ -426,7 +695,7 @@ SvgUnits unitsOf(std::string_view bytes, const std::string& name, const ImportOp
                 return {};
             }
         },
-        Budget(bytes.size(), options.max_work), own);
+        Budget(bytes.size(), options.max_work), own, units.candidates);
     const UnitEvidence* const decided = decidedUnit(units.ranking, own);
     std::erase_if(units.ranking,
                   [&](const UnitEvidence& evidence) { return evidence.unit == own; });
@@ -436,13 +705,18 @@ SvgUnits unitsOf(std::string_view bytes, const std::string& name, const ImportOp
 }
 
 SvgDrawing readDrawing(std::string_view bytes, const std::string& name,
-                       const ImportOptions& options, const UnitEvidence* decided) {
+                       const ImportOptions& options, const UnitEvidence* decided,
+                       const SvgUnits& units) {
     if (decided != nullptr) {
         SvgDrawing drawing = SvgReader(bytes, name, options, decided->unit->metres).read();
-        drawing.scale = std::string("a unit of the drawing is 1 ") + decided->unit->name;
+        drawing.scale = unitText(decided->unit->metres);
         return drawing;
     }
-    if (!options.width_is) return SvgReader(bytes, name, options).read();
+    if (!options.width_is) {
+        SvgReader reader(bytes, name, options);
+        reader.setRanking(units.ranking);
+        return reader.read();
+    }
     const double metres = metresPerUnit(*options.width_is, name, [&](double metres_per_unit) {
         LayerSorter sorter({}, options);
         SvgDrawing drawing = SvgReader(bytes, name, options, metres_per_unit).read();
@@ -466,12 +740,12 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
     ImportRecords out(schemas, name, options);
     const UnitEvidence* const decided =
         options.units.empty() && !options.width_is ? units.decided : nullptr;
-    SvgDrawing drawing = readDrawing(bytes, name, options, decided);
+    SvgDrawing drawing = readDrawing(bytes, name, options, decided, units);
     if (decided != nullptr)
         out.warn(std::string(units.has_size ? "by its size on paper the drawing is no building"
                                             : "the drawing has no scale") +
-                 ": its unit is read as 1 " + decided->unit->name + ", in which " +
-                 evidenceText(*decided) + "; --units takes another");
+                 ": " + decisionText(*decided) + ", in which " + evidenceText(*decided) +
+                 "; --units" + (units.has_size ? " and --width-is take others" : " takes another"));
     out.note(drawing.scale);
     for (const auto& [what, count] : drawing.left_out)
         out.note("left out: " + what + " (" + std::to_string(count) + ')');
@@ -481,20 +755,31 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
             : options.units,
         drawing.metres_per_unit, bytes.size(), drawing.left_out};
     for (const UnitEvidence& evidence : units.ranking)
-        source.likely_units.emplace_back(evidence.unit->name);
+        if (!std::string_view(evidence.unit->name).starts_with("1:"))
+            source.likely_units.emplace_back(evidence.unit->name);
+    source.ranking = rankingText(units.ranking);
     if (hints)
         source.import = [&](ImportOptions other) {
             other.max_work = asked.max_work;  // as much again
             return importSvg(bytes, name, other, schemas, units, false).outcome;
         };
     source.better_layers = better_layers;
-    warnOfUnread(drawing.unread, "save it as plain SVG, with attributes instead of rules", out);
     leaveOutStrays(drawing.shapes, &out);
+    if (const auto way = movedHome(drawing.shapes, name)) {
+        out.tell(surveyText(*way, "drawing"));
+        for (UnreadThing& thing : drawing.unread)
+            if (!thing.extent.empty())
+                thing.extent = {thing.extent.low - *way, thing.extent.high - *way};
+    }
     LayerSorter sorter({}, options);
     LayerSorter::Sorted shapes = sorter.sort(std::move(drawing.shapes));
     sorter.note(out);
     const PlanOutcome outcome =
         writeLinePlan(std::move(shapes), sorter, name, options, &source, out);
+    warnOfUnread(drawing.unread, outcome.rooms,
+                 "save it as plain SVG, with attributes instead of rules and masks, and without "
+                 "other files",
+                 out);
     return {out.take(), outcome};
 }
 

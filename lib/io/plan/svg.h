@@ -81,7 +81,12 @@ enum class SvgProperty : std::size_t {
     FillOpacity,
     StrokeOpacity,
     Transform,
-    TransformOrigin
+    TransformOrigin,
+    TransformBox,
+    StrokeWidth,
+    VectorEffect,
+    ClipPath,
+    Mask
 };
 class SvgProperties {
   public:
@@ -100,9 +105,13 @@ class SvgProperties {
         std::string_view& own = values_[static_cast<std::size_t>(key)];
         if (own.empty()) own = value;
     }
-    static constexpr std::array<const char*, 9> kNames{
-        "display",      "visibility",     "fill",      "stroke",          "opacity",
-        "fill-opacity", "stroke-opacity", "transform", "transform-origin"};
+    /// Drops values that refer to variables. \return true if there are any
+    bool dropVariables();
+    static constexpr std::array<const char*, 14> kNames{
+        "display",          "visibility",    "fill",           "stroke",
+        "opacity",          "fill-opacity",  "stroke-opacity", "transform",
+        "transform-origin", "transform-box", "stroke-width",   "vector-effect",
+        "clip-path",        "mask"};
 
   private:
     void set(std::size_t key, std::string_view value, bool is_important);
@@ -117,11 +126,14 @@ struct SvgStyle {
     bool no_fill = false, no_stroke = false;  ///< set explicitly: unset means drawn
     bool has_stroke = false;
     bool clear_fill = false, clear_stroke = false;  ///< their opacity is 0
+    std::optional<double> stroke_width = {};        ///< in the element's units; empty: not stated
 };
 
 /// Rules of `style` elements, as browsers cascade them: selectors of names, classes, ids,
-/// attributes and :root, with the combinators descendant, `>`, `+` and `~`. Rules of @media for the
-/// screen count. Selectors with other parts are left out and listed.
+/// attributes, :root, :not(), :is(), :where(), :first-child and :last-child, with the combinators
+/// descendant, `>`, `+` and `~`. Rules of @media for the screen and of @supports count; states such
+/// as :hover never match. Selectors with other parts, rules in rules, layers of rules and values of
+/// variables are left out and listed.
 ///
 /// Written for this reader: Debian's libraries of CSS (libcroco, which its own authors gave up;
 /// NetSurf's libcss, which needs a handler of forty callbacks for its document) are larger than the
@@ -137,11 +149,13 @@ class SvgSheet {
     [[nodiscard]] const std::map<std::string, std::size_t>& unread() const { return unread_; }
 
   private:
-    /// A part of a compound selector: an element's name, .class, #id, or [attribute].
+    /// A part of a compound selector: an element's name, .class, #id, [attribute], or :class.
     struct Simple {
-        enum class Kind { Name, Class, Id, Attribute, Root } kind = Kind::Name;
+        enum class Kind { Name, Class, Id, Attribute, Root, First, Last, Not, Is, Where, Never };
+        Kind kind = Kind::Name;
         std::string_view name, value;
         char relation = ' ';  ///< of an attribute: ' ' has it, '=', or the letter before '='
+        std::vector<std::vector<Simple>> inner = {};  ///< compounds of Not, Is and Where
     };
     /// A compound selector, and the combinator to the one before it.
     struct Compound {
@@ -155,8 +169,11 @@ class SvgSheet {
     };
     void addRules(std::string_view css, int depth);
     void addRule(std::string_view selector, const SvgProperties& declared);
-    static std::optional<std::vector<Compound>> parse(std::string_view selector);
-    static bool matches(pugi::xml_node node, const Compound& compound);
+    static std::optional<std::vector<Compound>> parse(std::string_view selector, int depth = 0);
+    static std::optional<Simple> parsePseudoClass(std::string_view& selector, int depth);
+    static void count(const Simple& part, std::array<int, 3>& specificity);
+    static bool matches(pugi::xml_node node, const Simple& part);
+    static bool matches(pugi::xml_node node, const std::vector<Simple>& parts);
     static bool matches(pugi::xml_node node, const std::vector<Compound>& selector,
                         std::size_t last, int& steps);
 
@@ -173,6 +190,9 @@ std::string_view svgName(pugi::xml_node node);
 /// Returns the properties of an element: from `style`, else rules, else attributes. Views of the
 /// document.
 SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet);
+
+/// Returns true for an invisible paint: none, transparent, a colour with an alpha of 0.
+bool isSvgNone(std::string_view paint);
 
 /// Returns true for an opacity of 0.
 bool isSvgClear(std::string_view opacity);
@@ -199,26 +219,31 @@ struct SvgNames {
 struct SvgElement {
     std::size_t units = 0;  ///< of work for its other attributes at each use
     SvgProperties properties;
-    Affine transform;
+    Affine transform;  ///< without its origin, see svgOrigin()
     SvgNames names;
 };
 
 /// Parses an element. O(length of the element and its selectors) \throws SvgError
 SvgElement readSvgElement(pugi::xml_node node, const SvgSheet& sheet, const ImportOptions& options);
 
-/// Parses an attribute in the element's own coordinates; lengths with units come in pixels.
-/// \throws SvgError
-double svgNumber(pugi::xml_node node, const char* key, double standard = 0);
-
 /// A visible rectangle in its inner coordinates.
 struct SvgBox {
     double x = 0, y = 0, width = 0, height = 0;
 };
 
+/// Parses an attribute in the element's own coordinates; lengths with units come in pixels.
+/// \param whole of a percentage; 0: unknown \throws SvgError
+double svgNumber(pugi::xml_node node, const char* key, double standard = 0, double whole = 0);
+
+/// Returns the point of `transform-origin`, with percentages and words of the size of the viewport;
+/// std::nullopt for the default.
+std::optional<Vec2> svgOrigin(std::string_view text, const SvgBox& view);
+
 /// Parses the attribute viewBox. \throws SvgError
 std::optional<SvgBox> svgViewBox(pugi::xml_node node);
 
-/// Converts path, line, polyline, polygon, rect, circle and ellipse to paths. \throws SvgError
-std::vector<SvgSubpath> svgPaths(pugi::xml_node node, std::string_view kind);
+/// Converts path, line, polyline, polygon, rect, circle and ellipse to paths.
+/// \param view the viewport around it, for percentages \throws SvgError
+std::vector<SvgSubpath> svgPaths(pugi::xml_node node, std::string_view kind, const SvgBox& view);
 
 }  // namespace ispace

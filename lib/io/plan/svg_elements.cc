@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -23,8 +25,19 @@ std::optional<std::vector<double>> tryNumbers(std::string_view text) {
     }
 }
 
-double radius(pugi::xml_node node, const char* key) {
-    const double value = svgNumber(node, key);
+/// Returns a length in pixels; std::nullopt for a percentage and for other text.
+std::optional<double> tryLength(std::string_view text) {
+    if (const auto numbers = tryNumbers(text); numbers && numbers->size() == 1)
+        return numbers->front();
+    try {
+        if (const auto metres = parseSvgMetres(text)) return *metres / *parseSvgMetres("1");
+    } catch (const SvgError&) {
+    }
+    return std::nullopt;
+}
+
+double radius(pugi::xml_node node, const char* key, double whole) {
+    const double value = svgNumber(node, key, 0, whole);
     if (value < 0) throw SvgError(std::string(key) + " is " + formatDouble(value));
     return value;
 }
@@ -43,15 +56,6 @@ std::string cssTransform(std::string_view text) {
         if (!skips("px") && !skips("deg")) plain += text[i];
     }
     return plain;
-}
-
-/// Returns the point of `transform-origin` in pixels; std::nullopt for the default, and for shares
-/// of boxes.
-std::optional<Vec2> originOf(std::string_view text) {
-    if (text.empty()) return std::nullopt;
-    const auto numbers = tryNumbers(cssTransform(text));
-    if (!numbers || numbers->size() < 2) return std::nullopt;
-    return Vec2{(*numbers)[0], (*numbers)[1]};
 }
 
 /// Returns true if an option names layers like this.
@@ -79,6 +83,25 @@ SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet) {
     return properties;
 }
 
+bool isSvgNone(std::string_view paint) {
+    if (paint == "none" || paint == "transparent") return true;
+    if (paint.starts_with('#'))
+        return (paint.size() == 5 && paint.ends_with('0')) ||
+               (paint.size() == 9 && paint.ends_with("00"));
+    // rgba(0, 0, 0, 0), hsl(0 0% 0% / 0%)
+    const std::size_t open = paint.find('(');
+    if (open == std::string_view::npos || !paint.ends_with(')')) return false;
+    const std::string_view name = paint.substr(0, open);
+    const bool is_color = name == "rgb" || name == "rgba" || name == "hsl" || name == "hsla";
+    const std::string_view values = paint.substr(open + 1, paint.size() - open - 2);
+    const std::size_t slash = values.find('/'), last = values.rfind(',');
+    const auto commas = std::count(values.begin(), values.end(), ',');
+    const std::size_t before = slash != std::string_view::npos ? slash
+                               : commas == 3                   ? last
+                                                               : values.size();
+    return is_color && before < values.size() && isSvgClear(trimmed(values.substr(before + 1)));
+}
+
 bool isSvgClear(std::string_view opacity) {
     if (opacity.ends_with('%')) opacity.remove_suffix(1);
     const auto value = parseDouble(opacity);
@@ -90,21 +113,20 @@ SvgStyle svgStyle(SvgStyle style, const SvgProperties& properties) {
         const std::string_view value = properties[key];
         return value == "inherit" ? std::string_view() : value;
     };
-    const auto is_none = [](std::string_view value) {
-        return value == "none" || value == "transparent";
-    };
     if (const auto value = stated(SvgProperty::Visibility); !value.empty())
         style.visible = value == "visible";
     if (const auto value = stated(SvgProperty::Fill); !value.empty())
-        style.no_fill = is_none(value);
+        style.no_fill = isSvgNone(value);
     if (const auto value = stated(SvgProperty::Stroke); !value.empty()) {
-        style.no_stroke = is_none(value);
+        style.no_stroke = isSvgNone(value);
         style.has_stroke = !style.no_stroke;
     }
     if (const auto value = stated(SvgProperty::FillOpacity); !value.empty())
         style.clear_fill = isSvgClear(value);
     if (const auto value = stated(SvgProperty::StrokeOpacity); !value.empty())
         style.clear_stroke = isSvgClear(value);
+    if (const auto value = stated(SvgProperty::StrokeWidth); !value.empty())
+        if (const auto width = tryLength(value)) style.stroke_width = *width;
     return style;
 }
 
@@ -126,10 +148,6 @@ SvgElement readSvgElement(pugi::xml_node node, const SvgSheet& sheet,
     element.properties = svgProperties(node, sheet);
     const std::string_view transform = element.properties[SvgProperty::Transform];
     element.transform = transform == "none" ? Affine() : parseSvgTransform(cssTransform(transform));
-    if (const auto origin = originOf(element.properties[SvgProperty::TransformOrigin])) {
-        const Affine there{{1, 0}, {0, 1}, *origin}, back{{1, 0}, {0, 1}, -1 * *origin};
-        element.transform = there * element.transform * back;
-    }
     SvgNames& names = element.names;
     const pugi::xml_attribute label = node.attribute("inkscape:label"), id = node.attribute("id");
     for (const char* text : {label.value(), id.value()}) {
@@ -157,15 +175,44 @@ SvgElement readSvgElement(pugi::xml_node node, const SvgSheet& sheet,
     return element;
 }
 
-double svgNumber(pugi::xml_node node, const char* key, double standard) {
+double svgNumber(pugi::xml_node node, const char* key, double standard, double whole) {
     const std::string_view text = trimmed(node.attribute(key).value());
     if (text.empty()) return standard;
     if (const auto numbers = tryNumbers(text); numbers && numbers->size() == 1)
         return numbers->front();
+    if (whole > 0 && text.ends_with('%'))
+        if (const auto share = parseDouble(trimmed(text.substr(0, text.size() - 1))))
+            return whole * *share / 100;
     const auto metres = parseSvgMetres(text);
     if (!metres)
         throw SvgError(std::string(key) + ": found " + excerpt(text) + ", wanted a number");
     return *metres / *parseSvgMetres("1");  // 5mm is so many units of a pixel
+}
+
+std::optional<Vec2> svgOrigin(std::string_view text, const SvgBox& view) {
+    std::array<std::optional<double>, 2> place;
+    std::size_t taken = 0;
+    while (!(text = trimmed(text)).empty() && taken < 2) {
+        const std::string_view word = text.substr(0, text.find_first_of(" \t\r\n,"));
+        text.remove_prefix(std::min(word.size() + 1, text.size()));
+        const bool is_vertical = word == "top" || word == "bottom" || taken == 1;
+        const double whole = is_vertical ? view.height : view.width;
+        std::optional<double> value = tryLength(word);
+        if (word == "left" || word == "top") value = 0;
+        if (word == "center") value = whole / 2;
+        if (word == "right" || word == "bottom") value = whole;
+        if (word.ends_with('%'))
+            if (const auto share = parseDouble(word.substr(0, word.size() - 1)))
+                value = whole * *share / 100;
+        if (!value) return std::nullopt;
+        // "top left" names y first.
+        const bool is_swapped = taken == 1 && (word == "left" || word == "right");
+        if (is_swapped) place[1] = place[0];
+        place[is_swapped ? 0 : (word == "top" || word == "bottom" ? 1 : taken)] = value;
+        ++taken;
+    }
+    if (taken == 0) return std::nullopt;
+    return Vec2{place[0].value_or(view.width / 2), place[1].value_or(view.height / 2)};
 }
 
 std::optional<SvgBox> svgViewBox(pugi::xml_node node) {
@@ -177,25 +224,27 @@ std::optional<SvgBox> svgViewBox(pugi::xml_node node) {
     return SvgBox{v[0], v[1], v[2], v[3]};
 }
 
-std::vector<SvgSubpath> svgPaths(pugi::xml_node node, std::string_view kind) {
+std::vector<SvgSubpath> svgPaths(pugi::xml_node node, std::string_view kind, const SvgBox& view) {
+    const double w = view.width, h = view.height, diagonal = std::hypot(w, h) / std::numbers::sqrt2;
     if (kind == "path") return parseSvgPath(node.attribute("d").value());
     if (kind == "line") {
-        const Point2 from{svgNumber(node, "x1"), svgNumber(node, "y1")};
-        return {{from, {SvgLine{{svgNumber(node, "x2"), svgNumber(node, "y2")}}}, false}};
+        const Point2 from{svgNumber(node, "x1", 0, w), svgNumber(node, "y1", 0, h)};
+        return {
+            {from, {SvgLine{{svgNumber(node, "x2", 0, w), svgNumber(node, "y2", 0, h)}}}, false}};
     }
     if (kind == "circle" || kind == "ellipse") {
-        const double rx = radius(node, kind == "circle" ? "r" : "rx");
-        const double ry = radius(node, kind == "circle" ? "r" : "ry");
+        const double rx = kind == "circle" ? radius(node, "r", diagonal) : radius(node, "rx", w);
+        const double ry = kind == "circle" ? rx : radius(node, "ry", h);
         if (rx == 0 || ry == 0) return {};
-        return {svgEllipse({svgNumber(node, "cx"), svgNumber(node, "cy")}, rx, ry)};
+        return {svgEllipse({svgNumber(node, "cx", 0, w), svgNumber(node, "cy", 0, h)}, rx, ry)};
     }
     if (kind == "rect") {
-        const double width = radius(node, "width"), height = radius(node, "height");
+        const double width = radius(node, "width", w), height = radius(node, "height", h);
         if (width == 0 || height == 0) return {};
         const bool has_rx = node.attribute("rx"), has_ry = node.attribute("ry");
-        return {svgRectangle({svgNumber(node, "x"), svgNumber(node, "y")}, width, height,
-                             radius(node, has_rx ? "rx" : "ry"),
-                             radius(node, has_ry ? "ry" : "rx"))};
+        return {svgRectangle({svgNumber(node, "x", 0, w), svgNumber(node, "y", 0, h)}, width,
+                             height, radius(node, has_rx ? "rx" : "ry", has_rx ? w : h),
+                             radius(node, has_ry ? "ry" : "rx", has_ry ? h : w))};
     }
     const std::vector<double> numbers = parseSvgNumbers(node.attribute("points").value());
     if (numbers.size() % 2 != 0) throw SvgError("points: a number is missing");

@@ -11,8 +11,8 @@ namespace ispace {
 
 namespace {
 
-/// At-rules in each other.
-constexpr int kMaxRuleDepth = 8;
+/// At-rules in each other, and selectors in selectors.
+constexpr int kMaxRuleDepth = 8, kMaxSelectorDepth = 4;
 /// Elements compared with one selector.
 constexpr int kMaxSelectorSteps = 1000;
 
@@ -33,6 +33,28 @@ std::string_view takeUntil(std::string_view& rest, char mark) {
     const std::string_view part = rest.substr(0, rest.find(mark));
     rest.remove_prefix(std::min(part.size() + 1, rest.size()));
     return part;
+}
+
+/// Removes and returns the text before the next comma outside of parentheses, which is removed,
+/// too.
+std::string_view takeItem(std::string_view& rest) {
+    int depth = 0;
+    std::size_t end = 0;
+    for (; end < rest.size(); ++end) {
+        if (rest[end] == '(') ++depth;
+        if (rest[end] == ')') --depth;
+        if (rest[end] == ',' && depth <= 0) break;
+    }
+    const std::string_view item = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    return item;
+}
+
+/// Returns true if rules in this text set a property that counts.
+bool mentionsProperty(std::string_view css) {
+    return std::any_of(
+        SvgProperties::kNames.begin(), SvgProperties::kNames.end(),
+        [&](std::string_view name) { return css.find(name) != std::string_view::npos; });
 }
 
 /// Removes and returns a block up to its closing brace, which is removed, too.
@@ -117,6 +139,16 @@ void SvgProperties::declare(std::string_view declarations) {
     }
 }
 
+bool SvgProperties::dropVariables() {
+    bool any = false;
+    for (std::string_view& value : values_)
+        if (value.find("var(") != std::string_view::npos) {
+            value = {};
+            any = true;
+        }
+    return any;
+}
+
 void SvgProperties::addStronger(const SvgProperties& others) {
     for (std::size_t i = 0; i < values_.size(); ++i)
         set(i, others.values_[i], others.important_[i]);
@@ -141,11 +173,25 @@ void SvgSheet::addRules(std::string_view css, int depth) {
             if (depth < kMaxRuleDepth && isForScreen(head.substr(6))) addRules(block, depth + 1);
             continue;
         }
-        if (head.starts_with('@')) continue;  // of fonts, pages, animations
+        if (head.starts_with("@supports") && head.find("not") == std::string_view::npos) {
+            if (depth < kMaxRuleDepth) addRules(block, depth + 1);
+            continue;
+        }
+        if (head.starts_with('@')) {  // also of fonts, pages, animations
+            const bool may_count = head.starts_with("@supports") || head.starts_with("@layer") ||
+                                   head.starts_with("@container") || head.starts_with("@scope");
+            if (may_count && mentionsProperty(block)) ++unread_[std::string(head.substr(0, 40))];
+            continue;
+        }
+        if (block.find('{') != std::string_view::npos) {
+            if (mentionsProperty(block)) ++unread_[std::string(head.substr(0, 40)) + " { … }"];
+            continue;
+        }
         SvgProperties declared;
         declared.declare(block);
+        if (declared.dropVariables()) ++unread_[std::string(head.substr(0, 40)) + " { var() }"];
         if (declared.isEmpty()) continue;
-        while (!head.empty()) addRule(trimmed(takeUntil(head, ',')), declared);
+        while (!head.empty()) addRule(trimmed(takeItem(head)), declared);
     }
 }
 
@@ -157,10 +203,10 @@ void SvgSheet::addRule(std::string_view selector, const SvgProperties& declared)
     }
     Rule rule{std::move(*parsed), {}, declared};
     for (const Compound& compound : rule.selector)
-        for (const Simple& part : compound.parts)
-            ++rule.specificity[part.kind == Simple::Kind::Id     ? 0
-                               : part.kind == Simple::Kind::Name ? 2
-                                                                 : 1];
+        for (const Simple& part : compound.parts) {
+            if (part.kind == Simple::Kind::Never) return;
+            count(part, rule.specificity);
+        }
     std::string subject;
     for (const Simple& part : rule.selector.back().parts) {
         if (part.kind == Simple::Kind::Id) subject = '#' + std::string(part.name);
@@ -172,7 +218,62 @@ void SvgSheet::addRule(std::string_view selector, const SvgProperties& declared)
     rules_.push_back(std::move(rule));
 }
 
-std::optional<std::vector<SvgSheet::Compound>> SvgSheet::parse(std::string_view selector) {
+void SvgSheet::count(const Simple& part, std::array<int, 3>& specificity) {
+    if (part.kind == Simple::Kind::Where) return;
+    if (part.kind == Simple::Kind::Not || part.kind == Simple::Kind::Is) {
+        std::array<int, 3> most{};
+        for (const std::vector<Simple>& compound : part.inner) {
+            std::array<int, 3> own{};
+            for (const Simple& inner : compound) count(inner, own);
+            most = std::max(most, own);
+        }
+        for (std::size_t i = 0; i < most.size(); ++i) specificity[i] += most[i];
+        return;
+    }
+    ++specificity[part.kind == Simple::Kind::Id ? 0 : part.kind == Simple::Kind::Name ? 2 : 1];
+}
+
+/// Parses what follows a colon.
+std::optional<SvgSheet::Simple> SvgSheet::parsePseudoClass(std::string_view& selector, int depth) {
+    using Kind = Simple::Kind;
+    constexpr std::array<std::string_view, 14> kStates{
+        "hover",   "active",   "focus",       "focus-visible", "focus-within", "visited", "target",
+        "checked", "disabled", "placeholder", "invalid",       "selection",    "before",  "after"};
+    const bool is_part = selector.starts_with(':');  // ::before
+    if (is_part) selector.remove_prefix(1);
+    const std::string_view name = takeName(selector);
+    if (name.empty()) return std::nullopt;
+    Simple part{Kind::Never, name, {}};
+    if (is_part || isOneOf(kStates, name)) return part;
+    if (name == "root") part.kind = Kind::Root;
+    if (name == "first-child") part.kind = Kind::First;
+    if (name == "last-child") part.kind = Kind::Last;
+    if (name == "not") part.kind = Kind::Not;
+    if (name == "is") part.kind = Kind::Is;
+    if (name == "where") part.kind = Kind::Where;
+    if (part.kind == Kind::Never) return std::nullopt;
+    const bool has_list = part.kind >= Kind::Not;
+    if (selector.starts_with('(') != has_list) return std::nullopt;
+    if (!has_list) return part;
+    int open = 0;
+    std::size_t end = 0;
+    for (; end < selector.size(); ++end) {
+        if (selector[end] == '(') ++open;
+        if (selector[end] == ')' && --open == 0) break;
+    }
+    if (end == selector.size() || depth == kMaxSelectorDepth) return std::nullopt;
+    std::string_view list = selector.substr(1, end - 1);
+    selector.remove_prefix(end + 1);
+    while (!list.empty()) {
+        auto inner = parse(trimmed(takeItem(list)), depth + 1);
+        if (!inner || inner->size() != 1) return std::nullopt;
+        part.inner.push_back(std::move(inner->front().parts));
+    }
+    return part;
+}
+
+std::optional<std::vector<SvgSheet::Compound>> SvgSheet::parse(std::string_view selector,
+                                                               int depth) {
     std::vector<Compound> compounds;
     Compound compound;
     bool has_star = false;
@@ -220,16 +321,20 @@ std::optional<std::vector<SvgSheet::Compound>> SvgSheet::parse(std::string_view 
         } else {
             const bool has_mark = c == '.' || c == '#' || c == ':';
             if (has_mark) selector.remove_prefix(1);
+            if (c == ':') {
+                auto part = parsePseudoClass(selector, depth);
+                if (!part) return std::nullopt;
+                compound.parts.push_back(std::move(*part));
+                continue;
+            }
             const std::string_view name = takeName(selector);
-            if (name.empty() || (c == ':' && name != "root")) return std::nullopt;
+            if (name.empty()) return std::nullopt;
             if (!has_mark && !compound.parts.empty()) return std::nullopt;
             compound.parts.push_back({c == '.'   ? Simple::Kind::Class
                                       : c == '#' ? Simple::Kind::Id
-                                      : c == ':' ? Simple::Kind::Root
                                                  : Simple::Kind::Name,
                                       name,
-                                      {},
-                                      ' '});
+                                      {}});
         }
     }
     if (compound.parts.empty() && !has_star) return std::nullopt;
@@ -237,46 +342,66 @@ std::optional<std::vector<SvgSheet::Compound>> SvgSheet::parse(std::string_view 
     return compounds;
 }
 
-bool SvgSheet::matches(pugi::xml_node node, const Compound& compound) {
-    return std::all_of(compound.parts.begin(), compound.parts.end(), [node](const Simple& part) {
-        switch (part.kind) {
-            case Simple::Kind::Name:
-                return svgName(node) == part.name;
-            case Simple::Kind::Class:
-                return hasWord(node.attribute("class").value(), part.name);
-            case Simple::Kind::Id:
-                return std::string_view(node.attribute("id").value()) == part.name;
-            case Simple::Kind::Root:
-                return !parentOf(node);
-            case Simple::Kind::Attribute:
-                break;
-        }
-        const pugi::xml_attribute attribute = node.attribute(std::string(part.name).c_str());
-        const std::string_view value = attribute.value();
-        if (!attribute) return false;
-        switch (part.relation) {
-            case '=':
-                return value == part.value;
-            case '~':
-                return hasWord(value, part.value);
-            case '^':
-                return !part.value.empty() && value.starts_with(part.value);
-            case '$':
-                return !part.value.empty() && value.ends_with(part.value);
-            case '*':
-                return !part.value.empty() && value.find(part.value) != std::string_view::npos;
-            case '|':
-                return value == part.value || value.starts_with(std::string(part.value) + '-');
-            default:
-                return true;
-        }
-    });
+bool SvgSheet::matches(pugi::xml_node node, const std::vector<Simple>& parts) {
+    return std::all_of(parts.begin(), parts.end(),
+                       [node](const Simple& part) { return matches(node, part); });
+}
+
+bool SvgSheet::matches(pugi::xml_node node, const Simple& part) {
+    const auto matches_any = [&] {
+        return std::any_of(part.inner.begin(), part.inner.end(),
+                           [node](const auto& compound) { return matches(node, compound); });
+    };
+    switch (part.kind) {
+        case Simple::Kind::Name:
+            return svgName(node) == part.name;
+        case Simple::Kind::Class:
+            return hasWord(node.attribute("class").value(), part.name);
+        case Simple::Kind::Id:
+            return std::string_view(node.attribute("id").value()) == part.name;
+        case Simple::Kind::Root:
+            return !parentOf(node);
+        case Simple::Kind::First:
+            return !elementBefore(node);
+        case Simple::Kind::Last:
+            do node = node.next_sibling();
+            while (node && node.type() != pugi::node_element);
+            return !node;
+        case Simple::Kind::Not:
+            return !matches_any();
+        case Simple::Kind::Is:
+        case Simple::Kind::Where:
+            return matches_any();
+        case Simple::Kind::Never:
+            return false;
+        case Simple::Kind::Attribute:
+            break;
+    }
+    const pugi::xml_attribute attribute = node.attribute(std::string(part.name).c_str());
+    const std::string_view value = attribute.value();
+    if (!attribute) return false;
+    switch (part.relation) {
+        case '=':
+            return value == part.value;
+        case '~':
+            return hasWord(value, part.value);
+        case '^':
+            return !part.value.empty() && value.starts_with(part.value);
+        case '$':
+            return !part.value.empty() && value.ends_with(part.value);
+        case '*':
+            return !part.value.empty() && value.find(part.value) != std::string_view::npos;
+        case '|':
+            return value == part.value || value.starts_with(std::string(part.value) + '-');
+        default:
+            return true;
+    }
 }
 
 /// Matches the compounds up to `last` against the node and those around it, backtracking.
 bool SvgSheet::matches(pugi::xml_node node, const std::vector<Compound>& selector, std::size_t last,
                        int& steps) {
-    if (--steps < 0 || !node || !matches(node, selector[last])) return false;
+    if (--steps < 0 || !node || !matches(node, selector[last].parts)) return false;
     if (last == 0) return true;
     const char combinator = selector[last].combinator;
     const bool is_upward = combinator == ' ' || combinator == '>';

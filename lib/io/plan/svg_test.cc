@@ -163,7 +163,9 @@ TEST(Svg, Scale) {
 TEST(Svg, WithoutAScale) {
     const std::string room = "<rect width='400' height='300'/></svg>";
     const std::string hint =
-        ": say its unit, for example with --units cm, or how wide it is, with --width-is 8.3m\n";
+        "; most likely is cm, in which the plan is 4.0 m wide, then inch, in which the plan is "
+        "10.2 m wide, then m, in which the plan is 400.0 m wide: say its unit, for example with "
+        "--units cm, or how wide it is, with --width-is 4.00\n";
     const std::string begin =
         "plan.svg:1:1: error: `svg`: the drawing has no scale, as its size is ";
     for (const char* size :
@@ -189,10 +191,13 @@ TEST(Svg, WithoutAScale) {
 TEST(Svg, OfNoBuildingsSize) {
     const std::string paper = "<svg width='200mm' viewBox='0 0 10 10'>";
     const std::string room = "<rect width='8' height='5'/></svg>";
-    EXPECT_EQ(errorOf(paper + room),
-              "plan.svg: error: the plan is 0.16 m wide: is its unit right? It is read in units of "
-              "20 mm; with --units m it would be 8.0 m wide and have 40.0 m2 of floor; or say how "
-              "wide it is, with --width-is 8.3m\n");
+    EXPECT_EQ(
+        errorOf(paper + room),
+        "plan.svg: error: the plan is 0.16 m wide: is its unit right? It is read in units of "
+        "20 mm; with --units m it would be 8.0 m wide and have 40.0 m2 of floor; or say how "
+        "wide it is, with --width-is 8.3m; most likely is 1:50, in which the plan is 8.0 m "
+        "wide, then 1:100, in which the plan is 16.0 m wide, then 1:200, in which the plan is "
+        "32.0 m wide\n");
     EXPECT_EQ(errorOf("<svg width='900cm' viewBox='0 0 1 1'><rect width='400' height='400'/></svg>")
                   .find("plan.svg: error: the plan is 3600 m wide: is its unit right?"),
               0U);
@@ -398,6 +403,125 @@ TEST(SvgCss, AsBrowsersApplyIt) {
              "<path style='display:none!x'",
          })
         EXPECT_NEAR(areaWith(shown + line), 24, 1e-9) << shown;
+}
+
+TEST(SvgCss, PseudoClassesAndConditions) {
+    const std::string line = " d='M5 1v6'/>";
+    for (const std::string hidden : {
+             "<style>path:not(.w){display:none}</style><path",
+             "<style>path:not(.w, #b){display:none}</style><path",
+             "<style>:is(path, line){display:none}</style><path",
+             "<style>:where(g, path){display:none}</style><path",
+             "<style>g > path:first-child{display:none}</style><g><path class='a' "
+             "d=''/></g><g><path",
+             "<style>path:last-child{display:none}</style><path",
+             "<style>@supports (display: grid){path{display:none}}</style><path",
+         }) {
+        const bool is_open = hidden.ends_with("<g><path");
+        EXPECT_NEAR(areaWith(hidden + line + (is_open ? "</g>" : "")), 48, 1e-9) << hidden;
+    }
+    for (const std::string shown : {
+             "<style>path:hover{display:none}</style><path",
+             "<style>path::before{display:none}</style><path",
+             "<style>path:not(.a){display:none}</style><path class='a'",
+             "<style>@supports not (display: grid){p{display:none}}</style><path",
+             "<style>:where(#p){display:inline} path{display:none}"
+             "path:is(#p){display:inline}</style><path id='p'",
+         })
+        EXPECT_NEAR(areaWith(shown + line), 24, 1e-9) << shown;
+}
+
+TEST(SvgCss, WhatIsNotReadWarns) {
+    const auto warnings = [](const std::string& body, const std::string& prolog = "") {
+        return warningsOf(readSvg(prolog + page("<rect x='1' y='1' width='8' height='6'/>" + body),
+                                  "plan.svg", {}, sceneSchemas()));
+    };
+    const std::string line = "<path d='M5 1v6'/>";
+    for (const auto& [body, kind] :
+         {std::pair{"<style>g { path{display:none} }</style>", "the CSS rule `g { … }`"},
+          {"<style>:root{--d:none} path{display:var(--d)}</style>", "`path { var() }`"},
+          {"<style>@layer a{path{display:none}}</style>", "`@layer a`"},
+          {"<use href='other.svg#wall'/>", "use of `other.svg#wall`"},
+          {"<g mask='url(#m)'><path d='M5 1v6'/></g>", "element with a mask"},
+          {"<g style='clip-path:circle(3px)'><path d='M5 1v6'/></g>",
+           "element with a clip-path that is not read"}})
+        EXPECT_NE(warnings(body).find(kind), std::string::npos) << body << warnings(body);
+    EXPECT_NE(warnings("", "<?xml-stylesheet href='a.css'?>").find("the file of a style sheet"),
+              std::string::npos);
+    EXPECT_EQ(warnings("<g mask='url(#m)'><path d='M15 1v6'/></g>"), "");  // off the room
+    EXPECT_EQ(warnings("<style>path:hover{fill:red} @font-face{font-family:a}</style>"), "");
+}
+
+TEST(Svg, StrokesAsWideAsWallsAreTheirThickness) {
+    const auto thick = [](const std::string& more) {
+        const std::string text =
+            textOf(page("<g " + more + "><rect x='1' y='1' width='8' height='6'/></g>"));
+        return text.find("thickness=0.2") != std::string::npos;
+    };
+    EXPECT_TRUE(thick("fill='none' stroke='#000' stroke-width='0.2'"));
+    EXPECT_TRUE(thick("style='fill:none;stroke:#000;stroke-width:.2'"));
+    EXPECT_TRUE(thick("fill='none' stroke='#000' stroke-width='0.1' transform='scale(2)'"));
+    EXPECT_FALSE(thick("stroke='#000' stroke-width='0.2'"));  // filled: a face of the wall
+    EXPECT_FALSE(thick("fill='none' stroke='#000' transform='scale(.2)'"));  // the usual width
+    EXPECT_FALSE(thick("fill='none' stroke='#000' stroke-width='0.01'"));
+    EXPECT_FALSE(thick("fill='none' stroke='#000' stroke-width='2'"));
+    EXPECT_EQ(textOf(page("<rect fill='none' stroke='#000' stroke-width='.2' "
+                          "vector-effect='non-scaling-stroke' x='1' y='1' width='8' height='6'/>"))
+                  .find("thickness"),
+              std::string::npos);
+}
+
+TEST(Svg, LinesThatShowNothing) {
+    for (const char* hidden : {"stroke='rgba(0,0,0,0)'", "stroke='#00000000'", "stroke='#0000'",
+                               "stroke='hsl(0 0% 0% / 0%)'", "stroke='#000' stroke-width='0'"})
+        EXPECT_NEAR(areaOf(page("<rect x='1' y='1' width='8' height='6'/><path fill='none' d='M5 "
+                                "1v6' " +
+                                std::string(hidden) + "/>")),
+                    48, 1e-9)
+            << hidden;
+}
+
+TEST(Svg, ClipsCutLines) {
+    const std::string room = "<rect x='1' y='1' width='8' height='6'/>";
+    const auto with = [&](const std::string& clip, const std::string& body) {
+        return areaOf(page(room + "<clipPath id='c'>" + clip + "</clipPath>" + body));
+    };
+    const std::string line = "<g clip-path='url(#c)'><path d='M5 1v6'/></g>";
+    EXPECT_NEAR(with("<rect width='4' height='10'/>", line), 48, 1e-9);
+    EXPECT_NEAR(with("<rect width='14' height='10'/>", line), 24, 1e-9);
+    EXPECT_NEAR(with("", line), 48, 1e-9);
+    // A triangle shows the lower half of the line.
+    EXPECT_NEAR(with("<path d='M0 0L10 0L10 8Z'/>", line), 48, 1e-9);
+    // Of a larger rectangle the part within remains: two sides of an inner room.
+    EXPECT_NEAR(with("<rect x='1' y='1' width='8' height='6'/>",
+                     "<rect clip-path='url(#c)' fill='none' stroke='#000' x='5' y='-5' width='20' "
+                     "height='20'/>"),
+                24, 1e-9);
+}
+
+TEST(Svg, SharesOfTheViewport) {
+    const auto area = [](const std::string& body) { return areaOf(page(body)); };
+    EXPECT_NEAR(area("<rect x='10%' y='10%' width='50%' height='60%'/>"), 60, 1e-9);
+    EXPECT_NEAR(area("<svg x='50%' width='50%' height='100%'><rect x='10%' y='10%' width='50%' "
+                     "height='50%'/></svg>"),
+                25, 1e-9);
+    EXPECT_NEAR(area("<svg x='1' y='1' width='5' height='4' viewBox='0 0 50 40'><svg width='100%' "
+                     "height='100%' viewBox='0 0 500 400'><rect width='500' height='400'/></svg>"
+                     "</svg>"),
+                20, 1e-9);
+    EXPECT_NEAR(area("<rect x='1' y='1' width='8' height='6'/><path d='M6 4h8' "
+                     "style='transform:rotate(90deg);transform-origin:50% 40%'/>"),
+                48, 1e-9);
+    EXPECT_NEAR(area("<rect x='6' y='1' width='8' height='6'/><path d='M7 4h6' "
+                     "style='transform:rotate(90deg);transform-origin:50% 40%'/>"),
+                24, 1e-9);
+}
+
+TEST(Svg, SwitchesShowOneChild) {
+    EXPECT_NEAR(areaOf(page("<rect x='1' y='1' width='8' height='6'/><switch>"
+                            "<g systemLanguage='de'><path d='M5 1v6'/></g>"
+                            "<g><path d='M3 1v6'/></g><g><path d='M7 1v6'/></g></switch>")),
+                36, 1e-9);
 }
 
 TEST(SvgCss, UnreadSelectorsWarn) {

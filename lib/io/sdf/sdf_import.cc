@@ -26,6 +26,7 @@
 #include "io/sdf/sdf_import.h"
 #include "io/sdf/sdf_parts.h"
 #include "io/sdf/sdf_shapes.h"
+#include "io/unread.h"
 
 namespace ispace {
 
@@ -84,15 +85,28 @@ class SdfImporter {
             if (auto* polyline = std::get_if<SdfPolyline>(&shape.shape))
                 addPolyline(shape, *polyline);
             else if (const auto* box = std::get_if<SdfBox>(&shape.shape))
-                sortBlock(blockOf(shape, *box));
+                sortBlock(blockOf(shape, *box), shape, box->size);
             else if (const auto* cylinder = std::get_if<SdfCylinder>(&shape.shape))
-                sortBlock(blockOf(shape, *cylinder));
+                sortBlock(blockOf(shape, *cylinder), shape,
+                          {2 * cylinder->radius, 2 * cylinder->radius, cylinder->length});
         }
     }
 
-    void sortBlock(const std::optional<SdfBlock>& block) {
+    void leaveOut(const char* kind, const SdfShape& shape, const Box2& extent) {
+        ++world_.left_out[kind];
+        world_.unread.push_back({kind,
+                                 {},
+                                 floorOf(shape.world_from_shape.translation()),
+                                 shape.line,
+                                 "the model " + printable(shape.model),
+                                 extent});
+    }
+
+    /// \param size of the box around it
+    void sortBlock(const std::optional<SdfBlock>& block, const SdfShape& shape,
+                   const std::array<double, 3>& size) {
         if (!block)
-            ++world_.left_out["box or cylinder that leans"];
+            leaveOut("box or cylinder that leans", shape, boundsOf(shape, size));
         else if (block->top <= kFloorTop)
             ++floors_;
         else if (isWall(*block, options_.slice_walls))
@@ -109,7 +123,10 @@ class SdfImporter {
         const double foot = options_.slice_walls.value_or(kMaxFoot);
         if (!isUpright(pose.linear().col(2)) || pose.linear()(2, 2) < 0 || bottom > foot ||
             polyline.points.size() < 3) {
-            ++world_.left_out["polyline off the floor"];
+            Box2 extent;
+            for (const Point2 p : polyline.points)
+                extent.add(floorOf(pose * Eigen::Vector3d(p.x, p.y, 0)));
+            leaveOut("polyline off the floor", shape, extent);
             return;
         }
         if (bottom + polyline.height <= kFloorTop) {
@@ -135,8 +152,8 @@ class SdfImporter {
         }
         if (options_.slice_top) failFile(name_, "meshes are cut at one height: --slice-walls M");
         const double height = options_.slice_walls.value_or(kMeshCut);
-        std::vector<SdfMeshCut> cuts =
-            cutMeshes(world_.shapes, name_, height, work_, schemas_, files_);
+        std::vector<SdfMeshCut> cuts = cutMeshes(world_.shapes, name_, height,
+                                                 {options_.max_work.max, &work_}, schemas_, files_);
         if (!cuts.empty()) cuts = wallsAmong(std::move(cuts), lines, work_, choose);
         std::vector<Segment2> all = lines;
         for (const SdfMeshCut& cut : cuts)
@@ -170,7 +187,7 @@ class SdfImporter {
         const bool is_even = scale == scale_y && scale == scale_z;
         if (!isUpright(pose.linear().col(2)) || pose.linear()(2, 2) < 0 || !is_even ||
             !(scale > 0)) {
-            ++world_.left_out["mesh that leans or is stretched"];
+            leaveOut("mesh that leans or is stretched", shape, {});
             return;
         }
         if (!mesh.file) {
@@ -386,6 +403,9 @@ class SdfImporter {
                 "more): " +
                 listText(missing_));
         if (!world_.left_out.empty()) out_.note("left out: " + listText(world_.left_out));
+        warnOfUnread(world_.unread, regions_,
+                     "if it is a wall, make it an upright box, or a mesh without scale and turn",
+                     out_);
         if (floors_ > 0) out_.note(countText(floors_, "slab") + " of floor left out");
         if (outside_ + blocks_outside_ > 0)
             out_.note("left out outside of the room: " + countText(outside_, "wall") + " and " +

@@ -69,12 +69,15 @@ struct SdfMeshCut {
 };
 
 /// Cuts the available meshes at a height of the world; skips those that do not reach it, and bad
-/// files. \param files those that are read already \param name the world's file \param work pays
-/// for files that shapes repeat \throws FormatError if fewer units are left, std::system_error as
-/// loadMesh
+/// files. \param files those that are read already \param name the world's file \param limit of
+/// each file, of which `whole` pays for all, and for files that shapes repeat
+/// \throws FormatError if fewer units are left, std::system_error as loadMesh
 std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
-                                  double height, Budget& work, const Schemas& schemas,
+                                  double height, const WorkLimit& limit, const Schemas& schemas,
                                   MeshFiles& files);
+
+/// Returns the bounds of a box of these sizes, seen from above.
+Box2 boundsOf(const SdfShape& shape, const std::array<double, 3>& size);
 
 /// Returns the cuts that are walls; others are objects in the room. Prefers the cut that, with
 /// other walls of the world, encloses half of the world's extent; then those at the edge of the

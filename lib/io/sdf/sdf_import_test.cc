@@ -68,6 +68,39 @@ TEST(SdfImport, CapsulesConesAndEllipsoidsAreTheCylindersAroundThem) {
               "cube id=a at=1,2 size=1.2,0.8,1\n");
 }
 
+TEST(SdfImport, SpheresStandAndShapesThatAreNotReadWarn) {
+    const std::string room = boxModel("s", "4 0 1.25 0 0 0", "8.2 0.2 2.5") +
+                             boxModel("n", "4 6 1.25 0 0 0", "8.2 0.2 2.5") +
+                             boxModel("w", "0 3 1.25 0 0 0", "0.2 6 2.5") +
+                             boxModel("e", "8 3 1.25 0 0 0", "0.2 6 2.5");
+    const auto warnings = [&](const std::string& model) {
+        return warningsOf(readSdf(worldOf(room + model), "test.sdf", {}, sceneSchemas()));
+    };
+    const auto shape = [](const std::string& pose, const std::string& geometry) {
+        return "<model name='a'><pose>" + pose +
+               "</pose><link name='l'><collision name='c'><geometry>" + geometry +
+               "</geometry></collision></link></model>";
+    };
+    EXPECT_NE(
+        recordsOf(worldOf(room + shape("4 3 .5 0 0 0", "<sphere><radius>.5</radius></sphere>")))
+            .find("cylinder id=a at=4,3 size=1,1,1"),
+        std::string::npos);
+    EXPECT_EQ(warnings(boxModel("a", "4 3 1.25 0 0.2 0", "0.2 6 2.5")),
+              "test.sdf:3: warning: not read, though it may be a wall: box or cylinder that leans "
+              "(1), in the model a at 4.00,3.00 of the file: if it is a wall, make it an upright "
+              "box, or a mesh without scale and turn\n");
+    EXPECT_EQ(warnings(boxModel("a", "14 3 1.25 0 0.2 0", "0.2 6 2.5")), "");  // off the room
+    EXPECT_EQ(warnings(boxModel("a", "4 3 0.2 0 0.2 0", "0.2 0.2 0.3")), "");  // small
+    EXPECT_NE(warnings(shape("4 3 0 0 0 0", "<image><uri>a.png</uri></image>")).find("image (1)"),
+              std::string::npos);
+    EXPECT_NE(warnings(shape("4 3 1 0 0 0",
+                             "<polyline><point>0 0</point><point>2 0</point><point>2 1</point>"
+                             "<height>1</height></polyline>"))
+                  .find("polyline off the floor (1)"),
+              std::string::npos);
+    EXPECT_EQ(warnings(shape("4 3 0 0 0 0", "<plane><normal>0 0 1</normal></plane>")), "");
+}
+
 TEST(SdfImport, BoxesStandWhereAllPosesTogetherPutThem) {
     // Nested twice, each turned by a quarter: 1 m ahead of what looks along -x.
     EXPECT_EQ(recordsOf(worldOf("<model name='a'><pose>5 5 0 0 0 1.57079632679</pose>"
@@ -278,6 +311,35 @@ TEST_F(SdfMeshWalls, AreCutWhereBoxesEncloseNoRoom) {
     const Record& wall = document.records.front();
     EXPECT_EQ(wall.text("id"), "house");
     EXPECT_EQ(wall.number("height"), 2);
+}
+
+TEST_F(SdfMeshWalls, AreReadWithinTheWorkOfTheirWorld) {
+    writeWalls(0.9);
+    std::string nodes, list;
+    for (int i = 0; i < 30001; ++i) {
+        nodes += std::string(i > 0 ? "," : "") + "{\"mesh\":0}";
+        list += (i > 0 ? "," : "") + std::to_string(i);
+    }
+    writeAll((folder_ / "odd.gltf").string(),
+             "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[" + list +
+                 "]}],\"nodes\":[" + nodes +
+                 "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+                 "\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
+                 "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],"
+                 "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{"
+                 "\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\","
+                 "\"min\":[0,0,0],\"max\":[1,1,0]}]}");
+    ImportOptions few;
+    few.max_work.max = 20000;
+    const Document document = read(
+        "<model name='odd'><link name='l'><collision name='c'><geometry><mesh><uri>odd.gltf"
+        "</uri></mesh></geometry></collision></link></model>",
+        few);
+    EXPECT_NEAR(environmentOf(document).indoor().area(), 24.09, 0.1);
+    EXPECT_NE(warningsOf(document).find("mesh file `odd.gltf` is left out: nodes that repeat "
+                                        "meshes make more than 20000 units of work"),
+              std::string::npos)
+        << warningsOf(document);
 }
 
 TEST_F(SdfMeshWalls, StayMeshesWhereBoxesDo) {

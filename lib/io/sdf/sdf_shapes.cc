@@ -117,6 +117,10 @@ class SdfReader {
         } else if (kind == "capsule") {
             const double radius = files_.lengthIn(node, "radius");
             shape.shape = SdfCylinder{radius, files_.lengthIn(node, "length") + 2 * radius};
+        } else if (kind == "sphere") {
+            const double radius = files_.lengthIn(node, "radius");
+            shape.shape = SdfCylinder{radius, 2 * radius};
+            shape.world_from_shape.linear().setIdentity();
         } else if (kind == "ellipsoid") {
             const std::vector<double> radii = files_.numbersIn(node, "radii", 3);
             for (const double radius : radii)
@@ -142,18 +146,31 @@ class SdfReader {
                 mesh.scale = {scale[0], scale[1], scale[2]};
             }
             if (node.child("submesh")) {
-                ++found_.left_out["part of a mesh"];
+                addUnread("part of a mesh", shape, pose);
                 return;
             }
             shape.shape = std::move(mesh);
         } else {
-            if (kind != "plane" && kind != "empty") ++found_.left_out[printable(kind)];
+            // Planes and heightmaps are ground.
+            if (kind == "heightmap")
+                ++found_.left_out[std::string(kind)];
+            else if (kind != "plane" && kind != "empty")
+                addUnread(printable(kind), shape, pose);
             return;
         }
         if (!pose.matrix().allFinite() || !(pose.translation().norm() <= kMaxPlanCoordinate))
             files_.fail(node, "lies more than " + formatDouble(kMaxPlanCoordinate / 1000) +
                                   " km from the origin");
         found_.shapes.push_back(std::move(shape));
+    }
+
+    void addUnread(const std::string& kind, const SdfShape& shape, const Transform& pose) {
+        ++found_.left_out[kind];
+        found_.unread.push_back({kind,
+                                 {},
+                                 Point2{pose.translation().x(), pose.translation().y()},
+                                 shape.line,
+                                 "the model " + printable(shape.model)});
     }
 
     SdfFiles files_;

@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "geom/polygon.h"
 #include "geom/rotation.h"
+#include "io/unread.h"
 
 namespace ispace {
 
@@ -50,14 +51,14 @@ struct SdfWorld {
     std::map<std::string, std::size_t> left_out;  ///< by type or reason
     std::vector<std::string> sources;             ///< other files read, as opened
     std::optional<Diagnostic> missing = {};       ///< included files that were not found
+    std::vector<UnreadThing> unread = {};         ///< of what is left out, those that may be walls
 };
 
 /// Reads the collision shapes of all links, or the visuals of links without any that every sensor
-/// sees (without `visibility_flags`); capsules, cones and ellipsoids become the upright cylinders
-/// or boxes around them. Reads them in the world and in the models that it includes, with the
-/// poses of SdfFrames. Entities are not resolved.
-/// \param name the world's file \param model_folders see SdfFiles
-/// \param work of the world; files that it includes raise its bound
+/// sees (without `visibility_flags`); spheres, capsules, cones and ellipsoids become the upright
+/// cylinders or boxes around them. Reads them in the world and in the models that it includes, with
+/// the poses of SdfFrames. Entities are not resolved. \param name the world's file \param
+/// model_folders see SdfFiles \param work of the world; files that it includes raise its bound
 /// \throws FormatError with the line: bad XML, no world and no model, malformed numbers, frames
 /// that are missing or depend on each other, models nested too deep, includes that include
 /// themselves, more work than the budget has

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "env/body.h"
 #include "env/slice.h"
 #include "io/exporters.h"
@@ -68,9 +69,11 @@ Body bodyOf(const SdfShape& shape, const TriangleMesh& mesh, const Schemas& sche
 }
 
 /// Skips bad files, which the importer reports: furniture must not block the import.
-std::shared_ptr<const TriangleMesh> meshOrNothing(const std::string& path, MeshFiles& files) {
+std::shared_ptr<const TriangleMesh> meshOrNothing(const std::string& path, const WorkLimit& limit,
+                                                  MeshFiles& files) {
     try {
-        return files.load(path, {sdfMeshUp(path)}).mesh;
+        limit.whole->grant(openRegular(path).size);
+        return files.load(path, {sdfMeshUp(path), false, limit}).mesh;
     } catch (const FormatError&) {
         return std::make_shared<TriangleMesh>();
     }
@@ -135,6 +138,16 @@ std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfBox& box) {
                         shape.line};
     }
     return std::nullopt;
+}
+
+Box2 boundsOf(const SdfShape& shape, const std::array<double, 3>& size) {
+    Box2 box;
+    for (const double x : {-0.5, 0.5})
+        for (const double y : {-0.5, 0.5})
+            for (const double z : {-0.5, 0.5})
+                box.add(floorOf(shape.world_from_shape *
+                                Eigen::Vector3d(x * size[0], y * size[1], z * size[2])));
+    return box;
 }
 
 std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfCylinder& cylinder) {
@@ -245,8 +258,9 @@ std::string sdfMeshUp(const std::string& file) {
 }
 
 std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
-                                  double height, Budget& work, const Schemas& schemas,
+                                  double height, const WorkLimit& limit, const Schemas& schemas,
                                   MeshFiles& files) {
+    Budget& work = *limit.whole;
     std::map<std::string, std::shared_ptr<const TriangleMesh>> loaded;
     std::vector<SdfMeshCut> cuts;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -254,7 +268,7 @@ std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::s
         if (mesh == nullptr || !mesh->file) continue;
         std::shared_ptr<const TriangleMesh>& triangles = loaded[*mesh->file];
         if (triangles == nullptr)
-            triangles = meshOrNothing(sideFilePath(name, *mesh->file), files);
+            triangles = meshOrNothing(sideFilePath(name, *mesh->file), limit, files);
         else if (!work.take(1 + triangles->triangles.size() / kTrianglesPerUnit))
             failFile(name, "cuts of repeated meshes make " + work.excess(), shapes[i].line);
         const Body body = bodyOf(shapes[i], *triangles, schemas);
