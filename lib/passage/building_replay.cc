@@ -23,7 +23,8 @@ RunInfo recordedInfo(const std::string& folder, const StoreyedDocument& building
     // As after a killed run.
     for (const Storey& storey : building.storeys) {
         RunReader reader(folder + '/' + storey.id);
-        if (reader.next() && reader.time() == 0 && reader.next()) return {.step = reader.time()};
+        if (reader.next() && reader.time() == 0 && reader.next())
+            return {.step = reader.time(), .every = reader.time()};
     }
     throw FormatError({folder, 0, 0, "holds no moment of a run: nobody moved in it"});
 }

@@ -64,12 +64,29 @@ int openAnew(const std::string& name) {
 
 }  // namespace
 
-LineFile::LineFile(std::string name) : name_(std::move(name)), fd_(openAnew(name_)) {
+LineFile::LineFile(std::string name)
+    : name_(std::move(name)),
+      fd_(openAnew(name_)),
+      packer_(name_.ends_with(kZstdSuffix) ? std::make_unique<ZstdPacker>() : nullptr) {
     if (fd_ < 0) fail(name_, errno);
     ::fcntl(fd_, F_SETFL, O_WRONLY);
 }
 
-LineFile::~LineFile() { ::close(fd_); }
+LineFile::~LineFile() {
+    if (packer_ && error_ == 0 && size_ > 0) endFrame();
+    ::close(fd_);
+}
+
+/// Readers do without it: an error here loses no line.
+void LineFile::endFrame() {
+    try {
+        const std::string bytes = packer_->end();
+        if (::write(fd_, bytes.data(), bytes.size()) != std::ssize(bytes))
+            static_cast<void>(!::ftruncate(fd_, packed_));
+    } catch (const std::exception&) {
+        error_ = ENOMEM;
+    }
+}
 
 std::int64_t LineFile::wholeSteps() const {
     std::int64_t steps = 0;
@@ -78,12 +95,35 @@ std::int64_t LineFile::wholeSteps() const {
     return steps;
 }
 
+const LineFile::Block* LineFile::blockEndingAt(off_t text) const {
+    const auto found = std::find_if(blocks_.begin(), blocks_.end(),
+                                    [text](const Block& block) { return block.text == text; });
+    return found == blocks_.end() ? nullptr : &*found;
+}
+
+std::int64_t LineFile::lastCut(std::int64_t step) const {
+    if (!packer_) return step;
+    std::int64_t last = 0;
+    for (const StepEnd& end : ends_) {
+        if (end.step > step) break;
+        // Steps without lines of this file end where the step before them does.
+        if (blockEndingAt(end.size) != nullptr) last = end.step;
+    }
+    return last;
+}
+
 void LineFile::cutBehind(std::int64_t step) {
     pending.clear();
     off_t end = size_;
     for (const StepEnd& each : ends_)
         if (each.step == step && each.size <= size_) end = each.size;
-    if (end < size_) static_cast<void>(!::ftruncate(fd_, size_ = end));
+    if (end >= size_) return;
+    const Block* const block = packer_ ? blockEndingAt(end) : nullptr;
+    if (packer_ && block == nullptr) return;
+    size_ = end;
+    if (block != nullptr) packed_ = block->file;
+    static_cast<void>(!::ftruncate(fd_, packer_ ? packed_ : size_));
+    if (packer_) error_ = ECANCELED;  // the packer is ahead of the file
 }
 
 void LineFile::rewrite(std::string_view text) {
@@ -105,24 +145,40 @@ void LineFile::flush() {
 void LineFile::write() {
     // An exception while a line was built may have left a part of it.
     const std::string_view lines = wholeLines(pending);
-    std::string_view rest = lines;
+    const std::string packed = packer_ ? packer_->pack(lines) : std::string();
+    const std::string_view bytes = packer_ ? std::string_view(packed) : lines;
+    std::string_view rest = bytes;
     while (!rest.empty()) {
         const ssize_t n = ::write(fd_, rest.data(), rest.size());
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) {
             error_ = errno;
-            takeBackTornLine(lines.substr(0, lines.size() - rest.size()));
+            takeBackTornLine(bytes.substr(0, bytes.size() - rest.size()));
             return;
         }
         rest.remove_prefix(static_cast<std::size_t>(n));
     }
     size_ += static_cast<off_t>(lines.size());
+    if (!packer_) return;
+    packed_ += static_cast<off_t>(packed.size());
+    blocks_.push_back({size_, packed_});
 }
 
-/// Removes a part of the last line that a full disk may have left.
+/// Removes a part of the last line, or block, that a full disk may have left.
 void LineFile::takeBackTornLine(std::string_view written) {
+    if (packer_) {
+        static_cast<void>(!::ftruncate(fd_, packed_));
+        return;
+    }
     size_ += static_cast<off_t>(wholeLines(written).size());
     static_cast<void>(!::ftruncate(fd_, size_));
+}
+
+void removeEarlier(const std::string& name) {
+    struct stat info {};
+    if (::lstat(name.c_str(), &info) != 0) return;
+    if (S_ISLNK(info.st_mode)) refuseLink(name, "file");
+    if (S_ISREG(info.st_mode) && ::unlink(name.c_str()) != 0) fail(name, errno);
 }
 
 const std::string& madeFolder(const std::string& folder) {
@@ -210,10 +266,10 @@ void FrameFiles::cutBehind(std::int64_t step) {
 
 namespace {
 
-/// Appends a row for each mover: time, id and numbers(its index).
+/// Appends a row for each mover: time, id and those of numbers(its index) whose bits are in `kept`.
 template <typename Numbers>
 void appendRows(std::string& out, RowTexts& known, SimTime time, const auto& movers,
-                Numbers numbers) {
+                std::uint32_t kept, Numbers numbers) {
     if (movers.empty()) return;
     const std::string t = formatSimTime(time);
     constexpr std::size_t kColumns = std::tuple_size_v<decltype(numbers(0))>;
@@ -225,8 +281,10 @@ void appendRows(std::string& out, RowTexts& known, SimTime time, const auto& mov
         tail.put(t);
         tail.put(',');
         tail.put(id);
+        std::uint32_t rest = kept;
         for (const double value : numbers(i)) {
             NumberText& number = *text++;
+            if ((std::exchange(rest, rest >> 1U) & 1U) == 0) continue;
             if (const auto bits = std::bit_cast<std::uint64_t>(value); bits != number.bits) {
                 char* const begin = number.text.data();
                 number.bits = bits;
@@ -241,8 +299,8 @@ void appendRows(std::string& out, RowTexts& known, SimTime time, const auto& mov
 
 }  // namespace
 
-void appendRobotRows(std::string& out, const World& world, RowTexts& known) {
-    appendRows(out, known, world.time(), world.robots(), [&world](std::size_t i) {
+void appendRobotRows(std::string& out, const World& world, RowTexts& known, std::uint32_t kept) {
+    appendRows(out, known, world.time(), world.robots(), kept, [&world](std::size_t i) {
         const RobotStatus is = world.status(i);
         return std::array{is.pose.position.x,        is.pose.position.y,
                           is.pose.heading.degrees(), is.speed,
@@ -252,15 +310,16 @@ void appendRobotRows(std::string& out, const World& world, RowTexts& known) {
 }
 
 void appendOdometryRows(std::string& out, const World& world, RowTexts& known) {
-    appendRows(out, known, world.time(), world.robots(), [&world](std::size_t i) {
-        const Pose2 pose = world.odometry(i).pose;
-        return std::array{pose.position.x, pose.position.y, pose.heading.degrees()};
-    });
+    appendRows(out, known, world.time(), world.robots(), ~std::uint32_t{0},
+               [&world](std::size_t i) {
+                   const Pose2 pose = world.odometry(i).pose;
+                   return std::array{pose.position.x, pose.position.y, pose.heading.degrees()};
+               });
 }
 
-void appendPeopleRows(std::string& out, const World& world, RowTexts& known) {
+void appendPeopleRows(std::string& out, const World& world, RowTexts& known, std::uint32_t kept) {
     const std::size_t robots = world.robots().size();
-    appendRows(out, known, world.time(), world.people(), [&world, robots](std::size_t i) {
+    appendRows(out, known, world.time(), world.people(), kept, [&world, robots](std::size_t i) {
         const RobotStatus is = world.status(robots + i);
         return std::array{is.pose.position.x, is.pose.position.y,    is.pose.heading.degrees(),
                           is.speed,           is.rotspeed.degrees(), is.phase,

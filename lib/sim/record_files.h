@@ -8,18 +8,22 @@
 #include <cstdint>
 #include <exception>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/number.h"
+#include "base/zstd_text.h"
 #include "sim/events.h"
+#include "sim/record_form.h"
 #include "sim/sensor_reading.h"
 #include "sim/world.h"
 
 namespace ispace {
 
-/// A file that grows by whole lines, in the order of steps.
+/// A file that grows by whole lines, in the order of steps. One whose name ends in kZstdSuffix is
+/// compressed: it grows by blocks, which hold the lines of one write.
 class LineFile {
   public:
     /// Creates the file empty. \throws std::system_error naming it; FormatError if it is a link
@@ -37,7 +41,11 @@ class LineFile {
     }
     /// Returns the last step whose lines are all in the file, of those that are stored.
     [[nodiscard]] std::int64_t wholeSteps() const;
+    /// Returns the last step, up to this one, behind which the file can be truncated: in a
+    /// compressed file the last at the end of a block.
+    [[nodiscard]] std::int64_t lastCut(std::int64_t step) const;
     /// Truncates the file after this step. Skips devices and pipes, which cannot be truncated.
+    /// \pre lastCut(step) == step
     void cutBehind(std::int64_t step);
     /// Removes the stored ends before that of this step: the file will not be truncated there.
     void forgetBefore(std::int64_t step) {
@@ -45,6 +53,10 @@ class LineFile {
             ends_.begin(), ends_.end(), step,
             [](std::int64_t value, const StepEnd& end) { return value < end.step; });
         if (later - ends_.begin() > 1) ends_.erase(ends_.begin(), later - 1);
+        if (!ends_.empty())
+            std::erase_if(blocks_, [first = ends_.front().size](const Block& block) {
+                return block.text < first;
+            });
     }
     /// Replaces the whole content by `text`, which must not be shorter. Less than a page is written
     /// whole or not at all. \throws std::system_error
@@ -57,23 +69,38 @@ class LineFile {
         if (pending.size() > size) flush();
     }
 
-    [[nodiscard]] std::uint64_t size() const { return static_cast<std::uint64_t>(size_); }
+    /// Returns the bytes in the file.
+    [[nodiscard]] std::uint64_t size() const {
+        return static_cast<std::uint64_t>(packer_ ? packed_ : size_);
+    }
 
   private:
     struct StepEnd {
         std::int64_t step;
-        off_t size;  // of the file up to that step
+        off_t size;  // of the text up to that step
+    };
+    /// The end of a block of a compressed file, in its text and in the file.
+    struct Block {
+        off_t text, file;
     };
 
     void write();
     void takeBackTornLine(std::string_view written);
+    [[nodiscard]] const Block* blockEndingAt(off_t text) const;
+    void endFrame();
 
     std::string name_;
     int fd_;
     int error_ = 0;
-    off_t size_ = 0;  // bytes of whole lines in the file
+    off_t size_ = 0;    // bytes of whole lines, before compression
+    off_t packed_ = 0;  // bytes of whole blocks in the file, if it is compressed
     std::vector<StepEnd> ends_;
+    std::unique_ptr<ZstdPacker> packer_;  // null: plain
+    std::vector<Block> blocks_;
 };
+
+/// Removes a regular file of an earlier run. \throws std::system_error; FormatError if it is a link
+void removeEarlier(const std::string& name);
 
 /// Creates `folder` if it is missing, and returns it. \throws std::system_error
 const std::string& madeFolder(const std::string& folder);
@@ -137,12 +164,13 @@ using RowTexts = std::vector<NumberText>;
 // The header of a table, and the rows of all its movers at the world's time.
 constexpr std::string_view kRobotsHead =
     "t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall\n";
-void appendRobotRows(std::string& out, const World& world, RowTexts& known);
+/// \param kept as TableColumns::kept
+void appendRobotRows(std::string& out, const World& world, RowTexts& known, std::uint32_t kept);
 constexpr std::string_view kOdometryHead = "t,id,x,y,heading_deg\n";
 void appendOdometryRows(std::string& out, const World& world, RowTexts& known);
 constexpr std::string_view kPeopleHead =
     "t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall\n";
-void appendPeopleRows(std::string& out, const World& world, RowTexts& known);
+void appendPeopleRows(std::string& out, const World& world, RowTexts& known, std::uint32_t kept);
 
 /// Writes the ranges of robots' sonars, in the order of the model, "inf" without an echo; robots
 /// without sonars have no row.

@@ -32,6 +32,8 @@ class RecordLines : public ::testing::Test {
     testing::TestFolder folder_;
 };
 
+constexpr std::uint32_t kAll = ~std::uint32_t{0};  // columns
+
 const std::string kThings =
     "robot id=r1 at=1,1\n"
     "human id=h1 at=0,0 heading=90\n"
@@ -78,13 +80,13 @@ TEST_F(RecordLines, PeopleHaveATable) {
     World world(scene, milliseconds(100));
     std::string out, again;
     RowTexts known, fresh;
-    appendPeopleRows(out, world, known);
+    appendPeopleRows(out, world, known, kAll);
     EXPECT_EQ(out, "0,h1,0,0,90,0,0,0,0,0\n");
     world.command(1, {Verb::Speed, 1});
     for (int i = 0; i < 10; ++i) world.step();
     out.clear();
-    appendPeopleRows(out, world, known);
-    appendPeopleRows(again, world, fresh);
+    appendPeopleRows(out, world, known, kAll);
+    appendPeopleRows(again, world, fresh, kAll);
     EXPECT_EQ(out, again);
     const RobotStatus status = world.status(1);
     EXPECT_GT(status.phase, 0);

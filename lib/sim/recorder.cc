@@ -47,6 +47,8 @@ constexpr std::array<const char*, kFiles> kFileNames = {
     "robots.csv", "odometry.csv", "people.csv",     "scans.jsonl", "sonars.csv", "bumpers.csv",
     "events.csv", "states.csv",   "activities.csv", "timing.csv",  "info.csv",   "scene.env"};
 constexpr const char* kScenes = "scenes";
+/// The files before this one may be compressed.
+constexpr File kFirstPlain = kBumpers;
 
 std::string pathIn(const std::string& folder, const char* name) {
     return (std::filesystem::path(folder) / name).string();
@@ -61,16 +63,16 @@ std::int64_t strideOf(double rate, double most) {
 }  // namespace
 
 struct Recorder::Data {
-    Data(const std::string& name, const RecordOptions& how, EventLog* log)
+    Data(const std::string& name, const RecordOptions& how, EventLog* log, SimTime step)
         : options(how),
           events_log(log),
           folder(name),
           lock(madeFolder(folder)),
-          robots(pathIn(folder, kFileNames[kRobots])),
-          odometry(pathIn(folder, kFileNames[kOdometry])),
-          people(pathIn(folder, kFileNames[kPeople])),
-          scans(pathIn(folder, kFileNames[kScans])),
-          sonars(pathIn(folder, kFileNames[kSonars])),
+          robots(growingFile(kRobots)),
+          odometry(growingFile(kOdometry)),
+          people(growingFile(kPeople)),
+          scans(growingFile(kScans)),
+          sonars(growingFile(kSonars)),
           bumpers(pathIn(folder, kFileNames[kBumpers])),
           events(pathIn(folder, kFileNames[kEvents])),
           states(pathIn(folder, kFileNames[kStates])),
@@ -78,10 +80,22 @@ struct Recorder::Data {
           timing(pathIn(folder, kFileNames[kTiming])),
           info(pathIn(folder, kFileNames[kInfo])),
           scene(pathIn(folder, kFileNames[kScene])),
+          robot_columns(kRobotsHead, options.form),
+          people_columns(kPeopleHead, options.form),
+          stride(options.form.stride(step)),
           pictures(pathIn(folder, RecordedFrame::kPictures)),
           depths(pathIn(folder, RecordedFrame::kDepths)),
           scenes(pathIn(folder, kScenes), ".env") {
         if (options.sonar_rate > 0) sonar_periods.emplace(options.sonar_rate);
+        // Readers would find the file of an earlier run beside that of this one.
+        for (int i = 0; i < kFirstPlain; ++i) {
+            const std::string plain = pathIn(folder, kFileNames[static_cast<File>(i)]);
+            removeEarlier(options.form.packs ? plain : plain + std::string(kZstdSuffix));
+        }
+    }
+    [[nodiscard]] std::string growingFile(File file) const {
+        return pathIn(folder, kFileNames[file]) +
+               std::string(options.form.packs ? kZstdSuffix : "");
     }
 
     RecordOptions options;
@@ -90,6 +104,8 @@ struct Recorder::Data {
     FolderLock lock;
     LineFile robots, odometry, people, scans, sonars, bumpers, events, states, activities, timing,
         info, scene;
+    TableColumns robot_columns, people_columns;
+    std::int64_t stride;  // steps from one recorded moment to the next
     RowTexts robot_texts, odometry_texts, people_texts;
     FrameFiles pictures, depths, scenes;
     std::int64_t scene_count = 0;
@@ -125,10 +141,14 @@ struct Recorder::Data {
         return {&robots,  &odometry, &people, &scans,     &sonars,
                 &bumpers, &events,   &states, &activities};
     }
-    /// Returns the last step that all files hold.
+    /// Returns the last step that all files hold, and behind which all can be cut.
     [[nodiscard]] std::int64_t wholeSteps() {
         std::int64_t whole = steps;
         for (const LineFile* file : stepFiles()) whole = std::min(whole, file->wholeSteps());
+        for (std::int64_t before = whole + 1; whole < before;) {
+            before = whole;
+            for (const LineFile* file : stepFiles()) whole = std::min(whole, file->lastCut(whole));
+        }
         return whole;
     }
     void begin();
@@ -149,9 +169,9 @@ struct Recorder::Data {
 };
 
 void Recorder::Data::begin() {
-    robots.pending = kRobotsHead;
+    robots.pending = robot_columns.head;
     odometry.pending = kOdometryHead;
-    people.pending = kPeopleHead;
+    people.pending = people_columns.head;
     sonars.pending = kSonarsHead;
     bumpers.pending = kBumpersHead;
     scans.pending = scanHeaderLine(options.history, options.seed);
@@ -274,11 +294,13 @@ void Recorder::Data::appendEvents() {
 }
 
 void Recorder::Data::append(World& world) {
-    appendRobotRows(robots.pending, world, robot_texts);
+    if (steps % stride == 0) {
+        appendRobotRows(robots.pending, world, robot_texts, robot_columns.kept);
+        if (options.odometry) appendOdometryRows(odometry.pending, world, odometry_texts);
+        appendPeopleRows(people.pending, world, people_texts, people_columns.kept);
+    }
     robots.endStep(steps);
-    if (options.odometry) appendOdometryRows(odometry.pending, world, odometry_texts);
     odometry.endStep(steps);
-    appendPeopleRows(people.pending, world, people_texts);
     people.endStep(steps);
     appendEvents();
     appendFeelings(world);
@@ -289,11 +311,15 @@ void Recorder::Data::append(World& world) {
 }
 
 void Recorder::Data::writeInfo() {
-    std::string text = "dt,control_interval,steps,elapsed,seed,noise\n";
+    const bool is_thinned = options.form.every > SimTime(0);
+    std::string text = "dt,control_interval,steps,elapsed,seed,noise";
+    text.append(is_thinned ? ",every\n" : "\n");
     text.append(formatSimTime(step_length)).append(",").append(formatSimTime(control_interval));
     text.append(",").append(std::to_string(steps));
     text.append(",").append(formatSimTime(steps * step_length));
-    text.append(",").append(std::to_string(options.seed)).append(options.noise ? ",1\n" : ",0\n");
+    text.append(",").append(std::to_string(options.seed)).append(options.noise ? ",1" : ",0");
+    if (is_thinned) text.append(",").append(formatSimTime(options.form.every));
+    text += '\n';
     info.rewrite(text);
 }
 
@@ -361,12 +387,14 @@ std::vector<std::string> Recorder::growingFilesIn(const std::string& folder) {
 std::vector<std::string> Recorder::filesIn(const std::string& folder) {
     std::vector<std::string> files = growingFilesIn(folder);
     for (const File file : {kInfo, kScene}) files.push_back(pathIn(folder, kFileNames[file]));
+    for (int i = 0; i < kFirstPlain; ++i)
+        files.push_back(files[static_cast<std::size_t>(i)] + std::string(kZstdSuffix));
     return files;
 }
 
 Recorder::Recorder(const std::string& folder, World& world, const RecordOptions& options,
                    EventLog* events)
-    : data_(std::make_unique<Data>(folder, options, events)) {
+    : data_(std::make_unique<Data>(folder, options, events, world.stepLength())) {
     if (events != nullptr) events->want(allEventKinds());
     data_->begin();
     record(world);

@@ -14,6 +14,7 @@
 
 #include "base/message.h"
 #include "sim/events.h"
+#include "sim/record_form.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -44,6 +45,7 @@ struct RecordOptions {
     double frame_rate = 1;
     /// Maximum rate of sonar rows per simulated second. 0: no rows.
     double sonar_rate = 10;
+    RecordForm form = {};
     /// Takes frames in another thread; null: record() takes them.
     FrameTaker frame_taker = {};
     /// Limits the record to about this many bytes: the write that exceeds them throws FormatError;
@@ -67,7 +69,8 @@ struct RecordOptions {
 ///   their period
 /// - events.csv: events, see EventLog
 /// - scene.env: the scene of the run; scenes/scene-NNNNNN.env: those that clients loaded
-/// - info.csv: dt,control_interval,steps,elapsed,seed,noise; see World::controlInterval
+/// - info.csv: dt,control_interval,steps,elapsed,seed,noise; see World::controlInterval; and every,
+///   the time between moments, if RecordForm::every is not 0
 /// - timing.csv: t,wall,steps at each flush; wall-clock seconds, the only file that may differ
 ///   between runs
 ///
@@ -85,7 +88,8 @@ class Recorder {
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
-    /// Returns the files in a folder of records: those that grow line by line, then the others.
+    /// Returns the files in a folder of records: those that grow line by line; and all, also by
+    /// their compressed names.
     static std::vector<std::string> growingFilesIn(const std::string& folder);
     static std::vector<std::string> filesIn(const std::string& folder);
 

@@ -2,16 +2,15 @@
 #include "sim/recorder.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <system_error>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "sense/formats/reading_text.h"
+#include "support/file_size_limit.h"
 #include "support/test_folder.h"
 #include "support/test_layout.h"
 
@@ -193,33 +192,13 @@ TEST_F(RecorderTest, NamesTheFileAFullDiskRefuses) {
     }
 }
 
-/// The files of this process end at `bytes` until the end of the scope.
-class FileSizeLimit {
-  public:
-    explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-        ::getrlimit(RLIMIT_FSIZE, &before_);
-        const rlimit limit{bytes, before_.rlim_max};
-        ::setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~FileSizeLimit() {
-        ::setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, handler_);
-    }
-    FileSizeLimit(const FileSizeLimit&) = delete;
-    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
-  private:
-    rlimit before_{};
-    void (*handler_)(int);
-};
-
 TEST_F(RecorderTest, KeepsWholeLinesWhenTheDiskIsFull) {
     const Scene scene = testing::scene(kRoom, kRobots);
     World world(scene, milliseconds(5));
     constexpr rlim_t kSpace = 10007;
     {
         Recorder recorder(path("run"), world, {});
-        const FileSizeLimit limit(kSpace);
+        const testing::FileSizeLimit limit(kSpace);
         // A slow machine may meet it in record().
         const auto run = [&] {
             for (int i = 0; i < 1000; ++i) recorder.record(world);
@@ -247,7 +226,7 @@ TEST_F(RecorderTest, InfoTellsTheStepsThatAreThereWhenTheDiskIsFull) {
         const Scene scene = testing::scene(kRoom, kRobots + sensor);
         World world(scene, milliseconds(5));
         Recorder recorder(path("run"), world, {});
-        const FileSizeLimit limit(10007);
+        const testing::FileSizeLimit limit(10007);
         return errorOf([&] {
             for (int i = 0; i < steps; ++i) {
                 world.step();

@@ -53,7 +53,7 @@ Replay::Replay(const std::string& folder, std::optional<SimTime> joined_step)
     if (!is_late_) start_.assign(reader_.states().begin(), reader_.states().end());
     is_ahead_ = has_moment && (is_late_ || reader_.next());
     if (info)
-        step_ = recordedTime(info->step);
+        step_ = recordedTime(info->every);
     else if (is_joined_)
         step_ = *joined_step;
     else if (is_ahead_)
@@ -268,7 +268,8 @@ bool Replay::seekSome(World& world, SimTime time, std::chrono::steady_clock::tim
 }
 
 std::optional<SimTime> Replay::end() const {
-    return info_.steps == 0 ? std::nullopt : std::optional(info_.steps * step_);
+    if (info_.steps == 0) return std::nullopt;
+    return info_.steps * recordedTime(info_.step) / step_ * step_;
 }
 
 Motion motionOf(const RobotStatus& status) {

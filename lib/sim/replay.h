@@ -19,7 +19,8 @@ namespace ispace {
 
 /// Replays a recorded run as the steps of a world: robots and people follow the record and ignore
 /// commands, and sensors are read along the way. In the scene of the record this reproduces its
-/// readings; in another scene, it computes those of other sensors.
+/// readings; in another scene, it computes those of other sensors. A thinned record (see
+/// RecordForm::every) is replayed in steps from one of its moments to the next.
 class Replay {
   public:
     /// Opens the record in a folder and reads its first moment.

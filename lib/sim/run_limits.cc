@@ -63,8 +63,9 @@ RunLoad loadOf(const Scene& scene, SimTime step, const RecordOptions* record) {
     load.beam_rate += sounds * sound_rate;
     if (record == nullptr) return load;
     const auto movers = static_cast<double>(scene.robots.size() + scene.people.size());
-    load.recorded_bytes = movers * kRow / seconds(step) + load.beam_rate * kRange +
-                          echoes * kRange * record->sonar_rate + recorded_pixels * kPixel;
+    load.recorded_bytes = movers * kRow / seconds(std::max(step, record->form.every)) +
+                          load.beam_rate * kRange + echoes * kRange * record->sonar_rate +
+                          recorded_pixels * kPixel;
     return load;
 }
 

@@ -2,6 +2,7 @@
 #include "scan/scan_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <filesystem>
 #include <limits>
@@ -11,6 +12,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/number.h"
+#include "base/zstd_text.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "io/import_records.h"
@@ -29,6 +32,8 @@ class RecordedOdometry {
     RecordedOdometry(const std::string& folder, const Scene& scene, const Sensors& lasers)
         : run_(folder) {
         for (const PlacedRobot& robot : scene.robots) robots_.push_back(robot.id);
+        if (const auto info = recordedInfo(folder); info && info->every > info->step)
+            thinned_ = info->every;
         has_next_ = run_.next();
         // A scan is complete in the step after its last beam.
         constexpr double kMaxStep = 1;
@@ -37,7 +42,7 @@ class RecordedOdometry {
                 kept_ = std::max(kept_, duration + kMaxStep);
     }
     /// Returns the pose by odometry, or the true one if that was not recorded; nullopt before the
-    /// record begins.
+    /// record begins. \throws FormatError if the record is thinned and lacks this time
     std::optional<Pose2> poseOf(std::size_t robot, double time) {
         constexpr double kRounding = 1e-9;
         while (has_next_ && run_.time() <= time + kRounding) {
@@ -55,6 +60,11 @@ class RecordedOdometry {
             return each.time <= time + kRounding;
         });
         if (moment == latest_.rend()) return std::nullopt;
+        if (thinned_ && std::abs(moment->time - time) > kRounding)
+            throw FormatError({run_.name(), 0, 0,
+                               "holds no moment at t=" + formatDouble(time) +
+                                   " of a scan, as it was recorded with --record-every " +
+                                   formatDouble(*thinned_) + ": choose another format"});
         const auto found =
             std::find_if(moment->poses.begin(), moment->poses.end(),
                          [&](const auto& known) { return known.first == robots_[robot]; });
@@ -71,7 +81,8 @@ class RecordedOdometry {
     RunReader run_;
     std::vector<std::string> robots_;
     std::deque<Moment> latest_;
-    double kept_ = 0;  // seconds before the newest
+    double kept_ = 0;                // seconds before the newest
+    std::optional<double> thinned_;  // seconds between moments, if that is more than a step
     bool has_next_ = false;
 };
 
@@ -145,8 +156,8 @@ void writeRecorded(const ScanCommand& command) {
             " holds one reading a file; take one of jsonl|csv|raw|carmen|mcap|npz|npy|las");
     format->checkStream();
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);
-    const std::string name = options.view.run + "/scans.jsonl";
-    const auto file = std::make_shared<InputFile>(name, InputKind::Regular);
+    const std::string name = RecordedFiles(options.view.run).scans;
+    const auto file = std::make_shared<TextFile>(name, InputKind::Regular);
     RecordedScans scans([file](std::string& bytes) { return file->read(bytes); }, name);
     RecordedOdometry odometry(options.view.run, input.scene, lasers);
     const bool wants_odometry = options.format == "carmen";

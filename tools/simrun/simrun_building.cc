@@ -104,7 +104,7 @@ std::optional<BuildingInput> readInput(const SimrunOptions& options, const std::
 BuildingRun runOf(const SimrunOptions& options, const BuildingScene& building) {
     std::optional<RunInfo> recorded;
     if (!options.replay.empty()) recorded = recordedInfo(options.replay, building.document);
-    return BuildingRun(building, {.step = recorded ? recordedTime(recorded->step) : options.step,
+    return BuildingRun(building, {.step = recorded ? recordedTime(recorded->every) : options.step,
                                   .run = runOptionsOf(options, recorded),
                                   .clock = options.clock,
                                   .until = options.until,

@@ -11,6 +11,7 @@
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "report/view/film.h"
+#include "simrun/simrun_record.h"
 
 namespace ispace {
 
@@ -129,6 +130,7 @@ void SimrunCommand::declareRun() {
         "--record-limit", "SIZE",
         [&o](const std::string& text) { o.max_recorded = byteCount(text); },
         "end the run once its record is larger, e.g. 500M (default 16G)", Enters::Nothing);
+    addRecordForm(line_, o.record_form);
 }
 
 void SimrunCommand::declareJudgement() {

@@ -12,6 +12,7 @@
 #include "server/device/wire_session.h"
 #include "server/server.h"
 #include "sim/expect.h"
+#include "sim/record_form.h"
 #include "sim/simulation.h"
 
 namespace ispace {
@@ -79,6 +80,7 @@ struct SimrunOptions {
     std::optional<bool> records_readings;
     double recorded_frames = 1;  ///< per simulated second, at most
     double recorded_sonars = 10;
+    RecordForm record_form;
     std::string port_file;  ///< "" without
     Endpoint listen;
     std::optional<Endpoint> web, foxglove, rosbridge;

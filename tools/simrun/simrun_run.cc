@@ -154,12 +154,14 @@ RunningRecord::RunningRecord(const SimrunOptions& options, Simulation& simulatio
 
 /// Computes the least size of the record before the run.
 void checkRecord(const SimrunOptions& options, const World& world) {
-    if (options.record.empty() || !options.until) return;
-    constexpr double kMinLine = 20;  // bytes, of robots.csv
-    const double steps =
-        static_cast<double>(options.until->count()) / static_cast<double>(options.step.count());
+    if (options.record.empty()) return;
+    const auto stride = static_cast<double>(options.record_form.stride(world.stepLength()));
+    if (!options.until) return;
+    const double min_line = options.record_form.packs ? 1 : 20;  // bytes, of robots.csv
+    const double steps = static_cast<double>(options.until->count()) /
+                         static_cast<double>(options.step.count()) / stride;
     const double lines = std::ceil(steps) * static_cast<double>(world.movers().size());
-    if (lines * kMinLine <= static_cast<double>(options.max_recorded)) return;
+    if (lines * min_line <= static_cast<double>(options.max_recorded)) return;
     throw UsageError("--record: " + formatDouble(lines) + " lines of robots and people until t=" +
                      formatSimTime(*options.until) + " are more than --record-limit, which is " +
                      byteCountText(options.max_recorded) + "; is --until in seconds?");
@@ -181,6 +183,7 @@ std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOpti
     record.readings = options.records_readings.value_or(true);
     record.frame_rate = options.recorded_frames;
     record.sonar_rate = options.recorded_sonars;
+    record.form = options.record_form;
     record.max_bytes = options.max_recorded;
     record.frame_taker = std::move(frame_taker);
     auto running = std::make_unique<RunningRecord>(options, simulation, record);

@@ -15,6 +15,7 @@
 #include "base/budget.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/zstd_text.h"
 #include "scene/run/run_reader.h"
 #include "scene/scene.h"
 
@@ -26,7 +27,7 @@ constexpr std::size_t kMaxLineBytes = 16384;
 /// Reads the lines of a file or a text in blocks. A line without its end is not returned.
 class LineSource {
   public:
-    explicit LineSource(std::optional<InputFile> file, std::string text)
+    explicit LineSource(std::optional<TextFile> file, std::string text)
         : file_(std::move(file)), bytes_(std::move(text)) {}
 
     std::optional<std::string_view> next() {
@@ -52,16 +53,17 @@ class LineSource {
     [[nodiscard]] bool isTooLong() const { return is_too_long_; }
 
   private:
-    std::optional<InputFile> file_;
+    std::optional<TextFile> file_;
     std::string bytes_;
     std::size_t begin_ = 0, searched_ = 0;  // of the rest; no line ends before
     int number_ = 0;
     bool is_too_long_ = false;
 };
 
-/// Opens a table of a record. \throws as InputFile, also for anything but a regular file
+/// Opens a table of a record, also a compressed one. \throws as InputFile, also for anything but a
+/// regular file
 inline LineSource tableOf(const std::string& file) {
-    return LineSource(InputFile(file, InputKind::Regular), "");
+    return LineSource(TextFile(file, InputKind::Regular), "");
 }
 
 /// Parses a time of a run, in seconds: from 0 to 4e9, beyond the hundred years of the longest run.

@@ -12,6 +12,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
+#include "base/zstd_text.h"
 #include "scene/run/run_changes.h"
 #include "scene/run/run_reader.h"
 
@@ -21,10 +22,15 @@ RecordedFiles::RecordedFiles(const std::string& folder) {
     const auto in_folder = [&folder](const char* file) {
         return (std::filesystem::path(folder) / file).string();
     };
-    robots = in_folder("robots.csv");
-    odometry = in_folder("odometry.csv");
+    const auto perhaps_packed = [&in_folder](const char* file) {
+        const std::string plain = in_folder(file), packed = plain + std::string(kZstdSuffix);
+        return std::filesystem::exists(packed) ? packed : plain;
+    };
+    robots = perhaps_packed("robots.csv");
+    odometry = perhaps_packed("odometry.csv");
     bumpers = in_folder("bumpers.csv");
-    people = in_folder("people.csv");
+    people = perhaps_packed("people.csv");
+    scans = perhaps_packed("scans.jsonl");
     events = in_folder("events.csv");
     info = in_folder("info.csv");
 }
@@ -80,7 +86,12 @@ std::optional<RunInfo> recordedInfo(const std::string& folder) {
         throw FormatError({name, 2, 0,
                            "no length of a step: wanted the columns dt,control_interval,steps, as "
                            "`simrun --record` writes"});
-    RunInfo info{.step = *step};
+    RunInfo info{.step = *step, .every = field("every").value_or(*step)};
+    constexpr double kLeast = 1 - 1e-9;
+    if (!(info.every >= kLeast * info.step))
+        throw FormatError({name, 2, 0,
+                           "every is " + excerpt(text_of("every")) +
+                               ", wanted the time between moments, from a step on"});
     info.steps = std::llround(std::clamp(field("steps").value_or(0), 0.0, 1e15));
     // Too large for a double.
     info.seed = static_cast<std::uint64_t>(parseInteger(text_of("seed")).value_or(0));

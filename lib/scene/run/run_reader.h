@@ -14,10 +14,11 @@
 
 namespace ispace {
 
-/// Names of the tables in a folder that `simrun --record` writes. Only regular files are opened.
+/// Names of the files in a folder that `simrun --record` writes: that of a compressed one if it is
+/// there (robots.csv.zst). Only regular files are opened.
 struct RecordedFiles {
     explicit RecordedFiles(const std::string& folder);
-    std::string robots, odometry, bumpers, people, events, info;
+    std::string robots, odometry, bumpers, people, events, info, scans;
 };
 
 /// Checks that the folder of a record exists. \throws std::system_error
@@ -32,6 +33,7 @@ std::string sceneOfRecord(const std::string& folder);
 /// The parameters of a run, from info.csv.
 struct RunInfo {
     double step = 0;         ///< seconds
+    double every = 0;        ///< seconds from one recorded moment to the next: a step, or several
     std::int64_t steps = 0;  ///< 0: unknown
     std::uint64_t seed = 0;
     bool noise = false;  ///< of sensors

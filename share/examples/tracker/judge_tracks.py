@@ -45,6 +45,8 @@ def read_truth(folder):
     """{milliseconds: {id: (x, y)}} of a record."""
     truth = {}
     for name in ("robots.csv", "people.csv"):
+        if os.path.exists(os.path.join(folder, name + ".zst")):
+            sys.exit(f"judge_tracks.py: {folder} is compressed: unzstd --rm {folder}/*.zst")
         with open(os.path.join(folder, name), encoding="utf-8", newline="") as file:
             for row in csv.DictReader(file):
                 at = round(1000 * float(row["t"]))

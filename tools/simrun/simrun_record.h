@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "cli/command_line.h"
+#include "sim/record_form.h"
+
+namespace ispace {
+
+/// Declares --record-every, --record-columns and --record-compression.
+void addRecordForm(CommandLine& line, RecordForm& form);
+
+}  // namespace ispace
