@@ -10,6 +10,7 @@
 #include <exception>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -21,6 +22,7 @@
 #include "base/part_file.h"
 #include "base/run_files.h"
 #include "cli/batch_cache.h"
+#include "cli/kept_rooms.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
@@ -354,6 +356,17 @@ class BatchWriter {
     std::size_t failed_ = 0, unmet_ = 0;
 };
 
+/// Keeps the rooms that several of these jobs name.
+void keepSharedRooms(std::span<const BatchJob> jobs) {
+    std::map<std::string_view, int> counts;
+    std::vector<std::string> shared;
+    for (const BatchJob& job : jobs)
+        for (const std::string& file : job.operands)
+            if (++counts[file] == 2 && !file.ends_with(".3dm")) shared.push_back(file);
+    if (shared.size() > kMostKeptRooms) shared.resize(kMostKeptRooms);
+    keepRooms(shared);
+}
+
 /// Returns the identity of a list's results. \param list its bytes
 JobId idOf(const BatchRun& run, const std::string& list, std::size_t jobs) {
     JobId id;
@@ -387,6 +400,8 @@ void runShare(const BatchRun& run, const JobWork& work, JunitFile& junit) {
         return cache ? cache->outcomeOf(job, compute) : compute();
     };
     BatchWriter writer(run);
+    // Jobs that were done before read no room.
+    if (!results && !cache) keepSharedRooms(own);
     const auto progress = makeProgress(run.tool, run.common.progress, run.common.quiet);
     progress->begin("scenes", std::ssize(own));
     runInOrder(own.size(), [&](std::size_t i) {

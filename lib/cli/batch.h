@@ -107,7 +107,8 @@ using JobWork =
 JsonWriter jobLine(const std::string& tool, const BatchJob& job);
 
 /// Does all jobs of a list, or the share of a shard, on all threads, and writes their lines in its
-/// order: to stdout if there are products, else to the output.
+/// order: to stdout if there are products, else to the output. A room that several of them name is
+/// read once, as by the jobs of `--serve-jobs` (see cli/kept_rooms.h).
 /// \throws UnmetError if one missed a requirement, FormatError if one failed; both after the last
 /// job; UsageError for equal names of products and for a product that is an operand
 void runBatch(const BatchRun& run, const JobWork& work);

@@ -52,7 +52,8 @@ struct Job {
     std::vector<std::string> words;
 };
 
-/// Returns the next job, none at the end of stdin. \throws UsageError for bytes that are no request
+/// Returns the next job; empty at the end of stdin. \throws UsageError for bytes that are no
+/// request
 std::optional<Job> nextJob() {
     constexpr std::size_t kMostBytes = std::size_t{1} << 24U;
     std::string number;
@@ -79,7 +80,7 @@ std::optional<Job> nextJob() {
     return Job{fields[0], fields[1], fields[2], {fields.begin() + kBeforeWords, fields.end()}};
 }
 
-/// Replaces a standard stream by a file. \param file "": none
+/// Replaces a standard stream by a file. \param file "": /dev/null
 void redirect(int stream, const std::string& file) {
     const char* const name = file.empty() ? "/dev/null" : file.c_str();
     const int flags = stream == STDIN_FILENO ? O_RDONLY : O_WRONLY | O_CREAT | O_TRUNC;
@@ -93,12 +94,6 @@ bool hasOneThread() {
     std::error_code error;
     const std::filesystem::directory_iterator threads("/proc/self/task", error);
     return !error && std::distance(begin(threads), end(threads)) == 1;
-}
-
-/// Keeps the rooms among the words of a job. Layouts differ from job to job.
-void keepRooms(const Job& job) {
-    for (const std::string& word : job.words)
-        if (!word.empty() && word.front() != '-' && !word.ends_with(".3dm")) keepRoom(word);
 }
 
 std::vector<char*> argumentsOf(std::string& tool, std::vector<std::string>& words) {
@@ -136,7 +131,7 @@ int serve(const std::string& tool, const std::function<void(int, char**)>& body)
     while (std::optional<Job> job = nextJob()) {
         if (::chdir(job->folder.c_str()) != 0) fail(job->folder);
         if (is_alone) {
-            keepRooms(*job);
+            keepRooms(job->words);
             is_alone = hasOneThread();
         }
         const pid_t server = ::getpid();

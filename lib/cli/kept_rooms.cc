@@ -13,6 +13,7 @@
 
 #include "base/file.h"
 #include "base/missed_files.h"
+#include "base/run_files.h"
 #include "building/storeys.h"
 #include "cli/common_options.h"
 #include "io/glb/glb_read.h"
@@ -34,7 +35,7 @@ std::optional<Stamp> stampOf(const std::string& file) {
 struct Entry {
     std::string file;
     std::vector<std::pair<std::string, Stamp>> stamps;
-    std::optional<KeptRoom> room;  // none: not to be kept
+    std::optional<KeptRoom> room;  // empty: not to be kept
 
     [[nodiscard]] bool isCurrent() const {
         return std::all_of(stamps.begin(), stamps.end(),
@@ -66,10 +67,7 @@ std::optional<KeptRoom> roomIn(const std::string& file) {
     return KeptRoom{*std::move(document), std::move(report), std::move(scene)};
 }
 
-}  // namespace
-
 void keepRoom(const std::string& file) {
-    constexpr std::size_t kMost = 16;
     std::vector<Entry>& kept = entries();
     const auto found = std::find_if(kept.begin(), kept.end(),
                                     [&](const Entry& entry) { return entry.file == file; });
@@ -98,16 +96,26 @@ void keepRoom(const std::string& file) {
                 entry.room.reset();
             if (!entry.room) break;
         }
-    if (kept.size() == kMost) kept.pop_back();
+    if (kept.size() == kMostKeptRooms) kept.pop_back();
     kept.insert(kept.begin(), std::move(entry));
+}
+
+}  // namespace
+
+void keepRooms(std::span<const std::string> operands) {
+    for (const std::string& file : operands)
+        if (!file.empty() && file.front() != '-' && !file.ends_with(".3dm")) keepRoom(file);
 }
 
 const KeptRoom* keptRoom(const std::string& file, const SceneRules& rules) {
     if (entries().empty() || rules.includes != IncludeFiles::InFolder || rules.max_work ||
         !rules.storey.empty())
         return nullptr;
-    for (const Entry& entry : entries())
-        if (entry.file == file && entry.room && entry.isCurrent()) return &*entry.room;
+    for (const Entry& entry : entries()) {
+        if (entry.file != file || !entry.room || !entry.isCurrent()) continue;
+        for (const auto& [source, stamp] : entry.stamps) noteInput(source);
+        return &*entry.room;
+    }
     return nullptr;
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/cli: rooms that a process reads once for the many jobs that it forks.
+// Private to lib/cli: rooms that a process reads once for many jobs, those of a list (cli/batch.h)
+// and those that it forks (cli/job_server.h).
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 
 #include "cli/operands.h"
@@ -18,15 +21,19 @@ struct KeptRoom {
     Scene scene;  ///< without a layout
 };
 
-/// Reads the room in a file, so that keptRoom() of this process and those that it forks returns it
-/// until one of its files changes. Does nothing for a file that is no room, holds a building, looks
-/// for files in vain, or cannot be read: who wants it will tell. Keeps the last 16 rooms. In one
-/// thread, and starts no other. \param file an operand, which will have the same name and current
-/// folder
-void keepRoom(const std::string& file);
+/// Number of rooms that are kept: the last ones.
+constexpr std::size_t kMostKeptRooms = 16;
 
-/// Returns the kept room, or null. Costs a stat() of each of its files.
-/// \param rules those of the reader; rooms are kept for the default ones alone
+/// Reads the rooms among operands of a command, so that keptRoom() of this process and those that
+/// it forks returns them until one of their files changes. Skips layouts, which differ from job to
+/// job, options, and files that are no room, hold a building, look for files in vain, or cannot be
+/// read: the job that reads those reports it. In one thread, and starts no other; keptRoom() must
+/// not be called meanwhile. \param operands will have the same names and current folder
+void keepRooms(std::span<const std::string> operands);
+
+/// Returns the kept room, or null; in any thread. Costs a stat() of each of its files. Like a
+/// reader, it notes them as inputs, which the job cannot overwrite. \param rules those of the
+/// reader; rooms are kept for the default ones alone
 const KeptRoom* keptRoom(const std::string& file, const SceneRules& rules);
 
 }  // namespace ispace

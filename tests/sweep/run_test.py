@@ -228,6 +228,21 @@ def others(folder):
     check("run needs a relative folder" in folder.talk, folder.talk)
 
 
+def inputs_stay(folder):
+    """A job whose output is its room fails, as it would alone: no output replaces a file that was read."""
+    folder.write("sweep.yaml", """
+run:
+  - arrange rooms/a.env --sensor laser,range=3 --strategy random -q -o {out}.3dm
+  - scan rooms/a.env {out}.3dm --to jsonl -q -o {onto} > {out}.txt
+axes:
+  onto: rooms/a.env
+""")
+    rows = lines(sweep(folder, "run", "-j", "1", status=1))[1:]
+    same("statuses", [2], [row["status"] for row in rows])
+    check("rooms/a.env is read by this command" in rows[0]["messages"], rows[0]["messages"])
+    same("the room", ROOM, folder.read("rooms/a.env").decode())
+
+
 def errors(folder):
     folder.write("sweep.yaml", "run: cp rooms/a.env {out}.{n}.env\naxes: {n: 1}\n".replace("{out}.{n}.env", "{out}.env")
                  .replace("cp", "cp -{n}").replace("axes: {n: 1}", "axes: {n: [f, p]}"))
@@ -254,7 +269,7 @@ def errors(folder):
     check("stdout: error: No space left" in folder.talk, folder.talk)
 
 
-for part in (equals_files, shares, ends_in_the_middle, failures, others, errors):
+for part in (equals_files, shares, ends_in_the_middle, failures, others, inputs_stay, errors):
     with Folder() as scratch_folder:
         whole = scratch_folder.path
         rooms(scratch_folder)
