@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/number.h"
+#include "sim/pace.h"
 #include "sim/robot_sensors.h"
 
 namespace ispace {
@@ -30,9 +31,17 @@ constexpr double kRow = 80, kRange = 8, kPixel = 3;
 
 }  // namespace
 
+double readingRate(const Scene& scene) {
+    double rate = 0;
+    for (const Sensor& sensor : scene.sensors)
+        if (!isHeavy(sensor)) rate += periodRate(sensor);
+    return rate;
+}
+
 RunLoad loadOf(const Scene& scene, SimTime step, const RecordOptions* record) {
     RunLoad load;
     load.records = static_cast<double>(scene.records.size());
+    load.readings = readingRate(scene);
     double recorded_pixels = 0, tags = 0, receivers = 0, sound_rate = 0;
     for (const Sensor& sensor : scene.sensors) {
         const double rate = periodRate(sensor);
@@ -67,6 +76,18 @@ RunLoad loadOf(const Scene& scene, SimTime step, const RecordOptions* record) {
                           load.beam_rate * kRange + echoes * kRange * record->sonar_rate +
                           recorded_pixels * kPixel;
     return load;
+}
+
+void checkPace(const RunLoad& before, const RunLoad& after, double work) {
+    if (work <= Pace::kMost) return;
+    if (after.records <= before.records && after.readings <= before.readings &&
+        after.beam_rate <= before.beam_rate)
+        return;
+    throw OverLimit(Diagnostic{"", 0, 0,
+                               "the world would take more than " + formatFixed(work, 2) +
+                                   " s of work for each second, and may take " +
+                                   formatFixed(Pace::kMost, 2) +
+                                   "; delete sensors, or lower their rates"});
 }
 
 double pixelsOf(const Sensor& sensor) {

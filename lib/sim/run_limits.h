@@ -19,7 +19,11 @@ struct RunLoad {
     double pixels = 0;          ///< of one frame of each camera and ranger
     double pixel_rate = 0;      ///< per simulated second, if all of them are read
     double recorded_bytes = 0;  ///< per simulated second, roughly; 0: no record
+    double readings = 0;        ///< see readingRate(); no bound by itself
 };
+
+/// Returns the readings of sensors in a simulated second, without pictures and depth frames.
+double readingRate(const Scene& scene);
 
 /// Computes the load of a scene. \param record null: no record
 RunLoad loadOf(const Scene& scene, SimTime step, const RecordOptions* record);
@@ -34,6 +38,10 @@ class OverLimit : public FormatError {
 /// that starts above a bound, at its user's request, may stay there.
 /// \throws OverLimit naming the sum and its bound, if it is exceeded and was less `before`
 void checkLoad(const RunLoad& before, const RunLoad& after);
+
+/// Rejects additions by clients to a world that takes longer for its time than it may.
+/// \param work measured seconds for a second of wall time, see Pace \throws OverLimit
+void checkPace(const RunLoad& before, const RunLoad& after, double work);
 
 /// Returns the pixels of one frame of a camera or a ranger; 0 for other sensors.
 double pixelsOf(const Sensor& sensor);

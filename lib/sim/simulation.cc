@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/simulation.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -26,13 +24,6 @@ constexpr double kFastestRate = 1e6;
 constexpr long double kMaxAhead = 3e18L;  // 95 years
 constexpr nanoseconds kMaxLag = std::chrono::milliseconds(250);
 constexpr std::string_view kReal = "real:";
-
-/// Returns the processor time of this thread.
-nanoseconds threadTime() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return std::chrono::seconds(time.tv_sec) + nanoseconds(time.tv_nsec);
-}
 
 double parseRate(std::string_view text) {
     const auto rate = parseClockRate(text);
@@ -360,16 +351,26 @@ std::optional<WallTime> Simulation::flushRecord() {
 }
 
 bool Simulation::readSome(WallTime until) {
-    return world_->readSome(until) &&
-           std::all_of(followers_.begin(), followers_.end(),
-                       [until](Simulation* other) { return other->readSome(until); });
+    const nanoseconds begun = threadTime();
+    const bool are_all_read =
+        world_->readSome(until) &&
+        std::all_of(followers_.begin(), followers_.end(),
+                    [until](Simulation* other) { return other->readSome(until); });
+    reading_ += threadTime() - begun;
+    return are_all_read;
 }
 
 bool Simulation::finishStep(WallTime until) { return readSome(until) && finishRecord(until); }
 
 std::optional<WallTime> Simulation::run(WallTime now, nanoseconds budget) {
+    const nanoseconds begun = threadTime();
+    const SimTime before = world_->time();
+    const bool was_running = !paused_ || owed_ > 0;
+    reading_ = {};
     const auto next = runDue(now, budget);
     work_ = threadTime();
+    // In a pause only what was added is read.
+    if (was_running) pace_.worked({work_ - begun, reading_, world_->time() - before}, now);
     return next;
 }
 

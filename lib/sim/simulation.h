@@ -15,6 +15,7 @@
 
 #include "sim/command.h"
 #include "sim/events.h"
+#include "sim/pace.h"
 #include "sim/recorder.h"
 #include "sim/replay.h"
 #include "sim/world.h"
@@ -91,6 +92,7 @@ class Simulation {
     void lead(Simulation& other) {
         followers_.push_back(&other);
         other.is_led_ = true;
+        other.leader_ = this;
     }
 
     /// Records every step from now on. The recorder must outlive the last one.
@@ -179,6 +181,8 @@ class Simulation {
     [[nodiscard]] const Lateness& lateness() const { return lateness_; }
     /// Returns the wall time lost so far because steps took too long.
     [[nodiscard]] std::chrono::nanoseconds lost() const { return lost_; }
+    /// Returns the work for the world's time, of all worlds in lock step.
+    [[nodiscard]] Pace& pace() { return leader_ == nullptr ? pace_ : leader_->pace_; }
 
   private:
     std::optional<WallTime> runDue(WallTime now, std::chrono::nanoseconds budget);
@@ -220,14 +224,17 @@ class Simulation {
     std::vector<std::function<void()>> observers_, preparers_, changers_;
     std::vector<Simulation*> followers_;  // in lock step
     bool is_led_ = false;
+    Simulation* leader_ = nullptr;
     bool paused_ = false, finished_ = false;
     std::int64_t owed_ = 0;
     std::optional<WallTime> started_;  // wall time of start_time_
     SimTime start_time_{};
     std::optional<std::chrono::nanoseconds> ahead_;  // from a pause to the next step; negative: lag
     std::chrono::nanoseconds lost_{};
-    std::chrono::nanoseconds work_{};  // of the thread until run() returned
+    std::chrono::nanoseconds work_{};     // of the thread until run() returned
+    std::chrono::nanoseconds reading_{};  // of it, in the present run()
     Lateness lateness_;
+    Pace pace_;
 };
 
 }  // namespace ispace

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "sim/pace.h"
 #include "sim/run_limits.h"
 
 namespace ispace {
@@ -27,13 +28,21 @@ std::optional<Pose2> placeIn(const World& world, const std::string& id) {
     return mover ? std::optional(world.status(*mover).pose) : std::nullopt;
 }
 
+/// Returns the readings after a change for each one before.
+double timesAsOften(const Scene& before, const Scene& after) {
+    const double all = readingRate(before);
+    return all > 0 ? readingRate(after) / all : 1;
+}
+
 /// Applies edits to a scene.
 class Editing {
   public:
     /// Fast: names are looked up in prepare().
-    Editing(World& world, std::shared_ptr<const SceneSource> source, std::vector<Edit> edits,
-            Check check, SceneWriter write)
+    /// \param pace of a world by the clock Real, else null
+    Editing(World& world, Pace* pace, std::shared_ptr<const SceneSource> source,
+            std::vector<Edit> edits, Check check, SceneWriter write)
         : world_(&world),
+          pace_(pace),
           source_(std::move(source)),
           edits_(std::move(edits)),
           before_(world.sharedScene()),
@@ -58,7 +67,12 @@ class Editing {
 
     std::shared_ptr<const void> adopt() {
         follow();
-        return world_->change(next_, placed_);
+        auto before = world_->change(next_, placed_);
+        if (pace_ == nullptr) return before;
+        if (edits_.front().kind == Edit::Kind::Add) readAdded();
+        if (edits_.front().kind == Edit::Kind::Set)
+            pace_->rescaled(timesAsOften(*before_, world_->scene()));
+        return before;
     }
     [[nodiscard]] std::shared_ptr<const ChangeNews> news() const { return news_; }
 
@@ -68,8 +82,10 @@ class Editing {
     [[nodiscard]] std::vector<Record> records() const;
     [[nodiscard]] std::vector<Record> goodRecords() const;
     void follow();
+    void readAdded();
 
     World* world_;
+    Pace* pace_;
     std::shared_ptr<const SceneSource> source_;
     std::vector<Edit> edits_;
     std::shared_ptr<const Scene> before_;
@@ -156,6 +172,16 @@ void Editing::follow() {
     if (write_) news_->scene_text = write_(scene);
 }
 
+/// Measures the first readings of the new sensors.
+void Editing::readAdded() {
+    const std::chrono::nanoseconds begun = threadTime();
+    world_->readSome(WallTime::max());
+    const std::chrono::nanoseconds work = threadTime() - begun;
+    std::vector<const Sensor*> added;
+    for (const std::size_t i : world_->latestReadings()) added.push_back(&world_->sensors()[i]);
+    pace_->added(added, work);
+}
+
 }  // namespace
 
 WorldEditor::WorldEditor(Simulation& simulation, std::shared_ptr<const SceneSource> source)
@@ -179,10 +205,35 @@ SceneWriter WorldEditor::sceneWriter() const {
 }
 
 WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
-    const auto editing = std::make_shared<Editing>(simulation_->world(), source_, std::move(edits),
-                                                   loadCheck(), sceneWriter());
+    const bool is_live = simulation_->clock().kind == Clock::Kind::Real;
+    Pace* const pace = is_live ? &simulation_->pace() : nullptr;
+    Check check = loadCheck();
+    if (pace != nullptr) {
+        const World& world = simulation_->world();
+        const auto exists = [&world](const std::string& id) {
+            return world.sensorNamed(id).has_value();
+        };
+        // A clock that is faster than the world is no fault of clients.
+        const double rate = std::min(1.0, simulation_->clock().rate);
+        const auto [all, reading] = pace->load(exists);
+        const bool may_rescale = edits.front().kind == Edit::Kind::Set;
+        check = [check = std::move(check), before = world.sharedScene(), step = world.stepLength(),
+                 may_rescale, work = all * rate, reads = reading * rate](const Scene& scene) {
+            check(scene);
+            const double more =
+                may_rescale ? std::max(0.0, timesAsOften(*before, scene) - 1) * reads : 0;
+            checkPace(loadOf(*before, step, nullptr), loadOf(scene, step, nullptr), work + more);
+        };
+    }
+    const auto editing = std::make_shared<Editing>(
+        simulation_->world(), pace, source_, std::move(edits), std::move(check), sceneWriter());
     return {[editing] { editing->prepare(); }, [editing] { return editing->adopt(); },
             editing->news()};
+}
+
+std::shared_ptr<const void> WorldEditor::restart(const NextScene& next) const {
+    simulation_->pace().restarted();
+    return simulation_->world().restart(next);
 }
 
 WorldChange WorldEditor::load(std::string environment, std::string layout) const {
@@ -197,15 +248,14 @@ WorldChange WorldEditor::load(std::string environment, std::string layout) const
                 *next = prepare(std::move(scene));
                 if (write) news->scene_text = write(*next->scene);
             },
-            [this, next] { return simulation_->world().restart(*next); }, news};
+            [this, next] { return restart(*next); }, news};
 }
 
 WorldChange WorldEditor::reset() const {
     const auto next = std::make_shared<NextScene>();
     return {[next, start = simulation_->world().sharedStart(),
              prepare = simulation_->world().preparer()] { *next = prepare(Scene(*start)); },
-            [this, next] { return simulation_->world().restart(*next); },
-            std::make_shared<const ChangeNews>()};
+            [this, next] { return restart(*next); }, std::make_shared<const ChangeNews>()};
 }
 
 }  // namespace ispace

@@ -85,6 +85,7 @@ class WorldEditor {
   private:
     using Check = std::function<void(const Scene& scene)>;
     [[nodiscard]] Check loadCheck() const;
+    [[nodiscard]] std::shared_ptr<const void> restart(const NextScene& next) const;
     /// Returns RecordOptions::scene_text; null without a record.
     [[nodiscard]] std::function<std::string(const Scene& scene)> sceneWriter() const;
 

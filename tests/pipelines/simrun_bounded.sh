@@ -47,6 +47,11 @@ start "$data/square.env" bounded.3dm --clock real
 heavy people
 ended 0
 
+# Motes that hear each other.
+start "$data/square.env" bounded.3dm --clock real
+heavy motes
+ended 0
+
 # Memory of a recorded run does not grow with its steps.
 python3 - "$data/square.env" <<'END' || fail "the memory of a recorded run grows"
 import os

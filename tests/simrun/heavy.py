@@ -20,7 +20,7 @@ class Watch:
     def __init__(self):
         self.client, self.slowest = Client("WORLD"), 0.0
         self.ends = self.is_served = False
-        self.thread = threading.Thread(target=self.run)
+        self.thread = threading.Thread(target=self.run, daemon=True)
         self.thread.start()
 
     def run(self):
@@ -119,6 +119,44 @@ def people():
     term("people")
 
 
+def pace(world):
+    """Simulated seconds for each second."""
+    begin, first = time.monotonic(), float(world.ask("TIME").split("t=")[1].split()[0])
+    time.sleep(3)
+    return (float(world.ask("TIME").split("t=")[1].split()[0]) - first) / (time.monotonic() - begin)
+
+
+def motes():
+    """Sensors that measure each other, until the world could not keep its pace: in a pause, while it runs, and by a
+    change of all of their rates at once."""
+    watch, world = Watch(), Client("WORLD")
+    check(world.ask("PAUSE").startswith("OK "), "no pause")
+    spots = [f"at={-2.9 + 0.01 * (i % 580):.2f},{-1.9 + 0.1 * (i // 580):.2f},1" for i in range(1200)]
+    slow = [world.ask(f"ADD mote {spot} rate=1") for spot in spots[:300]]
+    check(all(answer.startswith("OK ADD ") for answer in slow), slow[-1])
+    answer = world.ask("SET mote*.rate=200")
+    check(answer.startswith("ERR 409 the world would take "), f"300 motes at 200 Hz: {answer}")
+    check(world.ask("DELETE mote*").startswith("OK "), "no end of motes")
+    for is_paused in (True, False):
+        added, answer = 0, ""
+        for spot in spots:
+            answer = world.ask(f"ADD mote {spot} rate=200")
+            if not answer.startswith("OK ADD "):
+                break
+            added += 1
+        print(f"{added} motes, then {answer}")
+        check(added > 0, "no mote added")
+        check(answer.startswith("ERR 409 the world would take "), f"{added} motes at 200 Hz: {answer}")
+        check(world.ask("SET r1.at=-1,0.1").startswith("OK "), "a robot may not be moved")
+        check(world.ask("RESUME" if is_paused else "DELETE mote1").startswith("OK "), "no way on")
+        print(f"the pace is {pace(world):.2f}")
+        check(world.ask("DELETE mote*").startswith("OK "), "no end of motes")
+        time.sleep(2.5)
+    check(world.ask("ADD mote at=0,0,1 rate=200").startswith("OK ADD "), "no room after the motes are gone")
+    watch.end("motes")
+    term("motes")
+
+
 def connected(address):
     host, port = address.rsplit(":", 1)
     connection = socket.create_connection((host, int(port)), timeout=60)
@@ -157,4 +195,5 @@ def places():
     term("places")
 
 
-{"globs": globs, "pictures": pictures, "sums": sums, "places": places, "people": people}[KIND]()
+{"globs": globs, "pictures": pictures, "sums": sums, "places": places, "people": people,
+ "motes": motes}[KIND]()
