@@ -16,6 +16,7 @@ import sys
 import tempfile
 
 import layouts
+import verbs
 
 
 def dxf(blocks, entities):
@@ -819,17 +820,46 @@ FAMILIES = {name: make for name, make in globals().items()
 
 
 def all_families():
-    return [*FAMILIES, *layouts.FAMILIES]
+    return [*FAMILIES, *layouts.FAMILIES, *verbs.FAMILIES]
+
+
+def lists_of(family):
+    """The module of a family of lists, else None."""
+    return next((one for one in (layouts, verbs) if family in one.FAMILIES), None)
+
+
+# Readers that refuse a file of 60 kB: a budget ends its work, or it is no room. All others read theirs.
+REFUSED = frozenset("""
+    dxf_missing dxf_empty_block dxf_empty_polylines dxf_circles_of_nothing dxf_lines dxf_crossing_blocks
+    svg_use_text svg_use_hidden svg_use_unknown svg_use_empty sdf_same sdf_apart sdf_nested sdf_frames
+    env_bad_meshes env_collinear yaml_parts yaml_empty_parts yaml_repeats yaml_long_ids yaml_aliases yaml_includes
+    gltf_instances gltf_tree ifc_mappings ifc_mapped_walls ifc_shared_walls ifc_clips ifc_curves ifc_profiles
+    ifc_maps ifc_booleans ifc_point_lists ifc_shells ifc_long_points obj_crossing aria_lines yaml_alias_paths
+    pol_star house_rooms house_inline house_unknown rmf_aliases rmf_fiducials batch_jobs batch_words batch_quotes
+""".split())
+
+
+def expected_of(family):
+    lists = lists_of(family)
+    return "refusal" if (lists.is_refused(family) if lists else family in REFUSED) else "result"
+
+
+def outcome(status, said):
+    """How a command ended: "result" (also an unmet requirement, or findings), "refusal" or "failure"."""
+    if status == 1:
+        return "refusal" if ": error: " in said else "result"
+    return "result" if status in (0, 3) else "failure"
 
 
 def files_of(family, size):
-    return layouts.files(family, size) if family in layouts.FAMILIES else FAMILIES[family](size)
+    lists = lists_of(family)
+    return lists.files(family, size) if lists else FAMILIES[family](size)
 
 
 def command(envc, family, operand):
     """The command that reads such a file."""
-    if family in layouts.FAMILIES:
-        return layouts.command(os.path.dirname(envc), family, operand)
+    if lists := lists_of(family):
+        return lists.command(os.path.dirname(envc), family, operand)
     if family.startswith("batch_"):
         return [os.path.join(os.path.dirname(envc), "coverage"), "--batch", operand]
     return [envc, "--info", operand, *(["--slice-walls", "1"] if family.startswith("obj_") else [])]
@@ -891,18 +921,23 @@ class Growth:
     """Time and memory of a family over files of some sizes, beyond those of a small one, as exponents of the size."""
 
     def __init__(self, envc, family, sizes, seconds, most=None):
-        self.rows, self.status, self.said = [], 0, ""
-        is_list = family in layouts.FAMILIES
-        most = most or (layouts.MOST_BYTES if is_list else MOST_BYTES)
-        self.steepest = layouts.steepest(family) if is_list else STEEPEST
-        self.right = (0, 1, 3) if is_list else (0, 1)
+        self.rows, self.wrong, self.said = [], "", ""
+        lists = lists_of(family)
+        most = most or (lists.MOST_BYTES if lists else MOST_BYTES)
+        self.steepest = lists.steepest(family) if lists else STEEPEST
         _, *start = self.measure(envc, family, START_BYTES, seconds)
+        expected = expected_of(family)
+        is_first = True
         while True:
-            self.rows = [self.measure(envc, family, size, seconds) for size in sizes]
+            self.rows = []
+            for i, size in enumerate(sizes):
+                # Readers are judged by their smallest file: a budget refuses larger ones of many.
+                is_judged = lists or (is_first and i == 0)
+                self.rows.append(self.measure(envc, family, size, seconds, expected if is_judged else ""))
             self.seconds = max(row[1] for row in self.rows) - start[0]
-            if self.seconds > CHEAP_SECONDS or 4 * sizes[-1] > most or self.status not in self.right:
+            if self.seconds > CHEAP_SECONDS or 4 * sizes[-1] > most or self.wrong:
                 break
-            sizes = [4 * size for size in sizes]
+            sizes, is_first = [4 * size for size in sizes], False
         self.sizes, self.start = sizes, start
         self.fit()
 
@@ -916,26 +951,36 @@ class Growth:
         self.rows = [tuple(map(min, old, new)) for old, new in zip(self.rows, again)]
         self.fit()
 
-    def measure(self, envc, family, size, seconds):
+    def measure(self, envc, family, size, seconds, expected=""):
+        """expected: "result" or "refusal"; either without it."""
         with tempfile.TemporaryDirectory() as folder:
             operand, total = write(family, size, folder)
             status, spent, memory, said = run(command(envc, family, operand), seconds)
-        if self.status in self.right:
-            self.status, self.said = status, said
+        ended = outcome(status, said)
+        if not self.wrong:
+            self.said = said
+            if ended == "failure":
+                self.wrong = f"status {status} of {total} bytes"
+            elif expected and ended != expected:
+                self.wrong = f"a {ended} of {total} bytes instead of a {expected}"
         return total, spent, memory
 
     def is_steep(self):
         is_slow = self.time > self.steepest and self.seconds > CHEAP_SECONDS
-        return is_slow or self.space > self.steepest or self.status not in self.right
+        return is_slow or self.space > self.steepest
+
+    def is_violated(self):
+        return self.is_steep() or bool(self.wrong)
 
     def text(self, family):
         rows = "".join(f"{n / 1000:7.0f}{spent:7.2f}{memory / 1e6:6.0f}" for n, spent, memory in self.rows)
         return (f"{family:24}{rows}  {self.time:5.2f} {self.space:5.2f}" +
-                (f"  TOO STEEP, status {self.status}" if self.is_steep() else ""))
+                ("  TOO STEEP" if self.is_steep() else "") + ("  " + self.wrong if self.wrong else ""))
 
 
 def smallest_of(family):
-    return layouts.SMALLEST if family in layouts.FAMILIES else SMALLEST
+    lists = lists_of(family)
+    return lists.SMALLEST if lists else SMALLEST
 
 
 def growth_of(envc, family, smallest, seconds, most=None):
@@ -943,7 +988,7 @@ def growth_of(envc, family, smallest, seconds, most=None):
     sizes = [smallest * 2 ** i for i in range(SIZES)]
     growth = Growth(envc, family, sizes, seconds, most)
     for _ in range(REPEATS):
-        if growth.is_steep():
+        if growth.is_steep() and not growth.wrong:
             growth.repeat(envc, family, seconds)
     return growth
 
@@ -957,10 +1002,11 @@ def measure(options):
     steep = 0
     print(HEAD)
     for family in options.family:
-        most = layouts.LONG_BYTES if options.long and family in layouts.FAMILIES else None
+        lists = lists_of(family)
+        most = lists.LONG_BYTES if options.long and lists else None
         growth = growth_of(options.envc, family, options.bytes or smallest_of(family), options.seconds, most)
         print(growth.text(family), flush=True)
-        steep += growth.is_steep()
+        steep += growth.is_violated()
     return steep
 
 
