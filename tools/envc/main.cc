@@ -139,11 +139,14 @@ void check(const EnvcOptions& options, const Document& document, const ImportRep
             if (check.name != "unplaced") mistakes.checks.push_back(check.name);
         const std::vector<Finding> found = checkScene(scene, mistakes);
         for (const Finding& finding : found) findings.add(finding.diagnostic());
-        for (const Finding& finding : checkCourses(scene)) findings.add(finding.diagnostic());
+        const std::vector<Finding> courses = checkCourses(scene);
+        for (const Finding& finding : courses) findings.add(finding.diagnostic());
         if (options.suggestions) {
             const auto most = static_cast<std::size_t>(*options.suggestions);
-            writeAll("-", remediesText(options, found.size(),
-                                       remediesOf(scene, found, mistakes, most, devices)));
+            const std::vector<Remedy> remedies =
+                remediesOf(scene, found, mistakes, most, devices,
+                           [](const Scene& one) { return checkCourses(one).size(); });
+            writeAll("-", remediesText(options, found.size() + courses.size(), remedies));
         }
     } catch (const FormatError& error) {
         findings.add(error);

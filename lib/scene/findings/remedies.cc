@@ -78,7 +78,10 @@ std::string moveText(const std::string& id, Vec3 by) {
 
 std::vector<Remedy> remediesOf(const Scene& scene, std::span<const Finding> findings,
                                const FindingFilter& filter, std::size_t most,
-                               const DeviceCatalogue& devices) {
+                               const DeviceCatalogue& devices,
+                               const std::function<std::size_t(const Scene&)>& paths) {
+    constexpr int kMostWalks = 12;
+    const std::size_t of_paths = paths && !findings.empty() ? paths(scene) : 0;
     std::vector<Remedy> remedies;
     std::set<std::string> seen;
     for (const Finding& finding : findings) {
@@ -87,6 +90,7 @@ std::vector<Remedy> remediesOf(const Scene& scene, std::span<const Finding> find
         if (id == scene.ids.end() || !seen.insert(*id).second) continue;
         const auto from = positionOf(scene, static_cast<std::size_t>(id - scene.ids.begin()));
         if (!from) continue;
+        int walks = 0;
         for (const Vec3& by : movesFrom(scene.environment, *from)) {
             std::string words = *id + ':' + formatDouble(by.x) + ',' + formatDouble(by.y);
             if (by.z != 0) words += ',' + formatDouble(by.z);
@@ -95,7 +99,10 @@ std::vector<Remedy> remediesOf(const Scene& scene, std::span<const Finding> find
                 edited(scene.records, std::span(&edit, 1), sceneSchemas()), scene, devices);
             const std::size_t left = checkScene(moved, filter).size();
             if (left >= findings.size()) continue;
-            remedies.push_back({moveText(*id, by), edit, findings.size() - left});
+            if (paths && ++walks > kMostWalks) break;
+            const std::size_t after = left + (paths ? paths(moved) : 0);
+            if (after > left + of_paths) continue;
+            remedies.push_back({moveText(*id, by), edit, findings.size() + of_paths - after});
             break;
         }
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,11 +23,13 @@ struct Remedy {
 
 /// Finds the shortest move, in centimetres, of each record with a finding and a position of its
 /// own: of those by up to 5 m in 16 directions, or into the room by the shortest way. It leaves the
-/// scene with fewer findings; each remedy is a change of the given scene. Skips records without
-/// one. O(moves * scene).
-/// \param findings all of the scene's \param most number of remedies
+/// scene with fewer findings, and none more of `paths`; each remedy is a change of the given scene.
+/// Skips records without one. O(moves * scene), and at most a dozen calls of `paths` for a record.
+/// \param findings all of the scene's by checkScene() \param most number of remedies
+/// \param paths the number of further findings of a scene, as by checkCourses(); empty: none
 std::vector<Remedy> remediesOf(const Scene& scene, std::span<const Finding> findings,
                                const FindingFilter& filter, std::size_t most,
-                               const DeviceCatalogue& devices);
+                               const DeviceCatalogue& devices,
+                               const std::function<std::size_t(const Scene&)>& paths = {});
 
 }  // namespace ispace

@@ -46,6 +46,22 @@ TEST(Remedies, MoveRecordsIntoTheRoomAndApart) {
     EXPECT_EQ(remediesIn(scene, 1).size(), 1U);
 }
 
+TEST(Remedies, LeaveRoomForPaths) {
+    const Scene scene = sceneOf("#env 1\nispace at=4,3 size=8,6\nhuman id=h at=6,3 path=6,3;9,3\n");
+    const std::vector<Finding> findings = checkScene(scene);
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_EQ(remediesIn(scene).front().text, "move h by (-1.00, 0.00) m") << "onto the wall";
+    // As by checkCourses(): a point needs half a metre.
+    const auto paths = [](const Scene& one) -> std::size_t {
+        const double x = one.people.front().course.path.back().x;
+        return x > 7.5 && x <= 8 ? 1 : 0;
+    };
+    const auto remedies = remediesOf(scene, findings, {}, 1, DeviceCatalogue(), paths);
+    ASSERT_EQ(remedies.size(), 1U);
+    EXPECT_EQ(remedies.front().text, "move h by (-2.00, 0.00) m");
+    EXPECT_EQ(remedies.front().resolved, 1U);
+}
+
 TEST(Remedies, AreNoneWhereAllIsWellOrNoMoveHelps) {
     EXPECT_TRUE(remediesIn(sceneOf("#env 1\nispace size=8,6\nlaser id=l at=1,1\n")).empty());
     // Walls have no position of their own, and no mounted sensor moves without its carrier.
