@@ -131,11 +131,21 @@ bool scanBuilding(const ScanCommand& command) {
     const bool is_set = OutputSet::of(options.common.output).has_value();
     std::optional<OutputFile> file;
     std::int64_t done = 0;
-    for (const auto& one : sensorsIn(options, input)) {
+    // All sensors are judged before the first reading.
+    const auto chosen = sensorsIn(options, input);
+    std::vector<Sensor> all;
+    std::vector<std::unique_ptr<ReadingFormat>> formats;
+    for (const auto& one : chosen) {
+        all.insert(all.end(), one->sensors.read.begin(), one->sensors.read.end());
+        formats.push_back(
+            makeFormat(options.format, one->sensors, formatOptions(command, options, one->input)));
+        if (!is_set) mustHoldStoreys(options, *formats.back());
+    }
+    command.checkSensors(all);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const StoreySensors* const one = chosen[i].get();
+        const ReadingFormat* const format = formats[i].get();
         const Scene scene = sceneOf(coupling, one->storey);
-        command.checkSensors(one->sensors.read);
-        const auto format =
-            makeFormat(options.format, one->sensors, formatOptions(command, options, one->input));
         warn(options.common, "scan", format->warnings());
         if (is_set) {
             const std::int64_t count =
@@ -146,7 +156,6 @@ bool scanBuilding(const ScanCommand& command) {
             delivery->commit();
             continue;
         }
-        mustHoldStoreys(options, *format);
         // One header: those of the storeys are equal.
         if (!file) file.emplace(options.common.output).write(format->header());
         done += readStorey(options, *one, scene, *format, Packing::Stream,
