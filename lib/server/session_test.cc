@@ -149,7 +149,8 @@ TEST(Session, Help) {
               "OK HELP ROBOT id | PERSON id | LASER id | SENSOR id | WORLD | HELP | QUIT\n");
     EXPECT_EQ(talk.ask(talk.client("ROBOT r1"), "HELP"),
               "OK HELP FORWARD m | BACKWARD m | LEFT deg | RIGHT deg | SPEED m/s | ROTSPEED deg/s "
-              "| SIDESPEED m/s | PATH x,y;... [speed=v] [pause=s] [loop=yes] | STOP | STATUS | "
+              "| SIDESPEED m/s | PATH x,y;... [speed=v] [pause=s] [loop=yes] | GOTO "
+              "[storey/]x,y[,heading] [speed=v] | STOP | STATUS | "
               "ODOMETRY | "
               "SCAN id | SONAR | BUMPER | HELP | QUIT\n");
     EXPECT_EQ(talk.ask(talk.client("LASER l1"), "HELP"),
