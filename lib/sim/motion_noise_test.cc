@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -86,6 +87,86 @@ TEST(MotionNoise, OdometryAfterATurnSpreadsAsItsModel) {
         square += dot(way, way) / kRobots;
     }
     EXPECT_NEAR(square, 0.001 * std::numbers::pi / 2, 0.1 * 0.001 * std::numbers::pi / 2);
+}
+
+/// Returns e' P^-1 e for the errors of odometry against the truth: chi-square with three degrees of
+/// freedom if they are normal with this covariance.
+double normalisedError(const World& world, std::size_t robot) {
+    const Odometry odometry = world.odometry(robot);
+    const Pose2 truth = relativePose(world.robots()[robot].pose, world.status(robot).pose);
+    const Vec2 way = odometry.pose.position - truth.position;
+    const Eigen::Vector3d error(way.x, way.y,
+                                wrapped(odometry.pose.heading - truth.heading).radians());
+    const PoseCovariance& p = odometry.covariance;
+    Eigen::Matrix3d covariance;
+    covariance << p.xx, p.xy, p.xh, p.xy, p.yy, p.yh, p.xh, p.yh, p.hh;
+    return error.dot(covariance.ldlt().solve(error));
+}
+
+TEST(MotionNoise, ErrorsOfDrivesAgreeWithTheirCovariance) {
+    constexpr double kFreedoms = 3;
+    const auto expect_consistent = [](const std::string& keys, const std::vector<Command>& drive,
+                                      SimTime step) {
+        const Scene room = field(keys);
+        World world(room, step, {.seed = 7, .noise = true});
+        for (const Command& command : drive) {
+            for (std::size_t i = 0; i < world.robots().size(); ++i) world.command(i, command);
+            const SimTime end = world.time() + std::chrono::seconds(8);
+            while (world.time() < end) world.step();
+        }
+        double sum = 0;
+        for (std::size_t i = 0; i < world.robots().size(); ++i) {
+            ASSERT_FALSE(world.status(i).stall);
+            sum += normalisedError(world, i);
+        }
+        EXPECT_NEAR(sum, kFreedoms * kRobots, 3.3 * std::sqrt(2 * kFreedoms * kRobots)) << keys;
+    };
+    const Command ahead{Verb::Forward, 0.5}, left{Verb::Left, 120}, right{Verb::Right, 90};
+    const std::vector<Command> triangle = {ahead, left, ahead, left, ahead, left},
+                               bend = {ahead, right, ahead};
+    expect_consistent(
+        "motion_noise=0.001,0.0001,0.00006,0.00005 "
+        "odometry_noise=0.001,0.0001,0.00006,0.00005",
+        triangle, milliseconds(20));
+    expect_consistent("odometry_noise=0.001,0.004,0.002,0.001", bend, milliseconds(10));
+    expect_consistent("motion_noise=0.001,0.004,0.002,0.001", bend, milliseconds(50));
+}
+
+TEST(MotionNoise, CovariancesOfOdometryHaveClosedForms) {
+    // Ahead: a walk of the heading, its integral, and errors of the length.
+    constexpr double kTurn = 0.004, kWay = 0.002;
+    const Scene room =
+        scene("ispace size=9,9\n", "robot id=r1 odometry_noise=0.01,0.004,0.002,0.001\n");
+    World world(room, milliseconds(5), {.seed = 5, .noise = true});
+    EXPECT_EQ(world.odometry(0).covariance, PoseCovariance());
+    world.command(0, {Verb::Forward, 1});
+    while (world.time() < std::chrono::seconds(5)) world.step();
+    const PoseCovariance ahead = world.odometry(0).covariance;
+    EXPECT_NEAR(ahead.hh, kTurn, 1e-9);
+    EXPECT_NEAR(ahead.yh, kTurn / 2, 0.02 * kTurn);
+    EXPECT_NEAR(ahead.yy, kTurn / 3, 0.02 * kTurn);
+    EXPECT_NEAR(ahead.xx, kWay, 0.02 * kWay);
+    // On the spot: errors of the turn add, those of the way do not shrink.
+    world.command(0, {Verb::Left, 90});
+    while (world.time() < std::chrono::seconds(9)) world.step();
+    EXPECT_NEAR(world.odometry(0).covariance.hh, kTurn + 0.01 * std::numbers::pi / 2, 1e-6);
+    EXPECT_GT(world.odometry(0).covariance.xx, ahead.xx);
+    World exact(room, milliseconds(5), {.seed = 5});
+    exact.command(0, {Verb::Forward, 1});
+    while (exact.time() < std::chrono::seconds(5)) exact.step();
+    EXPECT_EQ(exact.odometry(0).covariance, PoseCovariance());
+    EXPECT_EQ(exact.odometry(0).alphas, MotionAlphas());
+}
+
+TEST(MotionNoise, TwistsErrAsMuchAsPosesGrow) {
+    const MotionAlphas alphas{0.01, 0.004, 0.002, 0.001};
+    constexpr double kSeconds = 0.02;
+    const PoseCovariance twist = twistCovariance({0.5, 0}, Angle::radians(0.2), alphas, kSeconds);
+    const PoseCovariance pose =
+        covarianceOf({{0.5 * kSeconds, 0}, Angle::radians(0.2 * kSeconds)}, alphas);
+    EXPECT_NEAR(twist.xx * kSeconds * kSeconds, pose.xx, 1e-15);
+    EXPECT_NEAR(twist.hh * kSeconds, 0.01 * 0.2 + 0.004 * 0.5, 1e-12);
+    EXPECT_EQ(twistCovariance({}, {}, alphas, kSeconds), PoseCovariance()) << "it stands";
 }
 
 TEST(MotionNoise, TruthStraysFromTheWheelsTheOdometryCounts) {

@@ -11,7 +11,7 @@ namespace ispace {
 namespace {
 
 /// Returns true if an alpha is not 0.
-bool hasDeviation(const std::array<double, 4>& alphas) {
+bool hasDeviation(const MotionAlphas& alphas) {
     return std::any_of(alphas.begin(), alphas.end(), [](double alpha) { return alpha != 0; });
 }
 
@@ -127,7 +127,7 @@ Pose2 composed(const Pose2& outer, const Pose2& inner) {
     return {outer * inner.position, wrapped(outer.heading + inner.heading)};
 }
 
-Pose2 strayed(const Pose2& motion, const std::array<double, 4>& alphas, const RandomKey& key) {
+Pose2 strayed(const Pose2& motion, const MotionAlphas& alphas, const RandomKey& key) {
     const Vec2 way = motion.position - Point2{};
     const double metres = length(way), turn = std::abs(motion.heading.radians());
     if (metres == 0 && turn == 0) return motion;
@@ -180,6 +180,7 @@ Odometer::Odometer(const Mover& mover, std::uint64_t seed, bool noise)
       id_(hashOf(mover.id)),
       counts_(noise && (hasDeviation(noise_.motion) || hasDeviation(noise_.odometry))),
       drifts_(noise && hasDeviation(noise_.motion)),
+      alphas_(alphasOf(noise_)),
       origin_(mover.pose) {}
 
 Vec2 Odometer::stray(Motion& end, const Pose2& start, std::int64_t step) {
@@ -196,6 +197,7 @@ Vec2 Odometer::stray(Motion& end, const Pose2& start, std::int64_t step) {
 
 void Odometer::count(std::int64_t step) {
     if (!counts_) return;
+    covariance_ = propagated(covariance_, pose_.heading, turned_, covarianceOf(turned_, alphas_));
     pose_ =
         composed(pose_, strayed(turned_, noise_.odometry,
                                 {seed_, Purpose::Odometry, id_, static_cast<std::uint64_t>(step)}));

@@ -9,6 +9,7 @@
 
 #include "base/random.h"
 #include "geom/pose.h"
+#include "scene/odometry_covariance.h"
 #include "sense/scan.h"
 #include "sim/collision.h"
 #include "sim/mover.h"
@@ -51,7 +52,7 @@ Pose2 composed(const Pose2& outer, const Pose2& inner);
 /// alpha d^2. Errors of independent steps must add up to a spread that does not depend on the step
 /// length, so here the variance grows in proportion to the way: the same for a turn of one radian
 /// and a way of one metre.
-Pose2 strayed(const Pose2& motion, const std::array<double, 4>& alphas, const RandomKey& key);
+Pose2 strayed(const Pose2& motion, const MotionAlphas& alphas, const RandomKey& key);
 
 /// Moves the robots' starts by their start errors, drawn up to a hundred times until the start is
 /// free. \returns the robots without a free one, which start as written
@@ -76,9 +77,15 @@ class Odometer {
     [[nodiscard]] Pose2 pose(const Pose2& truth) const {
         return counts_ ? pose_ : relativePose(origin_, truth);
     }
+    /// Returns the covariance of the estimated pose's errors against the true one, in the frame of
+    /// odometry: of errors of the motion and of the odometry. 0 without noise.
+    [[nodiscard]] const PoseCovariance& covariance() const { return covariance_; }
+    /// Returns the alphas of both errors together; 0 without noise.
+    [[nodiscard]] MotionAlphas alphas() const { return counts_ ? alphas_ : MotionAlphas{}; }
     /// Sets the estimated pose from a record.
-    void put(const Pose2& pose) {
-        pose_ = pose;
+    void put(const EstimatedPose& estimate) {
+        pose_ = estimate.pose;
+        covariance_ = estimate.covariance;
         counts_ = true;
     }
     /// Goes on from another one after a jump of the mover, which the wheels do not notice.
@@ -95,8 +102,10 @@ class Odometer {
     MotionNoise noise_;
     std::uint64_t seed_ = 0, id_ = 0;
     bool counts_ = false, drifts_ = false;
+    MotionAlphas alphas_{};  // of motion and odometry together
     Pose2 origin_;
-    Pose2 pose_;    // estimate so far
+    Pose2 pose_;  // estimate so far
+    PoseCovariance covariance_;
     Pose2 turned_;  // motion of the wheels in this step
 };
 

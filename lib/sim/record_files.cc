@@ -312,8 +312,12 @@ void appendRobotRows(std::string& out, const World& world, RowTexts& known, std:
 void appendOdometryRows(std::string& out, const World& world, RowTexts& known) {
     appendRows(out, known, world.time(), world.robots(), ~std::uint32_t{0},
                [&world](std::size_t i) {
-                   const Pose2 pose = world.odometry(i).pose;
-                   return std::array{pose.position.x, pose.position.y, pose.heading.degrees()};
+                   const Odometry odometry = world.odometry(i);
+                   const Pose2& pose = odometry.pose;
+                   const PoseCovariance& errors = odometry.covariance;
+                   return std::array{pose.position.x, pose.position.y, pose.heading.degrees(),
+                                     errors.xx,       errors.xy,       errors.yy,
+                                     errors.xh,       errors.yh,       errors.hh};
                });
 }
 

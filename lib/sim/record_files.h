@@ -166,7 +166,8 @@ constexpr std::string_view kRobotsHead =
     "t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall\n";
 /// \param kept as TableColumns::kept
 void appendRobotRows(std::string& out, const World& world, RowTexts& known, std::uint32_t kept);
-constexpr std::string_view kOdometryHead = "t,id,x,y,heading_deg\n";
+constexpr std::string_view kOdometryHead =
+    "t,id,x,y,heading_deg,cov_xx,cov_xy,cov_yy,cov_xh,cov_yh,cov_hh\n";
 void appendOdometryRows(std::string& out, const World& world, RowTexts& known);
 constexpr std::string_view kPeopleHead =
     "t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall\n";

@@ -58,9 +58,9 @@ struct RecordOptions {
 /// - robots.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall; each robot at
 ///   time 0 and after each step
 /// - people.csv: t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall; likewise
-/// - odometry.csv: t,id,x,y,heading_deg; the estimated pose of each robot, from 0,0 and heading 0
-/// at
-///   its start; likewise, on request
+/// - odometry.csv: t,id,x,y,heading_deg,cov_xx,cov_xy,cov_yy,cov_xh,cov_yh,cov_hh; the estimated
+///   pose of each robot, from 0,0 and heading 0 at its start, and its covariance; likewise, on
+///   request
 /// - sonars.csv: t,id,ranges; the sonar ranges of each robot
 /// - bumpers.csv: t,id,hit; the pressed bumpers of each robot, at the start and at each change
 /// - scans.jsonl: every reading, as `scan` writes it

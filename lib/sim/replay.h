@@ -117,7 +117,7 @@ class Replay {
     bool is_late_ = false;             // it lacks the moment of the start
     bool is_ahead_ = false;            // the reader has read the moment of the next step
     std::vector<RobotStatus> states_;  // of all movers of the world
-    std::vector<std::optional<Pose2>> odometries_;  // of all its robots
+    std::vector<std::optional<EstimatedPose>> odometries_;  // of all its robots
     std::vector<Collision> collisions_;
     std::vector<RunCollision> recorded_;              // their ids
     std::vector<UnreachedPoint> points_;              // given up in the last step

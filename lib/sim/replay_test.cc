@@ -225,6 +225,8 @@ TEST_F(ReplayTest, OdometryAndNoiseAreThoseOfThen) {
     for (std::size_t i = 0; replay.step(again); ++i) {
         const Odometry odometry = again.odometry(0);
         ASSERT_EQ(odometry.pose, believed[i].pose) << i;
+        ASSERT_EQ(odometry.covariance, believed[i].covariance) << i;
+        ASSERT_EQ(odometry.alphas, believed[i].alphas);
         ASSERT_EQ(odometry.speed, believed[i].speed);
         ASSERT_EQ(rangesOf(again, "l1"), ranges[i]) << i;
     }

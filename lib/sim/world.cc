@@ -92,7 +92,9 @@ Odometry World::odometry(std::size_t robot) const {
     return {.pose = data_->odometers[robot].pose(motion.pose),
             .speed = motion.drive.speed,
             .sidespeed = motion.side.speed,
-            .rotspeed = Angle::degrees(motion.turn.speed)};
+            .rotspeed = Angle::degrees(motion.turn.speed),
+            .covariance = data_->odometers[robot].covariance(),
+            .alphas = data_->odometers[robot].alphas()};
 }
 
 const SensorReading& World::reading(std::size_t sensor) const {
@@ -328,7 +330,7 @@ void World::countOn(std::size_t mover, const CarriedState& state) {
 int World::issueId(std::size_t mover) { return ++data_->states[mover].ids; }
 
 void World::stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,
-                   std::span<const std::optional<Pose2>> odometries,
+                   std::span<const std::optional<EstimatedPose>> odometries,
                    std::span<const UnreachedPoint> unreached) {
     Data& data = *data_;
     assert(states.size() == data.movers.size());

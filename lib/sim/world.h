@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/odometry_covariance.h"
 #include "scene/scene.h"
 #include "sense/detection.h"
 #include "sim/command.h"
@@ -38,6 +39,8 @@ struct Odometry {
     Pose2 pose;
     double speed = 0, sidespeed = 0;  ///< m/s
     Angle rotspeed;                   ///< a second, counter-clockwise
+    PoseCovariance covariance;        ///< of the pose's errors
+    MotionAlphas alphas{};            ///< by which they grow; 0 without noise
 };
 
 /// How a command ended.
@@ -226,7 +229,7 @@ class World {
     /// movers(), and `odometries` the robots' estimates, where known. \pre as many states as
     /// movers(), and odometries as robots() or zero
     void stepTo(std::span<const RobotStatus> states, std::span<const Collision> collisions,
-                std::span<const std::optional<Pose2>> odometries = {},
+                std::span<const std::optional<EstimatedPose>> odometries = {},
                 std::span<const UnreachedPoint> unreached = {});
     /// Likewise, but due sensors are read after a later step: for skipped steps. Updates mats and
     /// gates.

@@ -50,7 +50,7 @@ class RecordedOdometry {
             moment.time = run_.time();
             for (const RunState& state : run_.states()) {
                 const std::string& id = run_.members()[state.member].id;
-                moment.poses.emplace_back(id, state.odometry.value_or(state.pose));
+                moment.poses.emplace_back(id, state.odometry ? state.odometry->pose : state.pose);
             }
             while (latest_.size() > 1 && latest_[1].time <= moment.time - kept_)
                 latest_.pop_front();
@@ -86,12 +86,16 @@ class RecordedOdometry {
     bool has_next_ = false;
 };
 
-/// Returns all movers of a run, including those added later.
-std::vector<RunMember> membersOf(const std::string& folder) {
+/// Returns all movers of a run, including those added later. Robots of the scene have its alphas.
+std::vector<RunMember> membersOf(const std::string& folder, const Scene& scene) {
     RunReader run(folder);
     while (run.next()) {
     }
-    return run.members();
+    std::vector<RunMember> members = run.members();
+    for (RunMember& member : members)
+        for (const PlacedRobot& robot : scene.robots)
+            if (robot.id == member.id) member.alphas = alphasOf(robot.model.noise);
+    return members;
 }
 
 /// Writes the poses of all movers, up to the times of the readings, to a stream of a format.
@@ -148,7 +152,7 @@ void writeRecorded(const ScanCommand& command) {
     const Sensors lasers = recordedLasers(options, input.scene);
     FormatOptions how = formatOptions(command, command.options(), input);
     const bool wants_moments = options.format == "mcap";
-    if (wants_moments) how.members = membersOf(options.view.run);
+    if (wants_moments) how.members = membersOf(options.view.run, input.scene);
     const auto format = makeFormat(options.format, lasers, std::move(how));
     if (!format->isStream())
         throw UsageError(

@@ -25,9 +25,10 @@ namespace ispace {
 namespace {
 
 /// Columns: the required ones first and in this order; others may follow anywhere or be missing.
-constexpr std::array<std::string_view, 12> kColumns = {
-    "t",     "id",           "x",     "y",     "heading_deg", "speed", "rotspeed_deg",
-    "accel", "rotaccel_deg", "stall", "phase", "sidespeed"};
+constexpr std::array<std::string_view, 18> kColumns = {
+    "t",      "id",           "x",      "y",     "heading_deg", "speed",  "rotspeed_deg",
+    "accel",  "rotaccel_deg", "stall",  "phase", "sidespeed",   "cov_xx", "cov_xy",
+    "cov_yy", "cov_xh",       "cov_yh", "cov_hh"};
 constexpr std::size_t kNeeded = 5;
 enum Column {
     kTime,
@@ -41,7 +42,13 @@ enum Column {
     kRotaccel,
     kStall,
     kPhase,
-    kSidespeed
+    kSidespeed,
+    kXX,
+    kXY,
+    kYY,
+    kXH,
+    kYH,
+    kHH
 };
 
 /// Reads the moments of one file.
@@ -160,6 +167,11 @@ void MomentFile::readLine() {
     row.state.is_stalled = number(kStall) != 0;
     row.state.phase = number(kPhase);
     row.state.sidespeed = number(kSidespeed);
+    if (place_[kHH] != std::string_view::npos) {
+        const PoseCovariance errors{number(kXX), number(kXY), number(kYY),
+                                    number(kXH), number(kYH), number(kHH)};
+        row.state.odometry = {row.state.pose, errors};
+    }
     row_ = row;
 }
 
@@ -348,7 +360,8 @@ bool RunReader::Data::readOdometry() {
         if (members[state.member].is_person) continue;
         if (belief == beliefs.end() || believers[belief->member].id != members[state.member].id)
             odometry->fail("the robots at t=" + formatDouble(time) + " are not those of " + name);
-        state.odometry = (belief++)->pose;
+        const RunState& believed = *belief++;
+        state.odometry = believed.odometry.value_or(EstimatedPose{believed.pose});
     }
     return true;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "geom/pose.h"
+#include "scene/odometry_covariance.h"
 
 namespace ispace {
 
@@ -53,7 +54,7 @@ struct RunState {
     double phase = 0;      ///< of a person's gait
     double sidespeed = 0;  ///< m/s, to the left
     /// The robot's odometry, from 0,0 and heading 0 at its start, if recorded.
-    std::optional<Pose2> odometry = {};
+    std::optional<EstimatedPose> odometry = {};
 };
 
 /// A collision of a robot or a person.
@@ -78,6 +79,7 @@ struct RunBumpers {
 struct RunMember {
     std::string id;
     bool is_person = false;
+    MotionAlphas alphas{};  ///< of errors of motion and odometry, if known
 };
 
 /// Reads the poses of a recorded run, one moment after another, in constant memory: robots.csv, and

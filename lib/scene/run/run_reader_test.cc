@@ -224,7 +224,9 @@ TEST(RunReader, ReadsWhatRobotsBelieve) {
     EXPECT_TRUE(reader.hasOdometry());
     ASSERT_TRUE(reader.next());
     ASSERT_TRUE(reader.next());
-    EXPECT_EQ(reader.states()[0].odometry, (Pose2{{0.4, 0.1}, Angle::degrees(9)}));
+    ASSERT_TRUE(reader.states()[0].odometry);
+    EXPECT_EQ(reader.states()[0].odometry->pose, (Pose2{{0.4, 0.1}, Angle::degrees(9)}));
+    EXPECT_EQ(reader.states()[0].odometry->covariance, PoseCovariance()) << "older records";
     EXPECT_FALSE(reader.states()[2].odometry) << "a person";
     EXPECT_EQ(reader.members().size(), 3U);
     EXPECT_FALSE(reader.next());

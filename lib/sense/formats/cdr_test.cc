@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstring>
 
 #include "sense/formats/ros_messages.h"
 
@@ -104,6 +105,34 @@ TEST(RosMessages, PosesAreReadInThePlane) {
     EXPECT_EQ(pose.frame, "map");
     EXPECT_EQ(pose.pose.position, Point2(1, -2));
     EXPECT_NEAR(pose.pose.heading.degrees(), 90, 1e-9);
+}
+
+TEST(RosMessages, OdometryHoldsItsCovariances) {
+    const EstimatedPose estimate{{{1, 2}, Angle()},
+                                 {.xx = 1, .xy = 2, .yy = 3, .xh = 4, .yh = 5, .hh = 6}};
+    const MotionAlphas alphas{0.01, 0.004, 0.002, 0.001};
+    constexpr double kSeconds = 0.02;
+    const std::string bytes = odometryMessage({0, "r_odom"}, "r", estimate,
+                                              {0.5, 0, Angle::radians(0.2)}, alphas, kSeconds);
+    // Last come 36 doubles of the pose, 6 of the twist and 36 of its covariance.
+    constexpr std::size_t kMatrix = 36, kRow = 6, kTwist = 6;
+    const auto value = [&bytes](std::size_t from_end, std::size_t row, std::size_t column) {
+        double number = 0;
+        const std::size_t at = bytes.size() - 8 * (from_end - kRow * row - column);
+        std::memcpy(&number, bytes.data() + at, sizeof number);
+        return number;
+    };
+    constexpr std::size_t kPose = 2 * kMatrix + kTwist;
+    EXPECT_EQ(value(kPose, 0, 0), 1);
+    EXPECT_EQ(value(kPose, 0, 1), 2);
+    EXPECT_EQ(value(kPose, 1, 0), 2);
+    EXPECT_EQ(value(kPose, 1, 1), 3);
+    EXPECT_EQ(value(kPose, 0, 5), 4);
+    EXPECT_EQ(value(kPose, 5, 1), 5);
+    EXPECT_EQ(value(kPose, 5, 5), 6);
+    EXPECT_EQ(value(kPose, 2, 2), 0);
+    EXPECT_NEAR(value(kMatrix, 0, 0), (0.002 * 0.5 + 0.001 * 0.2) / kSeconds, 1e-12);
+    EXPECT_NEAR(value(kMatrix, 5, 5), (0.01 * 0.2 + 0.004 * 0.5) / kSeconds, 1e-12);
 }
 
 }  // namespace

@@ -147,6 +147,7 @@ class McapStream final : public ReadingStream {
 struct Member {
     std::string name, odometry;  ///< its frames
     std::uint16_t channel = 0;   ///< of a robot's odometry
+    MotionAlphas alphas{};
 };
 
 class Mcap final : public FormatBase {
@@ -179,10 +180,12 @@ class Mcap final : public FormatBase {
                 addMoverFrame(transforms, now, one.name, state.pose);
                 continue;
             }
-            addRobotFrames(transforms, now, one.odometry, one.name, state.pose, *state.odometry);
+            addRobotFrames(transforms, now, one.odometry, one.name, state.pose,
+                           state.odometry->pose);
             appendMcapMessage(odometries, one.channel, sequence, now,
                               odometryMessage({now, one.odometry}, one.name, *state.odometry,
-                                              {state.speed, state.sidespeed, state.rotspeed}));
+                                              {state.speed, state.sidespeed, state.rotspeed},
+                                              one.alphas, kOdometryPeriod));
         }
         if (transforms.empty()) return;
         const std::uint64_t now = transforms.front().header.nanoseconds;
@@ -210,7 +213,7 @@ class Mcap final : public FormatBase {
             {static_cast<std::uint16_t>(topic.type), "/" + name + "/" + std::string(topic.name)});
     }
     void addMember(const RunMember& one) {
-        Member member{takeName(rosName(one.id), one.id), "", 0};
+        Member member{takeName(rosName(one.id), one.id), "", 0, one.alphas};
         if (!one.is_person) {
             member.odometry = takeName(member.name + "_odom", one.id + "'s odometry");
             member.channel = static_cast<std::uint16_t>(channels_.size());

@@ -150,16 +150,39 @@ std::string pointMessage(const RosHeader& header, Point3 point) {
     return headed(header).put(point.x).put(point.y).put(point.z).take();
 }
 
-std::string odometryMessage(const RosHeader& header, std::string_view child, const Pose2& pose,
-                            const RosTwist& twist) {
-    constexpr std::array<double, 36> kUnknown{};
+namespace {
+
+/// Returns the rows of ROS' covariances: x, y, z, and turns about them.
+std::array<double, 36> rosCovariance(const PoseCovariance& errors) {
+    constexpr std::size_t kRow = 6, kTurn = 5;
+    std::array<double, 36> all{};
+    const auto set = [&all](std::size_t i, std::size_t k, double value) {
+        all[kRow * i + k] = all[kRow * k + i] = value;
+    };
+    set(0, 0, errors.xx);
+    set(0, 1, errors.xy);
+    set(1, 1, errors.yy);
+    set(0, kTurn, errors.xh);
+    set(1, kTurn, errors.yh);
+    set(kTurn, kTurn, errors.hh);
+    return all;
+}
+
+}  // namespace
+
+std::string odometryMessage(const RosHeader& header, std::string_view child,
+                            const EstimatedPose& estimate, const RosTwist& twist,
+                            const MotionAlphas& alphas, double seconds) {
+    const Pose2& pose = estimate.pose;
+    const PoseCovariance of_twist =
+        twistCovariance({twist.forward, twist.left}, twist.turn, alphas, seconds);
     CdrWriter out = headed(header);
     out.put(child).put(pose.position.x).put(pose.position.y).put(0.0);
     putRotation(out, Eigen::Quaterniond(turnAbout(2, pose.heading)));
-    out.array(std::span<const double>(kUnknown));
+    out.array(std::span<const double>(rosCovariance(estimate.covariance)));
     out.put(twist.forward).put(twist.left).put(0.0);
     out.put(0.0).put(0.0).put(twist.turn.radians());
-    return out.array(std::span<const double>(kUnknown)).take();
+    return out.array(std::span<const double>(rosCovariance(of_twist))).take();
 }
 
 namespace {

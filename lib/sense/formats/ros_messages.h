@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geom/pose.h"
+#include "scene/odometry_covariance.h"
 #include "scene/robot.h"
 #include "sense/formats/point_cloud.h"
 #include "sense/formats/reading_picture.h"
@@ -76,9 +77,14 @@ struct RosTwist {
     double forward = 0, left = 0;
     Angle turn;
 };
-/// Writes the odometry pose of `child` in the header's frame. Covariances are 0: unknown.
-std::string odometryMessage(const RosHeader& header, std::string_view child, const Pose2& pose,
-                            const RosTwist& twist);
+/// Seconds between messages of odometry, over which their twist is a mean.
+constexpr double kOdometryPeriod = 0.02;
+/// Writes the odometry pose of `child` in the header's frame. Covariances are 0 without noise, and
+/// of z, roll and pitch, which are exact; those of the twist are of a mean over `seconds`.
+/// \param alphas of the errors of motion and odometry
+std::string odometryMessage(const RosHeader& header, std::string_view child,
+                            const EstimatedPose& estimate, const RosTwist& twist,
+                            const MotionAlphas& alphas, double seconds);
 
 // Messages of a running world.
 

@@ -248,8 +248,9 @@ std::string diagnosticsOf(const RosMoment& moment, std::size_t /*robot*/, std::s
 std::string odometryOf(const RosMoment& moment, std::size_t robot, std::size_t /*part*/) {
     const Odometry odometry = moment.world().odometry(robot);
     return odometryMessage({moment.now(), moment.frames().odometries[robot]},
-                           moment.frames().movers[robot], odometry.pose,
-                           {odometry.speed, odometry.sidespeed, odometry.rotspeed});
+                           moment.frames().movers[robot], {odometry.pose, odometry.covariance},
+                           {odometry.speed, odometry.sidespeed, odometry.rotspeed}, odometry.alphas,
+                           std::max(kOdometryPeriod, seconds(moment.world().stepLength())));
 }
 
 std::string sonarOf(const RosMoment& moment, std::size_t robot, std::size_t part) {
