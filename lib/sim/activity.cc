@@ -386,8 +386,8 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
     const GoalWays& ways = waysOf(world, world.people()[mover - world.robots().size()].height);
     const Point2 from = world.status(mover).pose.position;
     if (doer.tries++ >= kMaxTries) {
-        // A crowd may leave no point of a zone free, or of the floor beside a thing: whoever is
-        // there has arrived.
+        // A crowd may leave no point of a zone free, or of the floor beside a thing: a person that
+        // is there has arrived.
         doer.gave_up = !ways.isAt(from, action.target);
         if (!doer.gave_up) stay(world, mover, doer);
         return false;
@@ -407,7 +407,7 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
     }
     doer.goal = way.back();
     // Steering round others needs short steps; turns and straight lines are exact in any. Where
-    // these run into somebody, every other try steers.
+    // these run into others, every other try steers.
     constexpr SimTime kShortStep = std::chrono::milliseconds(100);
     if (world.stepLength() > kShortStep && doer.tries % 2 == 1) {
         doer.rest = legsOf(world.status(mover).pose, way);

@@ -31,7 +31,7 @@ class WayFinder {
     WayFinder(const Obstacles& obstacles, const Box2& box, double radius,
               const std::vector<Polygon>& holes = {});
 
-    /// A circle on the floor that somebody occupies.
+    /// A circle on the floor that a mover occupies.
     struct Spot {
         Point2 center;
         double radius = 0;
