@@ -91,7 +91,9 @@ ReportPage buildingPage(const BuildingPageInput& input) {
     for (std::size_t i = 0; i < input.coverage.storeys.size(); ++i)
         page.sections.push_back(storeySection(input, i));
     if (input.advice != nullptr) page.sections.push_back(adviceSection(*input.advice));
-    PageSection records{"records", "Records", {}};
+    if (input.advice != nullptr && !input.advice->suggestions.empty())
+        page.sections.push_back(adviceCommands(*input.advice));
+    PageSection records{"records", "Appendix: records and command", {}};
     records.blocks.push_back(
         PageText{"Digest of the building: " + input.building.document.digest(), Tone::Small});
     records.blocks.push_back(PageText{"The command of this report:", Tone::Small});

@@ -19,12 +19,15 @@ struct Guess {
 
 constexpr auto kGuesses = std::to_array<Guess>({
     // Reports and material.
-    {"coverage arrange", "--bom --material --materials --parts --parts-list --bill-of-materials",
-     "--report FILE.html has the material with its costs"},
-    {"coverage arrange", "--customer --client --company --installer",
-     "--report FILE.html is the page for people"},
-    {"coverage arrange", "--price --prices --prices-file --price-list --pricelist --costs",
-     "records have cost=, which --report adds up in the material"},
+    {"coverage arrange", "--bom --materials --parts --parts-list --bill-of-materials --quote",
+     "--material FILE.csv, and --report FILE.html, have devices, mounts and cables with prices"},
+    {"coverage arrange", "--customer --for", "--client TEXT is on the cover of --report"},
+    {"coverage arrange", "--company --installer --by", "--author TEXT is on the cover of --report"},
+    {"coverage arrange", "--project-name --name", "--project TEXT is on the cover of --report"},
+    {"coverage arrange", "--price --prices-file --price-list --pricelist --costs",
+     "--prices FILE.csv has lines ITEM,PRICE"},
+    {"coverage arrange", "--image --icon", "--logo FILE.png is on the cover of --report"},
+    {"coverage arrange", "--page-size --papersize", "--paper a4|letter"},
     {"coverage arrange envc simrun", "--html --pdf --page", "--report FILE.html or FILE.pdf"},
     // Cameras.
     {"coverage arrange",

@@ -33,11 +33,12 @@ while read -r tool guess hint; do
     done
     count=$((count + 1))
 done <<'TABLE'
-coverage --bom --report
-coverage --material --report
-arrange --parts-list --report
-coverage --customer --report
-coverage --prices-file cost=
+coverage --bom --material
+arrange --parts-list --material
+coverage --customer --client
+coverage --company --author
+arrange --project-name --project
+coverage --prices-file --prices
 coverage --html --report
 arrange --pdf --report
 envc --html --report

@@ -80,8 +80,9 @@ for id, pose in places.items():
     told = [float(rows[id][column[name]].split()[0]) for name in ("nearest wall", "next wall")]
     assert all(abs(a - b) < 0.006 for a, b in zip(apart, told)), (id, apart, told)
 assert "desk" in rows["c1"][column["sees"]], rows["c1"]
-assert page.tables["material"][0][1:] == [["camera", "1", "200"], ["laser", "1", "-"], ["urg-04lx", "2", "2000"],
-                                          ["cable", "18.20 m", "36.4"], ["together", "4", "2236.4"]], page.tables["material"]
+assert page.tables["material"][0][1:] == [
+    ["camera", "1", "200", "200"], ["laser", "1", "-", "-"], ["urg-04lx", "2", "1000", "2000"], ["stand", "2", "-", "-"],
+    ["wall mount", "1", "-", "-"], ["cable", "18.20 m", "2", "36.4"], ["together", "", "", "2236.4"]], page.tables["material"]
 # From the panel along the walls, 1.5 m above the floor.
 cables = {id: row[column["cable"]] for id, row in rows.items()}
 assert cables == {"c1": "10.50 to p1", "l1": "5.10 to p1", "l2": "2.60 to p1"}, cables

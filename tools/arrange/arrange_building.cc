@@ -46,6 +46,7 @@ void mustBeAboutBuildings(const ArrangeToolOptions& options, const BuildingInput
     if (!options.curve_file.empty()) option = "--curve";
     if (!options.mps_file.empty()) option = "--export-mps";
     if (!options.report_file.empty()) option = "--report";
+    if (!options.page.material.empty()) option = "--material";
     if (options.batch.shard) option = "--shard";
     if (options.batch.resume) option = "--resume";
     if (input.layout) option = "a LAYOUT";

@@ -420,6 +420,7 @@ void ArrangeCommand::addFileOptions() {
         "write a report of the layout for people, as a page with its map and the sheet of an "
         "installer (.html, .pdf), or that of coverage --json (.json)",
         Enters::Nothing);
+    addReportOptions(line_, options_.page);
     line_.file("--export-mps", "FILE", options_.mps_file,
                "write the model for solvers of mixed-integer programs (glpsol, cbc)",
                Enters::Nothing);

@@ -11,6 +11,7 @@
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "cli/presence_ways.h"
+#include "cli/report_options.h"
 
 namespace ispace {
 
@@ -33,6 +34,7 @@ struct ArrangeToolOptions {
     std::string places_file;
     std::vector<std::string> robust_rooms;  ///< of --robust rooms:
     std::string trace_file, curve_file, mps_file, report_file, heat_file, certificate_file;
+    ReportWords page;                  ///< of --report and --material
     std::string verify_file;           ///< a certificate to check instead of a search
     std::optional<double> time_limit;  ///< seconds
     BatchOptions batch;

@@ -167,6 +167,9 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
         page.requirements.push_back({formatPercent(*work.how.target), arrangement.is_reached,
                                      "the sensors cover " + percentText(arrangement.coverage),
                                      arrangement.coverage - *work.how.target});
+    page.cover = coverOf(options.page);
+    page.paper = paperOf(options.page);
+    page.prices = pricesOf(options.page);
     const ReportPage pages = coveragePage(page);
     return suffixOf(options.report_file) == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }

@@ -34,9 +34,16 @@ Value valueOf(const std::string& word, const Value (&values)[kCount]) {
 void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
     settleCertificate();
-    constexpr const char* kSingle[] = {"--curve",        "--trace", "--report",
-                                       "--export-mps",   "--share", "--checkpoint-interval",
-                                       "--alternatives", "--heat",  "--certificate"};
+    constexpr const char* kSingle[] = {"--curve",
+                                       "--trace",
+                                       "--report",
+                                       "--material",
+                                       "--export-mps",
+                                       "--share",
+                                       "--checkpoint-interval",
+                                       "--alternatives",
+                                       "--heat",
+                                       "--certificate"};
     checkBatchOptions(line_, options_.batch, options_.common, options_.operands, kSingle);
     if (!options_.batch.list.empty() && options_.places_file == "-")
         throw UsageError("--places: stdin is not read again for each line of LIST: give a file");
@@ -267,11 +274,12 @@ void ArrangeCommand::settleStrategy() {
 namespace {
 
 /// Lists the files beside the layout, each with its option.
-std::array<std::pair<const char*, const std::string*>, 6> sideFiles(
+std::array<std::pair<const char*, const std::string*>, 7> sideFiles(
     const ArrangeToolOptions& options) {
     return {{{"--curve", &options.curve_file},
              {"--trace", &options.trace_file},
              {"--report", &options.report_file},
+             {"--material", &options.page.material},
              {"--heat", &options.heat_file},
              {"--certificate", &options.certificate_file},
              {"--export-mps", &options.mps_file}}};
@@ -294,6 +302,7 @@ void ArrangeCommand::settleFiles() const {
     if (!options_.curve_file.empty()) (void)outputFormat({}, options_.curve_file, curveFormats());
     if (!options_.report_file.empty())
         (void)outputFormat({}, options_.report_file, {"json", "html", "pdf"});
+    checkReportOptions(options_.page, options_.report_file);
     if (!options_.heat_file.empty())
         (void)outputFormat({}, options_.heat_file, {"png", "svg", "pdf"});
 }
@@ -354,6 +363,7 @@ void ArrangeCommand::becomeMerge(const ArrangeToolOptions& merge, Shared what, i
     options_.curve_file = merge.curve_file;
     options_.mps_file = merge.mps_file;
     options_.report_file = merge.report_file;
+    options_.page = merge.page;
     options_.heat_file = merge.heat_file;
     options_.how.wants_gains = merge.how.wants_gains;
     options_.batch = BatchOptions();

@@ -51,6 +51,8 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
     if (!options.report_file.empty())
         writeAll(options.report_file,
                  reportFile(options, work, arrangement, layout, command.historyLine(input.named)));
+    if (!options.page.material.empty())
+        writeMaterial(options.page, makeScene(input.environment, &layout, shippedDevices()));
     if (!options.heat_file.empty()) writeHeat(options, work, arrangement);
     if (const std::string& file = options.certificate_file; !file.empty()) {
         if (const auto& bound = arrangement.poses_bound; bound && bound->certificate)
@@ -155,6 +157,7 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     claimOutput(options.curve_file, "--curve");
     claimOutput(options.mps_file, "--export-mps");
     claimOutput(options.report_file, "--report");
+    claimOutput(options.page.material, "--material");
     claimOutput(options.heat_file, "--heat");
     claimOutput(options.certificate_file, "--certificate");
     ArrangeWork work = readWork(options);
@@ -167,7 +170,8 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     claimHeat(options, work);
     for (const std::string* file :
          {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file,
-          &options.report_file, &options.heat_file, &options.certificate_file})
+          &options.report_file, &options.page.material, &options.heat_file,
+          &options.certificate_file})
         mustBeWritable(*file);
     warnOfSearch(options, work);
     bool is_done = false;

@@ -48,6 +48,8 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
     if (options.presence) option = "--presence";
     if (!options.privacy.empty()) option = "--privacy";
     if (!options.facing.empty()) option = "--facing";
+    if (!options.page.material.empty()) option = "--material";
+    if (!options.page.prices.empty()) option = "--prices";
     if (options.perturb) option = "--perturb";
     if (options.failures > 0) option = "--failures";
     if (options.crowd) option = "--crowd";
@@ -183,7 +185,10 @@ std::string buildingReport(const CoverageToolOptions& options, const BuildingInp
         page.requirements.push_back(
             {requirementPhrase(requirement), verdict.is_met, verdict.text, verdict.margin});
     }
-    const ReportPage pages = buildingPage(page);
+    ReportPage pages = buildingPage(page);
+    pages.cover = coverOf(options.page);
+    if (!pages.cover.title.empty()) pages.title = pages.cover.title;
+    pages.paper = paperOf(options.page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }
 

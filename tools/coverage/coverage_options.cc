@@ -133,9 +133,10 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {
-        "--report", "--suggest", "--time-limit", "--compare",  "--run",  "--perturb", "--failures",
-        "--crowd",  "--facing",  "--privacy",    "--presence", "--path", "--localise"};
+    std::vector<const char*> single = {"--report",  "--material", "--suggest", "--time-limit",
+                                       "--compare", "--run",      "--perturb", "--failures",
+                                       "--crowd",   "--facing",   "--privacy", "--presence",
+                                       "--path",    "--localise"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
@@ -178,6 +179,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "also write the report there: as JSON (.json), or for people as a page with maps and "
               "the sheet of an installer (.html, .pdf)",
               Enters::Nothing);
+    addReportOptions(line, o.page);
     addListOption(line, o.batch, "the output is a report a line, as JSON, in its order");
     addBatchOptions(line, o.batch, "of the lines of LIST; cat joins their outputs", false);
     addCacheOption(line, o.batch);
@@ -315,6 +317,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         checkBatch(line, o);
     o.command = line.historyLine({});
     if (line.given("--report")) checkReport(o);
+    checkReportOptions(o.page, o.report);
     const bool is_page = !o.report.empty() && suffixOf(o.report) != "json";
     o.measure.keep_depths = o.format != nullptr || is_page;  // for drawing
     return o;

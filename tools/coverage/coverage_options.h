@@ -8,6 +8,7 @@
 #include "cli/batch.h"
 #include "cli/common_options.h"
 #include "cli/presence_ways.h"
+#include "cli/report_options.h"
 #include "coverage/camera_rules.h"
 #include "coverage/presence_requirement.h"
 #include "coverage/requirement.h"
@@ -54,6 +55,7 @@ struct CoverageToolOptions {
     std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor seen by 0, 1, ... sensors
     SceneRules rules;
     std::string history_line;
+    ReportWords page;  ///< of --report and --material
 };
 
 /// Opens no file. \throws UsageError, TextRequested

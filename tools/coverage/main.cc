@@ -103,6 +103,9 @@ std::string reportFile(const CoverageToolOptions& options, const SceneInput& inp
     page.parts = parts;
     page.media =
         suffix == "pdf" ? CoveragePageInput::Media::Paper : CoveragePageInput::Media::Screen;
+    page.cover = coverOf(options.page);
+    page.paper = paperOf(options.page);
+    page.prices = pricesOf(options.page);
     const ReportPage pages = coveragePage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }
@@ -152,6 +155,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
                             options.map.objectives};
     if (!options.report.empty())
         writeAll(options.report, reportFile(options, input, measured.coverage, parts));
+    writeMaterial(options.page, input.scene);
     writeAll("-", reportText(options, report, parts));
     logInfo(options.common, "coverage",
             std::to_string(report.sensors.size()) + " sensors measured on " +
@@ -164,6 +168,7 @@ void coverage(const CoverageToolOptions& options) {
     limitThreads(options.common.threads);
     claimOutputs(options.common);
     claimOutput(options.report, "--report");
+    claimOutput(options.page.material, "--material");
     claimOutput(options.junit, "--junit");
     if (options.format != nullptr && options.format->beside_suffix != nullptr)
         claimOutput(withSuffix(options.common.output, options.format->beside_suffix),

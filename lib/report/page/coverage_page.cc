@@ -127,8 +127,7 @@ PageSection summaryOf(const CoveragePageInput& input) {
     std::erase_if(rules, [](const JudgedRule& rule) { return !rule.is_required; });
     if (input.requirements.empty() && rules.empty() && input.parts.run == nullptr &&
         input.more.empty() && !input.scene.sensors.empty())
-        section.blocks.push_back(
-            PageText{"No requirement was given; --require 90% checks one.", Tone::Small});
+        section.blocks.push_back(PageText{"No requirement was given.", Tone::Small});
     for (const JudgedRequirement& one : input.requirements)
         section.blocks.push_back(PageText{
             "Required are " + one.requirement + ": " + outcomeText(one.is_met, one.finding),
@@ -259,17 +258,21 @@ void addInstallation(const CoveragePageInput& input, ReportPage& page) {
     const std::vector<Installation> installations = installationsOf(input.scene);
     PageSection section{"installation", "Installation", {}};
     const std::vector<Cable> cables = cablesOf(input.scene);
-    section.blocks.push_back(installationTable(input.scene, input.coverage, installations, cables));
+    const PageTable table = installationTable(input.scene, input.coverage, installations, cables);
+    section.blocks.push_back(table);
     section.blocks.push_back(installationPlan(input.scene, input.coverage, installations));
     section.blocks.push_back(wallFacesTable(installations));
     if (!installations.empty()) page.sections.push_back(std::move(section));
+    std::vector<PageFigure> figures = sensorPictures(input.scene, input.coverage);
+    std::vector<PageSection> sheets;
+    if (input.cover.isGiven()) sheets = cameraSheets(input.scene, table, figures);
     PageSection pictures{"sensors", "Sensors", {}};
     pictures.blocks.push_back(sensorsOfReport(input.scene, input.coverage));
-    for (PageFigure& figure : sensorPictures(input.scene, input.coverage))
-        pictures.blocks.push_back(std::move(figure));
+    for (PageFigure& figure : figures) pictures.blocks.push_back(std::move(figure));
     page.sections.push_back(std::move(pictures));
-    PageTable material = materialTable(input.scene, cables);
+    PageTable material = materialTable(materialOf(input.scene, cables, input.prices));
     page.sections.push_back({"material", "Material", {std::move(material)}});
+    for (PageSection& sheet : sheets) page.sections.push_back(std::move(sheet));
 }
 
 }  // namespace
@@ -278,11 +281,9 @@ PageSection adviceSection(const Advice& advice) {
     PageSection section{"advice", "Suggestions", {}};
     if (advice.suggestions.empty() && !advice.is_cut)
         section.blocks.push_back(PageText{"No change of one sensor or piece of furniture helps."});
-    for (const Suggestion& suggestion : advice.suggestions) {
+    for (const Suggestion& suggestion : advice.suggestions)
         section.blocks.push_back(
             PageText{printable(suggestion.text) + ": " + gainText(suggestion) + "."});
-        section.blocks.push_back(PageCode{commandOf(advice.command, suggestion.edits)});
-    }
     if (advice.is_short) {
         std::string text = kShortAdvice;
         text.front() = 'N';
@@ -292,6 +293,15 @@ PageSection adviceSection(const Advice& advice) {
         std::string text = kCutAdvice;
         text.front() = 'C';
         section.blocks.push_back(PageText{text + '.'});
+    }
+    return section;
+}
+
+PageSection adviceCommands(const Advice& advice) {
+    PageSection section{"advice-commands", "Appendix: commands of the suggestions", {}};
+    for (const Suggestion& suggestion : advice.suggestions) {
+        section.blocks.push_back(PageText{printable(suggestion.text) + ":", Tone::Small});
+        section.blocks.push_back(PageCode{commandOf(advice.command, suggestion.edits)});
     }
     return section;
 }
@@ -409,7 +419,7 @@ std::string layoutText(const Scene& scene) {
 }
 
 PageSection recordsOf(const CoveragePageInput& input) {
-    PageSection section{"records", "Records", {}};
+    PageSection section{"records", "Appendix: records and command", {}};
     section.blocks.push_back(PageText{
         "The layout, as a .3dm file holds it. Digest of the room: " + input.coverage.report.digest,
         Tone::Small});
@@ -458,6 +468,9 @@ ReportPage coveragePage(const CoveragePageInput& input) {
     ReportPage page;
     const std::string_view subject = input.parts.run == nullptr ? "coverage" : "run";
     page.title = input.name + (input.name.empty() ? "" : ": ") + std::string(subject);
+    if (!input.cover.title.empty()) page.title = input.cover.title;
+    page.cover = input.cover;
+    page.paper = input.paper;
     page.subtitle = sensorsText(input.scene) + " · " +
                     squareMetres(input.coverage.report.indoor_area) + " · " +
                     shareText(input.coverage.report.coverage);
@@ -472,6 +485,8 @@ ReportPage coveragePage(const CoveragePageInput& input) {
     addInstallation(input, page);
     if (input.parts.run != nullptr) addRun(input, page);
     page.sections.push_back(methodsOf(input));
+    if (input.parts.advice != nullptr && !input.parts.advice->suggestions.empty())
+        page.sections.push_back(adviceCommands(*input.parts.advice));
     page.sections.push_back(recordsOf(input));
     return page;
 }

@@ -8,6 +8,7 @@
 
 #include "coverage/coverage.h"
 #include "report/coverage_report.h"
+#include "report/page/material.h"
 #include "report/page/page.h"
 #include "scene/scene.h"
 
@@ -33,6 +34,9 @@ struct CoveragePageInput {
     ReportParts parts = {};
     std::vector<PageSection> more = {};  ///< of the tool that writes the page, after the map
     Media media = Media::Any;
+    PageCover cover = {};
+    Paper paper = Paper::A4;
+    PriceList prices = {};
 };
 
 /// Tells of collisions and of targets that were given up; empty without any.
@@ -41,11 +45,14 @@ std::vector<PageText> incidentsOf(const RunCoverage& run);
 /// Builds the table of requirements, with margins in percentage points.
 PageTable requirementsTable(std::span<const JudgedRequirement> requirements);
 
-/// Builds the section of suggestions, each with its command.
+/// Builds the section of suggestions.
 PageSection adviceSection(const Advice& advice);
+/// Builds the appendix with the command of each suggestion; without blocks if there are none.
+PageSection adviceCommands(const Advice& advice);
 
-/// Builds the report of a layout: summary, map, requirements, zones, the sheet of its installer,
-/// pictures, material, suggestions, methods and records.
+/// Builds the report of a layout: summary, map, requirements, zones, suggestions, the sheet of its
+/// installer, pictures, material, methods; commands and records stand in appendices. With a cover
+/// each camera has a sheet.
 ReportPage coveragePage(const CoveragePageInput& input);
 
 }  // namespace ispace

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -17,9 +16,6 @@ namespace ispace {
 namespace {
 
 std::string metresText(double value) { return formatFixed(value, 2); }
-
-/// To hundredths, without zeros at the end.
-std::string costText(double cost) { return formatDouble(std::round(100 * cost) / 100); }
 
 std::string degrees(Angle angle) {
     std::string text = formatFixed(angle.degrees(), 1);
@@ -147,52 +143,40 @@ PageTable wallFacesTable(const std::vector<Installation>& installations) {
     return table;
 }
 
-PageTable materialTable(const Scene& scene, const std::vector<Cable>& cables) {
-    struct Item {
-        std::size_t count = 0;
-        double cost = 0;
-    };
-    std::map<std::string, Item> items;
-    bool has_costs = false;
-    std::map<std::string, std::size_t> records;
-    for (std::size_t i = 0; i < scene.records.size(); ++i) records.emplace(scene.ids[i], i);
-    double sum = 0;
-    std::size_t count = 0;
-    for (const Sensor& sensor : scene.sensors) {
-        Item& item = items[deviceText(sensor)];
-        ++item.count;
-        ++count;
-        const auto record = records.find(sensor.id);
-        if (record == records.end() || !scene.records[record->second].has("cost")) continue;
-        has_costs = true;
-        item.cost += scene.records[record->second].number("cost");
-        sum += scene.records[record->second].number("cost");
+std::vector<PageSection> cameraSheets(const Scene& scene, const PageTable& installation,
+                                      std::vector<PageFigure>& pictures) {
+    std::vector<PageSection> sheets;
+    for (const TextRow& row : installation.rows) {
+        const auto camera =
+            std::find_if(scene.sensors.begin(), scene.sensors.end(), [&row](const Sensor& sensor) {
+                return sensor.id == row.front() && sensor.is<Camera>();
+            });
+        if (camera == scene.sensors.end()) continue;
+        PageSection sheet{
+            "sheet-" + std::to_string(sheets.size() + 1), "Camera " + row.front(), {}};
+        sheet.begins_sheet = true;
+        PageTable table{
+            "where it is mounted; metres and degrees as in the table of the installation",
+            "ll",
+            {"", row.front()},
+            {}};
+        for (std::size_t i = 1; i < row.size(); ++i) {
+            const std::string& head = installation.heads[i];
+            table.rows.push_back({head == "sees" ? "must see" : head, row[i]});
+        }
+        sheet.blocks.push_back(std::move(table));
+        const auto picture =
+            std::find_if(pictures.begin(), pictures.end(), [&row](const PageFigure& figure) {
+                return figure.caption.starts_with(row.front() + ": picture");
+            });
+        if (picture != pictures.end()) {
+            picture->width = 1;
+            sheet.blocks.push_back(std::move(*picture));
+            pictures.erase(picture);
+        }
+        sheets.push_back(std::move(sheet));
     }
-    double metres = 0, cable_cost = 0;
-    for (const Cable& cable : cables) {
-        metres += cable.length;
-        cable_cost += cable.cost;
-    }
-    has_costs = has_costs || cable_cost > 0;
-    sum += cable_cost;
-    PageTable table{"", "lrr", {"device", "number"}, {}};
-    if (has_costs) table.heads.emplace_back("cost");
-    for (const auto& [device, item] : items) {
-        TextRow row = {device, std::to_string(item.count)};
-        if (has_costs) row.push_back(item.cost > 0 ? costText(item.cost) : "-");
-        table.rows.push_back(std::move(row));
-    }
-    if (metres > 0) {
-        TextRow row = {"cable", metresText(metres) + " m"};
-        if (has_costs) row.push_back(cable_cost > 0 ? costText(cable_cost) : "-");
-        table.rows.push_back(std::move(row));
-    }
-    if (table.rows.size() > 1) {
-        TextRow row = {"together", std::to_string(count)};
-        if (has_costs) row.push_back(costText(sum));
-        table.rows.push_back(std::move(row));
-    }
-    return table;
+    return sheets;
 }
 
 }  // namespace ispace

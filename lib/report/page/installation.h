@@ -22,9 +22,6 @@ PageTable installationTable(const Scene& scene, const Coverage& coverage,
                             const std::vector<Installation>& installations,
                             const std::vector<Cable>& cables);
 
-/// Counts devices and metres of cable, with their costs if records have them.
-PageTable materialTable(const Scene& scene, const std::vector<Cable>& cables);
-
 /// Lists the ends of the faces from which the measures count, each face once.
 PageTable wallFacesTable(const std::vector<Installation>& installations);
 
@@ -39,5 +36,12 @@ double lensDensity(const Sensor& sensor, Point3 place);
 /// Draws the picture that a camera takes, or the floor that another sensor sees, for each sensor
 /// that stands still.
 std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& coverage);
+
+/// Builds a section for each camera that stands still, on a new sheet: its row of the
+/// installation, one value a row, the zones that it must see, and its picture as wide as the sheet.
+/// \param installation as installationTable() returns it \param pictures as of sensorPictures(), of
+/// which those of cameras are taken out
+std::vector<PageSection> cameraSheets(const Scene& scene, const PageTable& installation,
+                                      std::vector<PageFigure>& pictures);
 
 }  // namespace ispace

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -81,19 +82,38 @@ struct PageSection {
     std::string id;  ///< of the HTML element, unique on the page
     std::string title;
     std::vector<PageBlock> blocks = {};
+    bool begins_sheet = false;  ///< on paper
 };
+
+/// Names on a report that is handed over; empty ones are left out.
+struct PageCover {
+    std::string title;  ///< in place of that of the page
+    std::string project, client, author;
+    std::string logo;  ///< bytes of a PNG file
+    [[nodiscard]] bool isGiven() const {
+        return !(title.empty() && project.empty() && client.empty() && author.empty() &&
+                 logo.empty());
+    }
+};
+
+enum class Paper { A4, Letter };
 
 struct ReportPage {
     std::string title, subtitle;
     std::vector<PageSection> sections = {};
+    PageCover cover = {};
+    Paper paper = Paper::A4;
 };
+
+/// Returns the lines of a cover, such as {"Client", "ACME"}.
+std::vector<std::pair<std::string, std::string>> coverLines(const PageCover& cover);
 
 /// Writes the page as one HTML file without references to others: styles, script and pictures are
 /// inside. It is well-formed XML, too. Equal pages give equal bytes.
 std::string htmlOf(const ReportPage& page);
 
-/// Writes the page as PDF on upright A4 sheets. Figures in millimetres keep their scale if they
-/// fit. Equal pages give equal bytes.
+/// Writes the page as PDF on upright sheets of its paper. Figures in millimetres keep their scale
+/// if they fit. Equal pages give equal bytes.
 std::string pdfOf(const ReportPage& page);
 /// Returns the sheets of that PDF, in millimetres.
 std::vector<Picture> sheetsOf(const ReportPage& page);

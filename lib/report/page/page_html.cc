@@ -90,6 +90,21 @@ std::string indexJson(const MapIndex& index) {
     return json.take();
 }
 
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> coverLines(const PageCover& cover) {
+    std::vector<std::pair<std::string, std::string>> lines;
+    const auto add = [&lines](const char* name, const std::string& text) {
+        if (!text.empty()) lines.emplace_back(name, text);
+    };
+    add("Project", cover.project);
+    add("Client", cover.client);
+    add("Author", cover.author);
+    return lines;
+}
+
+namespace {
+
 class HtmlWriter {
   public:
     std::string write(const ReportPage& page) {
@@ -102,9 +117,18 @@ class HtmlWriter {
             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n"
             "<meta name=\"color-scheme\" content=\"light dark\" />\n<title>";
         out_.append(escapedXml(page.title)).append("</title>\n<style>\n");
-        out_.append(between(kPageStyle, kPageStyleEnd)).append("</style>\n</head>\n<body>\n");
-        out_.append("<header>\n<h1>").append(escapedXml(page.title)).append("</h1>\n<p>");
-        out_.append(escapedXml(page.subtitle)).append("</p>\n<nav aria-label=\"sections\">");
+        out_.append(between(kPageStyle, kPageStyleEnd));
+        if (page.paper == Paper::Letter) out_ += "@media print { @page { size: letter; } }\n";
+        out_ += "</style>\n</head>\n<body>\n<header>\n";
+        if (!page.cover.logo.empty())
+            out_.append("<img class=\"logo\" alt=\"\" src=\"data:image/png;base64,")
+                .append(base64(page.cover.logo))
+                .append("\" />\n");
+        out_.append("<h1>").append(escapedXml(page.title)).append("</h1>\n<p>");
+        out_.append(escapedXml(page.subtitle)).append("</p>\n");
+        for (const auto& [name, text] : coverLines(page.cover))
+            out_.append("<p class=\"cover\">" + name + ": <b>" + escapedXml(text) + "</b></p>\n");
+        out_.append("<nav aria-label=\"sections\">");
         for (const PageSection& section : page.sections)
             out_.append("<a href=\"#" + section.id + "\">" + escapedXml(section.title) + "</a> ");
         out_ += "</nav>\n</header>\n<main>\n";
@@ -117,8 +141,9 @@ class HtmlWriter {
 
   private:
     void add(const PageSection& section) {
-        out_.append("<section id=\"" + section.id + "\" aria-labelledby=\"" + section.id +
-                    "-title\">\n<h2 id=\"" + section.id + "-title\">");
+        out_.append(section.begins_sheet ? "<section class=\"sheet-top\" id=\"" : "<section id=\"");
+        out_.append(section.id + "\" aria-labelledby=\"" + section.id + "-title\">\n<h2 id=\"" +
+                    section.id + "-title\">");
         out_.append(escapedXml(section.title)).append("</h2>\n");
         for (const PageBlock& block : section.blocks)
             std::visit([this](const auto& one) { add(one); }, block);

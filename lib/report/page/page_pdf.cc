@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <type_traits>
 #include <utility>
 
+#include "raster/module/decoded_picture.h"
+#include "raster/picture.h"
 #include "report/page/page.h"
 
 namespace ispace {
 
 namespace {
 
-// An A4 sheet, its margins and the sizes of text, in millimetres; the smallest is above 8 points.
-constexpr double kWidth = 210, kHeight = 297, kMargin = 16, kColumn = kWidth - 2 * kMargin;
+// Margins, the column on any paper and the sizes of text, in millimetres; the smallest is above 8
+// points.
+constexpr double kMargin = 16, kColumn = 178;
 constexpr double kBody = 3.5, kSmall = 3, kTitle = 6.2, kHeading = 4.7, kMinSize = 2.9;
 constexpr double kLine = 1.42;  // of a text's size
 
@@ -52,24 +56,59 @@ std::vector<std::string> brokenLines(std::string_view text, double width, const 
     return lines;
 }
 
+struct PaperSize {
+    double width = 210, height = 297;  // millimetres
+};
+
+PaperSize sizeOf(Paper paper) {
+    return paper == Paper::Letter ? PaperSize{215.9, 279.4} : PaperSize{};
+}
+
+/// Decodes a logo on white.
+Image imageOfLogo(const std::string& bytes) {
+    const DecodedPicture decoded = decodePng(bytes, "");
+    Image image{decoded.width, decoded.height, {}};
+    const auto channels = static_cast<std::size_t>(decoded.channels);
+    for (std::size_t i = 0; i < decoded.samples.size(); i += channels) {
+        const std::uint8_t* const sample = &decoded.samples[i];
+        const std::uint32_t opacity = channels == 4 ? sample[3] : 255;
+        std::uint32_t pixel = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            pixel = pixel << 8U |
+                    (sample[channels < 3 ? 0 : c] * opacity + 255 * (255 - opacity) + 127) / 255;
+        image.pixels.push_back(pixel);
+    }
+    return image;
+}
+
 /// Sheets that fill from the top.
 class Sheets {
   public:
-    explicit Sheets(std::string title) : title_(std::move(title)) { begin(); }
+    Sheets(std::string title, Paper paper) : title_(std::move(title)), size_(sizeOf(paper)) {
+        begin();
+    }
+
+    /// The left and the lower end of the column.
+    [[nodiscard]] double left() const { return (size_.width - kColumn) / 2; }
+    [[nodiscard]] double end() const { return size_.height - kMargin; }
+    /// Begins a sheet unless the last one is empty.
+    void next() {
+        if (y_ > kMargin) begin();
+    }
 
     /// Begins a sheet unless this much height is left.
     void need(double height) {
-        if (y_ + height > kHeight - kMargin && y_ > kMargin) begin();
+        if (y_ + height > end() && y_ > kMargin) begin();
     }
     void skip(double height) { y_ += height; }
     [[nodiscard]] double y() const { return y_; }
-    [[nodiscard]] static constexpr double maxHeight() { return kHeight - 2 * kMargin; }
+    [[nodiscard]] double maxHeight() const { return end() - kMargin; }
     Picture& sheet() { return sheets_.back(); }
 
     void text(std::string_view text, const TextStyle& style) {
         for (const std::string& line : brokenLines(text, kColumn, style)) {
             need(kLine * style.size);
-            sheet().text({kMargin, y_ + style.size}, line, style);
+            sheet().text({left(), y_ + style.size}, line, style);
             y_ += kLine * style.size;
         }
     }
@@ -77,7 +116,7 @@ class Sheets {
     std::vector<Picture> finish() {
         const TextStyle style{kMinSize, false, Align::Right, palette::kFaintInk, {}};
         for (std::size_t i = 0; i < sheets_.size(); ++i)
-            sheets_[i].text({kWidth - kMargin, kHeight - kMargin / 2},
+            sheets_[i].text({left() + kColumn, size_.height - kMargin / 2},
                             fitText(title_, 0.7 * kColumn, style) + "  ·  " +
                                 std::to_string(i + 1) + " / " + std::to_string(sheets_.size()),
                             style);
@@ -86,11 +125,12 @@ class Sheets {
 
   private:
     void begin() {
-        sheets_.emplace_back(kWidth, kHeight, PageUnit::Millimetre);
+        sheets_.emplace_back(size_.width, size_.height, PageUnit::Millimetre);
         y_ = kMargin;
     }
 
     std::string title_;
+    PaperSize size_;
     std::vector<Picture> sheets_;
     double y_ = 0;
 };
@@ -219,18 +259,22 @@ bool isRight(const std::vector<std::vector<Word>>& lines, std::size_t line, cons
 
 class PdfWriter {
   public:
-    explicit PdfWriter(const ReportPage& page) : sheets_(page.title), page_(page) {}
+    explicit PdfWriter(const ReportPage& page) : sheets_(page.title, page.paper), page_(page) {}
 
     std::vector<Picture> sheets() {
+        addLogo();
         sheets_.text(page_.title, {kTitle, true, Align::Left, palette::kInk, {}});
         sheets_.text(page_.subtitle, kCaption);
+        for (const auto& [name, text] : coverLines(page_.cover))
+            sheets_.text(name + ": " + text, {kBody, false, Align::Left, palette::kInk, {}});
         for (const PageSection& section : page_.sections) {
             // A heading stays with the block below it.
             constexpr double kAbove = 1 + kLine + 0.3;
+            if (section.begins_sheet) sheets_.next();
             sheets_.need(kAbove * kHeading +
                          (section.blocks.empty()
                               ? 0
-                              : std::visit([](const auto& one) { return leastHeight(one); },
+                              : std::visit([this](const auto& one) { return leastHeight(one); },
                                            section.blocks.front())));
             sheets_.skip(kHeading);
             sheets_.text(section.title, {kHeading, true, Align::Left, palette::kInk, {}});
@@ -248,6 +292,17 @@ class PdfWriter {
     }
 
   private:
+    /// Draws the logo above the title.
+    void addLogo() {
+        if (page_.cover.logo.empty()) return;
+        constexpr double kMaxWidth = 70, kMaxHeight = 22;
+        const Image logo = imageOfLogo(page_.cover.logo);
+        const double pixel = std::min(kMaxWidth / logo.width, kMaxHeight / logo.height);
+        const double height = pixel * logo.height;
+        sheets_.sheet().image({sheets_.left(), sheets_.y()}, logo, pixel, pixel);
+        sheets_.skip(height + 3);
+    }
+
     /// The height of the part of a block that must not be broken; at least that part.
     static double leastHeight(const PageTable& whole) {
         const PageTable table = splitTable(whole).front();
@@ -256,12 +311,12 @@ class PdfWriter {
     }
     static double leastHeight(const PageText& /*text*/) { return 2 * kLine * kBody; }
     static double leastHeight(const PageCode& /*code*/) { return 2 * kLine * kMinSize; }
-    static double leastHeight(const PageFigure& figure) {
+    [[nodiscard]] double leastHeight(const PageFigure& figure) const {
         if (figure.is_for_screen) return 0;
         const double share = canShrink(figure) ? kMinShare : 1;
         return share * scaleOf(figure) * figure.picture.height() + belowOf(figure);
     }
-    static double leastHeight(const PageMap& map) { return leastHeight(map.paper); }
+    [[nodiscard]] double leastHeight(const PageMap& map) const { return leastHeight(map.paper); }
 
     static std::vector<std::string> captionOf(const std::string& text, double width) {
         return brokenLines(text, width, kCaption);
@@ -271,10 +326,10 @@ class PdfWriter {
         const auto lines = captionOf(figure.caption, figure.width * kColumn).size();
         return kLine * kSmall * static_cast<double>(lines) + 3;
     }
-    static double scaleOf(const PageFigure& figure) {
+    [[nodiscard]] double scaleOf(const PageFigure& figure) const {
         const Picture& picture = figure.picture;
         const double scale = std::min(figure.width * kColumn / picture.width(),
-                                      (Sheets::maxHeight() - belowOf(figure)) / picture.height());
+                                      (sheets_.maxHeight() - belowOf(figure)) / picture.height());
         return picture.unit() == PageUnit::Millimetre ? std::min(1.0, scale) : scale;
     }
 
@@ -315,8 +370,8 @@ class PdfWriter {
         sheets_.text(table.caption, kCaption);
         addRow(table, columns, table.heads, palette::kFaintInk);
         for (std::size_t k = 0; k < table.rows.size(); ++k) {
-            if (sheets_.y() + 2 * kLine * columns.size > kHeight - kMargin) {
-                sheets_.need(kHeight);
+            if (sheets_.y() + 2 * kLine * columns.size > sheets_.end()) {
+                sheets_.next();
                 addRow(table, columns, table.heads, palette::kFaintInk);
             }
             addRow(table, columns, table.rows[k],
@@ -335,7 +390,7 @@ class PdfWriter {
         }
         const double height = kLine * columns.size * static_cast<double>(lines);
         sheets_.need(height);
-        double x = kMargin;
+        double x = sheets_.left();
         for (std::size_t i = 0; i < cells.size(); ++i) {
             const char side = i < table.sides.size() ? table.sides[i] : table.sides.back();
             style.align = side == 'r' ? Align::Right : Align::Left;
@@ -347,7 +402,8 @@ class PdfWriter {
             x += columns.widths[i] + columns.gap;
         }
         sheets_.skip(height);
-        sheets_.sheet().line({kMargin, sheets_.y() - 0.1}, {kMargin + kColumn, sheets_.y() - 0.1},
+        sheets_.sheet().line({sheets_.left(), sheets_.y() - 0.1},
+                             {sheets_.left() + kColumn, sheets_.y() - 0.1},
                              {palette::kObjectEdge.faded(0.5), 0.08});
     }
 
@@ -377,9 +433,10 @@ class PdfWriter {
             for (const Word& word : lines[i]) {
                 style.align = isRight(lines, i, word) ? Align::Right : Align::Left;
                 const std::size_t at = style.align == Align::Right ? word.end : word.begin;
-                sheets_.sheet().text({kMargin + static_cast<double>(at) * textWidth("0", style),
-                                      sheets_.y() + style.size},
-                                     word.text, style);
+                sheets_.sheet().text(
+                    {sheets_.left() + static_cast<double>(at) * textWidth("0", style),
+                     sheets_.y() + style.size},
+                    word.text, style);
             }
             style.align = Align::Left;
             sheets_.skip(kLine * style.size);
@@ -393,14 +450,14 @@ class PdfWriter {
         const double width = figure.width * kColumn;
         const Picture& picture = figure.picture;
         const double least = leastHeight(figure);
-        if (row_.right + width > kColumn || sheets_.y() + least > kHeight - kMargin) endRow();
+        if (row_.right + width > kColumn || sheets_.y() + least > sheets_.end()) endRow();
         if (row_.height == 0) sheets_.need(least);
         double scale = scaleOf(figure);
         if (canShrink(figure))
-            scale = std::min(
-                scale, (kHeight - kMargin - sheets_.y() - belowOf(figure)) / picture.height());
+            scale =
+                std::min(scale, (sheets_.end() - sheets_.y() - belowOf(figure)) / picture.height());
         const double height = scale * picture.height() + belowOf(figure);
-        const Point2 corner{kMargin + row_.right, sheets_.y()};
+        const Point2 corner{sheets_.left() + row_.right, sheets_.y()};
         sheets_.sheet().inset(picture, corner, scale);
         double base = corner.y + scale * picture.height() + 1 + kSmall;
         for (const std::string& line : captionOf(figure.caption, width)) {

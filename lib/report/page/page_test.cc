@@ -48,6 +48,31 @@ TEST(Page, HtmlEscapesTextAndNumbersIds) {
     EXPECT_EQ(html, htmlOf(samplePage()));
 }
 
+TEST(Page, HasACoverAndItsPaper) {
+    ReportPage page = samplePage();
+    page.cover.client = "A & B";
+    page.cover.project = "Door 7";
+    const Image dot{2, 1, {0xFF0000, 0x0000FF}};
+    page.cover.logo = encodePng(dot);
+    const std::string html = htmlOf(page);
+    EXPECT_TRUE(holds(html, "<p class=\"cover\">Client: <b>A &amp; B</b></p>"));
+    EXPECT_TRUE(holds(html, "<p class=\"cover\">Project: <b>Door 7</b></p>"));
+    EXPECT_FALSE(holds(html, "Author"));
+    EXPECT_TRUE(holds(html, "src=\"data:image/png;base64,iVBOR"));
+    EXPECT_FALSE(holds(html, "size: letter"));
+    const std::vector<Picture> sheets = sheetsOf(page);
+    EXPECT_EQ(sheets.front().width(), 210);
+    EXPECT_EQ(sheets.front().list().images.size(), 1U);
+    page.paper = Paper::Letter;
+    EXPECT_TRUE(holds(htmlOf(page), "@page { size: letter; }"));
+    EXPECT_EQ(sheetsOf(page).front().width(), 215.9);
+    EXPECT_EQ(sheetsOf(page).front().height(), 279.4);
+    // A section that begins a sheet.
+    page.sections[1].begins_sheet = true;
+    EXPECT_EQ(sheetsOf(page).size(), sheets.size() + 1);
+    EXPECT_TRUE(holds(htmlOf(page), "<section class=\"sheet-top\" id=\"sheet\""));
+}
+
 TEST(Page, MapTellsTheScriptItsSensors) {
     ReportPage page{"map", "", {}};
     MapIndex index{{10, {0, 0}, {5, 5}}, {{"c1", "camera", {{1, 2, 2.5}, {}, {}, {}}, 0}}, {}};

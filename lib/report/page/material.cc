@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/page/material.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "record/text.h"
+#include "report/page/installation.h"
+#include "sense/formats/reading_text.h"
+
+namespace ispace {
+
+namespace {
+
+std::string smallLetters(std::string_view text) {
+    std::string out(text);
+    for (char& c : out)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return out;
+}
+
+/// Returns a field without blanks and quotes about it.
+std::string_view bare(std::string_view field) {
+    constexpr std::string_view kAround = " \t\r\"";
+    const std::size_t begin = field.find_first_not_of(kAround);
+    if (begin == std::string_view::npos) return "";
+    return field.substr(begin, field.find_last_not_of(kAround) - begin + 1);
+}
+
+/// Returns the name of what holds a sensor that stands still.
+std::string mountOf(const Scene& scene, const Installation& installation) {
+    constexpr double kDown = -60, kLow = 0.3;  // degrees, metres
+    const Pose3& pose = scene.sensors[installation.sensor].pose;
+    const bool is_high = pose.position.z >= scene.environment.height() - kAtCeiling;
+    const bool is_at_wall =
+        std::any_of(installation.walls.begin(), installation.walls.end(),
+                    [](const auto& wall) { return !wall.end && wall.distance <= kAtWall; });
+    if (is_at_wall && pose.tilt.degrees() > kDown && pose.position.z > kLow) return "wall mount";
+    return is_high ? "ceiling mount" : "stand";
+}
+
+/// Pieces of one item whose prices are summed up.
+struct Pieces {
+    double number = 0, cost = 0;
+    std::optional<double> price;
+    bool is_even = true, is_known = true;
+
+    void add(double count, std::optional<double> one) {
+        if (number > 0 && one != price) is_even = false;
+        price = one;
+        number += count;
+        cost += count * one.value_or(0);
+        is_known = is_known && one.has_value();
+    }
+    [[nodiscard]] MaterialItem item(std::string name, bool is_length) const {
+        return {std::move(name), number, is_length, is_even ? price : std::nullopt,
+                is_known ? std::optional(cost) : std::nullopt};
+    }
+};
+
+/// To hundredths, without zeros at the end.
+std::string moneyText(std::optional<double> cost) {
+    return cost ? formatDouble(std::round(100 * *cost) / 100) : "-";
+}
+
+std::string numberText(const MaterialItem& item) {
+    return item.is_length ? formatFixed(item.number, 2) + " m" : formatFixed(item.number, 0);
+}
+
+double sumOf(const std::vector<MaterialItem>& items) {
+    double sum = 0;
+    for (const MaterialItem& item : items) sum += item.cost.value_or(0);
+    return sum;
+}
+
+}  // namespace
+
+std::optional<double> PriceList::of(std::string_view item) const {
+    const auto found = prices.find(smallLetters(item));
+    return found == prices.end() ? std::nullopt : std::optional(found->second);
+}
+
+PriceList readPrices(std::string_view text, const std::string& file) {
+    PriceList list;
+    Diagnostics findings;
+    LineReader lines(withoutBom(text));
+    bool is_first = true;
+    while (const auto line = lines.next()) {
+        if (bare(*line).empty() || line->starts_with('#')) continue;
+        const char mark = line->find(';') != std::string_view::npos ? ';' : ',';
+        const std::size_t split = line->find(mark);
+        const std::string_view item = bare(line->substr(0, split));
+        const std::string_view rest =
+            split == std::string_view::npos ? "" : line->substr(split + 1);
+        const std::string_view price = bare(rest.substr(0, rest.find(mark)));
+        const auto number = parseDouble(price);
+        const bool is_head = std::exchange(is_first, false) && !number;
+        if (is_head) continue;
+        if (item.empty() || !number || !(*number >= 0))
+            findings.add({file, lines.number(), 1,
+                          excerpt(bare(*line)) + " is no ITEM,PRICE, as in dome-2.8-4k,129.90"});
+        else
+            list.prices[smallLetters(item)] = *number;
+    }
+    findings.throwIfAny();
+    return list;
+}
+
+std::vector<MaterialItem> materialOf(const Scene& scene, const std::vector<Cable>& cables,
+                                     const PriceList& prices) {
+    std::map<std::string, std::size_t> records;
+    for (std::size_t i = 0; i < scene.records.size(); ++i) records.emplace(scene.ids[i], i);
+    std::map<std::string, Pieces> devices, mounts;
+    for (const Sensor& sensor : scene.sensors) {
+        const std::string device = deviceText(sensor);
+        std::optional<double> price = prices.of(device);
+        const auto record = records.find(sensor.id);
+        if (!price && record != records.end() && scene.records[record->second].has("cost"))
+            price = scene.records[record->second].number("cost");
+        devices[device].add(1, price);
+    }
+    for (const Installation& one : installationsOf(scene)) {
+        const std::string mount = mountOf(scene, one);
+        mounts[mount].add(1, prices.of(mount));
+    }
+    Pieces cable;
+    for (const Cable& one : cables) {
+        if (!(one.length > 0)) continue;
+        const auto own = one.cost > 0 ? std::optional(one.cost / one.length) : std::nullopt;
+        const auto listed = prices.of("cable");
+        cable.add(one.length, listed ? listed : own);
+    }
+    std::vector<MaterialItem> items;
+    items.reserve(devices.size() + mounts.size() + 1);
+    for (const auto& [device, pieces] : devices) items.push_back(pieces.item(device, false));
+    for (const auto& [mount, pieces] : mounts) items.push_back(pieces.item(mount, false));
+    if (cable.number > 0) items.push_back(cable.item("cable", true));
+    return items;
+}
+
+PageTable materialTable(const std::vector<MaterialItem>& items) {
+    const bool has_prices = std::any_of(items.begin(), items.end(), [](const MaterialItem& item) {
+        return item.cost.has_value() || item.price.has_value();
+    });
+    PageTable table{"", "lr", {"item", "number"}, {}};
+    if (has_prices) {
+        table.sides = "lrrr";
+        table.heads.insert(table.heads.end(), {"price of one", "cost"});
+    }
+    std::size_t unknown = 0;
+    for (const MaterialItem& item : items) {
+        TextRow& row = table.rows.emplace_back(TextRow{item.item, numberText(item)});
+        if (!has_prices) continue;
+        row.push_back(moneyText(item.price));
+        row.push_back(moneyText(item.cost));
+        if (!item.cost) ++unknown;
+    }
+    if (!has_prices) return table;
+    table.rows.push_back({"together", "", "", moneyText(sumOf(items))});
+    if (unknown > 0)
+        table.caption = "without the " + std::to_string(unknown) +
+                        (unknown == 1 ? " item" : " items") + " of which no price is known";
+    return table;
+}
+
+std::string materialCsv(const std::vector<MaterialItem>& items) {
+    const auto money = [](std::optional<double> cost) { return cost ? moneyText(cost) : ""; };
+    std::string text = "item,number,unit,price,cost\n";
+    for (const MaterialItem& item : items) {
+        appendCsvField(text, item.item);
+        text.append(",").append(item.is_length ? formatFixed(item.number, 2)
+                                               : formatFixed(item.number, 0));
+        text.append(item.is_length ? ",m," : ",piece,");
+        text.append(money(item.price)).append(",").append(money(item.cost)).append("\n");
+    }
+    return text;
+}
+
+}  // namespace ispace

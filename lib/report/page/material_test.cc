@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/page/material.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/error.h"
+#include "support/test_layout.h"
+#include "support/test_scenes.h"
+
+namespace ispace {
+namespace {
+
+using testing::findings;
+
+const std::string kRoom =
+    "ispace size=8,6,2.5\npanel id=p1 at=-3.9,0,1.5 cost=2\n"
+    "camera id=down at=0,0,2.4 tilt=-90 cost=80\ncamera id=wall at=-3.9,2,2.2 tilt=-20 cost=90\n"
+    "laser id=l at=1,1\nrobot id=r at=2,2\nlaser id=rider on=r\n";
+
+TEST(Material, CountsDevicesMountsAndCables) {
+    const Scene scene = sceneOf(kRoom);
+    const auto items = materialOf(scene, cablesOf(scene), {});
+    std::string names;
+    for (const MaterialItem& item : items) names += item.item + ';';
+    EXPECT_EQ(names, "camera;laser;ceiling mount;stand;wall mount;cable;");
+    EXPECT_EQ(items[0].number, 2);
+    EXPECT_EQ(items[0].price, std::nullopt);  // 80 and 90
+    EXPECT_EQ(items[0].cost, 170);
+    EXPECT_EQ(items[1].number, 2);  // with the one that rides, which needs no mount
+    EXPECT_EQ(items[1].cost, std::nullopt);
+    EXPECT_EQ(items[3].number, 1);
+    EXPECT_TRUE(items[5].is_length);
+    EXPECT_NEAR(items[5].price.value(), 2, 1e-9);
+    const PageTable table = materialTable(items);
+    EXPECT_EQ(table.caption, "without the 4 items of which no price is known");
+    EXPECT_EQ(table.rows.front(), (TextRow{"camera", "2", "-", "170"}));
+}
+
+TEST(Material, PricesOfAListCountBeforeThoseOfRecords) {
+    const Scene scene = sceneOf(kRoom);
+    const PriceList prices = readPrices(
+        "item;price;seller\nCamera;100;x\n\"wall mount\";12.5\nceiling mount;9\r\nstand;0\n"
+        "cable;0.5\nlaser;300\nspare part;7\n",
+        "p.csv");
+    EXPECT_EQ(prices.of("camera"), 100);
+    const auto items = materialOf(scene, {{2, "p1", 4, 8}}, prices);
+    EXPECT_EQ(materialCsv(items),
+              "item,number,unit,price,cost\ncamera,2,piece,100,200\nlaser,2,piece,300,600\n"
+              "ceiling mount,1,piece,9,9\nstand,1,piece,0,0\nwall mount,1,piece,12.5,12.5\n"
+              "cable,4.00,m,0.5,2\n");
+    const PageTable table = materialTable(items);
+    EXPECT_EQ(table.caption, "");
+    EXPECT_EQ(table.rows.back(), (TextRow{"together", "", "", "823.5"}));
+}
+
+TEST(Material, HasNoPricesWithoutAny) {
+    const Scene scene = sceneOf("ispace size=4,4\nlaser id=l at=1,1\n");
+    const PageTable table = materialTable(materialOf(scene, {}, {}));
+    EXPECT_EQ(table.heads, (TextRow{"item", "number"}));
+    EXPECT_EQ(table.rows.size(), 2U);
+}
+
+TEST(Material, BadPricesAreFindings) {
+    EXPECT_EQ(findings([] { static_cast<void>(readPrices("a,1\nb,x\n,3\nc,-1\nd\n", "p.csv")); }),
+              "p.csv:2:1: error: `b,x` is no ITEM,PRICE, as in dome-2.8-4k,129.90\n"
+              "p.csv:3:1: error: `,3` is no ITEM,PRICE, as in dome-2.8-4k,129.90\n"
+              "p.csv:4:1: error: `c,-1` is no ITEM,PRICE, as in dome-2.8-4k,129.90\n"
+              "p.csv:5:1: error: `d` is no ITEM,PRICE, as in dome-2.8-4k,129.90");
+    EXPECT_TRUE(readPrices("# none\n\n", "p.csv").prices.empty());
+}
+
+}  // namespace
+}  // namespace ispace
