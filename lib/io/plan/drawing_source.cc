@@ -37,6 +37,9 @@ constexpr std::size_t kMaxLinesReadAgain = 100'000;
 
 /// Square metres: walls of a smaller room may be those within a room of other lines.
 constexpr double kLeastHouse = 12;
+/// Least share of a plot that its house has: less may be the core of a hall whose outer walls have
+/// other names.
+constexpr double kLeastOfPlot = 0.06;
 /// Metres between an outline around a house and its walls.
 constexpr double kAroundHouse = 0.5;
 
@@ -148,9 +151,9 @@ void warnOfWallNames(const std::map<std::string, std::size_t>& names, const Plan
         const bool needs_gaps = other.widest_gap > taken.widest_gap;
         const bool is_larger =
             other.area > (1 + (needs_gaps ? kClutteredRoom : kSameRoom)) * taken.area;
-        const bool is_framed =
-            (taken.is_frame && other.area < (1 - kSameRoom) * taken.area) ||
-            (liesWithin(other.walls, boundsOf(taken.rooms)) && other.area >= kLeastHouse);
+        const bool is_framed = (taken.is_frame && other.area < (1 - kSameRoom) * taken.area) ||
+                               (liesWithin(other.walls, boundsOf(taken.rooms)) &&
+                                other.area >= std::max(kLeastHouse, kLeastOfPlot * taken.area));
         if (drawing.better_layers != nullptr && (is_larger || is_framed)) {
             *drawing.better_layers = from_walls.wall_layers;
             return;

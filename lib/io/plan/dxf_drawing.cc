@@ -592,11 +592,11 @@ class DxfReader {
         const std::string_view type = group.value;
         in_section_name_ = type == "SECTION";
         if (type == "ENDSEC") section_ = {};
-        if (section_ == "BLOCKS" && type == "ENDBLK") block_ = nullptr;
         if (type != "VERTEX") {
             in_polyline_ = in_mesh_ = false;
             endUnreadPoints();
         }
+        if (section_ == "BLOCKS" && type == "ENDBLK") block_ = nullptr;
         const bool drawn = section_ == "ENTITIES" || (section_ == "BLOCKS" && block_ != nullptr);
         const auto kind = std::find_if(kinds().begin(), kinds().end(),
                                        [type](const Kind& k) { return k.name == type; });

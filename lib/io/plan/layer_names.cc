@@ -48,12 +48,16 @@ constexpr auto kOtherParts = std::to_array<std::string_view>(
     {"填充", "标注", "標注", "尺寸", "文字", "注释", "轴",  "軸", "门",
      "門",   "窗",   "家具", "柜",   "櫃",   "纸",   "紙",  "漆", "裙",
      "灯",   "燈",   "치수", "문자", "해치", "寸法", "仕上"});
+/// Ends of compound words of layers without walls, as in Wandschraffur.
+constexpr auto kNoWallEnds = std::to_array<std::string_view>(
+    {"schraffur", "schraffuren", "hatch", "hatching", "hachure", "hachures", "text", "texte",
+     "texts", "fliesen", "bemassung", "bemaßung", "beschriftung", "arcering"});
 /// Words of layers that belong to walls but have no outlines of walls.
 constexpr auto kOtherWords = std::to_array<std::string_view>(
-    {"patt",   "hatch",   "hatching", "fill",      "schraffur", "iden",   "text", "texts",
-     "tag",    "tags",    "dim",      "dims",      "note",      "notes",  "door", "doors",
-     "window", "windows", "glaz",     "furniture", "填充",      "标注",   "標注", "尺寸",
-     "寸法",   "해치",    "치수",     "문자",      "штриховка", "заливка"});
+    {"hachure", "hachures", "textes",  "patt", "hatch",     "hatching", "fill", "schraffur", "iden",
+     "text",    "texts",    "tag",     "tags", "dim",       "dims",     "note", "notes",     "door",
+     "doors",   "window",   "windows", "glaz", "furniture", "填充",     "标注", "標注",      "尺寸",
+     "寸法",    "해치",     "치수",    "문자", "штриховка", "заливка"});
 
 /// Beginnings of words of layers without walls, in lower case: furniture, dimensions, text,
 /// hatching, axes, electrical, plumbing.
@@ -314,24 +318,28 @@ constexpr auto kNoWallStems = std::to_array<std::string_view>({"furnit",
                                                                "hachés"});
 /// The same as whole words, which begin others.
 constexpr auto kNoWallWords = std::to_array<std::string_view>(
-    {"furn",        "furniture", "equip",  "appl",   "muebles", "mueble",    "arredi",  "arredo",
-     "arredamento", "móveis",    "moveis", "mobili", "meble",   "dim",       "dims",    "dimen",
-     "cote",        "cotes",     "cota",   "quote",  "maße",    "mått",      "mål",     "mitat",
-     "kóty",        "koty",      "kote",   "kota",   "méret",   "meret",     "text",    "texts",
-     "texte",       "textes",    "testo",  "anno",   "note",    "notes",     "tag",     "tags",
-     "iden",        "txt",       "tekste", "patt",   "pattern", "trama",     "mønster", "schraf",
-     "axis",        "axes",      "axe",    "asse",   "assi",    "eje",       "ejes",    "eixo",
-     "akse",        "akser",     "osi",    "aks",    "оси",     "ось",       "осі",     "grid",
-     "grids",       "raster",    "achse",  "achsen", "elec",    "lite",      "light",   "lights",
-     "licht",       "luce",      "luces",  "luci",   "fixt",    "pipe",      "pipes",   "piping",
-     "vvs",         "sani",      "wc",     "flor",   "clng",    "ovhd",      "strs",    "evtr",
-     "area",        "areas",     "comm",   "powr",   "sanr",    "levl",      "detl",    "sect",
-     "ttlb",        "bord",      "nplt",   "vprt",   "roof",    "fire",      "frame",   "frames",
-     "border",      "borders",   "sheet",  "title",  "titles",  "rahmen",    "cadre",   "marco",
-     "kader",       "ramka",     "ramme",  "kehys",  "keret",   "cartouche", "stairs",  "steps",
-     "trap",        "trappen",   "trappa", "trappe", "scale",   "schody",    "portaat", "case",
-     "casework",    "millwork",  "tree",   "trees",  "plants",  "marker",    "markers", "symbol",
-     "symbols",     "legend"});
+    {"eqpm",        "hilfslinien", "retini",   "retino",  "stramien",  "opisy",  "texty",
+     "skraffering", "akselit",     "yazı",     "通り芯",  "중심선",    "設備",   "furn",
+     "furniture",   "equip",       "appl",     "muebles", "mueble",    "arredi", "arredo",
+     "arredamento", "móveis",      "moveis",   "mobili",  "meble",     "dim",    "dims",
+     "dimen",       "cote",        "cotes",    "cota",    "quote",     "maße",   "mått",
+     "mål",         "mitat",       "kóty",     "koty",    "kote",      "kota",   "méret",
+     "meret",       "text",        "texts",    "texte",   "textes",    "testo",  "anno",
+     "note",        "notes",       "tag",      "tags",    "iden",      "txt",    "tekste",
+     "patt",        "pattern",     "trama",    "mønster", "schraf",    "axis",   "axes",
+     "axe",         "asse",        "assi",     "eje",     "ejes",      "eixo",   "akse",
+     "akser",       "osi",         "aks",      "оси",     "ось",       "осі",    "grid",
+     "grids",       "raster",      "achse",    "achsen",  "elec",      "lite",   "light",
+     "lights",      "licht",       "luce",     "luces",   "luci",      "fixt",   "pipe",
+     "pipes",       "piping",      "vvs",      "sani",    "wc",        "flor",   "clng",
+     "ovhd",        "strs",        "evtr",     "area",    "areas",     "comm",   "powr",
+     "sanr",        "levl",        "detl",     "sect",    "ttlb",      "bord",   "nplt",
+     "vprt",        "roof",        "fire",     "frame",   "frames",    "border", "borders",
+     "sheet",       "title",       "titles",   "rahmen",  "cadre",     "marco",  "kader",
+     "ramka",       "ramme",       "kehys",    "keret",   "cartouche", "stairs", "steps",
+     "trap",        "trappen",     "trappa",   "trappe",  "scale",     "schody", "portaat",
+     "case",        "casework",    "millwork", "tree",    "trees",     "plants", "marker",
+     "markers",     "symbol",      "symbols",  "legend"});
 
 /// Words of doors, and beginnings of those whose endings vary.
 constexpr auto kDoorWords = std::to_array<std::string_view>(
@@ -462,6 +470,21 @@ std::vector<std::string> wordsOf(std::string_view name) {
     return words;
 }
 
+/// Returns true if a part of a compound word means something other than walls.
+bool hasOtherPart(const std::vector<std::string>& words) {
+    // Scripts without blanks between words: U+3000 and above.
+    const auto is_unspaced = [](std::string_view stem) {
+        return static_cast<unsigned char>(stem.front()) >= 0xE3;
+    };
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+        return std::any_of(kNoWallEnds.begin(), kNoWallEnds.end(),
+                           [&](std::string_view end) { return word.ends_with(end); }) ||
+               std::any_of(kNoWallStems.begin(), kNoWallStems.end(), [&](std::string_view stem) {
+                   return is_unspaced(stem) && word.find(stem) != std::string::npos;
+               });
+    });
+}
+
 /// Returns true if a word means wall, whatever the others mean.
 bool hasWallWord(const std::vector<std::string>& words) {
     return std::any_of(words.begin(), words.end(), [](const std::string& word) {
@@ -539,7 +562,7 @@ bool isNoWallName(std::string_view full_name) {
     }
     if (isWallName(name)) return false;
     return isOffPlan(name) || isOtherDiscipline(name) ||
-           hasWordOf(wordsOf(name), kNoWallWords, kNoWallStems);
+           hasWordOf(wordsOf(name), kNoWallWords, kNoWallStems) || hasOtherPart(wordsOf(name));
 }
 
 bool isDoorName(std::string_view full_name) {

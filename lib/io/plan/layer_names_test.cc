@@ -35,6 +35,11 @@ TEST(LayerNames, WallsOfManyLanguages) {
         EXPECT_FALSE(isWallName(name)) << name;
     for (const char* name : {"أبواب", "דלתות", "ประตู", "durvis"})
         EXPECT_TRUE(isDoorName(name)) << name;
+    for (const char* name : {"建筑标注", "室内家具", "墙体填充", "墙面标注", "Wandschraffur",
+                             "Mauertext", "murs_hachures", "Wandfliesen", "I-EQPM", "通り芯"}) {
+        EXPECT_TRUE(isNoWallName(name)) << name;
+        EXPECT_FALSE(isWallName(name)) << name;
+    }
     for (const char* name : {"أثاث", "ריהוט", "เฟอร์นิเจอร์", "أبعاد", "מידות"})
         EXPECT_TRUE(isNoWallName(name)) << name;
 }

@@ -71,17 +71,34 @@ double metresOf(const std::string& unit) {
     throw SvgError("unknown unit " + unit);
 }
 
-/// The visible part of what a `clip-path` clips: the inside of rings by the even-odd rule.
+/// The visible part of what a `clip-path` clips: the union of its shapes, each by its `clip-rule`.
 struct Clip {
-    std::vector<Polygon> rings;  ///< in the plan's frame
+    struct Part {
+        std::vector<Polygon> rings;  ///< in the plan's frame
+        bool is_even_odd = false;
+
+        [[nodiscard]] bool shows(Point2 p) const {
+            int winding = 0, count = 0;
+            for (const Polygon& ring : rings) {
+                if (locate(ring, p) == Side::Outside) continue;
+                winding += signedArea(ring) < 0 ? -1 : 1;
+                ++count;
+            }
+            return is_even_odd ? count % 2 == 1 : winding != 0;
+        }
+    };
+    std::vector<Part> parts;
     Box2 box;
 
     [[nodiscard]] bool shows(Point2 p) const {
-        return box.contains(p) &&
-               std::count_if(rings.begin(), rings.end(),
-                             [p](const Polygon& r) { return locate(r, p) != Side::Outside; }) %
-                       2 ==
-                   1;
+        return box.contains(p) && std::any_of(parts.begin(), parts.end(),
+                                              [p](const Part& part) { return part.shows(p); });
+    }
+    [[nodiscard]] std::size_t corners() const {
+        std::size_t count = 0;
+        for (const Part& part : parts)
+            for (const Polygon& ring : part.rings) count += ring.size();
+        return count;
     }
 };
 
@@ -143,10 +160,17 @@ class SvgReader {
     /// Sets what rankingText() says, for the message that the drawing has no scale.
     void setRanking(const std::vector<UnitEvidence>& ranking) { ranking_ = scaleHint(ranking); }
 
-    /// Returns true if the size on paper is in inches or points.
+    /// Returns true if the size on paper is in inches, or in points and not that of a sheet of the
+    /// series A, which programs write in points, too.
     [[nodiscard]] bool isInInches() {
-        const std::string_view width = trimmed(file_.root().attribute("width").value());
-        return width.ends_with("in") || width.ends_with("pt");
+        const pugi::xml_node root = file_.root();
+        const std::string_view width = trimmed(root.attribute("width").value());
+        if (!width.ends_with("pt")) return width.ends_with("in");
+        const double across = root.attribute("width").as_double();
+        const double down = root.attribute("height").as_double();
+        constexpr double kSides = 1.41421, kRounding = 0.01;
+        const double sides = std::max(across, down) / std::min(across, down);
+        return !(std::abs(sides - kSides) < kRounding);
     }
 
     /// Returns metres a unit by the size on paper, if the drawing has one.
@@ -287,13 +311,23 @@ class SvgReader {
                Affine{{1, 0}, {0, 1}, -1 * *origin};
     }
 
+    /// Returns true if one of the languages between commas is English.
+    static bool hasEnglish(std::string_view languages) {
+        while (!languages.empty()) {
+            const std::size_t comma = std::min(languages.find(','), languages.size());
+            if (trimmed(languages.substr(0, comma)).starts_with("en")) return true;
+            languages.remove_prefix(std::min(comma + 1, languages.size()));
+        }
+        return false;
+    }
+
     /// Adds the first child whose conditions hold, as browsers do that have no extensions.
     void addSwitch(pugi::xml_node node, const Around& around) {
         for (const pugi::xml_node child : node.children()) {
             if (child.type() != pugi::node_element) continue;
             const std::string_view language = trimmed(child.attribute("systemLanguage").value());
             if (!trimmed(child.attribute("requiredExtensions").value()).empty()) continue;
-            if (child.attribute("systemLanguage") && !language.starts_with("en")) continue;
+            if (child.attribute("systemLanguage") && !hasEnglish(language)) continue;
             at(child, [&] { addElement(child, around); });
             return;
         }
@@ -337,8 +371,9 @@ class SvgReader {
             pugi::xml_node shape = child;
             if (child.type() != pugi::node_element) continue;
             spend(kUnreadWork);
-            Affine placed =
-                frame * transformOf(readSvgElement(child, sheet_, options_), around.view);
+            const SvgElement element = readSvgElement(child, sheet_, options_);
+            if (element.properties[SvgProperty::Display] == "none") continue;
+            Affine placed = frame * transformOf(element, around.view);
             if (svgName(child) == "use") {
                 std::string_view href = child.attribute("href").value();
                 if (href.empty()) href = child.attribute("xlink:href").value();
@@ -355,14 +390,29 @@ class SvgReader {
                 around.unread = kOddClip;  // letters
                 return;
             }
+            Clip::Part part;
+            part.is_even_odd = clipRuleOf(shape) == "evenodd" || clipRuleOf(child) == "evenodd";
             for (const SvgSubpath& path : svgPaths(shape, kind, around.view)) {
                 const PlanShape ring = shapeOf(path, placed);
                 if (ring.path.points.size() < 3) continue;
                 for (const Point2 p : ring.path.points) clip->box.add(p);
-                clip->rings.push_back(ring.path.points);
+                part.rings.push_back(ring.path.points);
             }
+            clip->parts.push_back(std::move(part));
         }
         around.clips.push_back(clip);
+    }
+
+    /// Returns the rule of a shape of a clip, of its attribute or its style.
+    static std::string_view clipRuleOf(pugi::xml_node node) {
+        const std::string_view rule = trimmed(node.attribute("clip-rule").value());
+        if (!rule.empty()) return rule;
+        const std::string_view style = node.attribute("style").value();
+        const std::size_t at = style.find("clip-rule");
+        return at != std::string_view::npos && trimmed(style.substr(at + 9)).starts_with(':') &&
+                       trimmed(style.substr(style.find(':', at) + 1)).starts_with("evenodd")
+                   ? "evenodd"
+                   : "";
     }
 
     /// Returns the element itself; caches it if it may be used again.
@@ -518,8 +568,7 @@ class SvgReader {
     /// Returns the parts of the shapes that a clip shows, as open paths where it cuts. Costs the
     /// product of their points.
     std::vector<PlanShape> clipped(std::vector<PlanShape> shapes, const Clip& clip) {
-        std::size_t corners = 0;
-        for (const Polygon& ring : clip.rings) corners += ring.size();
+        const std::size_t corners = clip.corners();
         std::vector<PlanShape> shown;
         for (PlanShape& shape : shapes) {
             const PlanPath& path = shape.path;
@@ -537,7 +586,9 @@ class SvgReader {
             std::vector<PlanShape> before = std::exchange(shown, {});
             for (std::size_t i = 0; i < path.pieceCount(); ++i) {
                 const Segment2 piece = path.piece(i);
-                for (const auto& [from, to] : clipShares(piece, clip)) {
+                const std::vector<std::pair<double, double>> shares = clipShares(piece, clip);
+                spend(shares.size() * corners);
+                for (const auto& [from, to] : shares) {
                     const Point2 a = piece.a + from * (piece.b - piece.a);
                     const Point2 b = to == 1 ? piece.b : piece.a + to * (piece.b - piece.a);
                     if (!clip.shows(a + 0.5 * (b - a))) {
@@ -573,7 +624,7 @@ class SvgReader {
                                                              const Clip& clip) {
         std::vector<double> cuts{0, 1};
         const Vec2 along = piece.b - piece.a;
-        for (const Polygon& ring : clip.rings)
+        const auto cut = [&](const Polygon& ring) {
             forEachEdge(ring, [&](const Segment2& edge) {
                 const Vec2 side = edge.b - edge.a, way = edge.a - piece.a;
                 const double turn = cross(along, side);
@@ -581,6 +632,9 @@ class SvgReader {
                 const double share = cross(way, side) / turn, across = cross(way, along) / turn;
                 if (share > 0 && share < 1 && across >= 0 && across <= 1) cuts.push_back(share);
             });
+        };
+        for (const Clip::Part& part : clip.parts)
+            for (const Polygon& ring : part.rings) cut(ring);
         std::sort(cuts.begin(), cuts.end());
         std::vector<std::pair<double, double>> shares;
         for (std::size_t i = 0; i + 1 < cuts.size(); ++i)

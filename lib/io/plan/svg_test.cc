@@ -497,6 +497,15 @@ TEST(Svg, ClipsCutLines) {
                      "<rect clip-path='url(#c)' fill='none' stroke='#000' x='5' y='-5' width='20' "
                      "height='20'/>"),
                 24, 1e-9);
+    // The union of shapes, each by its own rule; hidden ones do not count.
+    const std::string all = "<rect width='14' height='10'/>";
+    EXPECT_NEAR(with(all + "<rect width='9' height='9'/>", line), 24, 1e-9);
+    EXPECT_NEAR(with(all + "<rect width='14' height='10' display='none'/>", line), 24, 1e-9);
+    EXPECT_NEAR(with("<rect width='5' height='10'/><rect x='5' width='5' height='10'/>", line), 24,
+                1e-9);
+    const std::string rings = "d='M0 0h10v10h-10zM4 0h2v10h-2z'/>";
+    EXPECT_NEAR(with("<path " + rings, line), 24, 1e-9);
+    EXPECT_NEAR(with("<path clip-rule='evenodd' " + rings, line), 48, 1e-9);
 }
 
 TEST(Svg, SharesOfTheViewport) {
@@ -522,6 +531,10 @@ TEST(Svg, SwitchesShowOneChild) {
                             "<g systemLanguage='de'><path d='M5 1v6'/></g>"
                             "<g><path d='M3 1v6'/></g><g><path d='M7 1v6'/></g></switch>")),
                 36, 1e-9);
+    EXPECT_NEAR(areaOf(page("<rect x='1' y='1' width='8' height='6'/><switch>"
+                            "<g systemLanguage='de, en'><path d='M5 1v6'/></g>"
+                            "<g><path d='M3 1v6'/></g></switch>")),
+                24, 1e-9);
 }
 
 TEST(SvgCss, UnreadSelectorsWarn) {
