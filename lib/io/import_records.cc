@@ -264,6 +264,8 @@ std::optional<std::string_view> RecordedScans::nextLine() {
         buffer_.erase(0, begin_);
         begin_ = 0;
         seen = buffer_.size();
+        constexpr std::size_t kLongest = 64U << 20U;  // bytes of a line
+        if (seen > kLongest) throw FormatError({name_, line_ + 1, 0, "a line of more than 64 MB"});
         if (!read_(buffer_)) return std::nullopt;
     }
 }

@@ -157,6 +157,7 @@ struct Recorder::Data {
     void takeFrames(World& world);
     bool appendScans(World& world, steady_clock::time_point until);
     bool finishStep(World& world, steady_clock::time_point until);
+    void flushIfDue();
     void appendFeelings(World& world);
     void appendFrame(const RecordedFrame& frame);
     void appendEvents();
@@ -264,6 +265,14 @@ bool Recorder::Data::finishStep(World& world, steady_clock::time_point until) {
     scans.endStep(steps);
     is_open = false;
     return true;
+}
+
+/// Not within a step: then files would end with different steps, and after a full disk, compressed
+/// ones could be cut behind none that all of them hold.
+void Recorder::Data::flushIfDue() {
+    if (is_open) return;
+    const bool much = size() > flushed_size + kMaxUnflushed;
+    if (much || steady_clock::now() - flushed >= kFlushEvery) flush();
 }
 
 /// Writes rows of sonars and bumpers.
@@ -422,15 +431,16 @@ void Recorder::record(World& world) {
         data.endEarly();
         throw;
     }
-    const bool much = data.size() > data.flushed_size + kMaxUnflushed;
-    if (much || steady_clock::now() - data.flushed >= kFlushEvery) data.flush();
+    data.flushIfDue();
 }
 
 bool Recorder::finishStep(World& world, steady_clock::time_point until) {
     Data& data = *data_;
     if (data.ended) return true;
     try {
-        return data.finishStep(world, until);
+        const bool is_whole = data.finishStep(world, until);
+        data.flushIfDue();
+        return is_whole;
     } catch (const std::system_error&) {
         data.endEarly();
         throw;

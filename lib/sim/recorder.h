@@ -75,8 +75,9 @@ struct RecordOptions {
 ///   between runs
 ///
 /// Writes whole lines, at least every 0.1 s of wall time while record() or flushDue() is called;
-/// frames appear whole. After an error the record ends with the last step that all files hold,
-/// which info.csv names.
+/// frames appear whole. Where a compressed file is divided into blocks depends on that wall time;
+/// its text does not. After an error the record ends with the last step that all files hold, which
+/// info.csv names.
 class Recorder {
   public:
     /// Creates the folder if it is missing (not its parents), locks it, and empties the files.

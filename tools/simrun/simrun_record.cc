@@ -32,7 +32,9 @@ std::vector<std::string> columnsIn(const std::string& text) {
 void addRecordForm(CommandLine& line, RecordForm& form) {
     line.parsed(
         "--record-every", "TIME",
-        [&form](const std::string& text) { form.every = timeOption(text, SimTime(1), kMaxTime); },
+        [&form](const std::string& text) {
+            form.every = timeOption(text, SimTime(1), World::kMaxStep);
+        },
         "record the poses of robots and people so often in simulated time, e.g. 0.1s: a whole "
         "number of steps (default: each step)",
         Enters::Nothing);
