@@ -68,7 +68,7 @@ constexpr auto kGuesses = std::to_array<Guess>({
     {"envc", "--input --in --src", "operands have no option: envc INPUT..."},
     {"", "--map --world --env --scene --input --layout --in",
      "operands have no option: the room first, then the layout"},
-    {"arrange", "--format --output-format --of", "the layout is a .3dm: -o FILE"},
+    {"arrange", "--format --output-format --of --type", "the layout is a .3dm: -o FILE"},
     {"", "--format --output-format --of --type", "--to FORMAT, or the suffix of -o FILE"},
     {"simrun", "--log --log-dir --output-dir --save", "--record DIR"},
     {"", "--out --outfile --output-file --save --dst", "-o FILE"},

@@ -62,6 +62,9 @@ void checkReportOptions(const ReportWords& words, const std::string& report) {
         throw UsageError("--material: stdout is for another product; give it a file");
     if (!words.material.empty())
         static_cast<void>(outputFormat({}, words.material, {"csv"}));  // rejects another suffix
+    // Files that cannot be read are told before the work, not behind it.
+    static_cast<void>(coverOf(words));
+    static_cast<void>(pricesOf(words));
 }
 
 PriceList pricesOf(const ReportWords& words) {

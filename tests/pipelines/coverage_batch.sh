@@ -109,7 +109,8 @@ works="--help --version --json --batch --shard --resume --cache --grid --cell --
     --no-progress --unconfined --zone --include-files --max-work --storey"
 refused="--report=r.json --suggest --compare=half.3dm --run=r -MD --to=png --width=300 --color=sensor --fans=beams
     --trace=two --speeds=30% --perturb=5cm,3deg --failures=1 --crowd=1 --facing=door,45,0 --privacy=desk
-    --presence=wander:1 --path=a,b --localise=20cm --time-limit=1s"
+    --presence=wander:1 --path=a,b --localise=20cm --time-limit=1s --title=t --project=p --client=c --author=a
+    --logo=l.png --paper=a4 --prices=p.csv --material=m.csv"
 for option in $refused; do
     expect_error 2 coverage --batch two -o reports.jsonl "$option"
     grep -q -e "^coverage: error: ${option%%=*} is about .*--batch" err || fail "$option: $(cat err)"

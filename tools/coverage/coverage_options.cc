@@ -133,10 +133,11 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {"--report",  "--material", "--suggest", "--time-limit",
-                                       "--compare", "--run",      "--perturb", "--failures",
-                                       "--crowd",   "--facing",   "--privacy", "--presence",
-                                       "--path",    "--localise"};
+    std::vector<const char*> single = {
+        "--report",   "--material", "--prices",   "--title",   "--project",    "--client",
+        "--author",   "--logo",     "--paper",    "--suggest", "--time-limit", "--compare",
+        "--run",      "--perturb",  "--failures", "--crowd",   "--facing",     "--privacy",
+        "--presence", "--path",     "--localise"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));

@@ -125,6 +125,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
         files.push_back(options.trace);
     }
     if (!options.report.empty()) mustBeWritable(options.report);
+    if (!options.page.material.empty()) mustBeWritable(options.page.material);
     const Measured& measured =
         leftToExit(measureScene(options, input, other ? &other->scene : nullptr));
     const CoverageReport& report = measured.coverage.report;

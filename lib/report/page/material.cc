@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/message.h"
@@ -29,6 +32,39 @@ std::string_view bare(std::string_view field) {
     const std::size_t begin = field.find_first_not_of(kAround);
     if (begin == std::string_view::npos) return "";
     return field.substr(begin, field.find_last_not_of(kAround) - begin + 1);
+}
+
+/// Splits a line as RFC 4180 does: fields in quotes may hold the mark, and a quote twice for one.
+std::vector<std::string> fieldsOf(std::string_view line, char mark) {
+    std::vector<std::string> fields(1);
+    bool is_quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char c = line[i];
+        if (c == '"') {
+            const bool is_twice = is_quoted && i + 1 < line.size() && line[i + 1] == '"';
+            if (is_twice) fields.back() += line[i++];
+            if (!is_twice) is_quoted = !is_quoted;
+        } else if (c == mark && !is_quoted) {
+            fields.emplace_back();
+        } else {
+            fields.back() += c;
+        }
+    }
+    constexpr std::string_view kBlanks = " \t\r";
+    for (std::string& field : fields) {
+        field.erase(0, std::min(field.find_first_not_of(kBlanks), field.size()));
+        field.erase(field.find_last_not_of(kBlanks) + 1);
+    }
+    return fields;
+}
+
+/// Reads a price; with semicolons between fields it may have a decimal comma.
+std::optional<double> priceIn(std::string text, char mark) {
+    constexpr double kMost = 1e9;
+    if (mark == ';' && text.find('.') == std::string::npos)
+        std::replace(text.begin(), text.end(), ',', '.');
+    const auto price = parseDouble(text);
+    return price && *price >= 0 && *price <= kMost ? price : std::nullopt;
 }
 
 /// Returns the name of what holds a sensor that stands still.
@@ -88,23 +124,30 @@ PriceList readPrices(std::string_view text, const std::string& file) {
     PriceList list;
     Diagnostics findings;
     LineReader lines(withoutBom(text));
-    bool is_first = true;
+    std::size_t column = 1;
+    bool is_first = true, has_head = false;
     while (const auto line = lines.next()) {
         if (bare(*line).empty() || line->starts_with('#')) continue;
         const char mark = line->find(';') != std::string_view::npos ? ';' : ',';
-        const std::size_t split = line->find(mark);
-        const std::string_view item = bare(line->substr(0, split));
-        const std::string_view rest =
-            split == std::string_view::npos ? "" : line->substr(split + 1);
-        const std::string_view price = bare(rest.substr(0, rest.find(mark)));
-        const auto number = parseDouble(price);
-        const bool is_head = std::exchange(is_first, false) && !number;
-        if (is_head) continue;
-        if (item.empty() || !number || !(*number >= 0))
+        const std::vector<std::string> fields = fieldsOf(*line, mark);
+        if (std::exchange(is_first, false)) {
+            const auto has_digit = [](const std::string& field) {
+                return field.find_first_of("0123456789") != std::string::npos;
+            };
+            has_head =
+                fields.size() > 1 && std::none_of(fields.begin() + 1, fields.end(), has_digit);
+            for (std::size_t i = 1; has_head && i < fields.size(); ++i)
+                if (smallLetters(fields[i]) == "price") column = i;
+            if (has_head) continue;
+        }
+        const auto price = column < fields.size() ? priceIn(fields[column], mark) : std::nullopt;
+        // A third number may be behind a decimal comma.
+        const bool is_odd = !has_head && fields.size() > 2 && parseDouble(fields[2]).has_value();
+        if (fields.front().empty() || !price || is_odd)
             findings.add({file, lines.number(), 1,
                           excerpt(bare(*line)) + " is no ITEM,PRICE, as in dome-2.8-4k,129.90"});
         else
-            list.prices[smallLetters(item)] = *number;
+            list.prices[smallLetters(fields.front())] = *price;
     }
     findings.throwIfAny();
     return list;

@@ -15,7 +15,7 @@ namespace {
 using testing::findings;
 
 const std::string kRoom =
-    "ispace size=8,6,2.5\npanel id=p1 at=-3.9,0,1.5 cost=2\n"
+    "ispace size=8,6,2.5\npanel id=p1 at=-3.9,0 cost=2\n"
     "camera id=down at=0,0,2.4 tilt=-90 cost=80\ncamera id=wall at=-3.9,2,2.2 tilt=-20 cost=90\n"
     "laser id=l at=1,1\nrobot id=r at=2,2\nlaser id=rider on=r\n";
 
@@ -67,8 +67,14 @@ TEST(Material, BadPricesAreFindings) {
               "p.csv:2:1: error: `b,x` is no ITEM,PRICE, as in dome-2.8-4k,129.90\n"
               "p.csv:3:1: error: `,3` is no ITEM,PRICE, as in dome-2.8-4k,129.90\n"
               "p.csv:4:1: error: `c,-1` is no ITEM,PRICE, as in dome-2.8-4k,129.90\n"
-              "p.csv:5:1: error: `d` is no ITEM,PRICE, as in dome-2.8-4k,129.90");
+              "p.csv:5:1: error: `d` is no ITEM,PRICE, as in dome-2.8-4k,129.90\n");
     EXPECT_TRUE(readPrices("# none\n\n", "p.csv").prices.empty());
+    // Never a part of a number.
+    for (const char* line : {"a,\"1,299.00\"\n", "a,7,50\n", "a;1.299,00\n", "a,1e308\n"})
+        EXPECT_NE(findings([&] { static_cast<void>(readPrices(line, "p.csv")); }), "") << line;
+    EXPECT_EQ(readPrices("a;129,90\n", "p.csv").of("a"), 129.9);
+    EXPECT_EQ(readPrices("\"a, \"\"b\"\"\",5\n", "p.csv").of("a, \"b\""), 5);
+    EXPECT_EQ(readPrices("item,number,price\na,3,7\n", "p.csv").of("a"), 7);
 }
 
 }  // namespace
