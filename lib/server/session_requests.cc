@@ -248,10 +248,11 @@ void Session::rate(Words words) {
     Simulation& simulation = state_->simulation();
     if (simulation.clock().kind != Clock::Kind::Real)
         return error(405, {"only the clock `real` has a rate"});
+    constexpr double kSlowest = 1e-6;
     const auto rate = parseClockRate(words[1]);
-    if (!rate)
+    if (!rate || *rate < kSlowest)
         return error(416, {excerpt(words[1]),
-                           " is no number of simulated seconds in a second, above 0 and at most "
+                           " is no number of simulated seconds in a second, from 0.000001 to "
                            "1000000"});
     if (!mayAskFor(words.front())) return;
     simulation.setRate(*rate, std::chrono::steady_clock::now());

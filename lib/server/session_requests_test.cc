@@ -344,10 +344,10 @@ TEST(Session, TheRateOfARealClockMayBeChanged) {
     EXPECT_EQ(talk.ask(world, "RATE 0.5"), "OK RATE t=0.000 rate=0.5\n");
     EXPECT_EQ(talk.room.simulation.clock().rate, 0.5);
     EXPECT_NE(talk.ask(world, "HELP").find(" | RATE x | "), std::string::npos);
-    for (const char* wrong : {"0", "-1", "nan", "inf", "2e6", "fast"})
+    for (const char* wrong : {"0", "-1", "nan", "inf", "2e6", "1e-9", "fast"})
         EXPECT_EQ(talk.ask(world, std::string("RATE ") + wrong),
                   std::string("ERR 416 `") + wrong +
-                      "` is no number of simulated seconds in a second, above 0 and at most "
+                      "` is no number of simulated seconds in a second, from 0.000001 to "
                       "1000000\n");
     EXPECT_EQ(talk.room.simulation.clock().rate, 0.5);
     Talk fast({Clock::Kind::Fast, 1});

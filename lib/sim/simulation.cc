@@ -91,10 +91,12 @@ void Simulation::goOnAt(WallTime now) {
 void Simulation::setRate(double rate, WallTime now) {
     assert(clock_.kind == Clock::Kind::Real && rate > 0);
     if (started_ && !paused_) ahead_ = dueAt() - now;
-    if (ahead_ && ahead_->count() > 0) {
+    if (ahead_) {
+        // What is due stays due, as far as a lag is made up for at all.
         const long double wall = static_cast<long double>(ahead_->count()) * clock_.rate /
                                  static_cast<long double>(rate);
-        ahead_ = nanoseconds(static_cast<std::int64_t>(std::min(wall, kMaxAhead)));
+        const long double lag = -static_cast<long double>(kMaxLag.count());
+        ahead_ = nanoseconds(static_cast<std::int64_t>(std::clamp(wall, lag, kMaxAhead)));
     }
     clock_.rate = rate;
     if (started_ && !paused_) goOnAt(now);

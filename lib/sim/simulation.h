@@ -54,6 +54,10 @@ class Simulation {
     [[nodiscard]] World& world() { return *world_; }
     [[nodiscard]] const World& world() const { return *world_; }
     [[nodiscard]] const Clock& clock() const { return clock_; }
+    /// Returns the clock that paces this world: its own, or that of the one that leads it.
+    [[nodiscard]] const Clock& pacingClock() const {
+        return leader_ == nullptr ? clock_ : leader_->clock_;
+    }
     /// Changes the rate of the clock Real from now on: the share of a step that has passed stays
     /// passed, and steps that were due stay due. \pre the clock is Real; rate > 0
     void setRate(double rate, WallTime now);

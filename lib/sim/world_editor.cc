@@ -205,7 +205,7 @@ SceneWriter WorldEditor::sceneWriter() const {
 }
 
 WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
-    const bool is_live = simulation_->clock().kind == Clock::Kind::Real;
+    const bool is_live = simulation_->pacingClock().kind == Clock::Kind::Real;
     Pace* const pace = is_live ? &simulation_->pace() : nullptr;
     Check check = loadCheck();
     if (pace != nullptr) {
@@ -213,12 +213,12 @@ WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
         const auto exists = [&world](const std::string& id) {
             return world.sensorNamed(id).has_value();
         };
-        // A clock that is faster than the world is no fault of clients.
-        const double rate = std::min(1.0, simulation_->clock().rate);
+        // At real time: a clock that is faster is no fault of those who add, and one that is slower
+        // may be set to real time afterwards.
         const auto [all, reading] = pace->load(exists);
         const bool may_rescale = edits.front().kind == Edit::Kind::Set;
         check = [check = std::move(check), before = world.sharedScene(), step = world.stepLength(),
-                 may_rescale, work = all * rate, reads = reading * rate](const Scene& scene) {
+                 may_rescale, work = all, reads = reading](const Scene& scene) {
             check(scene);
             const double more =
                 may_rescale ? std::max(0.0, timesAsOften(*before, scene) - 1) * reads : 0;
