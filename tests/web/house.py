@@ -51,6 +51,7 @@ def switches(run, page):
     press = ActionChains(page.browser).move_to_element_with_offset(page.part("map"), x - width / 2 + 5, y - height / 2)
     press.click().perform()
     eventually("it is out", lambda: "ground/lamp.on=0" in ask(run, "WORLD", "STATE")[1])
+    eventually("the button is up", lambda: lamp(page) is False)
     lamp(page, press=True)
     eventually("it is on again", lambda: lamp(page))
     ask(run, "WORLD", "ACT upper/lamp on=1")

@@ -29,7 +29,7 @@ export class Building {
     const {poses = '', people = '', rooms = ''} = keysOf(await link.ask('POSES'));
     if (link !== this.link || link.isClosed) return;
     const ids = [...poses.split(';'), ...people.split(';')].filter(Boolean).map(row => row.split(',')[0]);
-    const where = new Map(rooms.split(',').map((room, i) => [ids[i], room]));
+    const where = new Map(ids.map((id, i) => [id, rooms.split(',')[i]]));
     const moved = where.size !== this.where.size || [...where].some(([id, room]) => this.where.get(id) !== room);
     this.where = where;
     if (moved) this.changed();

@@ -62,11 +62,11 @@ export class Link {
 
   static get token() {
     const text = /#token=(.+)/.exec(location.hash)?.[1] ?? '';
+    let token = text;
     try {
-      return decodeURIComponent(text);
-    } catch {
-      return text;
-    }
+      token = decodeURIComponent(text);
+    } catch { /* it has a bare % */ }
+    return /[\x00-\x20]/.test(token) ? '' : token;  // one line: an address makes no requests
   }
   static set token(text) { history.replaceState(null, '', `#token=${encodeURIComponent(text)}`); }
 

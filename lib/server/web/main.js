@@ -86,7 +86,10 @@ part('token').addEventListener('submit', event => {
   part('token').hidden = true;
   reconnect();
 });
-part('token-later').onclick = () => { part('token').hidden = true; };
+part('token-later').onclick = () => {
+  part('token').hidden = true;
+  if (link.isClosed) reconnect();
+};
 
 function reconnect() {
   const old = link;

@@ -69,7 +69,7 @@ export class States {
     for (const [id, key, value] of states) {
       const name = `${id}.${key}`;
       this.values.set(name, value);
-      this.history.add(`${id} ${key}`, t, value);
+      this.history.add(Link.whole(`${id} ${key}`), t, value);
       (this.shown.get(name) ?? this.add(id, key))(value);
     }
     this.section.hidden = this.shown.size === 0;
@@ -104,10 +104,10 @@ export class States {
     course.textContent = '∿';
     course.className = 'course';
     course.title = course.ariaLabel = `course of ${id} ${key}`;
-    course.onclick = () => this.history.show(`${id} ${key}`);
+    course.onclick = () => this.history.show(Link.whole(`${id} ${key}`));
     item.append(course);
     this.shown.set(`${id}.${key}`, value => {
-      course.hidden = !this.history.has(`${id} ${key}`);
+      course.hidden = !this.history.has(Link.whole(`${id} ${key}`));
       show(value);
     });
     this.list.append(item);
