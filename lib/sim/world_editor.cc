@@ -213,7 +213,7 @@ WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
         const auto exists = [&world](const std::string& id) {
             return world.sensorNamed(id).has_value();
         };
-        // At real time: a clock that is faster is no fault of those who add, and one that is slower
+        // At real time: a faster clock is no fault of the client that adds, and a slower one
         // may be set to real time afterwards.
         const auto [all, reading] = pace->load(exists);
         const bool may_rescale = edits.front().kind == Edit::Kind::Set;

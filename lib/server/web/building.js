@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The storeys, stairs and lifts of a building, and which of them everybody is in.
+// The storeys, stairs and lifts of a building, and the room of each mover.
 import {Link, keysOf} from './link.js';
 
 const kEvery = 1000;  // ms between looks

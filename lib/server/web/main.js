@@ -119,7 +119,7 @@ part('rooms').addEventListener('change', () => {
   showRoom(part('rooms').value);
 });
 
-/** Somebody has come to another room: the list says so, and the map goes along with whom it follows. */
+/** Somebody has come to another room: the list says so, and the map goes along with the one that it follows. */
 function moved() {
   listMovers();
   if (following && building.where.has(chosen)) showRoom(building.where.get(chosen));

@@ -14,7 +14,7 @@ function stateOf([x, y, heading, speed, rotspeed, stall, phase]) {
 }
 
 export class Movers {
-  /** before: the movers of the scene that this one replaces; who is in both stays where it is, with its trail */
+  /** before: the movers of the scene that this one replaces; one that is in both stays where it is, with its trail */
   constructor(scene, before) {
     this.colors = scene.colors;
     this.actuators = scene.actuators ?? [];
