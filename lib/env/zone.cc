@@ -187,6 +187,7 @@ std::vector<Doorway> doorsNamed(const std::string& glob, std::string_view text,
                                 const Environment& environment) {
     std::vector<Doorway> doors = doorwaysOf(environment);
     std::vector<std::string> known;
+    known.reserve(doors.size());
     for (const Doorway& door : doors) known.push_back(door.id);
     const Glob wanted(glob);
     std::erase_if(doors, [&](const Doorway& door) { return !wanted.matches(door.id); });
