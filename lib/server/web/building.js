@@ -26,6 +26,8 @@ export class Building {
 
   async look() {
     const {link} = this;
+    clearTimeout(this.timer);
+    if (!link) return;
     const {poses = '', people = '', rooms = ''} = keysOf(await link.ask('POSES'));
     if (link !== this.link || link.isClosed) return;
     const ids = [...poses.split(';'), ...people.split(';')].filter(Boolean).map(row => row.split(',')[0]);
