@@ -152,7 +152,10 @@ void writeRecorded(const ScanCommand& command) {
     const Sensors lasers = recordedLasers(options, input.scene);
     FormatOptions how = formatOptions(command, command.options(), input);
     const bool wants_moments = options.format == "mcap";
-    if (wants_moments) how.members = membersOf(options.view.run, input.scene);
+    if (wants_moments) {
+        how.members = membersOf(options.view.run, input.scene);
+        if (const auto info = recordedInfo(options.view.run)) how.moment_interval = info->every;
+    }
     const auto format = makeFormat(options.format, lasers, std::move(how));
     if (!format->isStream())
         throw UsageError(

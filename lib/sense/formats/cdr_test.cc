@@ -5,7 +5,9 @@
 
 #include <array>
 #include <cstring>
+#include <utility>
 
+#include "sense/formats/reading_format.h"
 #include "sense/formats/ros_messages.h"
 
 namespace ispace {
@@ -133,6 +135,26 @@ TEST(RosMessages, OdometryHoldsItsCovariances) {
     EXPECT_EQ(value(kPose, 2, 2), 0);
     EXPECT_NEAR(value(kMatrix, 0, 0), (0.002 * 0.5 + 0.001 * 0.2) / kSeconds, 1e-12);
     EXPECT_NEAR(value(kMatrix, 5, 5), (0.01 * 0.2 + 0.004 * 0.5) / kSeconds, 1e-12);
+}
+
+TEST(RosMessages, TwistsOfARecordAreMeansOverItsInterval) {
+    const auto first_variance = [](double interval) {
+        FormatOptions options;
+        options.members = {{"r", false, {0.01, 0.004, 0.002, 0.001}}};
+        options.moment_interval = interval;
+        RunState state;
+        state.speed = 0.5;
+        state.odometry = EstimatedPose{};
+        std::string bytes;
+        makeFormat("mcap", {}, std::move(options))->appendMoment(bytes, 0, 1, {&state, 1});
+        double number = 0;
+        constexpr std::size_t kMatrix = 36 * sizeof number;  // it ends the message
+        std::memcpy(&number, bytes.data() + bytes.size() - kMatrix, sizeof number);
+        return number;
+    };
+    EXPECT_NEAR(first_variance(0), 0.002 * 0.5 / 0.02, 1e-12);
+    EXPECT_NEAR(first_variance(0.01), 0.002 * 0.5 / 0.02, 1e-12) << "as often as it is published";
+    EXPECT_NEAR(first_variance(0.1), 0.002 * 0.5 / 0.1, 1e-12);
 }
 
 }  // namespace

@@ -182,10 +182,11 @@ class Mcap final : public FormatBase {
             }
             addRobotFrames(transforms, now, one.odometry, one.name, state.pose,
                            state.odometry->pose);
-            appendMcapMessage(odometries, one.channel, sequence, now,
-                              odometryMessage({now, one.odometry}, one.name, *state.odometry,
-                                              {state.speed, state.sidespeed, state.rotspeed},
-                                              one.alphas, kOdometryPeriod));
+            appendMcapMessage(
+                odometries, one.channel, sequence, now,
+                odometryMessage({now, one.odometry}, one.name, *state.odometry,
+                                {state.speed, state.sidespeed, state.rotspeed}, one.alphas,
+                                std::max(kOdometryPeriod, options_.moment_interval)));
         }
         if (transforms.empty()) return;
         const std::uint64_t now = transforms.front().header.nanoseconds;

@@ -86,6 +86,7 @@ struct FormatOptions {
     bool labels = false, depths = false;
     const Scene* scene = nullptr;
     std::vector<RunMember> members = {};  ///< all movers of a recorded run
+    double moment_interval = 0;           ///< seconds between its moments; 0: not known
 };
 
 /// Returns the names of the formats.
