@@ -35,29 +35,30 @@ void Pace::worked(const Work& work, Moment now) {
     measured_ = {inSeconds(window_.all) / simulated, inSeconds(window_.reading) / simulated};
     window_ = {};
     std::erase_if(unmeasured_, [](const auto& entry) { return entry.second.is_old; });
-    for (auto& [id, share] : unmeasured_) share.is_old = true;
+    for (auto& [sensor, share] : unmeasured_) share.is_old = true;
 }
 
-void Pace::added(const std::vector<const Sensor*>& sensors, Nanoseconds work) {
+void Pace::added(const std::vector<const Sensor*>& sensors, Nanoseconds work, const World* world) {
     constexpr double kTimes = 2;
     const double each =
         inSeconds(work) / static_cast<double>(std::max<std::size_t>(1, sensors.size()));
     for (const Sensor* const sensor : sensors)
-        unmeasured_[sensor->id] = {kTimes * each * periodRate(*sensor), false};
+        unmeasured_[{world, sensor->id}] = {kTimes * each * periodRate(*sensor), false};
 }
 
 void Pace::rescaled(double times) {
     measured_.all += (times - 1) * measured_.reading;
     measured_.reading *= times;
-    for (auto& [id, share] : unmeasured_) share.load *= times;
+    for (auto& [sensor, share] : unmeasured_) share.load *= times;
 }
 
 void Pace::restarted() { *this = Pace(); }
 
-Pace::Load Pace::load(const std::function<bool(const std::string& id)>& exists) const {
+Pace::Load Pace::load(const std::function<bool(const std::string& id)>& exists,
+                      const World* world) const {
     Load load = measured_;
-    for (const auto& [id, share] : unmeasured_) {
-        if (!exists(id)) continue;
+    for (const auto& [sensor, share] : unmeasured_) {
+        if (sensor.first == world && !exists(sensor.second)) continue;
         load.all += share.load;
         load.reading += share.load;
     }

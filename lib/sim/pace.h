@@ -6,12 +6,15 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/sensor/sensor.h"
 #include "sim/sim_time.h"
 
 namespace ispace {
+
+class World;
 
 /// Returns the processor time of this thread.
 [[nodiscard]] std::chrono::nanoseconds threadTime();
@@ -43,14 +46,18 @@ class Pace {
     };
 
     void worked(const Work& work, Moment now);
-    /// Adds first readings of sensors. \param work for all of them
-    void added(const std::vector<const Sensor*>& sensors, Nanoseconds work);
+    /// Adds first readings of sensors. \param work for all of them \param world that has them, of
+    /// several that step together: their ids may be equal
+    void added(const std::vector<const Sensor*>& sensors, Nanoseconds work,
+               const World* world = nullptr);
     /// The sensors have this many times as many readings from now on.
     void rescaled(double times);
     /// The world has restarted.
     void restarted();
-    /// \param exists false for sensors that were removed before they were measured
-    [[nodiscard]] Load load(const std::function<bool(const std::string& id)>& exists) const;
+    /// Returns the load of all worlds. \param exists false for sensors that were removed before
+    /// they were measured; asked about those of this world
+    [[nodiscard]] Load load(const std::function<bool(const std::string& id)>& exists,
+                            const World* world = nullptr) const;
 
   private:
     /// A share of the load that no whole window has measured yet.
@@ -62,7 +69,7 @@ class Pace {
     Work window_;
     Moment begun_{};
     Load measured_;
-    std::map<std::string, Unmeasured> unmeasured_;  // by the id of the sensor
+    std::map<std::pair<const World*, std::string>, Unmeasured> unmeasured_;  // by sensor
 };
 
 }  // namespace ispace

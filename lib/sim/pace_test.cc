@@ -45,6 +45,12 @@ TEST(Pace, WhatIsAddedCountsUntilItIsMeasured) {
     pace.added({&scene.sensors[0]}, std::chrono::microseconds(500));
     EXPECT_NEAR(pace.load(always).all, 0.2, 1e-9);
     EXPECT_EQ(pace.load([](const std::string& id) { return id != "m"; }).all, 0) << "removed since";
+    // One of the same id in another world counts by itself, and only its world knows of its end.
+    const auto* const other = reinterpret_cast<const World*>(&scene);
+    pace.added({&scene.sensors[0]}, std::chrono::microseconds(500), other);
+    EXPECT_NEAR(pace.load(always).all, 0.4, 1e-9);
+    EXPECT_NEAR(pace.load([](const std::string&) { return false; }).all, 0.2, 1e-9);
+    EXPECT_NEAR(pace.load([](const std::string&) { return false; }, other).all, 0.2, 1e-9);
     Pace::Moment now{};
     for (int i = 0; i < 2; ++i)
         pace.worked({milliseconds(100), milliseconds(90), seconds(1)}, now += seconds(1));

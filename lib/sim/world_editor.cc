@@ -179,7 +179,7 @@ void Editing::readAdded() {
     const std::chrono::nanoseconds work = threadTime() - begun;
     std::vector<const Sensor*> added;
     for (const std::size_t i : world_->latestReadings()) added.push_back(&world_->sensors()[i]);
-    pace_->added(added, work);
+    pace_->added(added, work, world_);
 }
 
 }  // namespace
@@ -215,7 +215,7 @@ WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
         };
         // At real time: a faster clock is no fault of the client that adds, and a slower one
         // may be set to real time afterwards.
-        const auto [all, reading] = pace->load(exists);
+        const auto [all, reading] = pace->load(exists, &world);
         const bool may_rescale = edits.front().kind == Edit::Kind::Set;
         check = [check = std::move(check), before = world.sharedScene(), step = world.stepLength(),
                  may_rescale, work = all, reads = reading](const Scene& scene) {
