@@ -386,12 +386,20 @@ class SvgReader {
                          transformOf(readSvgElement(shape, sheet_, options_), around.view);
             }
             const std::string_view kind = svgName(shape);
-            if (!isOneOf(kShapes, kind)) {
+            if (isOneOf(kOthers, kind)) {
                 around.unread = kOddClip;  // letters
                 return;
             }
+            if (!isOneOf(kShapes, kind)) continue;  // draws nothing
             Clip::Part part;
-            part.is_even_odd = clipRuleOf(shape) == "evenodd" || clipRuleOf(child) == "evenodd";
+            // Inherited: the shape's own rule, else that of its `use`, else that of the clip.
+            for (const std::string_view rule :
+                 {readSvgElement(shape, sheet_, options_).properties[SvgProperty::ClipRule],
+                  element.properties[SvgProperty::ClipRule], own.properties[SvgProperty::ClipRule]})
+                if (!rule.empty()) {
+                    part.is_even_odd = rule == "evenodd";
+                    break;
+                }
             for (const SvgSubpath& path : svgPaths(shape, kind, around.view)) {
                 const PlanShape ring = shapeOf(path, placed);
                 if (ring.path.points.size() < 3) continue;
@@ -401,18 +409,6 @@ class SvgReader {
             clip->parts.push_back(std::move(part));
         }
         around.clips.push_back(clip);
-    }
-
-    /// Returns the rule of a shape of a clip, of its attribute or its style.
-    static std::string_view clipRuleOf(pugi::xml_node node) {
-        const std::string_view rule = trimmed(node.attribute("clip-rule").value());
-        if (!rule.empty()) return rule;
-        const std::string_view style = node.attribute("style").value();
-        const std::size_t at = style.find("clip-rule");
-        return at != std::string_view::npos && trimmed(style.substr(at + 9)).starts_with(':') &&
-                       trimmed(style.substr(style.find(':', at) + 1)).starts_with("evenodd")
-                   ? "evenodd"
-                   : "";
     }
 
     /// Returns the element itself; caches it if it may be used again.

@@ -86,6 +86,7 @@ enum class SvgProperty : std::size_t {
     StrokeWidth,
     VectorEffect,
     ClipPath,
+    ClipRule,
     Mask
 };
 class SvgProperties {
@@ -107,11 +108,10 @@ class SvgProperties {
     }
     /// Drops values that refer to variables. \return true if there are any
     bool dropVariables();
-    static constexpr std::array<const char*, 14> kNames{
-        "display",          "visibility",    "fill",           "stroke",
-        "opacity",          "fill-opacity",  "stroke-opacity", "transform",
-        "transform-origin", "transform-box", "stroke-width",   "vector-effect",
-        "clip-path",        "mask"};
+    static constexpr std::array<const char*, 15> kNames{
+        "display",      "visibility",     "fill",      "stroke",           "opacity",
+        "fill-opacity", "stroke-opacity", "transform", "transform-origin", "transform-box",
+        "stroke-width", "vector-effect",  "clip-path", "clip-rule",        "mask"};
 
   private:
     void set(std::size_t key, std::string_view value, bool is_important);

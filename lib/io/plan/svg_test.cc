@@ -506,6 +506,8 @@ TEST(Svg, ClipsCutLines) {
     const std::string rings = "d='M0 0h10v10h-10zM4 0h2v10h-2z'/>";
     EXPECT_NEAR(with("<path " + rings, line), 24, 1e-9);
     EXPECT_NEAR(with("<path clip-rule='evenodd' " + rings, line), 48, 1e-9);
+    EXPECT_NEAR(with("<path style='fill:none; clip-rule : evenodd' " + rings, line), 48, 1e-9);
+    EXPECT_NEAR(with("<style>#c{clip-rule:evenodd}</style><path " + rings, line), 48, 1e-9);
 }
 
 TEST(Svg, SharesOfTheViewport) {
