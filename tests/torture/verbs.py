@@ -7,27 +7,16 @@ As a program: verbs.py SIMRUN ROOM LAYOUT REQUESTS starts simrun, sends the requ
 Its status is 0 if all succeed, 1 if some are refused, as ERR 409 for a world that is full, and 2 if simrun fails.
 """
 import json
-import math
 import os
 import socket
 import subprocess
 import sys
 import threading
 
-STEEPEST = 1.3
-SMALLEST, MOST_BYTES, LONG_BYTES = 2_000, 32_000, 256_000
-WIDTH, DEPTH = 40.0, 30.0
+from layouts import DEPTH, STEEPEST, WIDTH, spread
+
 # Whether the requests of a row succeed or are refused: the status of the program, as that of the tools.
 RESULT, REFUSAL, FAILURE = 0, 1, 2
-
-
-def spread(count):
-    """Points in rows across the floor, apart from its walls."""
-    columns = max(1, math.ceil(math.sqrt(count * WIDTH / DEPTH)))
-    rows = max(1, math.ceil(count / columns))
-    for i in range(count):
-        yield (round(-WIDTH / 2 + WIDTH * (i % columns + 0.5) / columns, 3),
-               round(-DEPTH / 2 + DEPTH * (i // columns + 0.5) / rows, 3))
 
 
 def lines(text, count):
