@@ -160,10 +160,8 @@ std::vector<PageSection> cameraSheets(const Scene& scene, const PageTable& insta
             "ll",
             {"", row.front()},
             {}};
-        for (std::size_t i = 1; i < row.size(); ++i) {
-            const std::string& head = installation.heads[i];
-            table.rows.push_back({head == "sees" ? "must see" : head, row[i]});
-        }
+        for (std::size_t i = 1; i < row.size(); ++i)
+            table.rows.push_back({installation.heads[i], row[i]});
         sheet.blocks.push_back(std::move(table));
         const auto picture =
             std::find_if(pictures.begin(), pictures.end(), [&row](const PageFigure& figure) {

@@ -38,7 +38,7 @@ double lensDensity(const Sensor& sensor, Point3 place);
 std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& coverage);
 
 /// Builds a section for each camera that stands still, on a new sheet: its row of the
-/// installation, one value a row, the zones that it must see, and its picture as wide as the sheet.
+/// installation, one value a row, the zones that it sees, and its picture as wide as the sheet.
 /// \param installation as installationTable() returns it \param pictures as of sensorPictures(), of
 /// which those of cameras are taken out
 std::vector<PageSection> cameraSheets(const Scene& scene, const PageTable& installation,
