@@ -265,17 +265,21 @@ class PdfWriter {
         addLogo();
         sheets_.text(page_.title, {kTitle, true, Align::Left, palette::kInk, {}});
         sheets_.text(page_.subtitle, kCaption);
-        for (const auto& [name, text] : coverLines(page_.cover))
-            sheets_.text(name + ": " + text, {kBody, false, Align::Left, palette::kInk, {}});
+        for (const auto& [name, text] : coverLines(page_.cover)) {
+            std::string line = name;
+            line.append(": ").append(text);
+            sheets_.text(line, {kBody, false, Align::Left, palette::kInk, {}});
+        }
         for (const PageSection& section : page_.sections) {
             // A heading stays with the block below it.
             constexpr double kAbove = 1 + kLine + 0.3;
             if (section.begins_sheet) sheets_.next();
-            sheets_.need(kAbove * kHeading +
-                         (section.blocks.empty()
-                              ? 0
-                              : std::visit([this](const auto& one) { return leastHeight(one); },
-                                           section.blocks.front())));
+            sheets_.need(
+                kAbove * kHeading +
+                (section.blocks.empty()
+                     ? 0
+                     : std::visit([this](const auto& one) { return this->leastHeight(one); },
+                                  section.blocks.front())));
             sheets_.skip(kHeading);
             sheets_.text(section.title, {kHeading, true, Align::Left, palette::kInk, {}});
             sheets_.skip(0.3 * kHeading);
