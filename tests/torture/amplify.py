@@ -9,6 +9,7 @@ import base64
 import json
 import math
 import os
+import re
 import resource
 import struct
 import subprocess
@@ -846,6 +847,8 @@ def expected_of(family):
 
 def outcome(status, said):
     """How a command ended: "result" (also an unmet requirement, or findings), "refusal" or "failure"."""
+    if status == 1 and re.match(r"\w+Error\b", said):
+        return "failure"  # of a program in Python
     if status == 1:
         return "refusal" if ": error: " in said else "result"
     return "result" if status in (0, 3) else "failure"

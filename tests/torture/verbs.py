@@ -13,7 +13,9 @@ import subprocess
 import sys
 import threading
 
-from layouts import DEPTH, STEEPEST, WIDTH, spread
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))  # which an isolated interpreter leaves out
+# pylint: disable=wrong-import-position
+from layouts import DEPTH, LONG_BYTES, MOST_BYTES, SMALLEST, STEEPEST, WIDTH, spread  # noqa: E402,F401
 
 # Whether the requests of a row succeed or are refused: the status of the program, as that of the tools.
 RESULT, REFUSAL, FAILURE = 0, 1, 2
