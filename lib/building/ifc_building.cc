@@ -214,7 +214,6 @@ StoreyedDocument readIfcBuilding(std::string_view bytes, const std::string& oper
         all.notes.push_back(countText(left_out, "transport element") +
                             " left out: lifts have doors on two storeys or more");
     building.notes.insert(building.notes.begin(), all.notes.begin(), all.notes.end());
-    building.warnings.insert(building.warnings.begin(), all.warnings.begin(), all.warnings.end());
     return building;
 }
 

@@ -257,22 +257,31 @@ class MeetingLines {
         std::vector<std::vector<std::size_t>> parts(hubs_.size() + 1);
         for (std::size_t i = 0; i < lines.size(); ++i)
             parts[hubs_of_[i].empty() ? hubs_.size() : hubs_of_[i].front().hub].push_back(i);
+        std::vector<Box2> boxes;
         for (std::vector<std::size_t>& part : parts) {
             std::vector<Segment2> own;
             own.reserve(part.size());
-            for (const std::size_t i : part) own.push_back(lines[i]);
+            Box2& box = boxes.emplace_back(Box2{Point2(), Point2()});
+            if (!part.empty()) box = Box2();
+            for (const std::size_t i : part) {
+                own.push_back(lines[i]);
+                box.add(lines[i].a);
+                box.add(lines[i].b);
+            }
             trees_.push_back({SegmentTree(own), std::move(part)});
         }
+        tree_of_trees_ = BoxTree(boxes);
     }
 
     /// Calls visit(line) for each line, maybe twice, and for some that do not meet it.
     template <typename Visit>
     void search(std::size_t line, Visit visit) const {
         const std::vector<Place>& own = hubs_of_[line];
-        for (std::size_t t = 0; t < trees_.size(); ++t)
+        tree_of_trees_.search(bounds(lines_[line]).expanded(kWeldDistance), [&](std::size_t t) {
             if (std::none_of(own.begin(), own.end(), [t](const Place& at) { return at.hub == t; }))
                 trees_[t].tree.search(lines_[line], kWeldDistance,
                                       [&](std::size_t i) { visit(trees_[t].lines[i]); });
+        });
         for (const Place& at : own) hubs_[at.hub].searchBeside(at.ray, visit);
     }
 
@@ -340,6 +349,7 @@ class MeetingLines {
     std::vector<std::vector<Place>> hubs_of_;  // of each line, at most two
     std::vector<Hub> hubs_;
     std::vector<Part> trees_;  // of the lines whose first hub it is, then of those without one
+    BoxTree tree_of_trees_;
 };
 
 /// Finds the crossings of one plan line by line.

@@ -30,27 +30,46 @@ std::string whereText(const UnreadThing& thing) {
 
 }  // namespace
 
-bool mayBeWallOf(std::span<const PlanRegion> rooms, const UnreadThing& thing) {
+RoomVicinity::RoomVicinity(std::span<const PlanRegion> rooms) {
+    std::vector<Box2> boxes;
+    for (const PlanRegion& region : rooms)
+        for (const Region& room : region.rooms)
+            room.forEachEdge([&](const Segment2& edge) {
+                edges_.push_back(edge);
+                boxes.push_back(bounds(edge));
+                box_.add(edge.a);
+            });
+    tree_ = BoxTree(boxes);
+}
+
+bool RoomVicinity::isInside(Point2 p) const {
+    bool is_inside = false;
+    tree_.search({p, {p.x, box_.high.y}}, [&](std::size_t i) {
+        const auto& [a, b] = edges_[i];
+        if ((a.x <= p.x) == (b.x <= p.x)) return;
+        const double y = a.y + (p.x - a.x) / (b.x - a.x) * (b.y - a.y);
+        if (y > p.y) is_inside = !is_inside;
+    });
+    return is_inside;
+}
+
+bool RoomVicinity::mayHaveWall(const UnreadThing& thing) const {
     if (thing.extent.empty()) return true;
     if (std::max(thing.extent.width(), thing.extent.depth()) < kLeastWall) return false;
-    const Vec2 aside{kBesideRoom, kBesideRoom};
-    const Box2 near{thing.extent.low - aside, thing.extent.high + aside};
-    const auto touches = [&](const Region& room) {
-        bool meets = room.locate(thing.extent.center()) != Side::Outside;
-        room.forEachEdge([&](const Segment2& edge) { meets = meets || bounds(edge).meets(near); });
-        return meets;
-    };
-    return rooms.empty() || std::any_of(rooms.begin(), rooms.end(), [&](const PlanRegion& region) {
-               return std::any_of(region.rooms.begin(), region.rooms.end(), touches);
-           });
+    if (edges_.empty()) return true;
+    bool meets = false;
+    tree_.search(thing.extent.expanded(kBesideRoom), [&](std::size_t /*edge*/) { meets = true; });
+    return meets || isInside(thing.extent.center());
 }
 
 void warnOfUnread(std::span<const UnreadThing> things, std::span<const PlanRegion> rooms,
                   const std::string& advice, ImportRecords& out) {
+    if (things.empty()) return;
+    const RoomVicinity vicinity(rooms);
     int line = 0;
     std::map<std::string, std::pair<std::size_t, const UnreadThing*>> kinds;
     for (const UnreadThing& thing : things) {
-        if (!mayBeWallOf(rooms, thing)) continue;
+        if (!vicinity.mayHaveWall(thing)) continue;
         auto& [count, first] = kinds[thing.kind];
         if (kinds.size() == 1 && count == 0) line = thing.line;
         if (count++ == 0) first = &thing;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geom/point.h"
+#include "geom/spatial_index.h"
 #include "io/import_records.h"
 #include "io/plan/plan_rooms.h"
 
@@ -26,9 +27,25 @@ struct UnreadThing {
     Box2 extent = {};               ///< in the frame of the rooms, in metres; empty: unknown
 };
 
-/// Returns true for a thing that may be a wall of these rooms: its size is unknown or at least half
-/// a metre, and its place unknown or at most half a metre off. \param rooms none: any place counts
-bool mayBeWallOf(std::span<const PlanRegion> rooms, const UnreadThing& thing);
+/// Tells which things may be walls of the kept rooms. O(n log n) to build, O(log n) a thing apart
+/// from edges above and below it.
+class RoomVicinity {
+  public:
+    /// \param rooms none: any place counts
+    explicit RoomVicinity(std::span<const PlanRegion> rooms);
+
+    /// Returns true for a thing that may be a wall of these rooms: its size is unknown or at least
+    /// half a metre, and its place unknown or at most half a metre off.
+    [[nodiscard]] bool mayHaveWall(const UnreadThing& thing) const;
+
+  private:
+    /// Returns true for a point strictly within a room, away from edges.
+    [[nodiscard]] bool isInside(Point2 p) const;
+
+    std::vector<Segment2> edges_;
+    Box2 box_;
+    BoxTree tree_;
+};
 
 /// Adds one warning for all things that may be walls of the rooms: kinds with their counts, the
 /// first place of each kind, and `advice`.

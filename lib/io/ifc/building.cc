@@ -36,10 +36,6 @@ class Packer {
         put(std::uint64_t{values.size()});
         for (const T& value : values) put(value);
     }
-    void put(const std::map<std::string, std::uint64_t>& counts) {
-        put(std::uint64_t{counts.size()});
-        for (const auto& [name, count] : counts) (*this)(name, count);
-    }
 
     std::string bytes_;
 };
@@ -77,13 +73,6 @@ class Unpacker {
     template <typename T>
     void get(std::vector<T>& values) {
         for (std::uint64_t left = count(); left > 0; --left) get(values.emplace_back());
-    }
-    void get(std::map<std::string, std::uint64_t>& counts) {
-        for (std::uint64_t left = count(); left > 0; --left) {
-            std::string name;
-            get(name);
-            get(counts[name]);
-        }
     }
     /// Reads a count of items that take at least a byte each.
     std::uint64_t count() {
@@ -148,6 +137,10 @@ void pack(Archive& archive, BuildingThing& thing) {
     archive(thing.type, thing.name, thing.boxes);
 }
 template <typename Archive>
+void pack(Archive& archive, BuildingUnread& part) {
+    archive(part.kind, part.owner, part.storey, part.has_place, part.at);
+}
+template <typename Archive>
 void pack(Archive& archive, Building& building) {
     archive(building.storeys, building.spaces, building.walls, building.openings, building.things,
             building.unread);
@@ -173,7 +166,16 @@ Building unpackedBuilding(std::string_view bytes) {
     for (const BuildingOpening& opening : building.openings)
         Unpacker::check(opening.kind <= BuildingOpening::Kind::Hole &&
                         opening.storey < building.storeys.size());
+    for (const BuildingUnread& part : building.unread)
+        Unpacker::check(part.storey < building.storeys.size() ||
+                        part.storey == BuildingUnread::kNoStorey);
     return building;
+}
+
+std::map<std::string, std::size_t> unreadKinds(const Building& building) {
+    std::map<std::string, std::size_t> kinds;
+    for (const BuildingUnread& part : building.unread) ++kinds[part.kind];
+    return kinds;
 }
 
 }  // namespace ispace

@@ -83,6 +83,16 @@ struct BuildingThing {
     std::vector<BuildingBox> boxes;
 };
 
+/// Geometry of a product that was not read.
+struct BuildingUnread {
+    static constexpr std::uint64_t kNoStorey = ~std::uint64_t{0};
+    std::string kind;                  ///< IFCADVANCEDBREP, or the fault
+    std::string owner;                 ///< type and name of the product
+    std::uint64_t storey = kNoStorey;  ///< that the file assigns it to
+    bool has_place = false;
+    Point2 at;  ///< of the product's placement, in the file's units
+};
+
 /// The parts of a building that plans of its storeys require: in metres, z up, in the building's
 /// coordinates. Storeys rise, and so do their cuts.
 struct Building {
@@ -91,12 +101,15 @@ struct Building {
     std::vector<BuildingWall> walls;  ///< one for each storey and product
     std::vector<BuildingOpening> openings;
     std::vector<BuildingThing> things;
-    std::map<std::string, std::uint64_t> unread;  ///< skipped parts of geometry, by type
+    std::vector<BuildingUnread> unread;
 };
 
 /// Returns the first storey that is cut at the same height, which stores the sections of walls for
 /// all of them: storeys of several buildings are often level. O(log storeys)
 std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey);
+
+/// Returns the numbers of unread parts by kind.
+std::map<std::string, std::size_t> unreadKinds(const Building& building);
 
 /// Reads a building of IFC2x3, IFC4 or IFC4.3.
 /// \param slice a height at which the highest storey below is cut, instead of 1 m above its floor

@@ -78,7 +78,6 @@ class BuildingReader {
         forEach(kThings, [this](StepId id) {
             if (!tree_.isPartOfWall(id)) addThing(id);
         });
-        for (const auto& [type, count] : shapes_.unread()) out_.unread[type] += count;
         return std::move(out_);
     }
 
@@ -109,6 +108,24 @@ class BuildingReader {
         }
     }
 
+    /// Notes a part that is not read. Its place is that of the product, if it has one.
+    void addUnread(std::string kind, StepId id, const Product& product) {
+        constexpr std::size_t kMostNamed = 10'000;  // others have no name
+        BuildingUnread part;
+        part.kind = std::move(kind);
+        if (out_.unread.size() < kMostNamed) {
+            part.owner = product.instance.type;
+            if (const std::string name = product.instance[2].text(); !name.empty())
+                part.owner += ' ' + name.substr(0, name.find(':'));
+        }
+        part.storey = storeyOf(id).value_or(BuildingUnread::kNoStorey);
+        const Point3 origin = product.frame.origin;
+        part.has_place = origin.x != 0 || origin.y != 0;
+        const double unit = frames_.units().length;
+        if (part.has_place) part.at = {origin.x / unit, origin.y / unit};
+        out_.unread.push_back(std::move(part));
+    }
+
     /// Reads a shape in the building's coordinates; counts it as unread if its placement is bad.
     Product productOf(StepId id) {
         Product product{file_.read(id), {}, {}};
@@ -116,8 +133,10 @@ class BuildingReader {
             product.frame = frames_.placement(product.instance[5].reference());
             product.shape = shapes_.shapeOf(product.instance[6].reference(),
                                             product.instance.type.starts_with("IFCOPENING"));
+            for (const auto& [kind, count] : shapes_.takeUnread())
+                for (std::size_t i = 0; i < count; ++i) addUnread(kind, id, product);
         } catch (const UnreadGeometry& part) {
-            ++out_.unread[part.what()];
+            addUnread(part.what(), id, product);
         } catch (const std::runtime_error& error) {
             throw std::runtime_error("#" + std::to_string(id) + ": " + error.what());
         }
@@ -214,21 +233,14 @@ class BuildingReader {
         return found->second;
     }
 
-    [[nodiscard]] std::uint64_t unreadParts() const {
-        std::uint64_t count = 0;
-        for (const auto* parts : {&out_.unread, &shapes_.unread()})
-            for (const auto& [type, number] : *parts) count += number;
-        return count;
-    }
-
     /// Adds a section for each storey plane that the wall crosses, regardless of its own storey.
     void addWall(StepId id, bool is_column) {
-        const std::uint64_t unread = unreadParts();
+        const std::size_t unread = out_.unread.size();
         const Product product = productOf(id);
         // Parts that could not be read are counted already.
         if (product.shape.empty() && product.instance.type.starts_with("IFCWALL") &&
-            !tree_.isWhole(id) && unreadParts() == unread)
-            ++out_.unread[std::string(product.instance.type) + " without a body"];
+            !tree_.isWhole(id) && out_.unread.size() == unread)
+            addUnread(std::string(product.instance.type) + " without a body", id, product);
         const IfcHeights heights = heightsOf(product.shape);
         const std::optional<std::uint64_t> own = storeyOf(id);
         const auto first = std::partition_point(planes_.begin(), planes_.end(), [&](auto i) {

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,8 @@
 #include "io/ifc/storey_plan.h"
 #include "io/import_records.h"
 #include "io/importers.h"
+#include "io/plan/plan_rooms.h"
+#include "io/unread.h"
 
 namespace ispace {
 
@@ -206,7 +209,7 @@ std::string storeysText(const Building& building, std::size_t chosen) {
 std::string unreadText(const Building& building) {
     std::string text;
     std::size_t all = 0;
-    for (const auto& [type, count] : building.unread) {
+    for (const auto& [type, count] : unreadKinds(building)) {
         text += (text.empty() ? "" : ", ") + type + " (" + std::to_string(count) + ')';
         all += count;
     }
@@ -297,6 +300,24 @@ Building wholeBuilding(std::string_view bytes, const std::string& operand,
     return readBuildingInChild(bytes, operand, options.slice_walls, work);
 }
 
+/// Warns of geometry of this storey that was not read, see io/unread.h. \param is_first it has that
+/// of products without a storey, too
+void warnOfUnread(const Building& building, std::size_t storey, bool is_first,
+                  std::span<const PlanRegion> rooms, ImportRecords& out) {
+    std::vector<UnreadThing> things;
+    for (const BuildingUnread& part : building.unread) {
+        if (part.storey == BuildingUnread::kNoStorey ? !is_first : part.storey != storey) continue;
+        UnreadThing& thing = things.emplace_back(UnreadThing{part.kind});
+        thing.owner = printable(part.owner);
+        if (part.has_place) thing.at = part.at;
+    }
+    warnOfUnread(
+        things, rooms,
+        "export it with solids that are extruded, or with meshes (IFC4 Reference View), or "
+        "draw what is missing with --add",
+        out);
+}
+
 /// Returns the boxes of all things of these types.
 std::vector<BuildingBox> boxesOf(const Building& building,
                                  std::initializer_list<std::string_view> types) {
@@ -314,11 +335,7 @@ IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
     Budget work(bytes.size(), options.max_work);
     Building building = wholeBuilding(bytes, operand, options, work);
     IfcStoreys all;
-    const auto warn = [&](const std::string& sentence) {
-        all.warnings.push_back({displayName(operand), 0, 0, sentence, Severity::Warning});
-    };
     if (const auto moved = movedHome(building)) all.notes.push_back(surveyText(*moved, "building"));
-    if (!building.unread.empty()) warn(unreadText(building));
     if (options.report != nullptr) options.report->has_storeys = true;
     const bool any_rooms =
         std::any_of(building.storeys.begin(), building.storeys.end(),
@@ -335,7 +352,10 @@ IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
         }
         ImportRecords out(schemas, operand, options);
         out.setStorey(storeyWord(building, i));
-        withFileName(operand, [&] { writeStorey(building, i, options, work, out); });
+        const bool is_first = all.storeys.empty();
+        withFileName(operand, [&] {
+            warnOfUnread(building, i, is_first, writeStorey(building, i, options, work, out), out);
+        });
         all.storeys.push_back({storey.name, storey.elevation, out.take()});
     }
     if (all.storeys.empty()) failFile(operand, "no storey has walls or spaces");
@@ -355,10 +375,10 @@ Document readIfc(std::string_view bytes, const std::string& operand, const Impor
         out.tell(storeysText(building, storey));
         if (options.report != nullptr) options.report->has_storeys = true;
         if (moved) out.tell(surveyText(*moved, "building"));
-        if (!building.unread.empty()) out.warn(unreadText(building));
         listRooms(building, 0, storey, operand, options, work, schemas);
         out.setStorey(storeyWord(building, storey));
-        writeStorey(building, storey, options, work, out);
+        warnOfUnread(building, storey, true, writeStorey(building, storey, options, work, out),
+                     out);
         listRooms(building, storey + 1, building.storeys.size(), operand, options, work, schemas);
     });
     return out.take();

@@ -46,7 +46,6 @@ struct IfcStoreys {
     std::vector<IfcStorey> storeys;
     std::vector<BuildingBox> flights, lifts;  ///< around stairs and transport elements
     std::vector<std::string> notes;
-    std::vector<Diagnostic> warnings;
 };
 
 /// Reads all storeys as readIfc() reads one. Storeys without walls and spaces, and those that are

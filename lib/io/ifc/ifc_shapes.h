@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "base/budget.h"
@@ -64,6 +65,8 @@ class IfcShapes {
     void pay(std::span<const IfcSolid> part, const char* cause, std::size_t times = 1);
     /// Returns the numbers of unsupported parts, by type.
     [[nodiscard]] const std::map<std::string, std::size_t>& unread() const { return unread_; }
+    /// Returns these, and forgets them.
+    std::map<std::string, std::size_t> takeUnread() { return std::exchange(unread_, {}); }
 
     static constexpr std::size_t kMaxCorners = 20'000'000;  ///< of a shape
 

@@ -60,6 +60,8 @@ class StoreyImport {
         mustEnclose();
     }
 
+    [[nodiscard]] const std::vector<PlanRegion>& rooms() const { return rooms_.regions; }
+
   private:
     /// A space and its area.
     struct Room {
@@ -438,9 +440,12 @@ class StoreyImport {
 
 }  // namespace
 
-void writeStorey(const Building& building, std::size_t storey, const ImportOptions& options,
-                 Budget& work, ImportRecords& out) {
-    StoreyImport(building, storey, options, work, out).write();
+std::vector<PlanRegion> writeStorey(const Building& building, std::size_t storey,
+                                    const ImportOptions& options, Budget& work,
+                                    ImportRecords& out) {
+    StoreyImport import(building, storey, options, work, out);
+    import.write();
+    return import.rooms();
 }
 
 }  // namespace ispace

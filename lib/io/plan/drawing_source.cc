@@ -13,13 +13,11 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "env/environment.h"
+#include "io/plan/drawing_unit.h"
 
 namespace ispace {
 
 namespace {
-
-/// Width of a plan in metres if its unit is right.
-constexpr double kLikelyPlan = 3, kUnlikelyPlan = 300;
 
 /// Metres; drawings outside have another unit than they say.
 constexpr double kMinDrawing = 1, kMaxDrawing = 2000;
@@ -37,8 +35,9 @@ constexpr std::size_t kMaxLinesReadAgain = 100'000;
 
 /// Square metres: walls of a smaller room may be those within a room of other lines.
 constexpr double kLeastHouse = 12;
-/// Least share of a plot that its house has: less may be the core of a hall whose outer walls have
-/// other names.
+/// Share of an outline that is walls of two lines, as houses have them, parcels not.
+constexpr double kWalled = 0.5;
+/// Least share of a plot that a house of walls of one line has: less may be the core of a hall.
 constexpr double kLeastOfPlot = 0.06;
 /// Metres between an outline around a house and its walls.
 constexpr double kAroundHouse = 0.5;
@@ -55,6 +54,13 @@ Box2 boundsOf(const std::vector<PlanRegion>& rooms) {
 bool liesWithin(const Box2& box, const Box2& outer) {
     return outer.low.x + kAroundHouse <= box.low.x && outer.low.y + kAroundHouse <= box.low.y &&
            box.high.x + kAroundHouse <= outer.high.x && box.high.y + kAroundHouse <= outer.high.y;
+}
+
+/// Returns true for a house on a parcel, false for the core of a hall.
+bool isHouseOn(const PlanOutcome& house, const PlanOutcome& parcel) {
+    if (house.area < kLeastHouse || !liesWithin(house.walls, boundsOf(parcel.rooms))) return false;
+    if (parcel.walled >= kWalled) return false;
+    return house.walled >= kWalled || house.area >= kLeastOfPlot * parcel.area;
 }
 
 /// As an option takes it in a shell, its glob characters escaped.
@@ -95,37 +101,20 @@ double metresPerUnit(double width, const std::string& name,
     return scale;
 }
 
-std::string otherUnitHint(double extent, const DrawingSource& drawing,
-                          const ImportOptions& options) {
-    if (!drawing.import) return "";
-    std::vector<std::string> names = drawing.likely_units;
-    names.insert(names.end(), {"m", "mm", "cm", "inch", "foot"});
-    for (const std::string& name : names) {
-        const auto other = std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
-                                        [&](const LengthUnit& u) { return u.name == name; });
-        const double metres = extent / drawing.metres_per_unit * other->metres;
-        if (metres < kLikelyPlan || metres > kUnlikelyPlan) continue;
-        ImportOptions as_other = options;
-        as_other.units = name;
-        as_other.width_is.reset();
-        as_other.found = nullptr;
-        return " It is read in " + drawing.unit + "; with --units " + name + " it would be " +
-               lengthText(metres) + " m wide and have " + areaText(drawing.import(as_other).area) +
-               " of floor";
-    }
-    return "";
+std::string otherUnitHint(const DrawingSource& drawing) {
+    if (!drawing.import || !drawing.ranking) return "";
+    const std::vector<UnitEvidence>& ranking = drawing.ranking();
+    return ranking.empty() ? "" : " It is read in " + drawing.unit + scaleHint(ranking);
 }
 
 void checkScale(double extent, const DrawingSource& drawing, const std::string& name,
                 const ImportOptions& options) {
     if (!options.units.empty() || options.width_is) return;
     if (extent >= kMinDrawing && extent <= kMaxDrawing) return;
-    const std::string hint = otherUnitHint(extent, drawing, options);
+    const std::string hint = otherUnitHint(drawing);
     const std::string metres = extent < kMaxDrawing ? lengthText(extent) : formatFixed(extent, 0);
     failFile(name, "the plan is " + metres + " m wide: is its unit right?" +
-                       (hint.empty() ? " Else " + std::string(kScaleHint)
-                                     : hint + "; or say how wide it is, with --width-is 8.3m") +
-                       drawing.ranking);
+                       (hint.empty() ? " Else " + std::string(kScaleHint) : hint));
 }
 
 void warnOfWallNames(const std::map<std::string, std::size_t>& names, const PlanOutcome& taken,
@@ -152,8 +141,7 @@ void warnOfWallNames(const std::map<std::string, std::size_t>& names, const Plan
         const bool is_larger =
             other.area > (1 + (needs_gaps ? kClutteredRoom : kSameRoom)) * taken.area;
         const bool is_framed = (taken.is_frame && other.area < (1 - kSameRoom) * taken.area) ||
-                               (liesWithin(other.walls, boundsOf(taken.rooms)) &&
-                                other.area >= std::max(kLeastHouse, kLeastOfPlot * taken.area));
+                               isHouseOn(other, taken);
         if (drawing.better_layers != nullptr && (is_larger || is_framed)) {
             *drawing.better_layers = from_walls.wall_layers;
             return;

@@ -15,6 +15,8 @@
 
 namespace ispace {
 
+struct UnitEvidence;
+
 /// The result of an import, to compare others with.
 struct PlanOutcome {
     double area = 0;                     ///< of the floor, in square metres
@@ -22,6 +24,8 @@ struct PlanOutcome {
     bool is_frame = false;               ///< the room is a rectangle around the whole drawing
     std::vector<PlanRegion> rooms = {};  ///< that are kept
     Box2 walls = {};                     ///< bounds of all lines that were read as walls
+    double walled = 0;  ///< share of the first room's outline that is the side of a wall of two
+                        ///< lines
 };
 
 /// A drawing that can be imported again, so that messages can report the effect of other options.
@@ -30,8 +34,8 @@ struct DrawingSource {
     double metres_per_unit = 1;                        ///< of the drawing's coordinates
     std::size_t bytes = 0;                             ///< of the file
     std::map<std::string, std::size_t> left_out = {};  ///< what draws no lines, by type or reason
-    std::vector<std::string> likely_units = {};  ///< for --units, the most likely first, if known
-    std::string ranking = {};                    ///< of units and scales, see rankingText()
+    /// Returns its units and scales, the most likely first, see rankedUnits(); may be null.
+    std::function<const std::vector<UnitEvidence>&()> ranking = {};
     /// Imports with other options; null omits these messages. \throws FormatError as the import
     /// does
     std::function<PlanOutcome(const ImportOptions&)> import = {};
@@ -53,10 +57,10 @@ std::string unitText(double metres_per_unit);
 double metresPerUnit(double width, const std::string& name,
                      const std::function<std::vector<PlanPath>(double)>& read);
 
-/// Returns "; with --units m it would be 7.855 m wide and have 57.3 m2 of floor": the first unit in
-/// which a drawing of this extent (metres) is as large as a building; "" if no unit fits.
-std::string otherUnitHint(double extent, const DrawingSource& drawing,
-                          const ImportOptions& options);
+/// Returns the advice for a drawing of an unlikely size, by the ranking of its units: " It is read
+/// in cm; most likely is m, in which doors are 0.81 m wide …: say its unit, …", see scaleHint(); ""
+/// if no unit fits.
+std::string otherUnitHint(const DrawingSource& drawing);
 
 /// Rejects a drawing below 1 m or above 2 km unless the options give its scale.
 /// \throws FormatError
@@ -66,7 +70,9 @@ void checkScale(double extent, const DrawingSource& drawing, const std::string& 
 /// Compares the room with that of walls from these layers, blocks and groups alone. A larger room,
 /// which other lines clutter, one in the frame of a sheet, and one off an outline around all of
 /// these walls, as of a parcel, are passed to DrawingSource::better_layers, if there is one; else
-/// warns. Rooms below a square metre, and those
+/// warns. A parcel is drawn as one line: an outline of two lines, as of a wall, is that of a hall
+/// around a core whose walls have other names. Where the house has walls of one line, too, it is
+/// one from a share of the parcel on. Rooms below a square metre, and those
 /// that need wider gaps closed than the one that was taken, are no advice.
 /// \param names with their numbers of lines \param taken the room
 void warnOfWallNames(const std::map<std::string, std::size_t>& names, const PlanOutcome& taken,

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "io/plan/drawing_source.h"
+#include "io/plan/parallel_lines.h"
 #include "io/plan/plan_lines.h"
 
 namespace ispace {
@@ -20,15 +21,9 @@ namespace {
 
 /// Metres.
 constexpr double kNarrowDoor = 0.6, kWideDoor = 1.2;
-constexpr double kThinWall = 0.08, kThickWall = 0.5;
 constexpr double kSmallPlan = 2, kLargePlan = 500;         // impossible beyond
 constexpr double kUsualPlan = 4, kLargestUsualPlan = 100;  // usual within
-constexpr double kShortestSide = 0.4;                      // of a wall
 
-/// Sine of the angle between the sides of a wall.
-constexpr double kParallel = 0.01;
-/// Share of the shorter side along which the other one faces it.
-constexpr double kFacing = 0.5;
 /// A drawing with a smaller share of such lines has no walls of two lines.
 constexpr double kFewWalls = 0.15, kMostWalls = 0.3;
 
@@ -43,6 +38,10 @@ bool isUsual(const UnitEvidence& evidence) {
     return evidence.extent >= kUsualPlan && evidence.extent <= kLargestUsualPlan;
 }
 
+bool hasPlanSize(const UnitEvidence& evidence) {
+    return evidence.extent >= kSmallPlan && evidence.extent <= kLargePlan;
+}
+
 /// Returns the value at half of the weight; 0 for none.
 double weightedMedian(std::vector<std::pair<double, double>> values) {
     std::sort(values.begin(), values.end());
@@ -53,45 +52,58 @@ double weightedMedian(std::vector<std::pair<double, double>> values) {
     return 0;
 }
 
-/// Returns the distance of the nearest line that faces this one as the other side of a wall does.
-std::optional<double> otherSide(std::size_t of, std::span<const Segment2> lines,
-                                const NearSegments& search) {
-    const auto [a, b] = lines[of];
-    const double whole = distance(a, b);
-    const Vec2 along = 1 / whole * (b - a);
-    std::optional<double> nearest;
-    for (const std::size_t i : search.near(bounds(lines[of]), kThickWall)) {
-        const auto [c, d] = lines[i];
-        const double length = distance(c, d);
-        if (i == of || length < kShortestSide || std::abs(cross(along, d - c)) > kParallel * length)
-            continue;
-        const double apart = std::abs(cross(along, c + 0.5 * (d - c) - a));
-        const auto [from, to] = std::minmax({dot(c - a, along), dot(d - a, along)});
-        const double facing = std::min(whole, to) - std::max(0.0, from);
-        if (apart >= kThinWall && apart <= kThickWall &&
-            facing >= kFacing * std::min(whole, length) && (!nearest || apart < *nearest))
-            nearest = apart;
+/// Metres: a drawing of such a width is measured as it was read first, others as if so wide.
+constexpr double kNarrowReading = 5, kWideReading = 100, kReading = 20;
+
+/// A drawing at the scale at which it is measured.
+struct Reading {
+    double metres = 0;  ///< a unit of the drawing
+    std::vector<PlanPath> paths;
+    std::vector<Segment2> lines;
+    Box2 box;
+    std::optional<ParallelLines> parallels;
+
+    [[nodiscard]] double extent() const { return std::max(box.width(), box.depth()); }
+};
+
+/// Reads a drawing at a scale at which curves have as many pieces as those of a plan.
+void readUsualSize(const std::function<LayerSorter::Sorted(double)>& read, Reading& out) {
+    out.metres = 0.001;
+    for (const bool is_first : {true, false}) {
+        LayerSorter::Sorted shapes = read(out.metres);
+        out.paths = std::move(shapes.walls);
+        for (PlanShape& door : shapes.doors) out.paths.push_back(std::move(door.path));
+        out.lines = pathPieces(out.paths);
+        if (out.lines.empty()) return;
+        out.box = boundsOf(out.lines);
+        const double extent = out.extent();
+        if (!is_first || !(extent > 0) || (extent >= kNarrowReading && extent <= kWideReading))
+            break;
+        out.metres *= kReading / extent;
     }
-    return nearest;
+    if (out.lines.size() <= kMaxLines) out.parallels.emplace(out.lines);
 }
 
-void measureWalls(std::span<const Segment2> lines, Budget& work, UnitEvidence& out) {
-    const NearSegments search(lines, work);
-    double whole = 0;
+/// \param scale from the reading to the unit
+void measureWalls(Reading& drawing, double scale, Budget& work, UnitEvidence& out) {
+    double whole = 0, paired = 0;
     std::vector<std::pair<double, double>> walls;  // thickness and length
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const double length = distance(lines[i].a, lines[i].b);
+    for (std::size_t i = 0; i < drawing.lines.size(); ++i) {
+        const double length = distance(drawing.lines[i].a, drawing.lines[i].b);
         whole += length;
-        if (length < kShortestSide) continue;
-        if (const auto apart = otherSide(i, lines, search)) walls.emplace_back(*apart, length);
+        const auto apart = drawing.parallels->otherSide(drawing.lines[i], scale, work);
+        if (!apart) continue;
+        walls.emplace_back(*apart * scale, length);
+        paired += length;
     }
-    double paired = 0;
-    for (const auto& [apart, length] : walls) paired += length;
     out.walls = whole > 0 ? paired / whole : 0;
     out.wall_thickness = weightedMedian(std::move(walls));
 }
 
-void measureDoors(std::vector<PlanPath> paths, Budget& work, UnitEvidence& out) {
+void measureDoors(const Reading& drawing, double scale, Budget& work, UnitEvidence& out) {
+    std::vector<PlanPath> paths = drawing.paths;
+    for (PlanPath& path : paths)
+        for (Point2& p : path.points) p = {scale * p.x, scale * p.y};
     std::vector<std::pair<double, double>> widths;
     for (const PlanShape& swing : takeDrawnDoors(std::move(paths), work).swings)
         for (const PlanChord& chord : swing.chords) {
@@ -102,25 +114,17 @@ void measureDoors(std::vector<PlanPath> paths, Budget& work, UnitEvidence& out) 
     out.door_width = weightedMedian(std::move(widths));
 }
 
-UnitEvidence evidenceIn(const LengthUnit& unit, LayerSorter::Sorted shapes, Budget work) {
+/// \throws FormatError: too many lines to compare
+UnitEvidence evidenceIn(const LengthUnit& unit, Reading& drawing, Budget& work) {
+    const double scale = unit.metres / drawing.metres;
     UnitEvidence evidence;
     evidence.unit = &unit;
-    std::vector<PlanPath> paths = std::move(shapes.walls);
-    for (PlanShape& door : shapes.doors) paths.push_back(std::move(door.path));
-    const std::vector<Segment2> lines = pathPieces(paths);
-    if (lines.empty()) return evidence;
-    const Box2 box = boundsOf(lines);
-    evidence.extent = std::max(box.width(), box.depth());
-    const bool has_size = evidence.extent >= kSmallPlan && evidence.extent <= kLargePlan;
-    evidence.is_large = lines.size() > kMaxLines;
-    if (!has_size || evidence.is_large) return evidence;
-    try {
-        measureWalls(lines, work, evidence);
-        measureDoors(std::move(paths), work, evidence);
-    } catch (const FormatError& /*too many lines to compare*/) {
-        evidence.doors = 0;
-        evidence.walls = 0;
-    }
+    evidence.width = wholeMicrometres(scale * drawing.box.width());
+    evidence.extent = wholeMicrometres(scale * drawing.extent());
+    evidence.is_large = !drawing.parallels;
+    if (evidence.is_large || !hasPlanSize(evidence)) return evidence;
+    measureWalls(drawing, scale, work, evidence);
+    measureDoors(drawing, scale, work, evidence);
     return evidence;
 }
 
@@ -140,13 +144,27 @@ std::span<const LengthUnit> usualUnits() {
 }
 
 std::vector<UnitEvidence> rankedUnits(const std::function<LayerSorter::Sorted(double)>& read,
-                                      const Budget& work, const LengthUnit* stated,
+                                      Budget work, const LengthUnit* stated,
                                       std::span<const LengthUnit> candidates) {
     std::vector<UnitEvidence> ranking;
+    Reading drawing;
+    readUsualSize(read, drawing);
+    if (drawing.lines.empty()) return ranking;
     const auto add = [&](const LengthUnit& unit) {
-        const UnitEvidence evidence = evidenceIn(unit, read(unit.metres), work);
-        if (evidence.extent >= kSmallPlan && evidence.extent <= kLargePlan)
-            ranking.push_back(evidence);
+        UnitEvidence evidence;
+        try {
+            evidence = evidenceIn(unit, drawing, work);
+        } catch (const FormatError& /*too many lines to compare*/) {
+            // Units are compared by the same measures.
+            drawing.parallels.reset();
+            for (UnitEvidence& other : ranking) {
+                other.is_large = true;
+                other.doors = 0;
+                other.walls = 0;
+            }
+            evidence = evidenceIn(unit, drawing, work);
+        }
+        if (hasPlanSize(evidence)) ranking.push_back(evidence);
     };
     if (stated != nullptr) {
         add(*stated);
@@ -185,23 +203,24 @@ const UnitEvidence* decidedUnit(const std::vector<UnitEvidence>& ranking,
     return is_sure ? &best : nullptr;
 }
 
-std::string rankingText(const std::vector<UnitEvidence>& ranking) {
-    std::string text;
-    for (std::size_t i = 0; i < std::min(ranking.size(), kListedUnits); ++i)
-        text += std::string(i == 0 ? "; most likely is " : ", then ") + ranking[i].unit->name +
-                ", in which " + evidenceText(ranking[i]);
-    return text;
+std::string optionOf(const UnitEvidence& evidence) {
+    const std::string unit = evidence.unit->name;
+    return unit.starts_with("1:") ? "--width-is " + formatFixed(evidence.width, 2)
+                                  : "--units " + unit;
 }
 
 std::string scaleHint(const std::vector<UnitEvidence>& ranking) {
     if (ranking.empty()) return std::string(": ") + kScaleHint;
-    const UnitEvidence& best = ranking.front();
-    const std::string width = "--width-is " + formatFixed(best.extent, 2);
-    const bool is_scale = std::string_view(best.unit->name).starts_with("1:");
-    return rankingText(ranking) + ": say " +
-           (is_scale ? "how wide it is, for example with " + width
-                     : std::string("its unit, for example with --units ") + best.unit->name +
-                           ", or how wide it is, with " + width);
+    std::string text;
+    for (std::size_t i = 0; i < std::min(ranking.size(), kListedUnits); ++i)
+        text += std::string(i == 0 ? "; most likely is " : ", then ") + ranking[i].unit->name +
+                ", in which " + evidenceText(ranking[i]);
+    const std::string option = optionOf(ranking.front());
+    const std::string width = "--width-is " + formatFixed(ranking.front().width, 2);
+    return text + ": say " +
+           (option == width
+                ? "how wide it is, for example with " + width
+                : "its unit, for example with " + option + ", or how wide it is, with " + width);
 }
 
 std::string evidenceText(const UnitEvidence& evidence) {

@@ -85,6 +85,56 @@ TEST(DrawingUnit, AStatedUnitIsOverruledBySureSignsAlone) {
     EXPECT_GT(areaOf(drawing(flat(1000, 2), "", 1), inch), 10'000);
 }
 
+TEST(DrawingUnit, AReadingServesAllUnits) {
+    std::size_t readings = 0;
+    const auto read_at = [&](double metres) {
+        ++readings;
+        LayerSorter::Sorted sorted;
+        for (const double d : {0.0, 0.3})
+            sorted.walls.push_back({{{metres * d, metres * d},
+                                     {metres * (9000 - d), metres * d},
+                                     {metres * (9000 - d), metres * (6000 - d)},
+                                     {metres * d, metres * (6000 - d)}},
+                                    true});
+        return sorted;
+    };
+    EXPECT_EQ(rankedUnits(read_at, Budget(0), nullptr, usualUnits()).front().extent, 9);
+    EXPECT_EQ(readings, 1U);
+}
+
+// Lines from one point to all sides, of which each has the others beside it, are too many to
+// compare; units are told apart by the extent alone, in less work than the drawing is granted.
+TEST(DrawingUnit, AFanIsMeasuredByItsExtent) {
+    const auto fan = [](double metres) {
+        LayerSorter::Sorted sorted;
+        for (int i = 0; i < 4000; ++i)
+            sorted.walls.push_back(
+                {{{0, 0}, {8 * metres, 0.0005 * metres * static_cast<double>(i)}}, false});
+        return sorted;
+    };
+    Budget work(0, {2000});
+    const std::vector<UnitEvidence> ranking = rankedUnits(fan, work, nullptr, usualUnits());
+    ASSERT_EQ(ranking.size(), 2U);  // m and foot
+    for (const UnitEvidence& evidence : ranking) {
+        EXPECT_TRUE(evidence.is_large);
+        EXPECT_EQ(evidence.walls, 0);
+    }
+}
+
+TEST(DrawingUnit, AWrongUnitHasOneAdvice) {
+    // A flat drawn in inches that is read in centimetres by --units: 0.3 m wide.
+    ImportOptions mm;
+    mm.units = "mm";
+    const Document document = read(drawing(flat(1 / 0.0254 * 1, 2), "", 0), mm);
+    EXPECT_NE(warningsOf(document).find(
+                  "is its unit right? It is read in mm; most likely is inch, in which doors are "
+                  "0.80 m wide and the plan 8.0 m wide"),
+              std::string::npos)
+        << warningsOf(document);
+    EXPECT_NE(warningsOf(document).find("say its unit, for example with --units inch"),
+              std::string::npos);
+}
+
 TEST(DrawingUnit, ListsTheCodesThatAreRead) {
     EXPECT_NE(errorsOf([&] { read(drawing(rectangle("0", 0, 0, 8, 6), "", 3)); })
                   .find("$INSUNITS is 3, wanted 1 (inch), 2 (foot), 4 (mm), 5 (cm), 6 (m), 7 (km), "

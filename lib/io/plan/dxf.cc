@@ -6,6 +6,8 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -42,6 +44,54 @@ constexpr std::size_t kUnreadWork = 20;
 
 constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
 
+enum class Hatches { OfWalls, All };
+
+/// A filled area that is wider than walls: a floor, or a pier or a thick wall that no line
+/// outlines.
+struct WideFill {
+    std::vector<Polygon> rings;  ///< in metres; filled by the even-odd rule
+    UnreadThing thing;
+
+    [[nodiscard]] bool covers(Point2 p) const {
+        return std::count_if(rings.begin(), rings.end(),
+                             [p](const Polygon& ring) { return locate(ring, p) == Side::Inside; }) %
+                   2 ==
+               1;
+    }
+};
+
+/// Adds the fills that may be walls: they do not cover a kept room, and most of their boundary
+/// follows no line.
+void addWideFills(std::vector<WideFill> fills, std::span<const PlanRegion> rooms,
+                  std::span<const Segment2> lines, Budget& work, std::vector<UnreadThing>& unread) {
+    constexpr double kStep = 0.25, kOnBoundary = 0.05;  // metres
+    constexpr int kMostSteps = 40;                      // of a side
+    std::erase_if(fills, [&](const WideFill& fill) {
+        return std::any_of(rooms.begin(), rooms.end(),
+                           [&](const PlanRegion& room) { return fill.covers(room.inside); });
+    });
+    if (fills.empty()) return;
+    const NearSegments search(lines, work);
+    for (WideFill& fill : fills) {
+        double whole = 0, drawn = 0;
+        for (const Polygon& ring : fill.rings)
+            forEachEdge(ring, [&](const Segment2& side) {
+                const double length = distance(side.a, side.b);
+                const int steps = std::clamp(static_cast<int>(length / kStep), 1, kMostSteps);
+                whole += length;
+                for (int i = 0; i < steps; ++i) {
+                    const Point2 p = side.a + (i + 0.5) / steps * (side.b - side.a);
+                    const auto near = search.near(p, kOnBoundary);
+                    if (std::any_of(near.begin(), near.end(), [&](std::size_t k) {
+                            return distance(p, lines[k]) <= kOnBoundary;
+                        }))
+                        drawn += length / steps;
+                }
+            });
+        if (2 * drawn < whole) unread.push_back(std::move(fill.thing));
+    }
+}
+
 /// The drawing in metres with all inserts of blocks expanded, entities on layer 0 of a block on the
 /// layer of its insert. Each insert, entity and point spends from the budget; shapes on unused
 /// layers have no points.
@@ -51,7 +101,9 @@ class Expander {
              MissingBlocks& missing, LayerSorter& layers)
         : drawing_(drawing), name_(name), budget_(budget), layers_(layers), missing_(missing) {}
 
-    std::vector<PlanShape> expand(double metres_per_unit) {
+    /// \param hatches all of them, whatever their width, or those that may be walls
+    std::vector<PlanShape> expand(double metres_per_unit, Hatches hatches = Hatches::OfWalls) {
+        hatches_ = hatches;
         const Affine metres{{metres_per_unit, 0}, {0, metres_per_unit}, {}};
         shapes_.reserve(drawing_.entities.size());
         add(drawing_.entities, metres, "", 0);
@@ -61,6 +113,8 @@ class Expander {
 
     /// Entities that may be walls and were not read, on layers that are used, in metres.
     [[nodiscard]] const std::vector<UnreadThing>& unread() const { return unread_; }
+    /// Returns filled areas that may be walls, see addWideFills().
+    [[nodiscard]] const std::vector<WideFill>& wideFills() const { return fills_; }
 
     /// Moves a drawing of which most stands in surveyors' coordinates to the origin. \return by
     /// what \throws FormatError: shapes beyond kMaxPlanCoordinate
@@ -69,6 +123,12 @@ class Expander {
         for (UnreadThing& thing : unread_)
             if (way && !thing.extent.empty())
                 thing.extent = {thing.extent.low - *way, thing.extent.high - *way};
+        for (WideFill& fill : fills_) {
+            if (!way) break;
+            fill.thing.extent = {fill.thing.extent.low - *way, fill.thing.extent.high - *way};
+            for (Polygon& ring : fill.rings)
+                for (Point2& p : ring) p = p - *way;
+        }
         return way;
     }
 
@@ -244,8 +304,26 @@ class Expander {
                 around += distance(ring.path.piece(i).a, ring.path.piece(i).b);
         }
         const double width = around > 0 ? 2 * area / around : 0;
-        if (width < kThinnestDrawn || width > kThickestDrawn || around < kLeastAround) return;
+        const bool is_wall =
+            width >= kThinnestDrawn && width <= kThickestDrawn && around >= kLeastAround;
+        if (hatches_ == Hatches::OfWalls && !is_wall) {
+            if (hatch.is_solid && width > kThickestDrawn && layers_.mayBeWall(blank.layer))
+                addWideFill(entity, blank.layer, rings);
+            return;
+        }
         for (PlanShape& ring : rings) shapes_.push_back(std::move(ring));
+    }
+
+    void addWideFill(const DxfEntity& entity, const std::string& layer,
+                     std::span<const PlanShape> rings) {
+        WideFill& fill = fills_.emplace_back();
+        fill.thing = {"HATCH of a colour, wider than walls", layer, {}, entity.line};
+        if (const auto* const hatch = std::get_if<DxfHatch>(&entity.shape))
+            fill.thing.at = hatch->rings.front().vertices.front().at;
+        for (const PlanShape& ring : rings) {
+            fill.rings.push_back(ring.path.points);
+            for (const Point2 p : ring.path.points) fill.thing.extent.add(p);
+        }
     }
 
     /// Adds the line or arc between a vertex and the next one.
@@ -325,6 +403,8 @@ class Expander {
     std::vector<const std::string*> blocks_;  // around the entity, the outermost first
     std::unordered_map<std::string, Called> called_;
     std::vector<UnreadThing> unread_;
+    std::vector<WideFill> fills_;
+    Hatches hatches_ = Hatches::OfWalls;
     std::vector<PlanShape> shapes_;
     PlanShape shape_;  // in the making
 };
@@ -374,22 +454,31 @@ class DxfImporter {
     void decideUnit(const ImportOptions& options) {
         if (!options.units.empty() || options.width_is || isDrawnRoom(drawing_)) return;
         const LengthUnit* const stated = unitOf(drawing_, options);
-        ranking_ = rankedUnits(
-            [&](double metres) -> LayerSorter::Sorted {
-                try {
-                    MissingBlocks missing;
-                    LayerSorter sorter(drawing_.hidden_layers, options);
-                    std::vector<PlanShape> shapes =
-                        Expander(drawing_, name_, Budget(bytes_, options.max_work), missing, sorter)
-                            .expand(metres);
-                    leaveOutStrays(shapes);
-                    return sorter.sort(std::move(shapes));
-                } catch (const FormatError& /*not in this unit*/) {
-                    return {};
-                }
-            },
-            Budget(bytes_, options.max_work), stated, usualUnits());
-        decided_ = decidedUnit(ranking_, stated);
+        decided_ = decidedUnit(rankingOf(options, stated), stated);
+    }
+
+    /// Returns the likely units of the drawing, computed once.
+    const std::vector<UnitEvidence>& rankingOf(const ImportOptions& options,
+                                               const LengthUnit* stated) const {
+        if (ranking_) return *ranking_;
+        Budget reading(bytes_, options.max_work);
+        const auto read = [&](double metres) -> LayerSorter::Sorted {
+            try {
+                MissingBlocks missing;
+                LayerSorter sorter(drawing_.hidden_layers, options);
+                WorkLimit limit = options.max_work;
+                limit.whole = &reading;
+                std::vector<PlanShape> shapes =
+                    Expander(drawing_, name_, Budget(bytes_, limit), missing, sorter)
+                        .expand(metres, Hatches::All);
+                leaveOutStrays(shapes);
+                return sorter.sort(std::move(shapes));
+            } catch (const FormatError& /*not to be read*/) {
+                return {};
+            }
+        };
+        return ranking_.emplace(
+            rankedUnits(read, Budget(bytes_, options.max_work), stated, usualUnits()));
     }
 
     /// \param hints whether the drawing may be imported again to report the effect of other options
@@ -402,11 +491,13 @@ class DxfImporter {
         ImportRecords out(schemas_, name_, options);
         DrawingSource source = scaleOf(options, out);
         source.left_out = drawing_.left_out;
-        for (const UnitEvidence& evidence : ranking_)
-            source.likely_units.emplace_back(evidence.unit->name);
+        source.ranking = [&]() -> const std::vector<UnitEvidence>& {
+            return rankingOf(asked, nullptr);
+        };
+        Budget again(bytes_, asked.max_work);  // for all hints
         if (hints)
             source.import = [&](ImportOptions other) {
-                other.max_work = asked.max_work;  // as much again
+                other.max_work = {asked.max_work.max, &again};
                 return import(other, false).outcome;
             };
         source.better_layers = better_layers;
@@ -438,10 +529,17 @@ class DxfImporter {
                                          metres * size.height, metres * size.depth};
         }
         const std::optional<std::map<int, DrawnSize>> sizes = shapes.sizes;
+        std::vector<Segment2> lines;
+        if (!expander.wideFills().empty()) lines = pathPieces(shapes.walls);
         const PlanOutcome outcome =
             writeLinePlan(std::move(shapes), sorter, name_, own, is_ours ? nullptr : &source, out);
         if (sizes) addDrawnThings(drawing_, *sizes, frame, out);
-        warnOfUnread(expander.unread(), outcome.rooms,
+        std::vector<UnreadThing> unread = expander.unread();
+        Budget looking(bytes_, {asked.max_work.max, &again});
+        withFileName(name_, [&] {
+            addWideFills(expander.wideFills(), outcome.rooms, lines, looking, unread);
+        });
+        warnOfUnread(unread, outcome.rooms,
                      "explode it, or bind the reference, in the program that drew it, and export "
                      "lines; --wall-layer names the layers that count",
                      out);
@@ -469,9 +567,10 @@ class DxfImporter {
                          (options.units.empty() ? ", as $INSUNITS of the drawing says"
                                                 : ", as asked for"));
             } else {
-                failFile(name_, options.units.empty()
-                                    ? unknownUnitText(drawing_) + scaleHint(ranking_)
-                                    : "unknown unit " + options.units + ": " + kScaleHint);
+                failFile(name_,
+                         options.units.empty()
+                             ? unknownUnitText(drawing_) + scaleHint(rankingOf(options, nullptr))
+                             : "unknown unit " + options.units + ": " + kScaleHint);
             }
             return {unit->name, unit->metres, bytes_};
         }
@@ -503,7 +602,7 @@ class DxfImporter {
     const DxfDrawing& drawing_;
     const std::string& name_;
     std::size_t bytes_;  // of the file
-    std::vector<UnitEvidence> ranking_;
+    mutable std::optional<std::vector<UnitEvidence>> ranking_;
     const UnitEvidence* decided_ = nullptr;  // the first of them, instead of the stated unit
     const Schemas& schemas_;
 };

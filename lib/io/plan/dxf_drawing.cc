@@ -466,6 +466,13 @@ std::vector<DxfPolyline> hatchOf(const Entity& entity, std::size_t& most) {
     return rings;
 }
 
+/// Returns true for a hatch whose fill is a colour: its first number 70.
+bool isSolid(const Entity& hatch) {
+    const auto flag = std::find_if(hatch.sequence.begin(), hatch.sequence.end(),
+                                   [](const auto& group) { return group.first == 70; });
+    return flag != hatch.sequence.end() ? flag->second == 1 : hatch.number(70) == 1;
+}
+
 DxfShape splineOf(const Entity& entity) {
     if (entity.vertices.empty()) {
         std::vector<Point2> through;
@@ -871,7 +878,7 @@ class DxfReader {
     void addSequence() {
         const std::string layer = text_.decoded(entity_.layer);
         if (entity_.kind->name == "HATCH") {
-            DxfHatch hatch{hatchOf(entity_, hatch_vertices_)};
+            DxfHatch hatch{hatchOf(entity_, hatch_vertices_), isSolid(entity_)};
             if (hatch.rings.empty() || hatch.rings.size() > kMaxRings) return leaveOut("HATCH");
             entities().push_back({std::move(hatch), layer, *side() < 0, entity_.line});
             return;

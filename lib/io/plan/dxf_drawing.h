@@ -58,6 +58,7 @@ struct DxfInsert {
 /// The boundary of a hatch: rings that its pattern fills by the even-odd rule.
 struct DxfHatch {
     std::vector<DxfPolyline> rings;
+    bool is_solid = false;  ///< filled with a colour, not with a pattern
 };
 
 using DxfShape = std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfSpline, DxfInsert, DxfHatch>;

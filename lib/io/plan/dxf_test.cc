@@ -257,6 +257,19 @@ TEST(Dxf, WallsByNameOnAPlotAreTaken) {
             .indoor()
             .area(),
         80 - 4, 1e-9);
+    // A boundary is one line, as small a house of thick walls as it has; a hall around a core has
+    // thick walls itself.
+    const auto thick = [](const char* layer, double x0, double y0, double x1, double y1) {
+        return rectangle(layer, x0, y0, x1, y1) +
+               rectangle(layer, x0 + 0.3, y0 + 0.3, x1 - 0.3, y1 - 0.3);
+    };
+    const auto area_of = [](const std::string& entities) {
+        return environmentOf(read(drawing(entities, "", 6))).indoor().area();
+    };
+    EXPECT_NEAR(area_of(rectangle("0", -40, -30, 40, 30) + thick("A-WALL", 0, 0, 8, 6)), 7.4 * 5.4,
+                1e-9);
+    EXPECT_NEAR(area_of(thick("0", -10, -8, 16, 14) + thick("A-WALL", 0, 0, 8, 6)),
+                25.4 * 21.4 - 48, 1e-9);
 }
 
 TEST(Dxf, BlocksInBlocksEnd) {

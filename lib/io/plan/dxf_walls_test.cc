@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/number.h"
 #include "io/importers.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
@@ -106,6 +107,28 @@ TEST(DxfWalls, HatchesAsNarrowAsWalls) {
         "0 72 1 10 3.2 20 0 11 3.2 21 6 72 1 10 3.2 20 6 11 3 21 6 72 1 10 3 20 6 11 3 21 0 "
         "97 0 75 1 76 1 98 0");
     EXPECT_NEAR(areaOf(drawing(kRoom + edges, "", 6)), 4.8 * 6, 1e-9);
+}
+
+TEST(DxfWalls, ColouredHatchesWiderThanWallsAreReported) {
+    const auto fill = [](double x0, double y0, double x1, double y1) {
+        const std::string a = formatDouble(x0), b = formatDouble(y0), c = formatDouble(x1),
+                          d = formatDouble(y1);
+        return groups("0 HATCH 8 W 10 0 20 0 30 0 2 SOLID 70 1 71 0 91 1 92 3 72 0 73 1 93 4 10 " +
+                      a + " 20 " + b + " 10 " + c + " 20 " + b + " 10 " + c + " 20 " + d + " 10 " +
+                      a + " 20 " + d + " 97 0 75 1 76 1 98 0");
+    };
+    const auto warnings = [](const std::string& entities) {
+        return warningsOf(read(drawing(kRoom + entities, "", 6)));
+    };
+    // A pier of 2 m x 2 m.
+    EXPECT_NE(warnings(fill(0.5, 0.5, 2.5, 2.5))
+                  .find("not read, though it may be a wall: HATCH of a colour, wider than walls "
+                        "(1), on the layer W at 0.50,0.50 of the file"),
+              std::string::npos);
+    // Lines outline the pier, the colour is that of the floor, or the pier is elsewhere.
+    EXPECT_EQ(warnings(fill(0.5, 0.5, 2.5, 2.5) + rectangle("W", 0.5, 0.5, 2.5, 2.5)), "");
+    EXPECT_EQ(warnings(fill(0, 0, 8, 6)), "");
+    EXPECT_EQ(warnings(fill(12, 0, 14, 2)), "");
 }
 
 TEST(DxfWalls, HatchesBehindCurves) {

@@ -19,6 +19,7 @@
 #include "geom/arrangement.h"
 #include "geom/polygon.h"
 #include "geom/predicates.h"
+#include "io/plan/parallel_lines.h"
 #include "io/plan/plan_rooms.h"
 
 namespace ispace {
@@ -97,6 +98,16 @@ class LinePlan {
         for (const Segment2& gap : rooms_.closing)
             outcome.widest_gap = std::max(outcome.widest_gap, distance(gap.a, gap.b));
         return outcome;
+    }
+
+    /// Returns PlanOutcome::walled; 0 if there are too many parallel lines.
+    [[nodiscard]] double walled(Budget work) const {
+        if (rooms_.regions.empty()) return 0;
+        try {
+            return shareOfWalls(rooms_.regions.front().rooms.front().outline, pieces_, work);
+        } catch (const FormatError& /*more than the work*/) {
+            return 0;
+        }
     }
 
     void write(ImportRecords& out, const ImportOptions& options) {
@@ -196,10 +207,7 @@ class LinePlan {
         const std::vector<Segment2> all = allPieces();
         PlanWalls plan{all, doorways, {}, {}, {}};
         plan.is_drawing = drawing != nullptr;
-        if (drawing != nullptr)
-            plan.unit_hint = [&](double extent) {
-                return otherUnitHint(extent, *drawing, options);
-            };
+        if (drawing != nullptr) plan.unit_hint = [&] { return otherUnitHint(*drawing); };
         rooms_ = chooseRooms(plan, options, budget, out);
         if (rooms_.regions.empty() || sizes_) return;
         const std::vector<bool> keep = belongsTo(rooms_.regions, all);
@@ -461,9 +469,13 @@ PlanOutcome writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter,
                 (thick.size() == 1 ? "" : " to " + formatDouble(*thick.rbegin())) + " m");
         LinePlan plan(std::move(shapes), name, options, drawing, out);
         plan.write(out, options);
-        if (drawing != nullptr)
-            warnOfWallNames(sorter.unusedWallNames(), plan.outcome(), *drawing, options, out);
-        return plan.outcome();
+        PlanOutcome outcome = plan.outcome();
+        if (drawing == nullptr) return outcome;
+        const std::map<std::string, std::size_t> names = sorter.unusedWallNames();
+        if (!names.empty() || !drawing->import)  // to be compared
+            outcome.walled = plan.walled(Budget(drawing->bytes, options.max_work));
+        warnOfWallNames(names, outcome, *drawing, options, out);
+        return outcome;
     });
 }
 

@@ -50,7 +50,7 @@ class RoomChooser {
         is_odd_ = !plan_.lines.empty() && (extent < kMinPlan || extent > kMaxPlan);
         if (is_odd_)
             out_.warn("the plan is " + lengthText(extent) + " m wide: is its unit right?" +
-                      (plan_.unit_hint ? plan_.unit_hint(extent) : ""));
+                      (plan_.unit_hint ? plan_.unit_hint() : ""));
         RoomAttempt best = chosen();
         PlanRooms rooms;
         if (out_.wantsRooms()) handOver(best);

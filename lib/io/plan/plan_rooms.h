@@ -120,8 +120,8 @@ struct PlanWalls {
     std::optional<Point2> home;   ///< a point in the room that the plan names
     /// Returns false for an enclosed point that is not floor, as in a hole; may be empty.
     std::function<bool(Point2)> is_floor = {};
-    /// Returns advice for a plan of an unlikely extent (metres); may be empty.
-    std::function<std::string(double)> unit_hint = {};
+    /// Returns advice for a plan of an unlikely extent; may be empty.
+    std::function<std::string()> unit_hint = {};
     bool is_drawing = false;  ///< the frame of a sheet may surround it
 };
 

@@ -55,6 +55,7 @@ constexpr double kMaxBackground = 1.1;
 
 /// Thickness of strokes that are walls, in metres; thinner ones are pens.
 constexpr double kThinnestStroke = 0.08, kThickestStroke = 0.8;
+constexpr double kLongestPaper = 1.5;  // metres: more than A0
 constexpr const char* kOddClip = "element with a clip-path that is not read";
 /// Units of Budget for an element that is not read: its names are copied.
 constexpr std::size_t kUnreadWork = 20;
@@ -157,7 +158,7 @@ class SvgReader {
         return std::move(drawing_);
     }
 
-    /// Sets what rankingText() says, for the message that the drawing has no scale.
+    /// Sets what scaleHint() says, for the message that the drawing has no scale.
     void setRanking(const std::vector<UnitEvidence>& ranking) { ranking_ = scaleHint(ranking); }
 
     /// Returns true if the size on paper is in inches, or in points and not that of a sheet of the
@@ -186,6 +187,10 @@ class SvgReader {
             }
         });
         return scale;
+    }
+    /// Returns true if paper has such sizes. \pre paperScale() was called
+    [[nodiscard]] bool isOnPaper() const {
+        return std::max(page_.width, page_.height) * drawing_.metres_per_unit <= kLongestPaper;
     }
 
   private:
@@ -365,13 +370,13 @@ class SvgReader {
             return;
         }
         const auto clip = std::make_shared<Clip>();
-        const SvgElement own = readSvgElement(node, sheet_, options_);
+        const SvgElement own = elementAt(node);
         const Affine frame = around.frame * transformOf(own, around.view);
         for (const pugi::xml_node child : node.children()) {
             pugi::xml_node shape = child;
             if (child.type() != pugi::node_element) continue;
             spend(kUnreadWork);
-            const SvgElement element = readSvgElement(child, sheet_, options_);
+            const SvgElement element = elementAt(child);
             if (element.properties[SvgProperty::Display] == "none") continue;
             Affine placed = frame * transformOf(element, around.view);
             if (svgName(child) == "use") {
@@ -383,7 +388,7 @@ class SvgReader {
                 shape = target->second;
                 placed = placed *
                          Affine{{1, 0}, {0, 1}, {svgNumber(child, "x"), svgNumber(child, "y")}} *
-                         transformOf(readSvgElement(shape, sheet_, options_), around.view);
+                         transformOf(elementAt(shape), around.view);
             }
             const std::string_view kind = svgName(shape);
             if (isOneOf(kOthers, kind)) {
@@ -394,7 +399,7 @@ class SvgReader {
             Clip::Part part;
             // Inherited: the shape's own rule, else that of its `use`, else that of the clip.
             for (const std::string_view rule :
-                 {readSvgElement(shape, sheet_, options_).properties[SvgProperty::ClipRule],
+                 {elementAt(shape).properties[SvgProperty::ClipRule],
                   element.properties[SvgProperty::ClipRule], own.properties[SvgProperty::ClipRule]})
                 if (!rule.empty()) {
                     part.is_even_odd = rule == "evenodd";
@@ -413,10 +418,17 @@ class SvgReader {
 
     /// Returns the element itself; caches it if it may be used again.
     const SvgElement& elementOf(pugi::xml_node node, bool is_used) {
-        if (!is_used) return element_ = readSvgElement(node, sheet_, options_);
+        if (!is_used) return element_ = elementAt(node);
         const auto [known, is_new] = elements_.try_emplace(node.hash_value());
-        if (is_new) known->second = readSvgElement(node, sheet_, options_);
+        if (is_new) known->second = elementAt(node);
         return known->second;
+    }
+
+    /// Reads an element, and pays for the selectors that it is compared with.
+    SvgElement elementAt(pugi::xml_node node) {
+        SvgElement element = readSvgElement(node, sheet_, options_);
+        spend(element.matching);
+        return element;
     }
 
     /// Enters the view box of an inner `svg` or a `symbol` at `placed`.
@@ -461,7 +473,10 @@ class SvgReader {
         if (target == ids_.end()) {
             ++drawing_.left_out["uses of what the file lacks"];
             spend(kUnreadWork);
-            drawing_.unread.push_back({"use of " + excerpt(href), {}, {}, file_.lineOf(node)});
+            drawing_.unread.push_back({"use of " + excerpt(href),
+                                       layer_text_.of(around.names.planLayer()),
+                                       {},
+                                       file_.lineOf(node)});
             return;
         }
         around.is_used = true;
@@ -700,13 +715,14 @@ struct SvgUnits {
 
 /// Returns the usual scales of a drawing on paper, and the units that a unit of the drawing may be,
 /// unless that is a length on paper, as a millimetre.
-std::vector<LengthUnit> candidatesOf(std::optional<double> paper, bool is_in_inches) {
+std::vector<LengthUnit> candidatesOf(std::optional<double> paper, bool is_on_paper,
+                                     bool is_in_inches) {
     std::vector<LengthUnit> all;
     const auto add = [&](const auto& scales) {
         for (const auto& [name, factor] : scales) all.push_back({name, factor * *paper, 0});
     };
-    if (paper && is_in_inches) add(kInchScales);
-    if (paper && !is_in_inches) add(kScales);
+    if (paper && is_on_paper && is_in_inches) add(kInchScales);
+    if (paper && is_on_paper && !is_in_inches) add(kScales);
     constexpr double kSame = 1e-3, kInch = 0.0254;
     const auto lengths = {0.001, 0.01, 1.0, kInch, kInch / 72, kInch / 90, kInch / 96};
     if (!paper || std::none_of(lengths.begin(), lengths.end(), [&](double length) {
@@ -723,29 +739,32 @@ std::string decisionText(const UnitEvidence& decided) {
                                   : "its unit is read as 1 " + unit;
 }
 
-/// Decides on the unit of a drawing by its contents if the options do not state it, and its size
-/// on paper is missing or impossible.
+/// Ranks the units of a drawing by its contents, and decides on one if its size on paper is missing
+/// or impossible.
 SvgUnits unitsOf(std::string_view bytes, const std::string& name, const ImportOptions& options) {
     SvgUnits units;
-    if (!options.units.empty() || options.width_is) return units;
     SvgReader sized(bytes, name, options);
     const std::optional<double> paper = sized.paperScale();
     units.has_size = paper.has_value();
-    units.candidates = candidatesOf(paper, sized.isInInches());
+    units.candidates.assign(usualUnits().begin(), usualUnits().end());
+    if (options.units.empty())
+        units.candidates = candidatesOf(paper, sized.isOnPaper(), sized.isInInches());
     const LengthUnit stated{"its size", paper.value_or(0), 0};
     const LengthUnit* const own = paper ? &stated : nullptr;
-    units.ranking = rankedUnits(
-        [&](double metres) -> LayerSorter::Sorted {
-            try {
-                std::vector<PlanShape> shapes =
-                    SvgReader(bytes, name, options, metres).read().shapes;
-                leaveOutStrays(shapes);
-                return LayerSorter({}, options).sort(std::move(shapes));
-            } catch (const FormatError& /*not in this unit*/) {
-                return {};
-            }
-        },
-        Budget(bytes.size(), options.max_work), own, units.candidates);
+    Budget reading(bytes.size(), options.max_work);
+    const auto read = [&](double metres) -> LayerSorter::Sorted {
+        try {
+            ImportOptions shared = options;
+            shared.max_work.whole = &reading;
+            std::vector<PlanShape> shapes = SvgReader(bytes, name, shared, metres).read().shapes;
+            leaveOutStrays(shapes);
+            return LayerSorter({}, options).sort(std::move(shapes));
+        } catch (const FormatError& /*not to be read*/) {
+            return {};
+        }
+    };
+    units.ranking =
+        rankedUnits(read, Budget(bytes.size(), options.max_work), own, units.candidates);
     const UnitEvidence* const decided = decidedUnit(units.ranking, own);
     std::erase_if(units.ranking,
                   [&](const UnitEvidence& evidence) { return evidence.unit == own; });
@@ -782,7 +801,7 @@ SvgDrawing readDrawing(std::string_view bytes, const std::string& name,
 
 /// \param hints whether the drawing may be imported again to report the effect of other options
 SvgImport importSvg(std::string_view bytes, const std::string& name, const ImportOptions& asked,
-                    const Schemas& schemas, const SvgUnits& units, bool hints,
+                    const Schemas& schemas, SvgUnits& units, bool hints,
                     std::vector<std::string>* better_layers = nullptr) {
     Budget whole(bytes.size(), asked.max_work);
     ImportOptions options = asked;
@@ -804,13 +823,14 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
             ? "units of " + formatDouble(std::round(drawing.metres_per_unit * 1e9) / 1e6) + " mm"
             : options.units,
         drawing.metres_per_unit, bytes.size(), drawing.left_out};
-    for (const UnitEvidence& evidence : units.ranking)
-        if (!std::string_view(evidence.unit->name).starts_with("1:"))
-            source.likely_units.emplace_back(evidence.unit->name);
-    source.ranking = rankingText(units.ranking);
+    source.ranking = [&]() -> const std::vector<UnitEvidence>& {
+        if (units.candidates.empty()) units = unitsOf(bytes, name, asked);
+        return units.ranking;
+    };
+    Budget again(bytes.size(), asked.max_work);  // for all hints
     if (hints)
         source.import = [&](ImportOptions other) {
-            other.max_work = asked.max_work;  // as much again
+            other.max_work = {asked.max_work.max, &again};
             return importSvg(bytes, name, other, schemas, units, false).outcome;
         };
     source.better_layers = better_layers;
@@ -824,6 +844,9 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
     LayerSorter sorter({}, options);
     LayerSorter::Sorted shapes = sorter.sort(std::move(drawing.shapes));
     sorter.note(out);
+    std::erase_if(drawing.unread, [&](const UnreadThing& thing) {
+        return !thing.layer.empty() && !sorter.mayBeWall(thing.layer);
+    });
     const PlanOutcome outcome =
         writeLinePlan(std::move(shapes), sorter, name, options, &source, out);
     warnOfUnread(drawing.unread, outcome.rooms,
@@ -839,7 +862,8 @@ bool isSvg(std::string_view bytes) { return xmlRootName(bytes) == "svg"; }
 
 Document readSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas) {
-    const SvgUnits units = unitsOf(bytes, name, options);
+    SvgUnits units;
+    if (options.units.empty() && !options.width_is) units = unitsOf(bytes, name, options);
     return importWithNamedWalls(
         options, [&](const ImportOptions& asked, std::vector<std::string>* better_layers) {
             return importSvg(bytes, name, asked, schemas, units, true, better_layers).document;

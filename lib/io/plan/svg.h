@@ -144,7 +144,8 @@ class SvgSheet {
     void add(std::string_view css);
     /// Sets `properties`, those of the attribute `style`, by these rules: the attribute wins over
     /// rules, important rules over it; the more specific rule over others, and the later of two.
-    void apply(pugi::xml_node node, SvgProperties& properties) const;
+    /// \return units of Budget for the selectors that were compared, at most those of all rules
+    std::size_t apply(pugi::xml_node node, SvgProperties& properties) const;
     /// Selectors and at-rules that are not understood, as written, with their numbers of rules.
     [[nodiscard]] const std::map<std::string, std::size_t>& unread() const { return unread_; }
 
@@ -172,10 +173,15 @@ class SvgSheet {
     static std::optional<std::vector<Compound>> parse(std::string_view selector, int depth = 0);
     static std::optional<Simple> parsePseudoClass(std::string_view& selector, int depth);
     static void count(const Simple& part, std::array<int, 3>& specificity);
-    static bool matches(pugi::xml_node node, const Simple& part);
-    static bool matches(pugi::xml_node node, const std::vector<Simple>& parts);
+    /// Steps of a comparison: elements, which are limited, and the work for all.
+    struct Steps {
+        int elements = 0;
+        std::size_t work = 0;
+    };
+    static bool matches(pugi::xml_node node, const Simple& part, Steps& steps);
+    static bool matches(pugi::xml_node node, const std::vector<Simple>& parts, Steps& steps);
     static bool matches(pugi::xml_node node, const std::vector<Compound>& selector,
-                        std::size_t last, int& steps);
+                        std::size_t last, Steps& steps);
 
     std::deque<std::string> texts_;  // without comments
     // By the subject's id, class or name, as "#a", ".b" and "c"; "" for others.
@@ -188,8 +194,9 @@ class SvgSheet {
 std::string_view svgName(pugi::xml_node node);
 
 /// Returns the properties of an element: from `style`, else rules, else attributes. Views of the
-/// document.
-SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet);
+/// document. \param matching gets the units of work that rules took; may be null
+SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet,
+                            std::size_t* matching = nullptr);
 
 /// Returns true for an invisible paint: none, transparent, a colour with an alpha of 0.
 bool isSvgNone(std::string_view paint);
@@ -217,7 +224,8 @@ struct SvgNames {
 
 /// The attributes of an element, independent of its uses. Views of the document and the sheet.
 struct SvgElement {
-    std::size_t units = 0;  ///< of work for its other attributes at each use
+    std::size_t units = 0;     ///< of work for its other attributes at each use
+    std::size_t matching = 0;  ///< units of work that comparing it with selectors took
     SvgProperties properties;
     Affine transform;  ///< without its origin, see svgOrigin()
     SvgNames names;

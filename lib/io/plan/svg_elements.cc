@@ -73,10 +73,11 @@ std::string_view svgName(pugi::xml_node node) {
     return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
-SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet) {
+SvgProperties svgProperties(pugi::xml_node node, const SvgSheet& sheet, std::size_t* matching) {
     SvgProperties properties;
     properties.declare(node.attribute("style").value());
-    sheet.apply(node, properties);
+    const std::size_t units = sheet.apply(node, properties);
+    if (matching != nullptr) *matching = units;
     for (std::size_t i = 0; i < SvgProperties::kNames.size(); ++i)
         properties.setIfUnset(static_cast<SvgProperty>(i),
                               trimmed(node.attribute(SvgProperties::kNames[i]).value()));
@@ -145,7 +146,7 @@ const char* SvgNames::planLayer() const {
 SvgElement readSvgElement(pugi::xml_node node, const SvgSheet& sheet,
                           const ImportOptions& options) {
     SvgElement element;
-    element.properties = svgProperties(node, sheet);
+    element.properties = svgProperties(node, sheet, &element.matching);
     const std::string_view transform = element.properties[SvgProperty::Transform];
     element.transform = transform == "none" ? Affine() : parseSvgTransform(cssTransform(transform));
     SvgNames& names = element.names;

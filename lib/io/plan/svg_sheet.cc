@@ -15,6 +15,8 @@ namespace {
 constexpr int kMaxRuleDepth = 8, kMaxSelectorDepth = 4;
 /// Elements compared with one selector.
 constexpr int kMaxSelectorSteps = 1000;
+/// Simple selectors compared, and bytes of an attribute that are searched, in a unit of Budget.
+constexpr std::size_t kStepsPerUnit = 16, kBytesPerStep = 32;
 
 std::string withoutComments(std::string_view css) {
     std::string text;
@@ -342,23 +344,29 @@ std::optional<std::vector<SvgSheet::Compound>> SvgSheet::parse(std::string_view 
     return compounds;
 }
 
-bool SvgSheet::matches(pugi::xml_node node, const std::vector<Simple>& parts) {
+bool SvgSheet::matches(pugi::xml_node node, const std::vector<Simple>& parts, Steps& steps) {
     return std::all_of(parts.begin(), parts.end(),
-                       [node](const Simple& part) { return matches(node, part); });
+                       [&](const Simple& part) { return matches(node, part, steps); });
 }
 
-bool SvgSheet::matches(pugi::xml_node node, const Simple& part) {
+bool SvgSheet::matches(pugi::xml_node node, const Simple& part, Steps& steps) {
     const auto matches_any = [&] {
         return std::any_of(part.inner.begin(), part.inner.end(),
-                           [node](const auto& compound) { return matches(node, compound); });
+                           [&](const auto& compound) { return matches(node, compound, steps); });
     };
+    const auto value_of = [&](const char* key) {
+        const std::string_view value = node.attribute(key).value();
+        steps.work += value.size() / kBytesPerStep;
+        return value;
+    };
+    ++steps.work;
     switch (part.kind) {
         case Simple::Kind::Name:
             return svgName(node) == part.name;
         case Simple::Kind::Class:
-            return hasWord(node.attribute("class").value(), part.name);
+            return hasWord(value_of("class"), part.name);
         case Simple::Kind::Id:
-            return std::string_view(node.attribute("id").value()) == part.name;
+            return value_of("id") == part.name;
         case Simple::Kind::Root:
             return !parentOf(node);
         case Simple::Kind::First:
@@ -377,9 +385,9 @@ bool SvgSheet::matches(pugi::xml_node node, const Simple& part) {
         case Simple::Kind::Attribute:
             break;
     }
-    const pugi::xml_attribute attribute = node.attribute(std::string(part.name).c_str());
-    const std::string_view value = attribute.value();
-    if (!attribute) return false;
+    const std::string key(part.name);
+    if (!node.attribute(key.c_str())) return false;
+    const std::string_view value = value_of(key.c_str());
     switch (part.relation) {
         case '=':
             return value == part.value;
@@ -400,13 +408,13 @@ bool SvgSheet::matches(pugi::xml_node node, const Simple& part) {
 
 /// Matches the compounds up to `last` against the node and those around it, backtracking.
 bool SvgSheet::matches(pugi::xml_node node, const std::vector<Compound>& selector, std::size_t last,
-                       int& steps) {
-    if (--steps < 0 || !node || !matches(node, selector[last].parts)) return false;
+                       Steps& steps) {
+    if (--steps.elements < 0 || !node || !matches(node, selector[last].parts, steps)) return false;
     if (last == 0) return true;
     const char combinator = selector[last].combinator;
     const bool is_upward = combinator == ' ' || combinator == '>';
     const bool is_direct = combinator == '>' || combinator == '+';
-    for (node = is_upward ? parentOf(node) : elementBefore(node); node && steps >= 0;
+    for (node = is_upward ? parentOf(node) : elementBefore(node); node && steps.elements >= 0;
          node = is_upward ? parentOf(node) : elementBefore(node)) {
         if (matches(node, selector, last - 1, steps)) return true;
         if (is_direct) return false;
@@ -414,14 +422,16 @@ bool SvgSheet::matches(pugi::xml_node node, const std::vector<Compound>& selecto
     return false;
 }
 
-void SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) const {
-    if (rules_.empty()) return;
+std::size_t SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) const {
+    if (rules_.empty()) return 0;
     std::vector<std::size_t> found;
+    Steps steps;
     const auto collect = [&](const std::string& subject) {
         const auto rules = by_subject_.find(subject);
         if (rules == by_subject_.end()) return;
         for (const std::size_t i : rules->second) {
-            int steps = kMaxSelectorSteps;
+            steps.elements = kMaxSelectorSteps;
+            ++steps.work;
             if (matches(node, rules_[i].selector, rules_[i].selector.size() - 1, steps))
                 found.push_back(i);
         }
@@ -447,6 +457,7 @@ void SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) const {
     for (const std::size_t i : found) all.addStronger(rules_[i].declared);
     all.addStronger(properties);
     properties = all;
+    return (steps.work + found.size()) / kStepsPerUnit;
 }
 
 }  // namespace ispace

@@ -188,16 +188,44 @@ TEST(Svg, WithoutAScale) {
     EXPECT_NEAR(areaOf("<svg><circle r='2'/></svg>", options), 16 * std::numbers::pi, 0.02);
 }
 
+// Each element is compared with all names of a list.
+TEST(Svg, SelectorsWithLongListsCost) {
+    std::string list;
+    for (int k = 0; k < 4000; ++k) list += (k == 0 ? ".c" : ",.c") + std::to_string(k);
+    std::string svg = "<svg width='1000cm' viewBox='0 0 10 10'><style>:not(" + list +
+                      "){stroke:red}</style><rect x='1' y='1' width='8' height='8'/>";
+    for (int k = 0; k < 400; ++k) svg += "<g/>";
+    svg += "</svg>";
+    EXPECT_NEAR(areaOf(svg), 64, 1e-9);
+    ImportOptions options;
+    options.max_work.max = 50'000;
+    EXPECT_NE(errorOf(svg, options).find("uses and curves of the drawing make more than 50000 "),
+              std::string::npos);
+}
+
+TEST(Svg, MasksOnLayersOfOtherThingsAreNoWalls) {
+    const auto warnings = [](const std::string& layer) {
+        return warningsOf(
+            readSvg("<svg width='1000cm' viewBox='0 0 10 10'><mask id='m'/>"
+                    "<rect x='1' y='1' width='8' height='8' fill='none'/><g id='" +
+                        layer + "' mask='url(#m)'><path d='M2 2H4V5'/></g></svg>",
+                    "plan.svg", {}, sceneSchemas()));
+    };
+    EXPECT_NE(warnings("Layer1").find("element with a mask (1), on the layer Layer1"),
+              std::string::npos)
+        << warnings("Layer1");
+    EXPECT_EQ(warnings("Furniture").find("not read"), std::string::npos) << warnings("Furniture");
+}
+
 TEST(Svg, OfNoBuildingsSize) {
     const std::string paper = "<svg width='200mm' viewBox='0 0 10 10'>";
     const std::string room = "<rect width='8' height='5'/></svg>";
     EXPECT_EQ(
         errorOf(paper + room),
         "plan.svg: error: the plan is 0.16 m wide: is its unit right? It is read in units of "
-        "20 mm; with --units m it would be 8.0 m wide and have 40.0 m2 of floor; or say how "
-        "wide it is, with --width-is 8.3m; most likely is 1:50, in which the plan is 8.0 m "
-        "wide, then 1:100, in which the plan is 16.0 m wide, then 1:200, in which the plan is "
-        "32.0 m wide\n");
+        "20 mm; most likely is 1:50, in which the plan is 8.0 m wide, then 1:100, in which the "
+        "plan is 16.0 m wide, then 1:200, in which the plan is 32.0 m wide: say how wide it is, "
+        "for example with --width-is 8.00\n");
     EXPECT_EQ(errorOf("<svg width='900cm' viewBox='0 0 1 1'><rect width='400' height='400'/></svg>")
                   .find("plan.svg: error: the plan is 3600 m wide: is its unit right?"),
               0U);

@@ -185,9 +185,10 @@ class SdfImporter {
         const Eigen::Isometry3d& pose = shape.world_from_shape;
         const auto [scale, scale_y, scale_z] = mesh.scale;
         const bool is_even = scale == scale_y && scale == scale_z;
-        if (!isUpright(pose.linear().col(2)) || pose.linear()(2, 2) < 0 || !is_even ||
-            !(scale > 0)) {
-            leaveOut("mesh that leans or is stretched", shape, {});
+        if (mesh.is_part || !isUpright(pose.linear().col(2)) || pose.linear()(2, 2) < 0 ||
+            !is_even || !(scale > 0)) {
+            leaveOut(mesh.is_part ? "part of a mesh" : "mesh that leans or is stretched", shape,
+                     extentOf(shape, mesh));
             return;
         }
         if (!mesh.file) {
@@ -206,6 +207,19 @@ class SdfImporter {
         record.set("scale", scale);
         if (*loaded != nullptr) record.setMesh(*loaded);
         ++meshes_;
+    }
+
+    /// Returns the bounds of a mesh on the floor; empty if its file is not read.
+    Box2 extentOf(const SdfShape& shape, const SdfMesh& mesh) {
+        Box2 extent;
+        if (!mesh.file) return extent;
+        const auto loaded = loadedMesh(*mesh.file);
+        if (!loaded || *loaded == nullptr) return extent;
+        const auto [x, y, z] = mesh.scale;
+        for (const auto& v : (*loaded)->vertices)
+            extent.add(
+                floorOf(shape.world_from_shape * Eigen::Vector3d(x * v[0], y * v[1], z * v[2])));
+        return extent;
     }
 
     /// Reads a mesh file once, if the options say so: null if they do not, or if the file cannot be

@@ -145,10 +145,7 @@ class SdfReader {
                 const std::vector<double> scale = files_.numbersIn(node, "scale", 3);
                 mesh.scale = {scale[0], scale[1], scale[2]};
             }
-            if (node.child("submesh")) {
-                addUnread("part of a mesh", shape, pose);
-                return;
-            }
+            mesh.is_part = node.child("submesh");
             shape.shape = std::move(mesh);
         } else {
             // Planes and heightmaps are ground.

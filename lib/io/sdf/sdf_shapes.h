@@ -36,6 +36,7 @@ struct SdfMesh {
     std::string uri;
     std::optional<std::string> file;  ///< relative to the world's folder; empty if it is missing
     std::array<double, 3> scale{1, 1, 1};
+    bool is_part = false;  ///< a submesh: the rest of the file does not count
 };
 
 struct SdfShape {

@@ -265,7 +265,7 @@ std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::s
     std::vector<SdfMeshCut> cuts;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const auto* const mesh = std::get_if<SdfMesh>(&shapes[i].shape);
-        if (mesh == nullptr || !mesh->file) continue;
+        if (mesh == nullptr || !mesh->file || mesh->is_part) continue;
         std::shared_ptr<const TriangleMesh>& triangles = loaded[*mesh->file];
         if (triangles == nullptr)
             triangles = meshOrNothing(sideFilePath(name, *mesh->file), limit, files);
