@@ -111,6 +111,7 @@ std::span<const Session::Request> Session::requests() {
         {"ADD", "record", Role::World, 1, kAny, &C::change, true},
         {"DELETE", "id...", Role::World, 1, kAny, &C::change, true},
         {"LOAD", "env [layout]", Role::World, 1, 2, &C::change, true},
+        {"RECORDS", "[room]", Role::World, 0, 1, &C::records},
         {"EVENTS", "[kinds|off]", Role::World, 0, kAny, &C::events},
         {"MARK", "text", Role::World, 1, kAny, &C::mark},
         {"SHUTDOWN", "", Role::World, 0, 0, &C::shutdown, true},

@@ -189,6 +189,7 @@ class Session {
     void call(Words words);
     void lifts(Words words);
     void states(Words words);
+    void records(Words words);
     void pause(Words words);
     void resume(Words words);
     void rate(Words words);

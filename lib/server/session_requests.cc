@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Requests of the roles ROBOT, PERSON and WORLD.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "record/text.h"
 #include "scene/scene.h"
 #include "server/session.h"
 #include "sim/command.h"
@@ -30,6 +32,25 @@ std::string speedsText(const RobotModel& model) {
     add("max_sidespeed", model.max_sidespeed);
     add("accel", model.accel);
     add("rotaccel", model.rotaccel.degrees());
+    return text;
+}
+
+/// Formats the points of a way, without the start.
+std::string wayText(const Command& command) {
+    std::string text;
+    for (const Point2 point : command.course.path) {
+        text.append(text.empty() ? "" : ";").append(measured(point.x));
+        text.append(",").append(measured(point.y));
+    }
+    return text;
+}
+
+/// Writes a record of a scene with its id, also where the file leaves it to the reader.
+std::string recordText(const Scene& scene, std::size_t record) {
+    std::string text = formatRecord(scene.records[record]);
+    const std::string& id = scene.ids[record];
+    if (!id.empty() && !scene.records[record].has("id"))
+        text.insert(scene.records[record].keyword().size(), " id=" + id);
     return text;
 }
 
@@ -105,6 +126,7 @@ void Session::command(Words words) {
     if (const std::string_view name = valueNameOf(parsed.command->verb); !name.empty())
         out_.append(" ").append(name).append("=").append(
             parsed.command->verb == Verb::Goto ? measured(value) : formatDouble(value));
+    if (parsed.command->verb == Verb::Goto) out_.append(" way=").append(wayText(*parsed.command));
     out_ += '\n';
 }
 
@@ -176,6 +198,38 @@ void Session::states(Words words) {
         out_.append(" ").append(state.id).append(".").append(state.key).append("=").append(
             state.value);
     out_ += '\n';
+}
+
+void Session::records(Words words) {
+    const Scene* scene = &world().scene();
+    if (rooms() != nullptr) {
+        const auto all = rooms()->worlds->rooms();
+        const auto found = std::find_if(all.begin(), all.end(), [&](const JoinedRoom& room) {
+            return words.size() > 1 && room.id == words[1];
+        });
+        if (found == all.end())
+            return error(404,
+                         {"RECORDS wants a room of the building, as in RECORDS ", all.front().id});
+        scene = &found->simulation->world().scene();
+    } else if (words.size() > 1) {
+        return error(400, {"this run is of one room: RECORDS has no argument"});
+    }
+    // The records of the room, then those placed in it.
+    std::array<std::string, 2> texts;
+    std::array<std::size_t, 2> counts{};
+    for (std::size_t i = 0; i < scene->records.size(); ++i) {
+        const std::size_t part = scene->records[i].schema().isEnvironment() ? 0 : 1;
+        texts[part].append(recordText(*scene, i)).append("\n");
+        ++counts[part];
+    }
+    if (const std::size_t bytes = texts[0].size() + texts[1].size();
+        bytes > state_->limits().pending)
+        return error(409, {"the records have ", std::to_string(bytes), " bytes, more than the ",
+                           std::to_string(state_->limits().pending), " of an answer"});
+    out_.append("OK RECORDS t=").append(formatMilliseconds(world().time()));
+    out_.append(" room=").append(std::to_string(counts[0]));
+    out_.append(" placed=").append(std::to_string(counts[1])).append("\n");
+    out_.append(texts[0]).append(texts[1]);
 }
 
 void Session::time(Words /*words*/) {

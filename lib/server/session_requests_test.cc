@@ -2,6 +2,7 @@
 // The roles ROBOT and LASER.
 // What clients are kept from.
 #include <gtest/gtest.h>
+#include <algorithm>
 #include <string>
 
 #include "server/session.h"
@@ -355,6 +356,24 @@ TEST(Session, TheRateOfARealClockMayBeChanged) {
               "ERR 405 only the clock `real` has a rate\n");
 }
 
+TEST(Session, RecordsAreWrittenWithTheirIds) {
+    Talk talk;
+    Session& world = talk.client("WORLD");
+    const std::string text = talk.ask(world, "RECORDS");
+    const std::string head = text.substr(0, text.find('\n'));
+    EXPECT_TRUE(head.starts_with("OK RECORDS t=0.000 room=")) << head;
+    const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+    EXPECT_EQ(lines, 1 + talk.room.world.scene().records.size());
+    for (const std::string& id : talk.room.world.scene().ids)
+        EXPECT_TRUE(id.empty() || text.find(" id=" + id) != std::string::npos) << id << text;
+    EXPECT_EQ(talk.ask(world, "RECORDS upper"),
+              "ERR 400 this run is of one room: RECORDS has no argument\n");
+    ServerLimits limits;
+    limits.pending = 64;
+    Talk narrow({Clock::Kind::Step, 1}, {}, "", limits);
+    EXPECT_TRUE(narrow.ask(narrow.client("WORLD"), "RECORDS").starts_with("ERR 409 the records"));
+}
+
 TEST(Session, ShutdownMayBeRefused) {
     ServerLimits limits;
     limits.shutdown = false;
@@ -365,7 +384,8 @@ TEST(Session, ShutdownMayBeRefused) {
     EXPECT_FALSE(talk.room.simulation.finished());
     EXPECT_FALSE(world.closing());
     EXPECT_EQ(talk.ask(world, "HELP"),
-              "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | STATE [id] | EVENTS "
+              "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | STATE [id] | RECORDS "
+              "[room] | EVENTS "
               "[kinds|off] | MARK "
               "text | HELP | QUIT\n");
 }
