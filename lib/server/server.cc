@@ -29,10 +29,11 @@ std::string Server::address() const { return data_->acceptor.address(); }
 
 std::uint16_t Server::port() const { return data_->acceptor.port(); }
 
-std::string Server::serveWeb(const Endpoint& endpoint, const std::string& title) {
+std::string Server::serveWeb(const Endpoint& endpoint, const std::string& title,
+                             const WebPageOptions& options) {
     Data& data = *data_;
-    const WebServer& web = data.webs.emplace_back(data.io, endpoint, data.limits,
-                                                  std::make_unique<WebPage>(data.state, title));
+    const WebServer& web = data.webs.emplace_back(
+        data.io, endpoint, data.limits, std::make_unique<WebPage>(data.state, title, options));
     return "http://" + web.address() + "/";
 }
 

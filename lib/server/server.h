@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/file.h"
+#include "scene/run/run_marks.h"
 #include "sense/formats/ros_messages.h"
 #include "server/device/wire_session.h"
 #include "server/mqtt/mqtt_client.h"
@@ -70,6 +71,12 @@ struct RosScenery {
     std::function<std::string(const Scene& scene)> room = {};  ///< a mesh as GLB; null: none
 };
 
+/// Parts of the page that depend on the options of the run.
+struct WebPageOptions {
+    bool edits = false;               ///< the page offers to change the room
+    std::vector<RunMark> marks = {};  ///< on the slider of a replay
+};
+
 /// Runs a simulation and serves it to many clients. One thread does both in turn, so the world does
 /// not change while a request is answered; sensors are computed on all cores.
 ///
@@ -92,7 +99,8 @@ class Server {
     /// Serves the running world to browsers at a separate endpoint. Call at most once, before
     /// run(). \param title of the page \returns "http://127.0.0.1:40124/"
     /// \throws std::system_error naming the endpoint
-    std::string serveWeb(const Endpoint& endpoint, const std::string& title);
+    std::string serveWeb(const Endpoint& endpoint, const std::string& title,
+                         const WebPageOptions& options = {});
     /// Serves the running world as topics of ROS 2 at a separate endpoint. Call before run(). An
     /// endpoint for other machines requires ServerLimits::token.
     /// \param title of the run \param scenery of the first call serves all

@@ -13,7 +13,8 @@ except ImportError:
 HOME = """#env 1
 ispace size=6,4,2.5 ceiling=yes
 inside at=0,0
-zone id=all at=0,0 size=6,4 celsius=19
+zone id=west at=-1.5,0 size=3,4 celsius=19
+zone id=east at=1.5,0 size=3,4 celsius=19
 door id=front at=3,0
 window id=south at=0,-2 size=1.2,0.1,1.2
 lamp id=l1 at=1,0
@@ -82,6 +83,11 @@ with Run(environment=HOME, layout=LAYOUT) as run, Page(run.url, 1280, 1400) as p
         "k1 open": "false", "reader tags": "key", "light lux": "0", "warm celsius": "19", "m1 neighbours": "m2"}.items():
         check(first.get(name) == value, f"{name} is {first.get(name)}, not {value}: {first}")
     check({"u1 tags", "mic level", "m1 lux"} <= set(first), f"no anchors, microphones or motes: {first}")
+    rooms = page.browser.execute_script("""
+        return Object.fromEntries([...document.querySelectorAll('#state-list h3')].map(title => [title.textContent,
+          [...title.nextSibling.querySelectorAll('li')].map(item => item.dataset.name.split(' ')[0])]));""")
+    check({"l1", "s1"} <= set(rooms["east"]) and {"h1", "motion"} <= set(rooms["west"]), f"the rooms have {rooms}")
+    check(set(rooms) == {"east", "west", "elsewhere"} and "w1" in rooms["elsewhere"], f"the rooms are {rooms}")
     page.screenshot("home_before.png")
 
     for name in ("l1 on", "p1 on", "front open", "south blind", "b1 on", "s1 on", "h1 on"):

@@ -17,7 +17,7 @@ except ImportError:
 
 def record(folder):
     for name, text in (("office.env", ENVIRONMENT), ("office.3dm", LAYOUT),
-                       ("drive.txt", "0 r1 FORWARD 1.5\n")):
+                       ("drive.txt", "0 r1 FORWARD 1.5\n0 r2 SPEED 1\n")):
         with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
             file.write(text)
     subprocess.run(["simrun", "office.env", "office.3dm", "-q", "--clock", "fast", "--until", "6",
@@ -57,6 +57,25 @@ with tempfile.TemporaryDirectory() as scratch:
         for _ in range(20):
             slider.send_keys(Keys.ARROW_RIGHT)
         eventually("0.2 s later", lambda: page.text("time") == "0.200 s")
+        slider.send_keys(Keys.END)
+        # Marks: r2 ran into a wall.
+        with open(os.path.join(folder, "events.csv"), encoding="utf-8") as file:
+            met = [float(line.split(",")[0]) for line in file if ",collision,r2," in line]
+        slider.send_keys(Keys.HOME)
+        check(page.part("marks").is_displayed(), "there are no marks")
+        page.part("map").send_keys("n")
+        eventually("the mark", lambda: page.text("time") == f"{met[0]:.3f} s")
+        check("r2 ran into" in page.log(), f"the log is {page.log()}")
+        page.part("map").send_keys("p")
+        slider.send_keys(Keys.HOME)
+        eventually("the beginning", lambda: page.text("time") == "0.000 s")
+        strip = page.part("marks")
+        end = float(slider.get_attribute("max"))
+        x = 8 + met[0] / end * (strip.size["width"] - 16) - strip.size["width"] / 2
+        ActionChains(page.browser).move_to_element_with_offset(strip, round(x), 0).click().perform()
+        eventually("the mark, by a press", lambda: page.text("time") == f"{met[0]:.3f} s")
+        page.screenshot("marks_1280.png")
+
         slider.send_keys(Keys.END)
         eventually("the end again", lambda: abs(page.facts()["x"] - end_of_r1(folder)) < 0.002)
 

@@ -66,7 +66,9 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
 
     checkRecord(options, world);
     Server server(simulation, options.listen, limitsOf(options, input));
-    const ServedAddresses addresses = servePorts(server, options, titleOf(options, input));
+    const ServedAddresses addresses =
+        servePorts(server, options, titleOf(options, input),
+                   replay ? std::vector<std::string>{options.replay} : std::vector<std::string>());
     std::optional<TopicLog> log;
     if (!options.mcap.empty()) log.emplace(server, simulation, options);
     const StopSignals signals;

@@ -207,8 +207,12 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
             : options.load_folder,
         options.rules);
     Server server(simulation, options.listen, limits, &run);
+    std::vector<std::string> replayed;
+    if (!options.replay.empty())
+        for (const JoinedRoom& room : run.rooms())
+            replayed.push_back(options.replay + '/' + room.id);
     const ServedAddresses addresses =
-        servePorts(server, options, baseName(input->environment_operand));
+        servePorts(server, options, baseName(input->environment_operand), replayed);
     std::optional<TopicLog> log;
     if (!options.mcap.empty()) log.emplace(server, simulation, options);
     const StopSignals signals;

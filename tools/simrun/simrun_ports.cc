@@ -138,9 +138,12 @@ std::string meshOf(const Scene& scene) {
 
 RosScenery rosScenery() { return {.map = mapOf, .room = meshOf}; }
 
-ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title) {
+ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title,
+                           const std::vector<std::string>& replayed) {
     ServedAddresses out;
-    if (options.web) out.web = server.serveWeb(*options.web, title);
+    if (options.web)
+        out.web = server.serveWeb(*options.web, title,
+                                  {.edits = false, .marks = recordedMarks(replayed)});
     const auto serve = [&](RosLanguage language, const std::optional<Endpoint>& endpoint) {
         return endpoint ? server.serveRos(language, *endpoint, "simrun " + title, rosScenery())
                         : std::string();

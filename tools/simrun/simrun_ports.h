@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/file.h"
 #include "server/server.h"
@@ -19,8 +20,10 @@ struct ServedAddresses {
     DeviceAddresses devices;
 };
 /// Opens the ports that options ask for. \param title of the room or the record
+/// \param replayed folders of the records that are replayed
 /// \throws std::system_error, UsageError naming the option
-ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title);
+ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title,
+                           const std::vector<std::string>& replayed);
 
 /// The file of --mcap. It ends the run once it is larger than --record-limit.
 class TopicLog {

@@ -7,6 +7,7 @@ import {Link, complaint, keysOf} from './link.js';
 const kSpeed = {robot: 0.5, person: 1.2}, kTurn = 45, kSide = 0.3;
 
 const kStill = '0,0,0';
+const kShown = 6000;  // ms that a refused goal stays on the map
 
 export class Driver {
   /** tell(text, bad): says something to people; changed(): something is to be drawn anew */
@@ -29,7 +30,8 @@ export class Driver {
     if (!await this.ready || this.gone) return null;
     const answer = await this.link.ask(request);
     if (answer.startsWith('OK')) return answer;
-    this.tell(`${this.mover.id}: ${complaint(answer)}`, true);
+    this.why = complaint(answer);
+    this.tell(`${this.mover.id}: ${this.why}`, true);
     return null;
   }
 
@@ -42,24 +44,47 @@ export class Driver {
     tell(line.startsWith('DONE') ? 'done' : reason);
   }
 
-  /** A command that comes to an end: how it ended; null if it did not begin. */
-  async run(request) {
+  /** A command that comes to an end: how it ended; null if it did not begin. began(answer) */
+  async run(request, began) {
     const answer = await this.ask(request);
     if (!answer) return null;
+    began(answer);
     return new Promise(tell => { this.command = {id: keysOf(answer).id, tell}; });
   }
 
-  /** Goes to a place, round walls and things where the run finds ways, else straight. */
-  async goTo(x, y) {
-    const goal = this.goal = {x, y}, {mover} = this;
+  /** Goes to a point, round walls and things where the run finds ways, else straight; turns to a heading there. */
+  async goTo(x, y, heading) {
+    const goal = this.goal = {x, y, heading}, {mover} = this;
+    this.refused = null;
     this.changed();
     this.help ??= await this.ask('HELP') ?? '';
-    const place = `${x.toFixed(3)},${y.toFixed(3)}`;
-    const end = await this.run(/\bGOTO\b/.test(this.help) ? `GOTO ${Link.whole(place)}` : `PATH ${place}`);
+    const place = `${x.toFixed(3)},${y.toFixed(3)}`, turn = heading === undefined ? '' : `,${heading.toFixed(1)}`;
+    const order = /\bGOTO\b/.test(this.help) ? `GOTO ${Link.whole(place)}${turn}` : `PATH ${place}`;
+    const end = await this.run(order, answer => {
+      goal.way = keysOf(answer).way?.split(';').map(point => point.split(',').map(Number));
+      this.changed();
+    });
     if (this.goal !== goal) return;  // a newer one
     this.goal = null;
+    if (end !== 'done') this.showRefused(goal, end ?? this.why ?? 'not possible');
     if (end) this.tell(end === 'done' ? `${mover.id} has arrived` : `${mover.id} did not arrive: ${end}`, end !== 'done');
     this.changed();
+  }
+
+  showRefused(goal, why) {
+    const refused = this.refused = {...goal, why};
+    setTimeout(() => {
+      if (this.refused === refused) this.refused = null;
+      this.changed();
+    }, kShown);
+  }
+
+  /** The points ahead on its way to its goal, as planned at its beginning. */
+  get way() {
+    const {goal, mover} = this, kPassed = 0.2;
+    const way = goal?.way ?? (goal ? [[goal.x, goal.y]] : []);
+    while (way.length > 1 && Math.hypot(way[0][0] - mover.x, way[0][1] - mover.y) < kPassed) way.shift();
+    return way;
   }
 
   /** Keeps to the speeds of the keys that are down. */

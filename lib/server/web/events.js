@@ -18,6 +18,12 @@ const kTexts = {
   change: ({what}) => `changed: ${what}`,
 };
 
+/** {said, bad} of a mark of a record: {t, kind, id, other, text}. */
+export function markText({t, kind, id, other, text}) {
+  const said = kTexts[kind]({id, into: other, to: other, text, what: text});
+  return {said: `${t.toFixed(1)} s  ${said}`, bad: kind === 'collision' || kind === 'unreached'};
+}
+
 /** {text, bad} of a line that comes by itself; no text for what is not worth one. */
 export function eventText(line) {
   const [, kind] = /^EVENT (\w+)/.exec(line) ?? [];

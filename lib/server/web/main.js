@@ -12,6 +12,9 @@ import {States} from './states.js';
 import {History} from './history.js';
 import {Building} from './building.js';
 import {Pace} from './pace.js';
+import {Layers} from './layers.js';
+import {MarkStrip} from './marks.js';
+import {Ruler, SendTool, drawArrow} from './tools.js';
 import {dayText, timeText} from './clock.js';
 
 const part = id => document.getElementById(id);
@@ -22,6 +25,8 @@ const cameras = new Cameras(part, why => tell(why, true));
 const history = new History(part);
 const states = new States(part, tell, history, redraw);
 const seekBar = new SeekBar(part('seek'), tell);
+const marks = new MarkStrip(part('marks'), seekBar, tell);
+const layers = new Layers(part('kinds'), redraw);
 const building = new Building(moved);
 const pace = new Pace();
 const buttons = new Map();  // of the movers in the list, by id
@@ -49,7 +54,7 @@ function connect() {
           if (begun === link && building.open(link, list)) listRooms();
         });
         states.open(link);
-        seekBar.open(link);
+        seekBar.open(link).then(() => marks.draw());
       });
       link.send('FRAME');
       asked = true;
@@ -134,7 +139,17 @@ function takeScene(scene) {
   fitUntouched();
   listMovers();
   cameras.list(movers.sensors);
-  states.know(movers.sensors);
+  layers.show(movers.sensors, kind => movers.colorOfKind(kind));
+  marks.list(scene.marks ?? [], scene.colors);
+  states.know(movers.sensors, zoneOf);
+}
+
+/** The zone in which something of the room is. */
+function zoneOf(id) {
+  const sensor = movers.sensors.find(other => other.id === id);
+  const at = movers.actuators.find(other => other.id === id)?.at ??
+    (sensor ? sensor.on === undefined && sensor.pose : plan.middleOf(id));
+  return at ? plan.zoneAt(at[0], at[1]) : '';
 }
 
 /** Unless people have moved the map, it shows the whole room. */
@@ -164,6 +179,15 @@ function tell(text, bad = false) {
   item.hidden = !isWanted(item);
   part('log').prepend(item);
   if (part('log').children.length > 100) part('log').lastChild.remove();
+  if (bad) notice(text);
+}
+
+/** Says on the map, too, what goes wrong: the log may be out of sight. */
+function notice(text) {
+  clearTimeout(notice.timer);
+  part('notice').textContent = text;
+  part('notice').hidden = false;
+  notice.timer = setTimeout(() => { part('notice').hidden = true; }, 6000);
 }
 
 /** Whether a line has what people look for in the log. */
@@ -189,30 +213,59 @@ function draw() {
   const shown = name => part(name).checked;
   plan.draw(context, view, shown('names'));
   if (frame) {
-    movers.draw(context, view, {scans: shown('scans'), trails: shown('trails'), names: shown('names'), selected, isOn: id => states.isOn(id)});
-    for (const driver of drivers.values()) drawGoal(driver.mover, driver.goal, '#0072b2');
-    if (drag?.x !== undefined && drag.moved) drawGoal(drag.mover, drag, '#d55e00');
+    movers.draw(context, view, {
+      scans: shown('scans'), trails: shown('trails'), names: shown('names'), selected,
+      isOn: id => states.isOn(id), lookOf: kind => layers.of(kind),
+    });
+    for (const driver of drivers.values()) {
+      if (driver.goal) drawGoal(driver.mover, driver.goal, driver.way, '#0072b2');
+      if (driver.refused) drawRefused(driver.refused);
+    }
+    if (drag?.x !== undefined && drag.moved) drawGoal(drag.mover, drag, [[drag.x, drag.y]], '#d55e00');
   }
+  tool?.draw(context, view);
   if (asked) return;
   asked = true;
   link.send('FRAME');
 }
 
-function drawGoal(mover, goal, color) {
-  if (!goal) return;
+/** A goal, its heading if it has one, and the way there. */
+function drawGoal(mover, goal, way, color) {
   view.inPixels(context);
-  const [x0, y0] = view.toPage(mover.x, mover.y), [x, y] = view.toPage(goal.x, goal.y);
+  const [x, y] = view.toPage(goal.x, goal.y);
   context.strokeStyle = color;
   context.lineWidth = 2;
   context.setLineDash([6, 5]);
   context.beginPath();
-  context.moveTo(x0, y0);
-  context.lineTo(x, y);
+  context.moveTo(...view.toPage(mover.x, mover.y));
+  for (const point of way) context.lineTo(...view.toPage(...point));
   context.stroke();
   context.setLineDash([]);
   context.beginPath();
   context.arc(x, y, Math.max(6, mover.radius * view.scale), 0, 2 * Math.PI);
   context.stroke();
+  if (goal.heading === undefined) return;
+  const angle = goal.heading * Math.PI / 180, length = 28 / view.scale;
+  drawArrow(context, view, [goal.x, goal.y], [goal.x + length * Math.cos(angle), goal.y + length * Math.sin(angle)], color);
+}
+
+/** A goal that could not be reached, and why. */
+function drawRefused({x, y, why}) {
+  const [px, py] = view.toPage(x, y), size = 8;
+  view.inPixels(context);
+  context.strokeStyle = context.fillStyle = '#b3261e';
+  context.lineWidth = 3;
+  context.beginPath();
+  for (const way of [1, -1]) {
+    context.moveTo(px - size, py - way * size);
+    context.lineTo(px + size, py + way * size);
+  }
+  context.stroke();
+  context.font = '600 12px system-ui, sans-serif';
+  context.textAlign = 'center';
+  context.strokeStyle = '#fffdf8';
+  context.strokeText(why, px, py - size - 6);
+  context.fillText(why, px, py - size - 6);
 }
 
 // Beside the map.
@@ -258,10 +311,12 @@ part('rate').addEventListener('change', () => {
 function showHelp(is_replay) {
   part('pad').hidden = !selected || is_replay;
   part('pad').classList.toggle('sidles', selected?.side > 0);
+  part('send').disabled = !selected || is_replay;
+  if (part('send').disabled && tool === tools.send) choose(null);
   part('hint').textContent = is_replay ?
-    'This is a record: pause it, take single steps, go to a time by the slider, follow who is in it.' :
+    'This is a record: pause it, take single steps, go to a time by the slider or to the next mark (n), follow who is in it.' :
     !selected ? 'Select a robot here or on the map. Drag it to where it is to go, or drive it with the arrow keys.' :
-    `Arrow keys drive${selected.side > 0 ? ', Q and E go sideways' : ''}, Escape stops. Drag ${selected.id} to where it is to go.`;
+    `Arrow keys drive${selected.side > 0 ? ', Q and E go sideways' : ''}, Escape stops. Drag ${selected.id} to where it is to go, or Send it (g).`;
 }
 
 /** Those of all rooms, in the order of the record; what is in the list stays there, with the focus. */
@@ -361,6 +416,29 @@ function driverOf(mover) {
   return driver;
 }
 
+// Tools of the map.
+
+let tool = null;
+const tools = {
+  send: new SendTool(() => selected, (mover, x, y, heading) => driverOf(mover).goTo(x, y, heading)),
+  measure: new Ruler(text => say(text)),
+};
+
+/** Takes up a tool, or lays down the one that is used. */
+function choose(next) {
+  tool?.end();
+  tool = next === tool ? null : next;
+  for (const [id, one] of Object.entries(tools)) part(id).setAttribute('aria-pressed', one === tool);
+  canvas.classList.toggle('aims', Boolean(tool));
+  say(tool?.hint ?? '');
+  redraw();
+}
+
+function say(text) {
+  part('said').textContent = text;
+  part('said').hidden = text === '';
+}
+
 // Buttons and keys.
 
 async function request(text) {
@@ -375,6 +453,8 @@ const actions = {
   fit: () => { follow(false); untouched = true; view.fit(plan.box); redraw(); },
   closer: () => zoomed(1.3),
   farther: () => zoomed(1 / 1.3),
+  send: () => { if (!part('send').disabled) choose(tools.send); },
+  measure: () => choose(tools.measure),
 };
 
 function zoomed(factor, ...at) {
@@ -392,9 +472,11 @@ function panned(dx, dy) {
 for (const [id, act] of Object.entries(actions)) part(id).onclick = () => plan && act();
 for (const id of ['scans', 'trails', 'names']) part(id).onchange = redraw;
 
-const shortcuts = {' ': 'run', '.': 'step', f: 'follow', 0: 'fit', '+': 'closer', '=': 'closer', '-': 'farther'};
+const shortcuts = {' ': 'run', '.': 'step', f: 'follow', g: 'send', m: 'measure', 0: 'fit', '+': 'closer', '=': 'closer', '-': 'farther'};
 /** Of keys that seek in a record, how many seconds. */
 const jumps = {'[': -1, ']': 1, '{': -60, '}': 60};
+/** Of keys that go to marks in a record, the direction. */
+const leaps = {n: 1, p: -1};
 /** Of keys that drive, how far they move the map when nobody is selected. */
 const arrows = {ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60], q: [0, 0], e: [0, 0]};
 
@@ -411,6 +493,10 @@ function key(name, down, repeated = false) {
     return true;
   }
   if (!down) return false;
+  if (name === 'Escape' && tool) {
+    choose(null);
+    return true;
+  }
   if (name === 'Escape' && selected) {
     const driver = drivers.get(selected.id);
     if (driver?.busy) driver.stop();
@@ -419,7 +505,8 @@ function key(name, down, repeated = false) {
   }
   if (name in shortcuts) actions[shortcuts[name]]();
   if (name in jumps) seekBar.move(jumps[name]);
-  return name in shortcuts || name in jumps;
+  if (name in leaps) marks.step(leaps[name]);
+  return name in shortcuts || name in jumps || name in leaps;
 }
 
 window.addEventListener('keydown', event => {
@@ -470,10 +557,12 @@ canvas.addEventListener('pointerdown', event => {
   pointers.set(event.pointerId, [px, py]);
   if (pointers.size === 2) {
     drag = null;
+    if (tool?.drag) tool.end();
     pinch = spanOf();
     return;
   }
-  drag = {px, py, mover: movers.at(view, px, py), moved: false};
+  drag = {px, py, mover: tool ? undefined : movers.at(view, px, py), moved: false, tool};
+  tool?.press(...view.toWorld(px, py));
   if (drag.mover && drag.mover !== selected) select(drag.mover.id);
 });
 
@@ -493,7 +582,8 @@ canvas.addEventListener('pointermove', event => {
     pinch = span;
   } else if (drag) {
     drag.moved ||= Math.hypot(px - drag.px, py - drag.py) > 6;
-    if (drag.mover && !frame?.replay) Object.assign(drag, {x, y});
+    if (drag.tool?.drag) drag.tool.drag(x, y);
+    else if (drag.mover && !frame?.replay) Object.assign(drag, {x, y});
     else if (drag.moved) {
       follow(false);
       panned(px - drag.px, py - drag.py);
@@ -506,7 +596,7 @@ canvas.addEventListener('pointermove', event => {
   canvas.classList.toggle('moving', Boolean(drag?.moved));
   const what = over?.id ?? switchAt(px, py) ?? plan.titleAt(x, y);
   part('place').textContent = `${x.toFixed(2)}, ${y.toFixed(2)}${what ? ` · ${what}` : ''}`;
-  if (drag || pinch) redraw();
+  if (drag || pinch || tool) redraw();
 });
 
 /** The id of what a press on the map switches: a lamp, a door. */
@@ -522,7 +612,9 @@ function letGo(event) {
   const done = drag;
   drag = null;
   canvas.classList.remove('moving');
-  if (event.type === 'pointerup' && done?.x !== undefined && done.moved) driverOf(done.mover).goTo(done.x, done.y);
+  if (done?.tool) {
+    if (event.type === 'pointerup' && done.tool === tool) tool.letGo(...view.toWorld(...placeOf(event)), done.moved);
+  } else if (event.type === 'pointerup' && done?.x !== undefined && done.moved) driverOf(done.mover).goTo(done.x, done.y);
   else if (event.type === 'pointerup' && done && !done.mover && !done.moved) {
     const camera = movers.cameraAt(view, ...placeOf(event));
     const thing = switchAt(...placeOf(event));
@@ -544,5 +636,15 @@ new ResizeObserver(() => {
   fitUntouched();
   redraw();
 }).observe(canvas);
+
+// Sections that people have folded stay folded.
+
+for (const fold of document.querySelectorAll('aside details')) {
+  const kept = `ispace-fold-${fold.parentNode.getAttribute('aria-labelledby')}`;
+  try {
+    if (localStorage.getItem(kept) === 'folded') fold.open = false;
+    fold.addEventListener('toggle', () => localStorage.setItem(kept, fold.open ? 'open' : 'folded'));
+  } catch { /* a browser may keep none */ }
+}
 
 connect();

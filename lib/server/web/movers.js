@@ -74,8 +74,15 @@ export class Movers {
     return {area, hits};
   }
 
-  /** isOn(id): whether something is switched on */
-  draw(context, view, {scans, trails, names, selected, isOn}) {
+  /** The colour of a kind of sensors, of the first one of it. */
+  colorOfKind(kind) {
+    const {id} = this.sensors.find(sensor => sensor.kind === kind);
+    return this.colorOf.get(id) ?? (kind === 'mat' ? this.colors.mat : this.colors.sensor);
+  }
+
+  /** isOn(id): whether something is switched on; lookOf(kind): of sensors, see Layers */
+  draw(context, view, {scans, trails, names, selected, isOn, lookOf}) {
+    this.lookOf = lookOf;
     this.drawFloorSensors(context, view);
     this.drawActuators(context, view, isOn);
     if (scans) this.drawScans(context, view, selected);
@@ -98,13 +105,14 @@ export class Movers {
     view.inMetres(context);
     const faint = 0.14 * Math.min(1, Math.sqrt(20 / this.scans.size));
     for (const [id, {area, hits, size: pixels = 2}] of this.scans) {
-      const color = this.colorOf.get(id) ?? this.colors.sensor;
-      const sensor = this.sensors.find(other => other.id === id);
+      const sensor = this.sensors.find(other => other.id === id), look = this.lookOf(sensor?.kind);
+      if (!look.shown) continue;
+      const color = look.color || (this.colorOf.get(id) ?? this.colors.sensor);
       const strong = selected && sensor?.on !== undefined && this.all[sensor.on] === selected;
-      context.globalAlpha = strong ? 0.26 : faint;
+      context.globalAlpha = look.opacity * (strong ? 0.26 : faint);
       context.fillStyle = color;
       context.fill(area);
-      context.globalAlpha = strong ? 0.9 : 0.65;
+      context.globalAlpha = look.opacity * (strong ? 0.9 : 0.65);
       const size = pixels / view.scale;
       for (let i = 0; i < hits.length; i += 2) context.fillRect(hits[i] - size / 2, hits[i + 1] - size / 2, size, size);
     }
@@ -128,18 +136,21 @@ export class Movers {
 
   drawFloorSensors(context, view) {
     for (const {id, kind, pose, size} of this.sensors) {
-      if (!size) continue;
+      const look = this.lookOf(kind);
+      if (!size || !look.shown) continue;
       const {on} = this.floor.get(id) ?? {};
       view.inMetres(context);
       context.translate(pose[0], pose[1]);
       context.rotate(pose[2] * kRad);
       context.lineWidth = 1.5 / view.scale;
-      context.strokeStyle = kind === 'mat' ? this.colors.mat : this.colors.sensor;
-      context.fillStyle = this.colors.mat + (on ? 'aa' : '33');
+      context.globalAlpha = look.opacity;
+      context.strokeStyle = look.color || (kind === 'mat' ? this.colors.mat : this.colors.sensor);
+      context.fillStyle = (look.color || this.colors.mat) + (on ? 'aa' : '33');
       if (kind === 'gate') context.setLineDash([5 / view.scale, 4 / view.scale]);
       else context.fillRect(-size[0] / 2, -size[1] / 2, size[0], size[1]);
       context.strokeRect(-size[0] / 2, -size[1] / 2, size[0], size[1]);
       context.setLineDash([]);
+      context.globalAlpha = 1;
     }
   }
 
@@ -181,26 +192,28 @@ export class Movers {
   /** Those with a place of their own: a dot, and where they look. */
   drawSensors(context, view) {
     const radius = 4 / view.scale;
-    for (const {id, pose, on, view: span, size} of this.sensors) {
-      if (on !== undefined || size) continue;
+    for (const {id, kind, pose, on, view: span, size} of this.sensors) {
+      const look = this.lookOf(kind);
+      if (on !== undefined || size || !look.shown) continue;
       view.inMetres(context);
       context.translate(pose[0], pose[1]);
       context.rotate(pose[2] * kRad);
-      context.fillStyle = context.strokeStyle = this.colorOf.get(id) ?? this.colors.sensor;
+      context.fillStyle = context.strokeStyle = look.color || (this.colorOf.get(id) ?? this.colors.sensor);
       if (span) {
-        context.globalAlpha = this.floor.get(id)?.motion ? 0.9 : 0.35;
+        context.globalAlpha = look.opacity * (this.floor.get(id)?.motion ? 0.9 : 0.35);
         context.beginPath();
         context.moveTo(0, 0);
         context.arc(0, 0, 5 * radius, span[0] * kRad, span[1] * kRad);
         context.fill();
-        context.globalAlpha = 1;
       }
+      context.globalAlpha = look.opacity;
       context.beginPath();
       context.arc(0, 0, radius, 0, 2 * Math.PI);
       context.fill();
       context.lineWidth = 1.5 / view.scale;
       context.strokeStyle = '#fff';
       context.stroke();
+      context.globalAlpha = 1;
     }
   }
 
@@ -282,8 +295,8 @@ export class Movers {
       const [px, py] = view.toPage(x, y);
       write(id, px, py + Math.max(radius * view.scale, 6) + 14, this.colors[kind]);
     }
-    for (const {id, pose, on} of this.sensors) {
-      if (on !== undefined || this.sensors.length > 60) continue;
+    for (const {id, kind, pose, on} of this.sensors) {
+      if (on !== undefined || this.sensors.length > 60 || !this.lookOf(kind).shown) continue;
       const [px, py] = view.toPage(pose[0], pose[1]);
       const gate = this.floor.get(id);
       write(gate?.in === undefined ? id : `${id} ${gate.in} in, ${gate.out} out`, px, py - 9, this.colors.faint);

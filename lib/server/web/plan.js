@@ -201,6 +201,27 @@ export class Plan {
     return best;
   }
 
+  /** The id of the smallest zone at a place, also just beside it, as doors are; '' without one. */
+  zoneAt(x, y) {
+    const kBeside = 0.4;  // metres
+    this.probe ??= document.createElement('canvas').getContext('2d');
+    const zones = (this.layers.find(({name}) => name === 'zones')?.groups ?? []).filter(({id}) => id);
+    const sizeOf = ({box: [x0, y0, x1, y1]}) => (x1 - x0) * (y1 - y0);
+    for (const [dx, dy] of [[0, 0], [kBeside, 0], [-kBeside, 0], [0, kBeside], [0, -kBeside]]) {
+      const holds = ({path}) => this.probe.isPointInPath(path, x + dx, y + dy, 'evenodd');
+      const there = zones.filter(({shapes}) => shapes.some(holds)).sort((a, b) => sizeOf(a) - sizeOf(b));
+      if (there.length > 0) return there[0].id;
+    }
+    return '';
+  }
+
+  /** The middle of something, if the plan has it. */
+  middleOf(wanted) {
+    for (const {groups} of this.layers)
+      for (const {id, box: [x0, y0, x1, y1]} of groups) if (id === wanted) return [(x0 + x1) / 2, (y0 + y1) / 2];
+    return undefined;
+  }
+
   /** What stands at a place, the smallest first; for people. */
   titleAt(x, y) {
     let best, least = Infinity;

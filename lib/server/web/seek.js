@@ -25,11 +25,15 @@ export class SeekBar {
     if (!this.input.hidden) this.input.max = end;
   }
 
+  /** The time that is shown, or will be. */
+  get time() { return this.wanted ?? Number(this.input.value); }
+
   /** Goes so many seconds on, or back. */
-  move(seconds) {
+  move(seconds) { this.seek(this.time + seconds); }
+
+  seek(time) {
     if (this.input.hidden) return;
-    const from = this.wanted ?? Number(this.input.value);
-    this.input.value = this.wanted = Math.min(Number(this.input.max), Math.max(0, from + seconds));
+    this.input.value = this.wanted = Math.min(Number(this.input.max), Math.max(0, time));
     this.go();
   }
 

@@ -37,6 +37,8 @@ export class States {
     this.shown = new Map();  // by id.key: shows a value
     this.values = new Map();  // likewise
     this.sensors = new Set();
+    this.roomOf = () => '';
+    this.lists = new Map();  // by room, its <ul>
     part('state-find').addEventListener('input', () => this.find(part('state-find').value));
   }
 
@@ -47,9 +49,10 @@ export class States {
     if (!answer.startsWith('OK')) return;
     const states = statesOf(answer), t = Number(keysOf(answer).t);
     // Those of a changed room are mostly the same: a field keeps its text.
-    const names = states.map(([id, key]) => `${id}.${key} ${this.sensors.has(id)}`).join();
+    const names = states.map(([id, key]) => `${id}.${key} ${this.sensors.has(id)} ${this.roomOf(id)}`).join();
     if (names !== this.names) {
       this.list.replaceChildren();
+      this.lists.clear();
       this.shown.clear();
       this.values.clear();
       this.names = names;
@@ -57,9 +60,10 @@ export class States {
     this.take(states, t);
   }
 
-  /** Sensors report, and nobody presses them. */
-  know(sensors) {
+  /** Sensors report, and nobody presses them. roomOf(id): the zone in which something is, '' in none */
+  know(sensors, roomOf) {
     this.sensors = new Set(sensors.map(({id}) => id));
+    this.roomOf = roomOf;
     if (this.link) this.open(this.link);
   }
 
@@ -93,12 +97,27 @@ export class States {
   /** Lists those whose names have a text, and hides the others. */
   find(text) {
     const wanted = text.trim().toLowerCase();
-    for (const item of this.list.children) item.hidden = !item.dataset.name.includes(wanted);
+    for (const item of this.list.querySelectorAll('li')) item.hidden = !item.dataset.name.includes(wanted);
+    for (const {list, title} of this.lists.values()) title.hidden = [...list.children].every(({hidden}) => hidden);
+  }
+
+  /** The list of a room, below its name; those of no room come last. */
+  listOf(room) {
+    if (this.lists.has(room)) return this.lists.get(room).list;
+    const title = document.createElement('h3'), list = document.createElement('ul');
+    title.textContent = room || 'elsewhere';
+    const rooms = [...this.lists.keys(), room].sort((a, b) => (a === '') - (b === '') || a.localeCompare(b));
+    const next = this.lists.get(rooms[rooms.indexOf(room) + 1])?.title ?? null;
+    this.list.insertBefore(title, next);
+    this.list.insertBefore(list, next);
+    this.lists.set(room, {title, list});
+    this.list.classList.toggle('grouped', this.lists.size > 1 || room !== '');
+    return list;
   }
 
   add(id, key) {
     const item = document.createElement('li'), is_fixed = this.sensors.has(id);
-    item.dataset.name = `${id} ${key}`.toLowerCase();
+    item.dataset.name = `${id} ${key} ${this.roomOf(id)}`.toLowerCase();
     const show = SWITCHES.has(key) || is_fixed ? this.addButton(item, id, key) : this.addField(item, id, key);
     const course = document.createElement('button');
     course.textContent = '∿';
@@ -110,7 +129,7 @@ export class States {
       course.hidden = !this.history.has(Link.whole(`${id} ${key}`));
       show(value);
     });
-    this.list.append(item);
+    this.listOf(this.roomOf(id)).append(item);
     return this.shown.get(`${id}.${key}`);
   }
 

@@ -118,18 +118,37 @@ void addPassages(JsonWriter& json, const std::vector<PassageOutline>& passages) 
     json.endArray();
 }
 
+void addMarks(JsonWriter& json, const std::vector<RunMark>& marks) {
+    if (marks.empty()) return;
+    json.key("marks").beginArray();
+    for (const RunMark& mark : marks) {
+        json.beginObject().key("t").value(mark.time).key("kind").value(mark.kind);
+        json.key("id").value(mark.id).key("other").value(mark.other);
+        json.key("text").value(mark.text).endObject();
+    }
+    json.endArray();
+}
+
+void addAdditions(JsonWriter& json, const std::vector<std::string>& additions) {
+    if (additions.empty()) return;
+    json.key("additions").beginArray();
+    for (const std::string& addition : additions) json.value(addition);
+    json.endArray();
+}
+
 }  // namespace
 
-std::string webScene(const Scene& scene, std::int64_t version, const std::string& title,
-                     const std::vector<PassageOutline>& passages) {
+std::string webScene(const Scene& scene, std::int64_t version, const WebSceneFacts& facts) {
     JsonWriter json;
     json.beginObject().key("schema").value("ispace-web-scene/1").key("scene").value(version);
-    json.key("title").value(title).key("plan");
+    json.key("title").value(facts.title).key("plan");
     writePlan(json, scene);
     addMovers(json, scene);
     addSensors(json, scene);
     addActuators(json, scene);
-    addPassages(json, passages);
+    addPassages(json, facts.passages);
+    addMarks(json, facts.marks);
+    addAdditions(json, facts.additions);
     addColors(json);
     json.endObject();
     return json.take();
@@ -253,7 +272,7 @@ WebFrames::Text WebFrames::frame(std::int64_t known) {
 WebFrames::Text WebFrames::scene() {
     if (std::exchange(scene_version_, sceneVersion()) != sceneVersion() || !scene_)
         scene_ = std::make_shared<const std::string>(
-            webScene(simulation_->world().scene(), scene_version_, title_, passages_));
+            webScene(simulation_->world().scene(), scene_version_, facts_));
     return scene_;
 }
 

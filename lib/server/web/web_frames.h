@@ -6,17 +6,25 @@
 #include <string>
 #include <vector>
 
+#include "scene/run/run_marks.h"
 #include "scene/scene.h"
 #include "sim/joined_worlds.h"
 #include "sim/simulation.h"
 
 namespace ispace {
 
+/// Data of the page of one room, besides its scene.
+struct WebSceneFacts {
+    std::string title;                          ///< e.g. base name of ENV
+    std::vector<PassageOutline> passages = {};  ///< to other rooms
+    std::vector<RunMark> marks = {};            ///< of a replay
+    /// Beginnings of records that the page offers to add; empty: it changes no rooms.
+    std::vector<std::string> additions = {};
+};
+
 /// Writes the static data of a scene for browsers, see share/schemas/web-scene.json: the plan (see
 /// writePlan), movers and their sizes, sensors, colours. \param version its name in state frames
-/// \param title e.g. base name of ENV \param passages to other rooms
-std::string webScene(const Scene& scene, std::int64_t version, const std::string& title,
-                     const std::vector<PassageOutline>& passages = {});
+std::string webScene(const Scene& scene, std::int64_t version, const WebSceneFacts& facts);
 
 /// The state of the world for browsers, formatted once for all of them.
 ///
@@ -29,13 +37,8 @@ class WebFrames {
     using Text = std::shared_ptr<const std::string>;
 
     /// \param leader has the clock of the simulation, and may be that itself
-    /// \param title of the page, e.g. base name of ENV \param passages to other rooms
-    WebFrames(const Simulation& simulation, const Simulation& leader, std::string title,
-              std::vector<PassageOutline> passages = {})
-        : simulation_(&simulation),
-          leader_(&leader),
-          title_(std::move(title)),
-          passages_(std::move(passages)) {}
+    WebFrames(const Simulation& simulation, const Simulation& leader, WebSceneFacts facts)
+        : simulation_(&simulation), leader_(&leader), facts_(std::move(facts)) {}
 
     /// Builds a new frame if the world has changed, at most some 30 a second, and fewer if they
     /// take much of the world's time.
@@ -59,8 +62,7 @@ class WebFrames {
     [[nodiscard]] bool isNew(std::size_t sensor) const;
 
     const Simulation *simulation_, *leader_;
-    std::string title_;
-    std::vector<PassageOutline> passages_;
+    WebSceneFacts facts_;
     WallTime next_look_{};
     std::int64_t number_ = 0;
     std::int64_t steps_ = -1, version_ = -1;  // of the world at the newest frame

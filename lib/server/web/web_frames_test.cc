@@ -24,7 +24,7 @@ bool has(const std::string& text, const std::string& piece) {
 struct Watched : TestWorld {
     explicit Watched(const std::string& more = "")
         : TestWorld({Clock::Kind::Step, 1}, {}, "", more),
-          frames(simulation, simulation, "room.env") {}
+          frames(simulation, simulation, {.title = "room.env"}) {}
 
     void step(int count = 1) {
         simulation.allow(count);
@@ -60,7 +60,7 @@ TEST(WebFrames, TellWhereEverythingIs) {
 TEST(WebFrames, TellTheClockOfTheLeadingSimulation) {
     Watched world;
     Simulation led(world.world, {}, {Clock::Kind::Fast, 1}, {});
-    WebFrames frames(led, world.simulation, "upper");
+    WebFrames frames(led, world.simulation, {.title = "upper"});
     frames.look(WallTime{} + std::chrono::hours(1));
     EXPECT_TRUE(
         has(*frames.frame(0), "\"clock\":\"step\",\"rate\":1,\"days\":false,\"paused\":true"));

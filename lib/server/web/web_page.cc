@@ -8,6 +8,7 @@
 
 #include "base/message.h"
 #include "base/number.h"
+#include "scene/placement_schemas.h"
 #include "server/session.h"
 
 namespace ispace {
@@ -145,18 +146,40 @@ void PageDialogue::finish() {
 
 }  // namespace
 
-WebPage::WebPage(ServerState& state, const std::string& title) {
+namespace {
+
+/// Returns the kinds of things that a room takes at a point, then the models of the catalogue, as
+/// the beginnings of their records.
+std::vector<std::string> additions(const DeviceCatalogue& devices) {
+    std::vector<std::string> out;
+    for (const Schema& schema : sceneSchemas().all()) {
+        const bool is_complete =
+            std::none_of(schema.keys.begin(), schema.keys.end(),
+                         [](const KeySpec& key) { return key.required && key.name != "at"; });
+        if (schema.find("at") != nullptr && is_complete && schema.type != RecordType::Meta)
+            out.push_back(schema.keyword);
+    }
+    for (const Record& device : devices.devices())
+        out.push_back(device.keyword() + " model=" + device.text("model"));
+    return out;
+}
+
+}  // namespace
+
+WebPage::WebPage(ServerState& state, const std::string& title, const WebPageOptions& options) {
+    WebSceneFacts facts{.title = title, .marks = options.marks};
+    if (options.edits && state.mayChange())
+        facts.additions = additions(state.limits().source->devices());
     const ServedRooms* const rooms = state.rooms();
     if (rooms == nullptr) {
-        rooms_.push_back({&state, WebFrames(state.simulation(), state.simulation(), title)});
+        rooms_.push_back({&state, WebFrames(state.simulation(), state.simulation(), facts)});
         return;
     }
     for (std::size_t i = 0; i < rooms->states.size(); ++i) {
         ServerState& one = *rooms->states[i];
-        const std::string& id = rooms->worlds->rooms()[i].id;
-        rooms_.push_back({&one, WebFrames(one.simulation(), state.simulation(),
-                                          std::string(title).append(", ").append(id),
-                                          rooms->worlds->passageOutlines(i))});
+        facts.title = title + ", " + rooms->worlds->rooms()[i].id;
+        facts.passages = rooms->worlds->passageOutlines(i);
+        rooms_.push_back({&one, WebFrames(one.simulation(), state.simulation(), facts)});
     }
 }
 

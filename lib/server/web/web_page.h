@@ -23,7 +23,7 @@ namespace ispace {
 class WebPage final : public WebSite {
   public:
     /// \param title of the page, e.g. base name of ENV
-    WebPage(ServerState& state, const std::string& title);
+    WebPage(ServerState& state, const std::string& title, const WebPageOptions& options);
 
     void settle(const std::string& host, std::uint16_t port) override {
         origin_.emplace(host, port);
