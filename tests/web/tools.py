@@ -116,9 +116,14 @@ def folds(page):
     check(not is_open(), "the log has unfolded")
 
 
-with Run("--clock", "real:3") as run, Page(run.url) as page:
-    sends(run, page)
-    is_refused(page)
-    measures(page)
-    colors_kinds(page)
-    folds(page)
+def main():
+    with Run("--clock", "real:3") as run, Page(run.url) as page:
+        sends(run, page)
+        is_refused(page)
+        measures(page)
+        colors_kinds(page)
+        folds(page)
+
+
+if __name__ == "__main__":
+    main()

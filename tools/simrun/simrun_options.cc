@@ -280,6 +280,10 @@ void SimrunCommand::declareServer() {
                                  ": the page is for browsers of this machine; use 127.0.0.1");
         },
         "show the running world to browsers there; port 0 takes any free one", Enters::Nothing);
+    line_.flag("--web-edit", o.web_edits,
+               "let that page add, move, turn and delete things, sensors and people, and save the "
+               "room",
+               Enters::Nothing);
     declareRos();
     declareMqtt();
     o.devices.declare(line_);
@@ -372,6 +376,10 @@ void SimrunCommand::takeServer() {
     o.limits.shutdown = o.shutdown.value_or(true);
     o.limits.changes = o.changes.value_or(true);
     o.limits.token_first = !o.listen.is_loopback;
+    if (o.web_edits && !o.web) throw UsageError("--web-edit requires --web ADDR:PORT");
+    if (o.web_edits && (!o.limits.changes || !o.replay.empty()))
+        throw UsageError(std::string("--web-edit changes the room of a run, which ") +
+                         (o.replay.empty() ? "--no-changes" : "--replay") + " does not allow");
     if (o.mcap == "-")
         throw UsageError("--mcap writes to a file: standard output has the addresses of the run");
     o.devices.take(line_, o.ros_domain.has_value(), o.limits);

@@ -84,6 +84,7 @@ struct SimrunOptions {
     std::string port_file;  ///< "" without
     Endpoint listen;
     std::optional<Endpoint> web, foxglove, rosbridge;
+    bool web_edits = false;         ///< the page changes the room
     std::optional<int> ros_domain;  ///< of --ros2
     std::string mcap;               ///< "" without
     std::optional<MqttOptions> mqtt;

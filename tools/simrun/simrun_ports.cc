@@ -143,7 +143,7 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
     ServedAddresses out;
     if (options.web)
         out.web = server.serveWeb(*options.web, title,
-                                  {.edits = false, .marks = recordedMarks(replayed)});
+                                  {.edits = options.web_edits, .marks = recordedMarks(replayed)});
     const auto serve = [&](RosLanguage language, const std::optional<Endpoint>& endpoint) {
         return endpoint ? server.serveRos(language, *endpoint, "simrun " + title, rosScenery())
                         : std::string();

@@ -36,6 +36,17 @@ export class Link {
     if (data.startsWith('{')) return this.on.json?.(JSON.parse(data));
     for (const line of data.split('\n')) {
       if (line === '' || line.startsWith('ISPACE ')) continue;
+      if (this.rest?.length < this.lines) {
+        this.rest.push(line);
+        if (this.rest.length === this.lines) this.waiting.shift()?.(this.rest.join('\n'));
+        continue;
+      }
+      if (line.startsWith('OK RECORDS ')) {  // with a line for each of them
+        const {room, placed} = keysOf(line);
+        this.rest = [line];
+        this.lines = 1 + Number(room) + Number(placed);
+        if (this.lines > 1) continue;
+      }
       if (line.startsWith('ERR 401 ')) Link.refused(line);
       if (isAnswer(line)) this.waiting.shift()?.(line);
       else this.on.line?.(line);

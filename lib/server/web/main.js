@@ -12,6 +12,7 @@ import {States} from './states.js';
 import {History} from './history.js';
 import {Building} from './building.js';
 import {Pace} from './pace.js';
+import {Editor} from './edit.js';
 import {Layers} from './layers.js';
 import {MarkStrip} from './marks.js';
 import {Ruler, SendTool, drawArrow} from './tools.js';
@@ -142,6 +143,7 @@ function takeScene(scene) {
   layers.show(movers.sensors, kind => movers.colorOfKind(kind));
   marks.list(scene.marks ?? [], scene.colors);
   states.know(movers.sensors, zoneOf);
+  editor.open(link, scene);
 }
 
 /** The zone in which something of the room is. */
@@ -422,7 +424,38 @@ let tool = null;
 const tools = {
   send: new SendTool(() => selected, (mover, x, y, heading) => driverOf(mover).goTo(x, y, heading)),
   measure: new Ruler(text => say(text)),
+  edit: null,
 };
+const editor = tools.edit = new Editor(part, {idAt: thingAt, poseOf, outlineOf: id => plan.outlineOf(id)}, {
+  tell, say, changed: redraw, take: () => { if (tool !== editor) choose(editor); },
+});
+
+/** The id of the record at a pixel. */
+function thingAt(px, py) {
+  const kFinger = 14;
+  const sensor = movers.sensors.find(({on, pose, size}) => {
+    if (on !== undefined || size) return false;
+    const [x, y] = view.toPage(pose[0], pose[1]);
+    return Math.hypot(px - x, py - y) <= kFinger;
+  });
+  const found = movers.at(view, px, py) ?? sensor ?? movers.actuatorAt(view, px, py);
+  if (found) return found.id;
+  const mat = movers.sensors.find(({pose, size}) => {
+    const [x, y] = view.toWorld(px, py);
+    return size && Math.hypot(x - pose[0], y - pose[1]) <= Math.max(0.15, Math.max(...size) / 2);
+  });
+  return plan.idAt(...view.toWorld(px, py), id => editor.records.has(id) && id !== mat?.id) ?? mat?.id;
+}
+
+/** Where something is now: {x, y, heading}. */
+function poseOf(id) {
+  const mover = movers.byId.get(id), sensor = movers.sensors.find(other => other.id === id);
+  const {at, heading} = editor.records.get(id)?.keys ?? {};
+  if (mover) return mover.x === undefined ? undefined : mover;
+  if (sensor && sensor.on === undefined) return {x: sensor.pose[0], y: sensor.pose[1], heading: sensor.pose[2]};
+  const [x, y] = at?.split(',').map(Number) ?? plan.middleOf(id) ?? [];
+  return x === undefined ? undefined : {x, y, heading: Number(heading ?? 0)};
+}
 
 /** Takes up a tool, or lays down the one that is used. */
 function choose(next) {
@@ -455,6 +488,7 @@ const actions = {
   farther: () => zoomed(1 / 1.3),
   send: () => { if (!part('send').disabled) choose(tools.send); },
   measure: () => choose(tools.measure),
+  edit: () => choose(tools.edit),
 };
 
 function zoomed(factor, ...at) {
@@ -503,6 +537,10 @@ function key(name, down, repeated = false) {
     else select();
     return true;
   }
+  if (name === 'Delete' && tool === editor) {
+    editor.remove();
+    return true;
+  }
   if (name in shortcuts) actions[shortcuts[name]]();
   if (name in jumps) seekBar.move(jumps[name]);
   if (name in leaps) marks.step(leaps[name]);
@@ -510,6 +548,7 @@ function key(name, down, repeated = false) {
 }
 
 window.addEventListener('keydown', event => {
+  if (event.ctrlKey && event.key === 'z' && tool === editor && !event.target.matches?.('input')) editor.undo();
   if (!plan || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.target.matches?.('select, input:not([type=checkbox], [type=range])')) return;  // typed there
   if (event.target.matches?.('#state-list input') && event.key in arrows) return;  // moves that slider
@@ -562,7 +601,7 @@ canvas.addEventListener('pointerdown', event => {
     return;
   }
   drag = {px, py, mover: tool ? undefined : movers.at(view, px, py), moved: false, tool};
-  tool?.press(...view.toWorld(px, py));
+  tool?.press(...view.toWorld(px, py), px, py);
   if (drag.mover && drag.mover !== selected) select(drag.mover.id);
 });
 

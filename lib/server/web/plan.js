@@ -215,6 +215,13 @@ export class Plan {
     return '';
   }
 
+  /** What something is drawn by. */
+  outlineOf(wanted) {
+    for (const {groups} of this.layers)
+      for (const {id, shapes} of groups) if (id === wanted) return shapes.map(({path}) => path);
+    return [];
+  }
+
   /** The middle of something, if the plan has it. */
   middleOf(wanted) {
     for (const {groups} of this.layers)

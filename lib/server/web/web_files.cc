@@ -29,6 +29,7 @@ ISPACE_WEB_FILE(kWebBuilding, "building.js");
 ISPACE_WEB_FILE(kWebPace, "pace.js");
 ISPACE_WEB_FILE(kWebHistory, "history.js");
 ISPACE_WEB_FILE(kWebClock, "clock.js");
+ISPACE_WEB_FILE(kWebEdit, "edit.js");
 ISPACE_WEB_FILE(kWebLayers, "layers.js");
 ISPACE_WEB_FILE(kWebMarks, "marks.js");
 ISPACE_WEB_FILE(kWebTools, "tools.js");
@@ -40,7 +41,7 @@ const WebFile* webFile(std::string_view path) {
         return std::string_view(begin, static_cast<std::size_t>(end - begin));
     };
     constexpr std::string_view kScript = "text/javascript; charset=utf-8";
-    static const std::array<WebFile, 20> files = {{
+    static const std::array<WebFile, 21> files = {{
         {"/", "text/html; charset=utf-8", between(kWebPage, kWebPageEnd)},
         {"/style.css", "text/css; charset=utf-8", between(kWebStyle, kWebStyleEnd)},
         {"/icon.svg", "image/svg+xml", between(kWebIcon, kWebIconEnd)},
@@ -58,6 +59,7 @@ const WebFile* webFile(std::string_view path) {
         {"/history.js", kScript, between(kWebHistory, kWebHistoryEnd)},
         {"/pace.js", kScript, between(kWebPace, kWebPaceEnd)},
         {"/clock.js", kScript, between(kWebClock, kWebClockEnd)},
+        {"/edit.js", kScript, between(kWebEdit, kWebEditEnd)},
         {"/layers.js", kScript, between(kWebLayers, kWebLayersEnd)},
         {"/marks.js", kScript, between(kWebMarks, kWebMarksEnd)},
         {"/tools.js", kScript, between(kWebTools, kWebToolsEnd)},
