@@ -75,6 +75,8 @@ struct RosScenery {
 struct WebPageOptions {
     bool edits = false;               ///< the page offers to change the room
     std::vector<RunMark> marks = {};  ///< on the slider of a replay
+    /// Writes the mesh of a room as GLB, in the background; null: the page has no view in 3-D.
+    std::function<std::string(const Scene& scene)> mesh = {};
 };
 
 /// Runs a simulation and serves it to many clients. One thread does both in turn, so the world does

@@ -156,8 +156,8 @@ TEST(Session, Help) {
     EXPECT_EQ(talk.ask(talk.client("LASER l1"), "HELP"),
               "OK HELP SCAN | STREAM [every=k] | STOP | BINARY on|off | HELP | QUIT\n");
     EXPECT_EQ(talk.ask(talk.client("WORLD"), "HELP"),
-              "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | STATE [id] | EVENTS "
-              "[kinds|off] | MARK "
+              "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | STATE [id] | RECORDS "
+              "[room] | EVENTS [kinds|off] | MARK "
               "text | SHUTDOWN | HELP | QUIT\n");
 }
 

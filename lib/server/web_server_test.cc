@@ -168,6 +168,7 @@ TEST(WebSocket, ShowsNothingWithoutTheToken) {
     Browser watcher(server);
     watcher.take("");
     EXPECT_TRUE(watcher.ask("FRAME").starts_with("ERR 401 FRAME needs the token"));
+    EXPECT_TRUE(watcher.ask("ROOM").starts_with("ERR 401 ROOM needs the token"));
     EXPECT_EQ(watcher.ask("TOKEN s3cret"), "OK TOKEN\n");
     EXPECT_TRUE(watcher.ask("FRAME").starts_with("{\"schema\""));
 }

@@ -7,8 +7,8 @@ from running import check, eventually, start_browser
 
 
 class Page:
-    def __init__(self, url, width=1280, height=800, touch=False):
-        self.browser = start_browser(width, height, touch=touch)
+    def __init__(self, url, width=1280, height=800, touch=False, options=()):
+        self.browser = start_browser(width, height, *options, touch=touch)
         self.browser.get(url)
         eventually("a first frame", lambda: self.text("time") != "–")
 

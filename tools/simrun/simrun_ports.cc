@@ -142,8 +142,9 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
                            const std::vector<std::string>& replayed) {
     ServedAddresses out;
     if (options.web)
-        out.web = server.serveWeb(*options.web, title,
-                                  {.edits = options.web_edits, .marks = recordedMarks(replayed)});
+        out.web = server.serveWeb(
+            *options.web, title,
+            {.edits = options.web_edits, .marks = recordedMarks(replayed), .mesh = meshOf});
     const auto serve = [&](RosLanguage language, const std::optional<Endpoint>& endpoint) {
         return endpoint ? server.serveRos(language, *endpoint, "simrun " + title, rosScenery())
                         : std::string();

@@ -58,7 +58,7 @@ export class Link {
     const all = new Uint8Array(data), end = all.indexOf(10);
     if (end < 0) return;
     const line = new TextDecoder().decode(all.subarray(0, end));
-    this.waiting.shift()?.(line);
+    if (isAnswer(line)) this.waiting.shift()?.(line);
     this.on.bytes?.(line, all.subarray(end + 1));
   }
 

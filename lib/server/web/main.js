@@ -14,6 +14,7 @@ import {Building} from './building.js';
 import {Pace} from './pace.js';
 import {Editor} from './edit.js';
 import {Layers} from './layers.js';
+import {Space} from './space.js';
 import {MarkStrip} from './marks.js';
 import {Ruler, SendTool, drawArrow} from './tools.js';
 import {dayText, timeText} from './clock.js';
@@ -28,6 +29,7 @@ const states = new States(part, tell, history, redraw);
 const seekBar = new SeekBar(part('seek'), tell);
 const marks = new MarkStrip(part('marks'), seekBar, tell);
 const layers = new Layers(part('kinds'), redraw);
+const space = new Space(part('space'), {ask: () => link.send('ROOM'), changed: redraw, fail: text => tell(text, true)});
 const building = new Building(moved);
 const pace = new Pace();
 const buttons = new Map();  // of the movers in the list, by id
@@ -60,6 +62,7 @@ function connect() {
       link.send('FRAME');
       asked = true;
     },
+    bytes: (line, bytes) => { if (line.startsWith('ROOM ')) space.take(bytes); },
     json: object => object.plan ? takeScene(object) : takeFrame(object),
     line: line => {
       states.line(line);
@@ -138,6 +141,7 @@ function takeScene(scene) {
   for (const [id, driver] of drivers) driver.mover = movers.byId.get(id) ?? driver.mover;
   part('title').textContent = document.title = scene.title || 'simrun';
   fitUntouched();
+  space.forget(plan.box);
   listMovers();
   cameras.list(movers.sensors);
   layers.show(movers.sensors, kind => movers.colorOfKind(kind));
@@ -213,6 +217,14 @@ function draw() {
   view.measure();
   if (following && selected) [view.x, view.y] = [selected.x, selected.y];
   const shown = name => part(name).checked;
+  if (space.isOn) space.draw(movers, selected, following);
+  else drawMap(shown);
+  if (asked) return;
+  asked = true;
+  link.send('FRAME');
+}
+
+function drawMap(shown) {
   plan.draw(context, view, shown('names'));
   if (frame) {
     movers.draw(context, view, {
@@ -226,9 +238,6 @@ function draw() {
     if (drag?.x !== undefined && drag.moved) drawGoal(drag.mover, drag, [[drag.x, drag.y]], '#d55e00');
   }
   tool?.draw(context, view);
-  if (asked) return;
-  asked = true;
-  link.send('FRAME');
 }
 
 /** A goal, its heading if it has one, and the way there. */
@@ -459,6 +468,7 @@ function poseOf(id) {
 
 /** Takes up a tool, or lays down the one that is used. */
 function choose(next) {
+  if (space.isOn && next) actions.solid();  // they are about the plan
   tool?.end();
   tool = next === tool ? null : next;
   for (const [id, one] of Object.entries(tools)) part(id).setAttribute('aria-pressed', one === tool);
@@ -483,9 +493,13 @@ const actions = {
   run: () => { if (frame && frame.clock !== 'step') request(frame.paused ? 'RESUME' : 'PAUSE'); },
   step: () => { if (frame?.paused) request('STEP'); },
   follow: () => follow(!following),
-  fit: () => { follow(false); untouched = true; view.fit(plan.box); redraw(); },
-  closer: () => zoomed(1.3),
-  farther: () => zoomed(1 / 1.3),
+  fit: () => { follow(false); untouched = true; view.fit(plan.box); space.fit(); },
+  closer: () => space.isOn ? space.zoom(1.3) : zoomed(1.3),
+  farther: () => space.isOn ? space.zoom(1 / 1.3) : zoomed(1 / 1.3),
+  solid: () => {
+    if (tool) choose(null);
+    part('solid').setAttribute('aria-pressed', space.show(!space.isOn));
+  },
   send: () => { if (!part('send').disabled) choose(tools.send); },
   measure: () => choose(tools.measure),
   edit: () => choose(tools.edit),
@@ -498,6 +512,7 @@ function zoomed(factor, ...at) {
 }
 
 function panned(dx, dy) {
+  if (space.isOn) return space.turn(dx / 200, dy / 200);
   untouched = false;
   view.pan(dx, dy);
   redraw();
@@ -506,7 +521,7 @@ function panned(dx, dy) {
 for (const [id, act] of Object.entries(actions)) part(id).onclick = () => plan && act();
 for (const id of ['scans', 'trails', 'names']) part(id).onchange = redraw;
 
-const shortcuts = {' ': 'run', '.': 'step', f: 'follow', g: 'send', m: 'measure', 0: 'fit', '+': 'closer', '=': 'closer', '-': 'farther'};
+const shortcuts = {' ': 'run', '.': 'step', f: 'follow', g: 'send', m: 'measure', v: 'solid', 0: 'fit', '+': 'closer', '=': 'closer', '-': 'farther'};
 /** Of keys that seek in a record, how many seconds. */
 const jumps = {'[': -1, ']': 1, '{': -60, '}': 60};
 /** Of keys that go to marks in a record, the direction. */

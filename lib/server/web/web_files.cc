@@ -32,6 +32,7 @@ ISPACE_WEB_FILE(kWebClock, "clock.js");
 ISPACE_WEB_FILE(kWebEdit, "edit.js");
 ISPACE_WEB_FILE(kWebLayers, "layers.js");
 ISPACE_WEB_FILE(kWebMarks, "marks.js");
+ISPACE_WEB_FILE(kWebSpace, "space.js");
 ISPACE_WEB_FILE(kWebTools, "tools.js");
 
 namespace ispace {
@@ -41,7 +42,7 @@ const WebFile* webFile(std::string_view path) {
         return std::string_view(begin, static_cast<std::size_t>(end - begin));
     };
     constexpr std::string_view kScript = "text/javascript; charset=utf-8";
-    static const std::array<WebFile, 21> files = {{
+    static const std::array<WebFile, 22> files = {{
         {"/", "text/html; charset=utf-8", between(kWebPage, kWebPageEnd)},
         {"/style.css", "text/css; charset=utf-8", between(kWebStyle, kWebStyleEnd)},
         {"/icon.svg", "image/svg+xml", between(kWebIcon, kWebIconEnd)},
@@ -62,6 +63,7 @@ const WebFile* webFile(std::string_view path) {
         {"/edit.js", kScript, between(kWebEdit, kWebEditEnd)},
         {"/layers.js", kScript, between(kWebLayers, kWebLayersEnd)},
         {"/marks.js", kScript, between(kWebMarks, kWebMarksEnd)},
+        {"/space.js", kScript, between(kWebSpace, kWebSpaceEnd)},
         {"/tools.js", kScript, between(kWebTools, kWebToolsEnd)},
     }};
     const auto* const found = std::find_if(files.begin(), files.end(),

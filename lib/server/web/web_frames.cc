@@ -6,6 +6,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <string_view>
 #include <utility>
 
@@ -274,6 +275,25 @@ WebFrames::Text WebFrames::scene() {
         scene_ = std::make_shared<const std::string>(
             webScene(simulation_->world().scene(), scene_version_, facts_));
     return scene_;
+}
+
+void WebFrames::askMesh(ServerState& state) {
+    if (std::exchange(mesh_->is_underway, true)) return;
+    const auto text = std::make_shared<std::string>("ROOM scene=");
+    append(*text, sceneVersion());
+    *text += '\n';
+    state.runInBackground({[text, write = facts_.mesh, scene = simulation_->world().sharedScene()] {
+                               if (write) *text += write(*scene);
+                           },
+                           [text, mesh = std::weak_ptr(mesh_),
+                            version = sceneVersion()](const std::exception_ptr& /*failure*/) {
+                               // Without a mesh, as of a room that is too large, the line is alone.
+                               const auto into = mesh.lock();
+                               if (!into) return;
+                               into->text = text;
+                               into->version = version;
+                               into->is_underway = false;
+                           }});
 }
 
 std::string WebFrames::stateText() const {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "scene/run/run_marks.h"
 #include "scene/scene.h"
+#include "server/server_state.h"
 #include "sim/joined_worlds.h"
 #include "sim/simulation.h"
 
@@ -20,6 +22,8 @@ struct WebSceneFacts {
     std::vector<RunMark> marks = {};            ///< of a replay
     /// Beginnings of records that the page offers to add; empty: it changes no rooms.
     std::vector<std::string> additions = {};
+    /// Writes the mesh of a room as GLB; null: there is none.
+    std::function<std::string(const Scene& scene)> mesh = {};
 };
 
 /// Writes the static data of a scene for browsers, see share/schemas/web-scene.json: the plan (see
@@ -55,8 +59,20 @@ class WebFrames {
     [[nodiscard]] std::int64_t sceneVersion() const { return simulation_->world().changes(); }
     /// Returns webScene() of that version.
     Text scene();
+    /// Begins to compute the mesh of that version in the background, unless a mesh is under way.
+    /// \param state of a session of the run
+    void askMesh(ServerState& state);
+    /// Returns the newest mesh behind a line `ROOM scene=N`; null while it is computed.
+    [[nodiscard]] Text mesh() const {
+        return mesh_->version == sceneVersion() ? mesh_->text : nullptr;
+    }
 
   private:
+    struct Mesh {
+        Text text = nullptr;
+        std::int64_t version = -1;  // of the scene
+        bool is_underway = false;
+    };
     [[nodiscard]] std::string stateText() const;
     [[nodiscard]] std::string withReadings(bool all);
     [[nodiscard]] bool isNew(std::size_t sensor) const;
@@ -72,6 +88,7 @@ class WebFrames {
     Text changes_, whole_;                    // text of the newest frame, built on request
     Text scene_;
     std::int64_t scene_version_ = -1;
+    std::shared_ptr<Mesh> mesh_ = std::make_shared<Mesh>();  // shared with jobs in the background
 };
 
 }  // namespace ispace

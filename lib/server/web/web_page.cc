@@ -82,7 +82,7 @@ class PageDialogue final : public WebDialogue {
     std::deque<std::string> held_;    // unanswered requests
     std::string out_;                 // unsent replies
     std::int64_t known_frame_ = 0, known_scene_ = -1;
-    bool wants_frame_ = false;
+    bool wants_frame_ = false, wants_room_ = false;
 };
 
 void PageDialogue::receive(std::string_view message, bool /*is_text*/) {
@@ -90,12 +90,15 @@ void PageDialogue::receive(std::string_view message, bool /*is_text*/) {
     while (!message.empty()) {
         const std::string_view line = message.substr(0, message.find('\n'));
         message.remove_prefix(std::min(message.size(), line.size() + 1));
-        if (line != "FRAME")
+        if (line != "FRAME" && line != "ROOM") {
             held_.emplace_back(line);
-        else if (session_->mayLook())
-            wants_frame_ = true;
-        else
-            out_ += "ERR 401 FRAME needs the token of this run: TOKEN x comes before it\n";
+        } else if (session_->mayLook()) {
+            (line == "FRAME" ? wants_frame_ : wants_room_) = true;
+        } else {
+            out_.append("ERR 401 ")
+                .append(line)
+                .append(" needs the token of this run: TOKEN x comes before it\n");
+        }
     }
     answerHeld();
 }
@@ -113,7 +116,7 @@ std::optional<WebMessage> PageDialogue::next() {
     answerHeld();
     std::shared_ptr<const std::string> bytes = nextBytes();
     if (!bytes) return std::nullopt;
-    const bool is_text = isText(*bytes);
+    const bool is_text = !bytes->starts_with("ROOM ") && isText(*bytes);
     return WebMessage{.body = std::move(bytes), .is_text = is_text};
 }
 
@@ -121,6 +124,12 @@ std::shared_ptr<const std::string> PageDialogue::nextBytes() {
     if (!out_.empty()) return std::make_shared<const std::string>(std::exchange(out_, {}));
     if (session_)
         if (auto scan = session_->takeScan()) return scan;
+    if (wants_room_) {
+        auto room = frames_->mesh();
+        wants_room_ = room == nullptr;
+        if (room) return room;
+        frames_->askMesh(*state_);
+    }
     if (!wants_frame_ || frames_->number() == known_frame_) return nullptr;
     if (std::exchange(known_scene_, frames_->sceneVersion()) != frames_->sceneVersion()) {
         known_frame_ = 0;
@@ -167,7 +176,7 @@ std::vector<std::string> additions(const DeviceCatalogue& devices) {
 }  // namespace
 
 WebPage::WebPage(ServerState& state, const std::string& title, const WebPageOptions& options) {
-    WebSceneFacts facts{.title = title, .marks = options.marks};
+    WebSceneFacts facts{.title = title, .marks = options.marks, .mesh = options.mesh};
     if (options.edits && state.mayChange())
         facts.additions = additions(state.limits().source->devices());
     const ServedRooms* const rooms = state.rooms();

@@ -18,8 +18,9 @@ namespace ispace {
 ///
 /// Each message there holds one or more requests of the Simulator TCP Protocol, answered by a
 /// Session, and one addition: FRAME is answered by the next frame, a JSON object, as soon as it is
-/// newer than the last one; a new scene is sent before it. In a run with several worlds, /ws/N is
-/// about that of room N.
+/// newer than the last one; a new scene is sent before it. ROOM is answered by the mesh of the
+/// scene, see WebPageOptions, behind a line, once it is computed. In a run with several worlds,
+/// /ws/N is about that of room N.
 class WebPage final : public WebSite {
   public:
     /// \param title of the page, e.g. base name of ENV
