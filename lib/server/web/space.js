@@ -14,6 +14,7 @@ void main() {
 }`;
 const kFragment = 'precision mediump float; varying vec3 lit; void main() { gl_FragColor = vec4(lit, 1.0); }';
 const kIdentity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+const kView = [-0.6, 0.9, 1];  // radians from the south and above the floor, and how far, 1 for all of the room
 const kOfVertices = [-1, -1, -1];  // as colour of all: each vertex has its own
 
 // Matrices are by columns, as WebGL has them.
@@ -92,7 +93,8 @@ function rgb(css) { return [1, 3, 5].map(i => parseInt(css.slice(i, i + 2), 16) 
 export class Space {
   /** canvas: lies over the map; ask(): fetches the mesh; changed(): is to be drawn anew; fail(text) */
   constructor(canvas, {ask, changed, fail}) {
-    Object.assign(this, {canvas, ask, changed, fail, isOn: false, yaw: -0.6, pitch: 0.9, away: 1});
+    Object.assign(this, {canvas, ask, changed, fail, isOn: false});
+    [this.yaw, this.pitch, this.away] = kView;
     const pointers = new Map();
     canvas.addEventListener('pointerdown', event => {
       canvas.setPointerCapture(event.pointerId);
@@ -210,7 +212,7 @@ export class Space {
 
   fit() {
     this.at = undefined;
-    this.away = 1;
+    [this.yaw, this.pitch, this.away] = kView;
     this.changed();
   }
 
