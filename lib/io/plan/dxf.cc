@@ -253,9 +253,14 @@ class Expander {
             shapes_.push_back(std::move(shape_));
             return;
         }
-        if (const auto* polyline = std::get_if<DxfPolyline>(&entity.shape))
+        if (const auto* polyline = std::get_if<DxfPolyline>(&entity.shape)) {
             addPolyline(entity, *polyline, frame);
-        else if (const auto* arc = std::get_if<DxfArc>(&entity.shape))
+            // Swings of doors are dashed, too.
+            shape_.is_dashed =
+                entity.is_dashed &&
+                std::none_of(polyline->vertices.begin(), polyline->vertices.end(),
+                             [](const auto& vertex) { return std::abs(vertex.bulge) > kMinBulge; });
+        } else if (const auto* arc = std::get_if<DxfArc>(&entity.shape))
             addArc(entity, *arc, frame);
         else if (const auto* ellipse = std::get_if<DxfEllipse>(&entity.shape))
             addEllipse(entity, *ellipse, frame);

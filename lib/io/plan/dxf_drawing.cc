@@ -141,6 +141,7 @@ struct Entity {
     const Kind* kind = nullptr;  // null: no entity, or a skipped one
     int line = 0;
     std::string_view layer, application;  // the latter of extended data
+    std::string_view line_type;
     std::optional<std::string_view> name;
     std::vector<std::pair<int, double>> numbers;  // by code; of two the later counts
     std::vector<Vertex> vertices;
@@ -152,7 +153,7 @@ struct Entity {
     void begin(const Kind* entity_kind, int entity_line) {
         kind = entity_kind;
         line = entity_line;
-        layer = application = {};
+        layer = application = line_type = {};
         name = {};
         numbers.clear();
         vertices.clear();
@@ -503,8 +504,8 @@ DxfShape insertOf(const Entity& entity) {
                      entity.number(45)};
 }
 
-const std::array<Kind, 16>& kinds() {
-    static const std::array<Kind, 16> all{{
+const std::array<Kind, 17>& kinds() {
+    static const std::array<Kind, 17> all{{
         {"LINE",
          {10, 20, 11, 21},
          {},
@@ -537,6 +538,7 @@ const std::array<Kind, 16>& kinds() {
         {"VERTEX", {}, {70, 71, 72, 73, 74}},
         {"BLOCK", {2}, {10, 20, 70}},
         {"LAYER", {2}, {62, 70, 290}},
+        {"LTYPE", {}, {2, 73}},
     }};
     return all;
 }
@@ -607,9 +609,10 @@ class DxfReader {
         const bool drawn = section_ == "ENTITIES" || (section_ == "BLOCKS" && block_ != nullptr);
         const auto kind = std::find_if(kinds().begin(), kinds().end(),
                                        [type](const Kind& k) { return k.name == type; });
-        const bool wanted = kind != kinds().end() && (type == "LAYER"   ? section_ == "TABLES"
-                                                      : type == "BLOCK" ? section_ == "BLOCKS"
-                                                                        : drawn);
+        const bool wanted =
+            kind != kinds().end() && (type == "LAYER" || type == "LTYPE" ? section_ == "TABLES"
+                                      : type == "BLOCK"                  ? section_ == "BLOCKS"
+                                                                         : drawn);
         entity_.begin(wanted ? &*kind : nullptr, group.line);
         const bool part_of_other = type == "SEQEND" || type == "ATTRIB" || type == "ENDBLK";
         if (!drawn || wanted || part_of_other) return;
@@ -686,6 +689,8 @@ class DxfReader {
         const bool is_sequence = kind.shape == sequenceOf;
         if (code == 8) {
             entity_.layer = text(group);
+        } else if (code == 6) {
+            entity_.line_type = group.value;
         } else if (code == 1001) {
             entity_.application = group.value;
         } else if ((is_sequence && code != 71 && code >= 10 && code < 100 &&
@@ -777,6 +782,8 @@ class DxfReader {
             addVertex();
         else if (kind.name == "BLOCK")
             beginBlock();
+        else if (kind.name == "LTYPE")
+            dashed_types_[lowerCased(entity_.name.value_or(""))] = entity_.number(73) > 0;
         else
             addLayer();
         entity_.kind = nullptr;
@@ -785,6 +792,7 @@ class DxfReader {
     void addLayer() {
         const std::string name = text_.decoded(*entity_.name);
         drawing_.layers.insert(name);
+        layer_types_[name] = lowerCased(entity_.line_type);
         const bool is_plotted = entity_.integer(290, 1) != 0 && lowerCased(name) != "defpoints";
         if (entity_.number(62) < 0 || (entity_.flags() & kFrozen) != 0 || !is_plotted)
             drawing_.hidden_layers.insert(name);
@@ -829,8 +837,25 @@ class DxfReader {
         in_polyline_ = kind.name == "POLYLINE";
         const bool is_3d = in_polyline_ && (entity_.flags() & kPolyline3d) != 0;
         const bool mirrored = kind.upright_only && !is_3d && *side() < 0;
-        entities().push_back(
-            {std::move(shape), text_.decoded(entity_.layer), mirrored, entity_.line});
+        const std::string layer = text_.decoded(entity_.layer);
+        entities().push_back({std::move(shape), layer, mirrored, entity_.line, isDashed(layer)});
+    }
+
+    /// Returns true if the type of the entity's line, or that of its layer, has gaps.
+    [[nodiscard]] bool isDashed(const std::string& layer) const {
+        std::string type = lowerCased(entity_.line_type);
+        if (type.empty() || type == "bylayer" || type == "byblock") {
+            const auto found = layer_types_.find(layer);
+            if (found == layer_types_.end()) return false;
+            type = found->second;
+        }
+        if (const auto known = dashed_types_.find(type); known != dashed_types_.end())
+            return known->second;
+        // Of a file without a table.
+        constexpr std::array<std::string_view, 9> kDashed{
+            "center", "dash", "hidden", "phantom", "dot", "divide", "border", "acad_iso", "jis_"};
+        return std::any_of(kDashed.begin(), kDashed.end(),
+                           [&](std::string_view name) { return type.starts_with(name); });
     }
 
     /// Begins a thing that lies where its points and the VERTEXes behind it do, seen from above.
@@ -958,6 +983,8 @@ class DxfReader {
     bool in_polyline_ = false;   // the last entity is a POLYLINE that takes the VERTEXes behind it
     DxfBlock* block_ = nullptr;  // between BLOCK and ENDBLK
     Entity entity_;
+    std::map<std::string, std::string> layer_types_;  // types of lines, in lower case
+    std::map<std::string, bool> dashed_types_;
     std::size_t hatch_vertices_ = 4'000'000;  // that boundaries of hatches may still have
 };
 

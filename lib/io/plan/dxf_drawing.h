@@ -66,8 +66,9 @@ using DxfShape = std::variant<DxfPolyline, DxfArc, DxfEllipse, DxfSpline, DxfIns
 struct DxfEntity {
     DxfShape shape;
     std::string layer;
-    bool mirrored = false;  ///< seen from below: x is mirrored
-    int line = 0;           ///< of the file
+    bool mirrored = false;   ///< seen from below: x is mirrored
+    int line = 0;            ///< of the file
+    bool is_dashed = false;  ///< its type of line has gaps
 };
 
 struct DxfBlock {

@@ -242,6 +242,47 @@ TEST(Dxf, FramesOfSheetsWarn) {
     EXPECT_EQ(warningsOf(frame + line("W", -3, 2, 4, 2) + line("W", 4, 2, 4, 8)), "");
 }
 
+TEST(Dxf, ALineAroundAHouseIsReported) {
+    const auto warnings = [](const std::string& entities) {
+        return warningsOf(read(drawing(entities, "", 6)));
+    };
+    // A house of thick walls, whose front door is a gap that its leaf closes.
+    const std::string house = polyline("0", true,
+                                       {{3, 0},
+                                        {8, 0},
+                                        {8, 6},
+                                        {0, 6},
+                                        {0, 0},
+                                        {2, 0},
+                                        {2, 0.3},
+                                        {0.3, 0.3},
+                                        {0.3, 5.7},
+                                        {7.7, 5.7},
+                                        {7.7, 0.3},
+                                        {3, 0.3}}) +
+                              line("0", 2, 0, 2, 1) + arc("0", 2, 0, 1, 0, 90);
+    // The edge of its roof: the room within is larger than the ground between.
+    EXPECT_NE(warnings(house + rectangle("0", -0.5, -0.5, 8.5, 6.5))
+                  .find("the room is the rectangle around the whole drawing"),
+              std::string::npos);
+    // A plot that is no rectangle.
+    const std::string plot = polyline("0", true, {{-20, -10}, {30, -14}, {24, 20}, {-8, 26}});
+    EXPECT_NE(warnings(house + plot).find("up to a single line: if that bounds a plot"),
+              std::string::npos)
+        << warnings(house + plot);
+    EXPECT_EQ(warnings(house), "");
+}
+
+TEST(Dxf, TilesAreReported) {
+    std::string tiles = rectangle("0", 0, 0, 8, 6) + line("0", 4, 0, 4, 6);
+    for (int i = 1; i < 15; ++i) tiles += line("0", 4, 0.4 * i, 8, 0.4 * i);
+    for (int i = 1; i < 10; ++i) tiles += line("0", 4 + 0.4 * i, 0, 4 + 0.4 * i, 6);
+    EXPECT_NE(warningsOf(read(drawing(tiles, "", 6)))
+                  .find("150 faces of 24.0 m2 in sum are too small to be rooms"),
+              std::string::npos)
+        << warningsOf(read(drawing(tiles, "", 6)));
+}
+
 TEST(Dxf, WallsByNameOnAPlotAreTaken) {
     const std::string plot = rectangle("0", -5, -5, 20, 20);
     for (const char* layer : {"墙", "外墙", "벽", "СТЕНЫ", "جدران", "קירות", "Cloisons"})

@@ -109,6 +109,47 @@ TEST(DxfWalls, HatchesAsNarrowAsWalls) {
     EXPECT_NEAR(areaOf(drawing(kRoom + edges, "", 6)), 4.8 * 6, 1e-9);
 }
 
+TEST(DxfWalls, DashedLinesCloseNoRoom) {
+    const std::string types =
+        groups("0 LTYPE 2 Strich 73 2 40 0.75 49 0.5 49 -0.25 0 LTYPE 2 CONTINUOUS 73 0 40 0");
+    const auto across = [](const char* layer, const char* type) {
+        return groups("0 LINE 8 " + std::string(layer) + " 6 " + type + " 10 3 20 0 11 3 21 6");
+    };
+    const auto area_with = [&](const std::string& line, const std::string& tables) {
+        return areaOf(drawing(kRoom + line, "", 6, tables));
+    };
+    EXPECT_NEAR(area_with(across("0", "STRICH"), types), 48, 1e-9);
+    EXPECT_NEAR(area_with(across("0", "CENTER2"), ""), 48, 1e-9);  // a table is missing
+    EXPECT_NEAR(area_with(across("0", "Continuous"), types), 30, 1e-9);
+    EXPECT_NEAR(area_with(across("0", "Unknown"), types), 30, 1e-9);
+    // Of the layer, unless the line has a type itself.
+    const std::string layers = types + groups("0 LAYER 2 0 70 0 62 7 6 Strich");
+    EXPECT_NEAR(area_with(line("0", 3, 0, 3, 6), layers), 48, 1e-9);
+    EXPECT_NEAR(area_with(across("0", "BYLAYER"), layers), 48, 1e-9);
+    EXPECT_NEAR(area_with(across("0", "CONTINUOUS"), layers), 30, 1e-9);
+    // Walls by name, and layers that an option names, have dashed walls.
+    EXPECT_NEAR(area_with(across("A-WALL", "STRICH"), types), 30, 1e-9);
+    ImportOptions all;
+    all.wall_layers = {"*"};
+    EXPECT_NEAR(areaOf(drawing(kRoom + across("0", "STRICH"), "", 6, types), all), 30, 1e-9);
+    // So has a drawing that has no other lines.
+    const std::string room =
+        groups("0 LWPOLYLINE 8 0 6 STRICH 90 4 70 1 10 0 20 0 10 8 20 0 10 8 20 6 10 0 20 6");
+    EXPECT_NEAR(areaOf(drawing(room, "", 6, types)), 48, 1e-9);
+}
+
+// A door as leaf, swing and both thresholds between two rooms.
+TEST(DxfWalls, DoorsOpenBothThresholds) {
+    const std::string wall = rectangle("0", 4, 0, 4.2, 2) + rectangle("0", 4, 2.9, 4.2, 6);
+    const std::string door = line("0", 4, 2, 3.1, 2) + arc("0", 4, 2, 0.9, 90, 180);
+    const std::string thresholds = line("0", 4, 2, 4, 2.9) + line("0", 4.2, 2, 4.2, 2.9);
+    EXPECT_NEAR(areaOf(drawing(kRoom + wall + door + thresholds, "", 6)), 48 - 0.2 * (6 - 0.9),
+                1e-3);
+    EXPECT_NEAR(areaOf(drawing(kRoom + wall + door, "", 6)), 48 - 0.2 * (6 - 0.9), 1e-3);
+    // Without a door they close the room.
+    EXPECT_LT(areaOf(drawing(kRoom + wall + thresholds, "", 6)), 25);
+}
+
 TEST(DxfWalls, ColouredHatchesWiderThanWallsAreReported) {
     const auto fill = [](double x0, double y0, double x1, double y1) {
         const std::string a = formatDouble(x0), b = formatDouble(y0), c = formatDouble(x1),

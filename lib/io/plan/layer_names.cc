@@ -30,11 +30,11 @@ constexpr auto kWallWords = std::to_array<std::string_view>(
      "tabiqueria", "tabiquería", "alvenaria", "tramezzi", "tramezzo", "muratura",    "murature",
      "zdivo",      "příčka",     "příčky",    "pricky",   "ziduri",   "falazat",     "válaszfal",
      "horma",      "hormak",     "veggur",    "veggir",   "sein",     "seinad",      "siena",
-     "sienas",     "sienos",     "dinding",   "tembok",   "tường",    "ukuta",       "جدار",
-     "جدران",      "حائط",       "حوائط",     "الجدران",  "الحوائط",  "دیوار",       "دیوارها",
-     "קיר",        "קירות",      "दीवार",     "दीवारें",    "দেয়াল",    "சுவர்",        "ผนัง",
-     "กำแพง",      "壁",         "間仕切",    "間仕切り", "隔断",     "벽",          "벽체",
-     "가벽"});
+     "sienas",     "sienos",     "dinding",   "tembok",   "tường",    "ukuta",       "tuong",
+     "جدار",       "جدران",      "حائط",      "حوائط",    "الجدران",  "الحوائط",     "دیوار",
+     "دیوارها",    "קיר",        "קירות",     "दीवार",    "दीवारें",    "দেয়াল",       "சுவர்",
+     "ผนัง",        "กำแพง",      "壁",        "間仕切",   "間仕切り", "隔断",        "벽",
+     "벽체",       "가벽"});
 /// Word endings, as in Innenwand and CURTAINWALL.
 constexpr auto kWallEnds = std::to_array<std::string_view>(
     {"wall", "walls", "wand", "wände", "waende", "mauer", "vägg", "väggar", "vegg", "vegger", "væg",
@@ -314,57 +314,61 @@ constexpr auto kNoWallStems = std::to_array<std::string_view>({"furnit",
                                                                "درج",
                                                                "סניטר",
                                                                "sanit",
+                                                               "inricht",
+                                                               "फर्नीचर",
+                                                               "फ़र्नीचर",
                                                                "hachag",
                                                                "hachés"});
 /// The same as whole words, which begin others.
 constexpr auto kNoWallWords = std::to_array<std::string_view>(
-    {"eqpm",        "hilfslinien", "retini",   "retino",  "stramien",  "opisy",  "texty",
-     "skraffering", "akselit",     "yazı",     "通り芯",  "중심선",    "設備",   "furn",
-     "furniture",   "equip",       "appl",     "muebles", "mueble",    "arredi", "arredo",
-     "arredamento", "móveis",      "moveis",   "mobili",  "meble",     "dim",    "dims",
-     "dimen",       "cote",        "cotes",    "cota",    "quote",     "maße",   "mått",
-     "mål",         "mitat",       "kóty",     "koty",    "kote",      "kota",   "méret",
-     "meret",       "text",        "texts",    "texte",   "textes",    "testo",  "anno",
-     "note",        "notes",       "tag",      "tags",    "iden",      "txt",    "tekste",
-     "patt",        "pattern",     "trama",    "mønster", "schraf",    "axis",   "axes",
-     "axe",         "asse",        "assi",     "eje",     "ejes",      "eixo",   "akse",
-     "akser",       "osi",         "aks",      "оси",     "ось",       "осі",    "grid",
-     "grids",       "raster",      "achse",    "achsen",  "elec",      "lite",   "light",
-     "lights",      "licht",       "luce",     "luces",   "luci",      "fixt",   "pipe",
-     "pipes",       "piping",      "vvs",      "sani",    "wc",        "flor",   "clng",
-     "ovhd",        "strs",        "evtr",     "area",    "areas",     "comm",   "powr",
-     "sanr",        "levl",        "detl",     "sect",    "ttlb",      "bord",   "nplt",
-     "vprt",        "roof",        "fire",     "frame",   "frames",    "border", "borders",
-     "sheet",       "title",       "titles",   "rahmen",  "cadre",     "marco",  "kader",
-     "ramka",       "ramme",       "kehys",    "keret",   "cartouche", "stairs", "steps",
-     "trap",        "trappen",     "trappa",   "trappe",  "scale",     "schody", "portaat",
-     "case",        "casework",    "millwork", "tree",    "trees",     "plants", "marker",
-     "markers",     "symbol",      "symbols",  "legend"});
+    {"mobles",   "माप",     "nội",       "kích",   "kich",    "eqpm",        "hilfslinien",
+     "retini",   "retino",  "stramien",  "opisy",  "texty",   "skraffering", "akselit",
+     "yazı",     "通り芯",  "중심선",    "設備",   "furn",    "furniture",   "equip",
+     "appl",     "muebles", "mueble",    "arredi", "arredo",  "arredamento", "móveis",
+     "moveis",   "mobili",  "meble",     "dim",    "dims",    "dimen",       "cote",
+     "cotes",    "cota",    "quote",     "maße",   "mått",    "mål",         "mitat",
+     "kóty",     "koty",    "kote",      "kota",   "méret",   "meret",       "text",
+     "texts",    "texte",   "textes",    "testo",  "anno",    "note",        "notes",
+     "tag",      "tags",    "iden",      "txt",    "tekste",  "patt",        "pattern",
+     "trama",    "mønster", "schraf",    "axis",   "axes",    "axe",         "asse",
+     "assi",     "eje",     "ejes",      "eixo",   "akse",    "akser",       "osi",
+     "aks",      "оси",     "ось",       "осі",    "grid",    "grids",       "raster",
+     "achse",    "achsen",  "elec",      "lite",   "light",   "lights",      "licht",
+     "luce",     "luces",   "luci",      "fixt",   "pipe",    "pipes",       "piping",
+     "vvs",      "sani",    "wc",        "flor",   "clng",    "ovhd",        "strs",
+     "evtr",     "area",    "areas",     "comm",   "powr",    "sanr",        "levl",
+     "detl",     "sect",    "ttlb",      "bord",   "nplt",    "vprt",        "roof",
+     "fire",     "frame",   "frames",    "border", "borders", "sheet",       "title",
+     "titles",   "rahmen",  "cadre",     "marco",  "kader",   "ramka",       "ramme",
+     "kehys",    "keret",   "cartouche", "stairs", "steps",   "trap",        "trappen",
+     "trappa",   "trappe",  "scale",     "schody", "portaat", "case",        "casework",
+     "millwork", "tree",    "trees",     "plants", "marker",  "markers",     "symbol",
+     "symbols",  "legend"});
 
 /// Words of doors, and beginnings of those whose endings vary.
 constexpr auto kDoorWords = std::to_array<std::string_view>(
-    {"door",  "doors",  "tür",   "türen",  "tuer",    "tueren",  "tur",    "porte", "portes",
-     "porta", "portas", "porte", "puerta", "puertas", "deur",    "deuren", "drzwi", "dveře",
-     "dvere", "dør",    "døre",  "dører",  "dörr",    "dörrar",  "ovi",    "ovet",  "ajtó",
-     "ajtók", "ajto",   "ajtok", "kapı",   "kapılar", "kapi",    "usa",    "ușă",   "uși",
-     "usi",   "vrata",  "врата", "门",     "門",      "门窗",    "ドア",   "扉",    "建具",
-     "문",    "двері",  "двери", "дверь",  "ușa",     "дверные", "дверей"});
+    {"cua",    "door",  "doors",  "tür",   "türen",  "tuer",    "tueren",  "tur",    "porte",
+     "portes", "porta", "portas", "porte", "puerta", "puertas", "deur",    "deuren", "drzwi",
+     "dveře",  "dvere", "dør",    "døre",  "dører",  "dörr",    "dörrar",  "ovi",    "ovet",
+     "ajtó",   "ajtók", "ajto",   "ajtok", "kapı",   "kapılar", "kapi",    "usa",    "ușă",
+     "uși",    "usi",   "vrata",  "врата", "门",     "門",      "门窗",    "ドア",   "扉",
+     "建具",   "문",    "двері",  "двери", "дверь",  "ușa",     "дверные", "дверей"});
 constexpr auto kDoorStems = std::to_array<std::string_view>(
-    {"carpinter", "serrament", "infiss", "menuiserie", "esquadri", "πόρτ", "θύρ",
-     "πορτ",      "أبواب",     "ابواب",  "باب",        "الأبواب",  "درب",  "דלת",
-     "ประตู",      "cửa",       "pintu",  "durvis",     "durys",    "uksed"});
+    {"carpinter", "serrament", "infiss", "menuiserie", "esquadri", "πόρτ",  "θύρ",
+     "πορτ",      "أبواب",     "ابواب",  "باب",        "الأبواب",  "درب",   "דלת",
+     "ประตู",      "cửa",       "दरवाज",  "pintu",      "durvis",   "durys", "uksed"});
 constexpr auto kDoorEnds = std::to_array<std::string_view>({"türen", "tür", "tueren", "tuer"});
 constexpr auto kWindowWords = std::to_array<std::string_view>(
-    {"window",   "windows", "glaz",     "glazing", "fenster", "fenêtre",  "fenêtres", "fenetre",
-     "fenetres", "ventana", "ventanas", "janela",  "janelas", "finestra", "finestre", "raam",
-     "ramen",    "kozijn",  "kozijnen", "okno",    "okna",    "vindue",   "vinduer",  "vindu",
-     "vinduer",  "fönster", "fonster",  "ikkuna",  "ikkunat", "ablak",    "ablakok",  "pencere",
-     "prozor",   "prozori", "окно",     "окна",    "вікно",   "вікна",    "прозорец", "прозорци",
-     "窗",       "窗户",    "窓",       "창",      "창문",    "vitre",    "vitrage"});
+    {"window",   "windows", "glaz",     "glazing",  "fenster", "fenêtre",  "fenêtres", "fenetre",
+     "fenetres", "ventana", "ventanas", "janela",   "janelas", "finestra", "finestre", "finestres",
+     "raam",     "ramen",   "kozijn",   "kozijnen", "okno",    "okna",     "vindue",   "vinduer",
+     "vindu",    "vinduer", "fönster",  "fonster",  "ikkuna",  "ikkunat",  "ablak",    "ablakok",
+     "pencere",  "prozor",  "prozori",  "окно",     "окна",    "вікно",    "вікна",    "прозорец",
+     "прозорци", "窗",      "窗户",     "窓",       "창",      "창문",     "vitre",    "vitrage"});
 constexpr auto kWindowStems = std::to_array<std::string_view>(
-    {"fereastr", "ferestr", "παράθυρ", "παραθυρ", "verglas", "pencerel", "نافذة", "نوافذ", "شباك",
-     "شبابيك", "النوافذ", "پنجره", "חלון", "חלונות", "หน้าต่าง", "jendela", "langas", "langai",
-     "aknad"});
+    {"खिड़की",    "खिड़की",  "logi",    "fereastr", "ferestr", "παράθυρ", "παραθυρ", "verglas",
+     "pencerel", "نافذة",  "نوافذ",   "شباك",     "شبابيك",  "النوافذ", "پنجره",   "חלון",
+     "חלונות",   "หน้าต่าง", "jendela", "langas",   "langai",  "aknad"});
 
 /// Words of blocks and groups of furniture and fixtures.
 constexpr auto kThingWords = std::to_array<std::string_view>(
@@ -499,6 +503,14 @@ bool hasWallWord(const std::vector<std::string>& words) {
     });
 }
 
+/// Returns true for "cửa sổ", which begins as "cửa đi", a door.
+bool isVietnameseWindow(const std::vector<std::string>& words) {
+    const auto cua = std::find_if(words.begin(), words.end(), [](const std::string& word) {
+        return word == "cửa" || word == "cua";
+    });
+    return cua != words.end() && cua + 1 != words.end() && (cua[1] == "sổ" || cua[1] == "so");
+}
+
 /// Names are shorter: of more, no word is looked for.
 std::string_view beginning(std::string_view name) {
     constexpr std::size_t kLongest = 255;  // bytes, of a layer in DXF
@@ -571,6 +583,7 @@ bool isDoorName(std::string_view full_name) {
     const std::vector<std::string> words = wordsOf(name);
     // Walls and doors on one layer are walls.
     if (isNoWallName(name) || hasWallWord(words)) return false;
+    if (isVietnameseWindow(words)) return false;
     return hasWordOf(words, kDoorWords, kDoorStems) ||
            std::any_of(words.begin(), words.end(), [](const std::string& word) {
                return std::any_of(kDoorEnds.begin(), kDoorEnds.end(),
@@ -582,7 +595,8 @@ bool isWindowName(std::string_view full_name) {
     const std::string_view name = beginning(full_name);
     if (const auto iso = isoLayer(name)) return showsElements(*iso) && iso->element == 31;
     return !isNoWallName(name) && !isDoorName(name) &&
-           hasWordOf(wordsOf(name), kWindowWords, kWindowStems);
+           (isVietnameseWindow(wordsOf(name)) ||
+            hasWordOf(wordsOf(name), kWindowWords, kWindowStems));
 }
 
 bool isThingName(std::string_view full_name) {

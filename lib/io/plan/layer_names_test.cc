@@ -81,6 +81,19 @@ TEST(LayerNames, NumberedWallsAreNoCodes) {
     EXPECT_TRUE(isWallName("A-210---E-"));
 }
 
+TEST(LayerNames, OfFurtherLanguages) {
+    for (const char* name : {"Tường", "TUONG XAY", "दीवार"}) EXPECT_TRUE(isWallName(name)) << name;
+    for (const char* name : {"Cửa đi", "CUA DI", "दरवाजा", "durvis"})
+        EXPECT_TRUE(isDoorName(name)) << name;
+    for (const char* name : {"Cửa sổ", "CUA SO", "खिड़की", "LOGI", "FINESTRES"}) {
+        EXPECT_TRUE(isWindowName(name)) << name;
+        EXPECT_FALSE(isDoorName(name)) << name;
+    }
+    for (const char* name :
+         {"Nội thất", "Kích thước", "KICH THUOC", "फर्नीचर", "माप", "INRICHTING", "MOBLES"})
+        EXPECT_TRUE(isNoWallName(name)) << name;
+}
+
 TEST(LayerNames, WallsAndDoorsOnOneLayerAreWalls) {
     for (const char* const name :
          {"Wände und Türen", "Murs et portes", "Muros y puertas", "Interior walls and doors"})

@@ -372,12 +372,21 @@ bool LayerSorter::isNamed(const std::string& name) const {
 LayerSorter::Sorted LayerSorter::sort(std::vector<PlanShape> shapes) {
     Sorted sorted;
     // A drawing may have other names for all of its lines.
-    if (std::none_of(shapes.begin(), shapes.end(),
-                     [this](const PlanShape& shape) { return useOf(shape.layer) == Walls; }))
+    const auto is_wall = [this](const PlanShape& shape) { return useOf(shape.layer) == Walls; };
+    if (std::none_of(shapes.begin(), shapes.end(), is_wall))
         for (auto& [layer, use] : uses_)
             if (use == Things || (use == Doors && options_.door_layers.empty())) use = Walls;
+    const bool has_others =
+        options_.wall_layers.empty() &&
+        std::any_of(shapes.begin(), shapes.end(), [&](const PlanShape& shape) {
+            return is_wall(shape) && !shape.is_dashed && shape.path.points.size() >= 2;
+        });
     for (PlanShape& shape : shapes) {
         const Use use = useOf(shape.layer);
+        if (has_others && use == Walls && shape.is_dashed && shape.walls_in.empty()) {
+            ++dashed_[shape.layer];
+            continue;
+        }
         ++counts_[use][shape.layer];
         if (use == Walls) {
             const bool is_window = shape.walls_in.empty() && isWindowName(shape.layer);
@@ -403,6 +412,9 @@ void LayerSorter::note(ImportRecords& out) const {
         ""};
     for (std::size_t use = 0; use < Things; ++use)
         if (!counts_[use].empty()) out.note(kTitles[use] + listText(counts_[use]));
+    if (!dashed_.empty())
+        out.tell("dashed lines close no room, as those of axes and of edges above: " +
+                 listText(dashed_) + "; --wall-layer takes those of a layer");
     if (!counts_[Things].empty())
         out.tell("layers left out because their names are not those of walls: " +
                  listText(counts_[Things]) + "; --wall-layer takes others");

@@ -34,6 +34,7 @@ struct PlanShape {
     bool is_guess = false;  ///< a door found among walls: its chord runs from the closed door to
                             ///< the end of the leaf
     std::string walls_in = {};  ///< the wall name around it, see isWallName(); "": unnamed
+    bool is_dashed = false;     ///< a straight line with gaps
 };
 
 /// A door or a window of a drawing.
@@ -124,7 +125,8 @@ class LayerSorter {
     /// Returns true for layers of walls.
     [[nodiscard]] bool mayBeWall(const std::string& layer);
     /// Layers that isThingName() close no room, and those that isDoorName() are doors, unless no
-    /// other has a line.
+    /// other has a line. Dashed lines without a name of walls are axes, or edges above: they close
+    /// no room either.
     Sorted sort(std::vector<PlanShape> shapes);
     /// Notes the use of each layer.
     void note(ImportRecords& out) const;
@@ -151,6 +153,7 @@ class LayerSorter {
     std::array<std::map<std::string, std::size_t>, kUses> counts_;
     std::map<std::string, std::size_t> wall_names_;    // with their lines; "": lines without one
     std::map<std::string, std::size_t> window_names_;  // of these that became walls
+    std::map<std::string, std::size_t> dashed_;        // lines that close no room, by layer
 };
 
 /// Writes the plan of sorted shapes, see readDxf: walls, doors and windows of the largest region.

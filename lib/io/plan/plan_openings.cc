@@ -30,6 +30,7 @@ constexpr std::size_t kMaxSides = 16;  // of such a symbol
 constexpr double kMinJamb = 0.03, kMaxJamb = 0.25;  // metres
 constexpr double kAcross = 0.2;                     // cosine of the angle to the wall
 constexpr double kMaxDoorway = 1.3;
+constexpr double kThinnestDoor = 0.03, kThickestDoor = 0.6;  // between its two thresholds
 constexpr std::size_t kMinMarkedDoors = 3;
 
 /// Every pair is compared: more are not doors.
@@ -88,6 +89,27 @@ class Walls {
                    turn > kReach * distance(a, b);
         });
         return along;
+    }
+
+    /// Returns the threshold opposite to an opening: the nearest piece across the wall that begins
+    /// and ends where the opening does.
+    [[nodiscard]] std::optional<std::size_t> threshold(const Segment2& opening) const {
+        const double width = distance(opening.a, opening.b);
+        const Vec2 across = perpendicular(1 / width * (opening.b - opening.a));
+        std::optional<std::size_t> found;
+        double nearest = kThickestDoor;
+        for (const std::size_t i :
+             search_.near(opening.a + 0.5 * (opening.b - opening.a), kThickestDoor)) {
+            auto [a, b] = walls_[i];
+            if (dot(b - a, opening.b - opening.a) < 0) std::swap(a, b);
+            const double off = dot(a - opening.a, across);
+            if (std::abs(off) < kThinnestDoor || std::abs(off) > nearest ||
+                !isNear(a, opening.a + off * across) || !isNear(b, opening.b + off * across))
+                continue;
+            nearest = std::abs(off);
+            found = i;
+        }
+        return found;
     }
 
     [[nodiscard]] bool isOnWall(Point2 p) const {
@@ -286,10 +308,14 @@ class Finder {
         return true;
     }
 
-    bool add(const Segment2& line, int drawn_on) {
+    bool add(const Segment2& line, int drawn_on, bool is_double_door = false) {
         const auto found = candidate(line, drawn_on);
-        if (found) keep(found->opening);
-        return found.has_value();
+        if (!found) return false;
+        if (is_double_door)
+            keepDoor(found->opening);
+        else
+            keep(found->opening);
+        return true;
     }
 
     /// Opens the walls between two opposite sides of a symbol.
@@ -330,8 +356,17 @@ class Finder {
             return;
         }
         const bool takes_first = first && (!second || first->apart <= second->apart);
-        keep(takes_first ? first->opening : second->opening);
+        keepDoor(takes_first ? first->opening : second->opening);
         addLeaf({hinge, takes_first ? b : a});
+    }
+
+    /// Keeps a door, and opens the threshold on the other side of its wall.
+    void keepDoor(const PlanOpening& opening) {
+        keep(opening);
+        const auto other = walls_.threshold(opening.line);
+        if (!other) return;
+        const auto [a, b] = walls_[*other];
+        keep({{wholeMicrometres(a), wholeMicrometres(b)}, other, are_windows_, opening.drawn_on});
     }
 
     /// Handles arcs that end off the walls: two that meet are a double door.
@@ -355,7 +390,7 @@ class Finder {
         for (const auto& [p, other_p] : {std::pair{l.a, l.b}, std::pair{l.b, l.a}})
             for (const auto& [q, other_q] : {std::pair{r.a, r.b}, std::pair{r.b, r.a}}) {
                 if (!isNear(p, q) || distance(p, line) > kReach) continue;
-                if (!add(line, left.drawn_on)) continue;
+                if (!add(line, left.drawn_on, true)) continue;
                 addLeaf({line.a, other_p});
                 addLeaf({line.b, other_q});
                 return true;

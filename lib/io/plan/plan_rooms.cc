@@ -337,7 +337,8 @@ class RoomChooser {
         if (points_.empty() && !is_odd_ && !wider_) warnOfTheRest(plan_, taken, kept, out_);
         if (plan_.is_drawing && points_.empty() && rooms.regions.size() == 1 &&
             lines_.size() <= kMaxLinesTried)
-            rooms.is_frame = warnOfFrame(plan_, lines_, taken, rooms.regions.front(), out_);
+            rooms.is_frame = warnOfFrame(plan_, lines_, taken, rooms.regions.front(), work_, out_);
+        if (plan_.is_drawing) warnOfTiles(taken, out_);
     }
 
     const PlanWalls& plan_;

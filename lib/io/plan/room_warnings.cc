@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <utility>
 
 #include "base/number.h"
 #include "env/environment.h"
+#include "io/plan/parallel_lines.h"
 
 namespace ispace {
 
@@ -68,41 +70,74 @@ bool isRoom(const PlanWalls& plan, const PlanFaces& faces, const PlanFaces::Grou
     return !plan.is_floor || plan.is_floor(interiorPoint(faces.faces()[group.faces.front()]));
 }
 
+namespace {
+
+/// Returns the largest room in a hole of this one, as a house on its plot; null if there is none.
+/// Its front door may join both.
+const Region* houseIn(const PlanWalls& plan, const RoomAttempt& taken, const PlanRegion& region,
+                      const Region& outer) {
+    const auto is_island = [&](const Region& room) {
+        return std::any_of(outer.holes.begin(), outer.holes.end(), [&](const Polygon& hole) {
+            return locate(hole, room.outline.front()) != Side::Outside;
+        });
+    };
+    const Region* house = nullptr;
+    const auto look = [&](const Region& room, double area) {
+        if (&room != &outer && area >= kLeastHouse && is_island(room) &&
+            (house == nullptr || area > house->area()))
+            house = &room;
+    };
+    for (const Region& room : region.rooms) look(room, room.area());
+    const std::vector<PlanFaces::Group>& groups = taken.faces.groups();
+    const auto listed =
+        groups.begin() + static_cast<std::ptrdiff_t>(std::min(groups.size(), kMaxGroups));
+    for (auto group = groups.begin(); group != listed; ++group)
+        if (&*group != taken.groups.front() && isRoom(plan, taken.faces, *group))
+            look(taken.faces.faces()[group->faces.front()], group->area);
+    return house;
+}
+
+/// Warns if a kept room surrounds a house: the house has walls of two lines, the outline of the
+/// room is one line, as of a plot, a pavement or a roof. \return true if so
+bool warnOfGrounds(const PlanWalls& plan, const RoomAttempt& taken, const PlanRegion& region,
+                   Budget& work, ImportRecords& out) {
+    constexpr double kWalled = 0.5;  // of an outline
+    for (const Region& outer : region.rooms) {
+        if (outer.holes.empty()) continue;
+        const Region* const house = houseIn(plan, taken, region, outer);
+        if (house == nullptr || shareOfWalls(outer.outline, plan.lines, work) >= kWalled ||
+            shareOfWalls(house->outline, plan.lines, work) < kWalled)
+            continue;
+        out.warn("the room surrounds a house of " + areaText(house->area()) + " about " +
+                 placeText(interiorPoint(*house)) +
+                 ", up to a single line: if that bounds a plot, a pavement or a roof, leave it "
+                 "out, for example with --wall-layer");
+        return true;
+    }
+    return false;
+}
+
+}  // namespace
+
 bool warnOfFrame(const PlanWalls& plan, std::span<const Segment2> lines, const RoomAttempt& taken,
-                 const PlanRegion& region, ImportRecords& out) {
+                 const PlanRegion& region, Budget& work, ImportRecords& out) {
     const Box2 all = boundsOf(plan.lines);
     const Box2 rim{all.low + Vec2{kAtBorder, kAtBorder}, all.high - Vec2{kAtBorder, kAtBorder}};
-    const Polygon& outline = region.rooms.front().outline;
     const auto is_inside = [&rim](Point2 p) { return rim.contains(p); };
-    const Box2 around = bounds(outline);
-    // A title block may take a corner.
-    const bool is_rectangle = !is_inside(around.low) && !is_inside(around.high) &&
-                              std::abs(signedArea(outline)) > kFrameFilled * areaOf(all);
-    if (!is_rectangle) return false;
+    const auto is_rectangle = [&](const Region& room) {
+        // A title block may take a corner.
+        const Box2 around = bounds(room.outline);
+        return !is_inside(around.low) && !is_inside(around.high) &&
+               std::abs(signedArea(room.outline)) > kFrameFilled * areaOf(all);
+    };
+    const auto frame = std::find_if(region.rooms.begin(), region.rooms.end(), is_rectangle);
+    if (frame == region.rooms.end()) return warnOfGrounds(plan, taken, region, work, out);
     std::vector<Segment2> within;
     for (const Segment2& line : lines)
         if (is_inside(line.a) && is_inside(line.b)) within.push_back(line);
     double largest = 0;
     for (const Box2& part : joinedParts(within)) largest = std::max(largest, areaOf(part));
-    // Of a plot around a house, the house is a room in a hole, perhaps joined by its front door.
-    const Region& outer = region.rooms.front();
-    const auto is_island = [&](const Region& room, double area) {
-        return area >= kLeastHouse &&
-               std::any_of(outer.holes.begin(), outer.holes.end(), [&](const Polygon& hole) {
-                   return locate(hole, room.outline.front()) != Side::Outside;
-               });
-    };
-    const std::vector<PlanFaces::Group>& groups = taken.faces.groups();
-    const auto listed =
-        groups.begin() + static_cast<std::ptrdiff_t>(std::min(groups.size(), kMaxGroups));
-    const bool has_house =
-        std::any_of(groups.begin(), listed,
-                    [&](const PlanFaces::Group& group) {
-                        return isRoom(plan, taken.faces, group) &&
-                               is_island(taken.faces.faces()[group.faces.front()], group.area);
-                    }) ||
-        std::any_of(region.rooms.begin() + 1, region.rooms.end(),
-                    [&](const Region& room) { return is_island(room, room.area()); });
+    const bool has_house = houseIn(plan, taken, region, *frame) != nullptr;
     if (largest < kFrameShare * areaOf(all) && !has_house) return false;
     std::string text =
         "the room is the rectangle around the whole drawing: if that is the "
@@ -145,6 +180,30 @@ void warnOfTheRest(const PlanWalls& plan, const RoomAttempt& taken, const Box2& 
                 placeText(interiorPoint(taken.faces.faces()[largest_other->faces.front()])) +
                 ": --inside X,Y chooses rooms, --rooms all keeps all";
     out.warn(std::move(text));
+}
+
+void warnOfTiles(const RoomAttempt& taken, ImportRecords& out) {
+    constexpr double kLargestTile = 1;  // square metres
+    constexpr double kCompact = 0.4;    // of 4 pi area / perimeter^2: walls and treads are narrow
+    constexpr double kFewTiles = 0.1;   // of the area that is kept
+    constexpr std::size_t kLeastTiles = 20;
+    std::size_t count = 0;
+    double area = 0;
+    Point2 first;
+    for (const Region& face : taken.faces.faces()) {
+        const double own = face.area();
+        if (own > kLargestTile) continue;
+        double around = 0;
+        face.forEachEdge([&](const Segment2& edge) { around += distance(edge.a, edge.b); });
+        if (4 * std::numbers::pi * own < kCompact * around * around) continue;
+        if (count++ == 0) first = face.outline.front();
+        area += own;
+    }
+    if (count < kLeastTiles || area < kFewTiles * taken.area) return;
+    out.warn(std::to_string(count) + " faces of " + areaText(area) +
+             " in sum are too small to be rooms, the first at " + placeText(first) +
+             ": if they are tiles or hatching, leave their layer out, for example with "
+             "--wall-layer");
 }
 
 void warnOfGaps(std::span<const Segment2> closing, double width, ImportRecords& out) {

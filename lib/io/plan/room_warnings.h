@@ -30,10 +30,14 @@ struct RoomAttempt {
 /// Returns true if a group of faces is floor, and no space between the two lines of a wall.
 bool isRoom(const PlanWalls& plan, const PlanFaces& faces, const PlanFaces::Group& group);
 
-/// Warns if the room is a rectangle around the drawing with large parts of it inside. \return true
-/// if so \param lines of the plan and of other inputs \param region the only one kept
+/// Warns if a room is a rectangle around the drawing with large parts of it inside, or any single
+/// line around a house of thick walls. \return true if so \param lines of the plan and of other
+/// inputs \param region the only one kept
 bool warnOfFrame(const PlanWalls& plan, std::span<const Segment2> lines, const RoomAttempt& taken,
-                 const PlanRegion& region, ImportRecords& out);
+                 const PlanRegion& region, Budget& work, ImportRecords& out);
+
+/// Warns of many small faces, as of tiles, that take floor from the rooms.
+void warnOfTiles(const RoomAttempt& taken, ImportRecords& out);
 
 /// Warns if most of the drawing is left out. \param kept bounds of the rooms kept
 void warnOfTheRest(const PlanWalls& plan, const RoomAttempt& taken, const Box2& kept,

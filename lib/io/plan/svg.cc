@@ -529,8 +529,10 @@ class SvgReader {
         const double width = style.stroke_width.value_or(0) * std::sqrt(std::abs(cross(f.x, f.y)));
         const bool is_wall = has_no_fill && style.has_stroke && !has_no_stroke && !around.has_pen &&
                              width >= kThinnestStroke && width <= kThickestStroke;
+        // A dashed outline of a filled shape bounds it.
+        const bool is_dashed = style.is_dashed && has_no_fill && !has_no_stroke;
         for (const SvgSubpath& path : svgPaths(node, kind, around.view))
-            addPath(node, path, around, is_wall ? width : 0);
+            addPath(node, path, around, is_wall ? width : 0, is_dashed);
     }
 
     /// Converts a subpath to a shape without names.
@@ -553,7 +555,7 @@ class SvgReader {
 
     /// Adds a subpath as it lies in the plan. \param thickness of the wall; 0: it is a face
     void addPath(pugi::xml_node node, const SvgSubpath& path, const Around& around,
-                 double thickness) {
+                 double thickness, bool is_dashed) {
         const std::string_view layer = around.names.planLayer();
         const std::string_view walls = around.names.walls == nullptr ? "" : around.names.walls;
         spend(1 + Budget::unitsOf(layer.size() + walls.size()));
@@ -562,6 +564,11 @@ class SvgReader {
         shape.walls_in = walls_text_.of(walls);
         shape.path.line = file_.lineOf(node);
         shape.path.thickness = thickness;
+        shape.is_dashed =
+            is_dashed &&
+            std::all_of(path.pieces.begin(), path.pieces.end(), [](const SvgPiece& piece) {
+                return std::holds_alternative<SvgLine>(piece);
+            });
         if (shape.path.points.size() < 2) return;
         requireOnEarth(shape, file_.name());
         std::vector<PlanShape> shown{std::move(shape)};
@@ -627,6 +634,7 @@ class SvgReader {
         blank.walls_in = shape.walls_in;
         blank.path.line = shape.path.line;
         blank.path.thickness = shape.path.thickness;
+        blank.is_dashed = shape.is_dashed;
         return blank;
     }
 

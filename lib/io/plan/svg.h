@@ -84,6 +84,7 @@ enum class SvgProperty : std::size_t {
     TransformOrigin,
     TransformBox,
     StrokeWidth,
+    StrokeDasharray,
     VectorEffect,
     ClipPath,
     ClipRule,
@@ -108,10 +109,11 @@ class SvgProperties {
     }
     /// Drops values that refer to variables. \return true if there are any
     bool dropVariables();
-    static constexpr std::array<const char*, 15> kNames{
-        "display",      "visibility",     "fill",      "stroke",           "opacity",
-        "fill-opacity", "stroke-opacity", "transform", "transform-origin", "transform-box",
-        "stroke-width", "vector-effect",  "clip-path", "clip-rule",        "mask"};
+    static constexpr std::array<const char*, 16> kNames{
+        "display",          "visibility",    "fill",           "stroke",
+        "opacity",          "fill-opacity",  "stroke-opacity", "transform",
+        "transform-origin", "transform-box", "stroke-width",   "stroke-dasharray",
+        "vector-effect",    "clip-path",     "clip-rule",      "mask"};
 
   private:
     void set(std::size_t key, std::string_view value, bool is_important);
@@ -127,6 +129,7 @@ struct SvgStyle {
     bool has_stroke = false;
     bool clear_fill = false, clear_stroke = false;  ///< their opacity is 0
     std::optional<double> stroke_width = {};        ///< in the element's units; empty: not stated
+    bool is_dashed = false;
 };
 
 /// Rules of `style` elements, as browsers cascade them: selectors of names, classes, ids,

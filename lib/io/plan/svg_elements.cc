@@ -126,6 +126,10 @@ SvgStyle svgStyle(SvgStyle style, const SvgProperties& properties) {
         style.clear_fill = isSvgClear(value);
     if (const auto value = stated(SvgProperty::StrokeOpacity); !value.empty())
         style.clear_stroke = isSvgClear(value);
+    if (const auto value = stated(SvgProperty::StrokeDasharray); !value.empty()) {
+        // Zeros, and words that are no lengths, draw a whole line.
+        style.is_dashed = value.find_first_of("123456789") != std::string_view::npos;
+    }
     if (const auto value = stated(SvgProperty::StrokeWidth); !value.empty())
         if (const auto width = tryLength(value)) style.stroke_width = *width;
     return style;

@@ -188,6 +188,20 @@ TEST(Svg, WithoutAScale) {
     EXPECT_NEAR(areaOf("<svg><circle r='2'/></svg>", options), 16 * std::numbers::pi, 0.02);
 }
 
+TEST(Svg, DashedLinesCloseNoRoom) {
+    const auto area_with = [](const std::string& style) {
+        return areaOf(
+            "<svg width='1000cm' viewBox='0 0 10 10'><rect x='1' y='1' width='8' height='8' "
+            "fill='none' stroke='black'/><path d='M4 1V9' fill='none' stroke='black' " +
+            style + "/></svg>");
+    };
+    EXPECT_NEAR(area_with("stroke-dasharray='1,2'"), 64, 1e-9);
+    EXPECT_NEAR(area_with("style='stroke-dasharray:0.5 0.2'"), 64, 1e-9);
+    EXPECT_NEAR(area_with("stroke-dasharray='none'"), 40, 1e-9);
+    EXPECT_NEAR(area_with("stroke-dasharray='0 0'"), 40, 1e-9);
+    EXPECT_NEAR(area_with("id='walls' stroke-dasharray='1 2'"), 40, 1e-9);
+}
+
 // Each element is compared with all names of a list.
 TEST(Svg, SelectorsWithLongListsCost) {
     std::string list;
