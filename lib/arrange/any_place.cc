@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "arrange/measured_scene.h"
+#include "arrange/coverage_model.h"
 #include "arrange/search/problem.h"
 #include "raster/grid.h"
 #include "scene/sensor/field_of_view.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/measured_scene.h"
+#include "arrange/coverage_model.h"
 
 #include <gtest/gtest.h>
 

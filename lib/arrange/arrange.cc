@@ -3,17 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <span>
+#include <utility>
 
+#include "arrange/coverage_model.h"
 #include "arrange/gallery/gallery.h"
-#include "arrange/measured_scene.h"
 #include "arrange/objective.h"
 #include "arrange/over_poses.h"
 #include "arrange/refine.h"
 #include "arrange/search/alternatives.h"
 #include "arrange/search/greedy_search.h"
 #include "arrange/search/problem.h"
+#include "arrange/search_parts.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/packed.h"
@@ -21,6 +24,21 @@
 #include "scene/placement_schemas.h"
 
 namespace ispace {
+
+std::string needsOneRoom(const ArrangeOptions& options) {
+    using Robust = RobustChoice::Of;
+    if (options.over_poses) return "--proof poses";
+    if (options.objective.of == ObjectiveChoice::Of::Path) return "--objective path";
+    if (options.objective.of == ObjectiveChoice::Of::Localise) return "--objective localise";
+    if (options.ways) return "--presence";
+    if (options.robust.of == Robust::Rooms) return "--robust rooms";
+    if (options.robust.of == Robust::Mounting) return "--robust mounting";
+    if (options.robust.of == Robust::Crowd) return "--crowd";
+    if (options.strategy == Strategy::List) return "--places";
+    if (options.wants_trace) return "--trace";
+    if (options.wants_gains) return "--heat";
+    return "";
+}
 
 namespace {
 
@@ -40,7 +58,7 @@ void mustFitInModel(const Problem& problem) {
                          ": use fewer candidates (--candidates) or larger cells (--cell)");
 }
 
-void writeModel(const MeasuredScene& model, std::ostream& mps) {
+void writeModel(const CoverageModel& model, std::ostream& mps) {
     mustFitInModel(model.problem());
     std::vector<std::string> names;
     names.reserve(model.kinds().size());
@@ -56,8 +74,14 @@ void writeModel(const MeasuredScene& model, std::ostream& mps) {
     writeMps(model.problem(), names, "x y z (m) heading tilt (degrees)", pose_text, mps);
 }
 
-SearchResult find(const MeasuredScene& model, Arrangement& result, Progress& progress) {
+/// \param by_number receives results of 1, 2, ... sensors if they are found on the way
+SearchResult find(const CoverageModel& model, Arrangement& result,
+                  std::vector<SearchResult>& by_number, Progress& progress) {
     const ArrangeOptions& options = model.options();
+    if (isSearchedByParts(model)) {
+        by_number = searchParts(model, progress);
+        return by_number.back();
+    }
     for (const Objective& row : objectives())
         if (row.find != nullptr && row.is_asked(options)) return row.find(model, progress);
     if (model.isWorstCase()) return searchWorstCase(model.cases(), model.searchOptions(), progress);
@@ -79,22 +103,22 @@ void takeEachOnce(std::vector<Choice>& chosen) {
 
 /// Computes a bound over all poses: for any sensors that a budget buys, else for the number of each
 /// kind found.
-double boundOfAnyPlace(const MeasuredScene& model, const std::vector<Placement>& placements) {
+double boundOfAnyPlace(const CoverageModel& model, const std::vector<Placement>& placements) {
     const bool buys = model.options().budget.has_value();
     std::vector<int> most(model.kinds().size());
     for (std::size_t k = 0; k < most.size(); ++k)
         if (buys) most[k] = model.kinds()[k].most;
     if (!buys)
         for (const Placement& placement : placements) ++most[placement.kind];
-    return model.share(model.maxFromAnyPlace(most));
+    return model.shareBound(model.maxFromAnyPlace(most));
 }
 
 /// If some candidates are missing, the search's bound does not hold.
-double boundOf(const SearchResult& result, const MeasuredScene& model) {
-    return model.isComplete() ? model.share(result.bound) : 1;
+double boundOf(const SearchResult& result, const CoverageModel& model) {
+    return model.isComplete() ? model.shareBound(result.bound) : 1;
 }
 
-void refineIn(Arrangement& result, MeasuredScene& model, std::uint64_t before, Progress& progress) {
+void refineIn(Arrangement& result, CoverageModel& model, std::uint64_t before, Progress& progress) {
     const Refined refined = refine(model, result.sensors, before, progress);
     result.is_refined = true;
     result.refined_before = refined.before;
@@ -106,28 +130,59 @@ void refineIn(Arrangement& result, MeasuredScene& model, std::uint64_t before, P
     result.bound = boundOfAnyPlace(model, result.sensors);
 }
 
-void measure(Arrangement& result, MeasuredScene& model) {
+/// Figures as `coverage` reports them.
+struct Measured {
+    Metric coverage, area;
+    double free_share = 1;  ///< the free floor, as a share of the indoor area
+    bool is_same_grid = false;
+};
+
+Measured measuredRoom(const Arrangement& result, CoverageModel& model,
+                      const CoverageOptions& usual) {
+    RoomModel& room = model.only();
+    const Scene whole = withPlaced(room.scene(), model.groups(), result.sensors);
+    const Coverage measured = measureCoverage(whole, room.worlds(), usual);
+    const CoverageReport& report = measured.report;
+    return {report.coverage, report.total_effective_area, report.free_area / report.indoor_area,
+            room.target().grid == measured.target.grid};
+}
+
+Measured measuredSite(Arrangement& result, const CoverageModel& model, CoverageOptions usual) {
+    const ArrangeSite& site = model.site();
+    std::vector<std::vector<Sensor>> added(site.rooms.size());
+    for (const Placement& placement : result.sensors)
+        added[placement.room].push_back(sensorOf(model.groups(), placement));
+    usual.density = model.options().pixel_density;
+    const SiteFigures figures = site.sight->measure(added, usual);
+    result.rooms.clear();
+    for (std::size_t i = 0; i < site.rooms.size(); ++i)
+        result.rooms.push_back({site.rooms[i].id, added[i].size(),
+                                figures.rooms[i].grid.value_or(0), model.hasRoom(i)});
+    return {figures.coverage, figures.effective_area, figures.free_area / figures.indoor_area,
+            false};
+}
+
+void measure(Arrangement& result, CoverageModel& model) {
     const ArrangeOptions& options = model.options();
     const bool is_whole_floor = options.target && options.weights.isUniform() &&
                                 !options.robust.isAsked() && options.redundancy == 1 &&
                                 options.judges_inside && !options.beam_step && !options.ways;
     const CoverageOptions usual{.plane = options.plane, .exact = is_whole_floor};
-    const Scene whole = withPlaced(model.scene(), model.groups(), result.sensors);
-    const Coverage measured = measureCoverage(whole, model.worlds(), usual);
-    const CoverageReport& report = measured.report;
-    result.coverage = report.coverage.grid.value_or(0);
-    result.area = report.total_effective_area.grid.value_or(0);
+    const Measured measured = model.site().isOneRoom() ? measuredRoom(result, model, usual)
+                                                       : measuredSite(result, model, usual);
+    result.coverage = measured.coverage.grid.value_or(0);
+    result.area = measured.area.grid.value_or(0);
     if (is_whole_floor) {
-        result.exact_share = report.coverage.exact;
-        result.free_share = report.free_area / report.indoor_area;
+        result.exact_share = measured.coverage.exact;
+        result.free_share = measured.free_share;
     }
     if (options.target == 1 && result.exact_share && *result.exact_share < 1 - kMissedShare)
         result.is_reached = false;
     const std::vector<CountedView> views =
-        model.viewsOf(std::span(whole.sensors).subspan(model.scene().sensors.size()));
+        model.viewsOf(std::span<const Placement>(result.sensors));
     if (!options.robust.isAsked() && options.objective.isCoverage() &&
-        (!options.judges_inside || !(model.target().grid == measured.target.grid)))
-        result.value = model.share(model.valueOf(views));
+        (!options.judges_inside || !measured.is_same_grid))
+        result.value = model.shareOf(std::span<const CountedView>(views));
     result.is_value_by_cells = result.value && options.judges_inside && !options.beam_step &&
                                options.weights.isUniform() && options.redundancy == 1 &&
                                !options.robust.isAsked() && options.facing.empty() &&
@@ -137,7 +192,7 @@ void measure(Arrangement& result, MeasuredScene& model) {
     if (options.beam_step) result.value = result.candidate_value;
     if (!options.objective.isCoverage()) return;
     for (const std::size_t i : idleViews(model, views))
-        result.idle.push_back(result.sensors[i].sensor);
+        result.idle.push_back(wholeId(model.site(), result.sensors[i]));
 }
 
 /// Returns in [n] the value of the best n of these sensors, chosen greedily. If coverage must be
@@ -168,14 +223,14 @@ std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Cho
 
 /// Points of a curve up to this number of sensors are searched even if no time is left: greedy
 /// search and a quick bound take time in proportion to the candidates' size.
-std::size_t quickPoints(const MeasuredScene& model) {
+std::size_t quickPoints(const CoverageModel& model) {
     constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;
     constexpr std::size_t kBytesPerCell = 8;
     return kMaxBytes / (model.bytes() + kBytesPerCell * model.problem().cells() + 1);
 }
 
 /// Returns true if the number of sensors was the only limit of the search.
-bool isByNumber(const MeasuredScene& model) {
+bool isByNumber(const CoverageModel& model) {
     if (!model.options().budget && !model.options().target) return true;
     const std::vector<SensorType>& kinds = model.problem().kinds;
     return std::all_of(kinds.begin(), kinds.end(),
@@ -184,7 +239,7 @@ bool isByNumber(const MeasuredScene& model) {
 
 /// Computes the value of 1, 2, ... sensors of these kinds, at any cost, with bounds. Once the time
 /// is used up: the value of that many of the sensors found, without a bound.
-std::vector<SearchResult> searchByNumber(const SearchResult& found, const MeasuredScene& model,
+std::vector<SearchResult> searchByNumber(const SearchResult& found, const CoverageModel& model,
                                          Progress& progress) {
     const std::vector<std::uint64_t> part = valuesOfFirst(model.problem(), found.best.chosen);
     const std::size_t last = part.size() - 1, quick = quickPoints(model);
@@ -207,9 +262,10 @@ std::vector<SearchResult> searchByNumber(const SearchResult& found, const Measur
     return results;
 }
 
-std::vector<CurvePoint> curveTo(const SearchResult& found, const MeasuredScene& model,
-                                Progress& progress) {
-    std::vector<SearchResult> results = searchByNumber(found, model, progress);
+std::vector<CurvePoint> curveTo(const SearchResult& found, std::vector<SearchResult> by_number,
+                                const CoverageModel& model, Progress& progress) {
+    std::vector<SearchResult> results =
+        by_number.empty() ? searchByNumber(found, model, progress) : std::move(by_number);
     // One more sensor never covers less; a bound for n sensors holds for fewer.
     for (std::size_t i = 1; i < results.size(); ++i)
         results[i].best.value = std::max(results[i].best.value, results[i - 1].best.value);
@@ -225,8 +281,9 @@ std::vector<CurvePoint> curveTo(const SearchResult& found, const MeasuredScene& 
 
 /// Returns true if sensors on both candidates count as the same, see kApart. Headings of round
 /// views do not count.
-bool areNear(const MeasuredScene& model, const Choice& a, const Choice& b) {
+bool areNear(const CoverageModel& model, const Choice& a, const Choice& b) {
     if (!(model.kinds()[a.kind].model == model.kinds()[b.kind].model)) return false;
+    if (model.roomOf(a) != model.roomOf(b)) return false;
     const Pose3 one = model.poseOf(a), other = model.poseOf(b);
     if (length(one.position - other.position) >= kApart) return false;
     const auto is_round = [&model](const Choice& choice) {
@@ -240,7 +297,7 @@ bool areNear(const MeasuredScene& model, const Choice& a, const Choice& b) {
             (is_round(a) && is_round(b)));
 }
 
-void addAlternatives(Arrangement& result, MeasuredScene& model, const Solution& best,
+void addAlternatives(Arrangement& result, CoverageModel& model, const Solution& best,
                      Progress& progress) {
     const NearChoices are_near = [&model](const Choice& a, const Choice& b) {
         return areNear(model, a, b);
@@ -255,16 +312,17 @@ void addAlternatives(Arrangement& result, MeasuredScene& model, const Solution& 
         other.candidates = result.candidates;
         other.grid = result.grid;
         other.is_complete = model.isComplete() && !progress.stopped();
-        other.candidate_value = model.share(solution.value);
+        other.candidate_value = model.shareOf(solution.chosen, solution.value);
+        other.rounding = result.rounding;
         other.bound = other.candidate_bound = result.candidate_bound;
         other.sensors = model.placementsOf(solution.chosen);
         measure(other, model);
     }
 }
 
-Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& groups,
+Arrangement arrangeLimited(const ArrangeSite& site, const std::vector<SensorGroup>& groups,
                            const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
-    MeasuredScene model(scene, groups, options, progress);
+    CoverageModel model(site, groups, options, progress);
     const Problem& problem = model.problem();
     if (mps != nullptr) writeModel(model, *mps);
 
@@ -274,7 +332,8 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     if (share.own && !model.isComplete())
         throw UnmetError("stopped before all candidates were made: there is nothing to share");
     if (share.isOwn(Shared::Candidates)) return result;
-    SearchResult found = find(model, result, progress);
+    std::vector<SearchResult> by_number;
+    SearchResult found = find(model, result, by_number, progress);
     if (share.own && !share.isOwn(Shared::Poses)) return result;
     std::vector<Choice>& chosen = found.best.chosen;
     takeEachOnce(chosen);
@@ -286,10 +345,12 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     result.is_complete = model.isComplete() && found.is_complete;
     result.candidates = model.candidates();
     result.bytes = model.bytes();
-    result.grid = model.target().grid;
+    if (site.isOneRoom()) result.grid = model.only().target().grid;
+    result.cells = problem.cells();
     if (options.ways) result.pieces = problem.cells();
     if (!options.target && !options.budget) result.unplaced = problem.order.size() - chosen.size();
-    result.candidate_value = model.share(found.best.value);
+    result.candidate_value = model.shareOf(chosen, found.best.value);
+    result.rounding = model.rounding();
     result.candidate_bound = boundOf(found, model);
     result.bound = result.candidate_bound;
     result.sensors = model.placementsOf(chosen);
@@ -298,7 +359,7 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
     if (share.own) return {};
     measure(result, model);
     if (options.wants_curve) {
-        result.curve = curveTo(found, model, progress);
+        result.curve = curveTo(found, std::move(by_number), model, progress);
         result.is_complete = result.is_complete && !progress.stopped();
     }
     if (options.wants_trace) result.tried = model.triedPoses(chosen);
@@ -312,11 +373,11 @@ Arrangement arrangeLimited(const Scene& scene, const std::vector<SensorGroup>& g
 namespace {
 
 /// Arranges as arrangeLimited(). \throws FormatError with the file of results that are not whole
-Arrangement arrangeFromResults(const Scene& scene, const std::vector<SensorGroup>& groups,
+Arrangement arrangeFromResults(const ArrangeSite& site, const std::vector<SensorGroup>& groups,
                                const ArrangeOptions& options, Progress& progress,
                                std::ostream* mps) {
     try {
-        return arrangeLimited(scene, groups, options, progress, mps);
+        return arrangeLimited(site, groups, options, progress, mps);
     } catch (const PackedError&) {
         const SearchShare& share = options.search.share;
         if (share.results == nullptr) throw;
@@ -330,48 +391,98 @@ Arrangement arrangeFromResults(const Scene& scene, const std::vector<SensorGroup
 }
 
 /// Measures the privacy of a layout, and forbids the poses of placed cameras that see zones.
-std::vector<PrivacyResult> forbidWhatSees(const Scene& scene,
+/// \param whole the rooms with sensors that see all that they can \param stricter receives poses
+std::vector<PrivacyResult> forbidWhatSees(const ArrangeSite& whole,
                                           const std::vector<SensorGroup>& groups,
-                                          const Arrangement& found, ArrangeOptions& options) {
-    std::vector<PrivacyResult> results =
-        measurePrivacy(withPlaced(scene, groups, found.sensors), options.plane, options.privacy);
-    std::set<std::string> seeing;
-    for (const PrivacyResult& result : results)
-        if (!isMet(result)) seeing.insert(result.cameras.begin(), result.cameras.end());
-    for (const Placement& placement : found.sensors)
-        if (seeing.count(placement.sensor) > 0) options.mount.forbidden.push_back(placement.pose);
-    return results;
+                                          const Arrangement& found, double plane,
+                                          ArrangeSite& stricter) {
+    std::vector<PrivacyResult> all;
+    for (std::size_t i = 0; i < whole.rooms.size(); ++i) {
+        const SiteRoom& room = whole.rooms[i];
+        if (!room.scene || room.goals.privacy.empty()) continue;
+        std::vector<PrivacyResult> results = measurePrivacy(
+            withPlaced(*room.scene, groups, found.sensors, i), plane, room.goals.privacy);
+        std::set<std::string> seeing;
+        for (PrivacyResult& result : results) {
+            if (!isMet(result)) seeing.insert(result.cameras.begin(), result.cameras.end());
+            if (!room.id.empty()) {
+                result.zone.insert(0, room.id + '/');
+                for (std::string& camera : result.cameras) camera.insert(0, room.id + '/');
+            }
+            all.push_back(std::move(result));
+        }
+        for (const Placement& placement : found.sensors)
+            if (placement.room == i && seeing.count(placement.sensor) > 0)
+                stricter.rooms[i].goals.forbidden.push_back(placement.pose);
+    }
+    return all;
+}
+
+std::size_t countForbidden(const ArrangeSite& site) {
+    std::size_t count = 0;
+    for (const SiteRoom& room : site.rooms) count += room.goals.forbidden.size();
+    return count;
+}
+
+/// Returns the site with its sensors limited to the floor that they cover by the options.
+ArrangeSite limitedSite(const ArrangeSite& site, const ArrangeOptions& options) {
+    ArrangeSite limited = site;
+    std::map<const Scene*, std::shared_ptr<const Scene>> known;  // equal rooms stay equal
+    for (SiteRoom& room : limited.rooms) {
+        if (!room.scene) continue;
+        std::shared_ptr<const Scene>& scene = known[room.scene.get()];
+        if (scene == nullptr) {
+            Scene own = *room.scene;
+            for (Sensor& sensor : own.sensors) limitCovered(sensor.model, options);
+            scene = std::make_shared<const Scene>(std::move(own));
+        }
+        room.scene = scene;
+    }
+    return limited;
 }
 
 }  // namespace
 
-Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
+Arrangement arrange(const ArrangeSite& site, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
     // Candidates, bounds and all results are computed for sensors with limited coverage.
-    Scene limited = scene;
-    for (Sensor& sensor : limited.sensors) limitCovered(sensor.model, options);
+    ArrangeSite limited = limitedSite(site, options);
     std::vector<SensorGroup> limited_groups = groups;
     for (SensorGroup& group : limited_groups) {
         group.whole = group.model;
         limitCovered(group.model, options);
     }
-    if (options.over_poses && options.target)
-        return arrangeOverPoses(limited, limited_groups, options, progress);
-    if (options.over_poses) mustBeBoundable(limited, limited_groups, options);
+    if (options.over_poses && site.isOneRoom()) {
+        const Scene& scene = *limited.rooms.front().scene;
+        if (options.target) return arrangeOverPoses(scene, limited_groups, options, progress);
+        mustBeBoundable(scene, limited_groups, options);
+    }
     if (options.privacy.empty())
         return arrangeFromResults(limited, limited_groups, options, progress, mps);
     // Cells may miss what the exact regions see.
     constexpr std::size_t kMaxRounds = 100;
-    ArrangeOptions stricter = options;
     for (std::size_t round = 1;; ++round) {
-        Arrangement found = arrangeFromResults(limited, limited_groups, stricter, progress, mps);
-        const std::size_t before = stricter.mount.forbidden.size();
-        found.privacy = forbidWhatSees(scene, groups, found, stricter);
+        const std::size_t before = countForbidden(limited);
+        Arrangement found = arrangeFromResults(limited, limited_groups, options, progress, mps);
+        found.privacy = forbidWhatSees(site, groups, found, options.plane, limited);
         for (Arrangement& other : found.alternatives)
-            other.privacy = forbidWhatSees(scene, groups, other, stricter);
-        if (stricter.mount.forbidden.size() == before || progress.stopped() || round == kMaxRounds)
+            other.privacy = forbidWhatSees(site, groups, other, options.plane, limited);
+        if (countForbidden(limited) == before || progress.stopped() || round == kMaxRounds)
             return found;
     }
+}
+
+ArrangeSite siteOf(const Scene& scene, const ArrangeOptions& options) {
+    // Not owned.
+    const std::shared_ptr<const Scene> only(std::shared_ptr<const Scene>(), &scene);
+    ArrangeSite site;
+    site.rooms.push_back({"", only, goalsOf(options)});
+    return site;
+}
+
+Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
+                    const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
+    return arrange(siteOf(scene, options), groups, options, progress, mps);
 }
 
 namespace {
@@ -417,14 +528,21 @@ Document layoutDocument(const LayoutParts& parts, const Document* before,
     const std::vector<Placement>& sensors = arrangement.sensors;
     std::vector<bool> is_written(sensors.size());
     const auto write = [&](std::size_t i) {
-        document.records.push_back(placedRecord(groups[sensors[i].group], sensors[i]));
+        Record record = placedRecord(groups[sensors[i].group], sensors[i]);
+        if (parts.whole)
+            record = parts.whole(sensors[i].room, std::move(record), sensors[i].sensor);
+        document.records.push_back(std::move(record));
         is_written[i] = true;
+    };
+    const auto is_of = [&](const Placement& sensor, const Record& record) {
+        const SensorGroup& group = groups[sensor.group];
+        if (!group.is_pending) return false;
+        return (parts.whole ? parts.whole(sensor.room, group.record, group.id) : group.record) ==
+               record;
     };
     const auto place_of = [&](const Record& record) {
         std::size_t i = 0;
-        while (i < sensors.size() && (is_written[i] || !groups[sensors[i].group].is_pending ||
-                                      !(groups[sensors[i].group].record == record)))
-            ++i;
+        while (i < sensors.size() && (is_written[i] || !is_of(sensors[i], record))) ++i;
         return i;
     };
     if (before != nullptr) {

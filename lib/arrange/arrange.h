@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -16,6 +17,7 @@
 #include "arrange/robust.h"
 #include "arrange/search/search.h"
 #include "arrange/sensor_group.h"
+#include "arrange/site.h"
 #include "arrange/tried_pose.h"
 #include "base/error.h"
 #include "base/message.h"
@@ -201,9 +203,11 @@ struct Arrangement {
     /// sensors off their candidates, over these sensors at any poses.
     double bound = 1;
     double candidate_value = 0, candidate_bound = 1;  ///< before refining
+    double rounding = 0;                              ///< in the bound: a gap up to this is none
     bool is_refined = false;                          ///< refining was asked for
     std::size_t candidates = 0, bytes = 0;            ///< of all kinds
-    Grid grid;                                        ///< the cells while searching
+    Grid grid;                                        ///< the cells while searching one room
+    std::size_t cells = 0;                            ///< number of those of all rooms
     std::size_t pieces = 0;                           ///< of ways, instead of these cells
     bool is_complete = true;                          ///< false: cut by time or a signal
 
@@ -234,8 +238,17 @@ struct Arrangement {
     /// With ArrangeOptions::privacy: of the whole layout, exact.
     std::vector<PrivacyResult> privacy;
 
-    /// Ids of sensors that can all be removed without loss of value.
+    /// Ids of sensors, across the site, that can all be removed without loss of value.
     std::vector<std::string> idle;
+
+    /// A room of several.
+    struct InRoom {
+        std::string id;
+        std::size_t sensors = 0;  ///< placed here
+        double coverage = 0;      ///< share of its floor
+        bool has_floor = true;    ///< false: all of it is open, and it is left out
+    };
+    std::vector<InRoom> rooms;  ///< empty for a room alone
 
     std::vector<CurvePoint> curve;
     std::vector<TriedPose> tried;
@@ -249,16 +262,29 @@ struct Arrangement {
     double refined_before = 0, refined_after = 0;
 };
 
-/// Adds the groups' sensors to those that the scene has placed already.
+/// Adds the groups' sensors to those that stand in the rooms of a site already. Rooms that do not
+/// see each other are searched apart where that is exact, see searchParts(); else the cells of all
+/// rooms are one problem. Counts, budget, target and required multiplicities are those of the site.
 ///
 /// Builds candidates by options.strategy for each kind of sensor, weighs the target's cells by
 /// options.weights, then runs search() or minimumCostCover(), and refine() if asked. `mps`:
 /// receives the model before the search. A shard (options.search.share) stores its steps in
 /// the job results and returns an arrangement without sensors.
+/// What the options ask of a room (weights, zones, privacy, facing) is taken from its goals; those
+/// of the options say whether it is asked of any room.
 /// \throws UnmetError if a kind has no valid site or the budget buys no sensor, UsageError if the
-///         candidates do not fit in memory
+///         candidates do not fit in memory, or for what is about one room alone
+Arrangement arrange(const ArrangeSite& site, const std::vector<SensorGroup>& groups,
+                    const ArrangeOptions& options, Progress& progress, std::ostream* mps = nullptr);
+/// As above, for a room alone.
 Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps = nullptr);
+
+/// Returns the site of a room alone, with what the options ask of it. Stores the reference.
+ArrangeSite siteOf(const Scene& scene, const ArrangeOptions& options);
+
+/// Returns the option that is about one room alone, "" if all of these options hold for several.
+std::string needsOneRoom(const ArrangeOptions& options);
 
 /// Contents of a layout besides the arrangement.
 struct LayoutParts {
@@ -267,6 +293,8 @@ struct LayoutParts {
     std::string environment_digest;
     std::string strategy, optimize;
     std::string objective = {};  ///< "" for coverage
+    /// Returns a record of a room, with this id, as it stands in the layout; empty: as it is.
+    std::function<Record(std::size_t room, Record record, const std::string& id)> whole = {};
 };
 
 /// Builds a `.3dm`: the `environment` record, the records of `before` (if any) with its pending

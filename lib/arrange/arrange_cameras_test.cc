@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "arrange/measured_scene.h"
+#include "arrange/coverage_model.h"
 #include "support/test_arrange.h"
 
 namespace ispace {

@@ -2,7 +2,7 @@
 // Tests the goals of an arrangement: zones, weights, redundancy, targets, budgets; and refining.
 #include <gtest/gtest.h>
 
-#include "arrange/measured_scene.h"
+#include "arrange/coverage_model.h"
 #include "base/number.h"
 #include "support/test_arrange.h"
 #include "support/test_problems.h"
@@ -315,26 +315,28 @@ TEST(ArrangeGoals, WhatIsNotMovedKeepsItsBound) {
     EXPECT_EQ(all.bound, all.candidate_bound);
 }
 
-TEST(MeasuredScene, TheTreeGetsTheMemoryThatCandidatesLeave) {
+TEST(CoverageModel, TheTreeGetsTheMemoryThatCandidatesLeave) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3:2"});
     ArrangeOptions options = coarse(Optimizer::Exact);
     SilentProgress silent;
-    const MeasuredScene usual(scene, groups, options, silent);
+    const ArrangeSite site = siteOf(scene, options);
+    const CoverageModel usual(site, groups, options, silent);
     EXPECT_EQ(usual.searchOptions().max_bytes, kMaxTreeBytes);
     options.max_bytes = usual.bytes() + 1000;
-    const MeasuredScene narrow(scene, groups, options, silent);
+    const CoverageModel narrow(site, groups, options, silent);
     EXPECT_EQ(narrow.searchOptions().max_bytes, 1000U);
     EXPECT_EQ(arranged(scene, groups, options).candidate_value,
               arranged(scene, groups, coarse(Optimizer::Exact)).candidate_value);
 }
 
-TEST(MeasuredScene, SharesAndValuesLeadBackAndForth) {
+TEST(CoverageModel, SharesAndValuesLeadBackAndForth) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3"});
     const ArrangeOptions options = coarse();
     SilentProgress silent;
-    const MeasuredScene model(scene, groups, options, silent);
+    const ArrangeSite site = siteOf(scene, options);
+    const CoverageModel model(site, groups, options, silent);
     for (const std::uint64_t value :
          {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{977}, model.problem().totalWeight()}) {
         EXPECT_EQ(model.valueFor(model.share(value)), value);
@@ -342,12 +344,13 @@ TEST(MeasuredScene, SharesAndValuesLeadBackAndForth) {
     }
 }
 
-TEST(MeasuredScene, ChosenCandidatesBecomeSensorsOfTheSameValue) {
+TEST(CoverageModel, ChosenCandidatesBecomeSensorsOfTheSameValue) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=3:2", "laser,range=2,fov=90"});
     const ArrangeOptions options = coarse();
     SilentProgress silent;
-    MeasuredScene model(scene, groups, options, silent);
+    const ArrangeSite site = siteOf(scene, options);
+    CoverageModel model(site, groups, options, silent);
     ASSERT_EQ(model.kinds().size(), 2U);
     const std::vector<Choice> chosen = {{1, 7}, {0, 30}, {0, 5}};
     const std::vector<Placement> sensors = model.placementsOf(chosen);
@@ -355,7 +358,8 @@ TEST(MeasuredScene, ChosenCandidatesBecomeSensorsOfTheSameValue) {
     EXPECT_EQ(sensors[0].sensor, "laser1");
     EXPECT_EQ(sensors[2].group, 1U);
     const Scene whole = withPlaced(scene, groups, sensors);
-    EXPECT_EQ(model.valueOf(model.viewsOf(whole.sensors)), valueOf(model.problem(), chosen));
+    EXPECT_EQ(model.valueOf(model.viewsOf(std::span<const Placement>(sensors))),
+              valueOf(model.problem(), chosen));
 }
 
 }  // namespace

@@ -36,6 +36,14 @@ class PosedCandidates : public CandidateSet {
         mounts_.push_back(mount);
         headings_.insert(headings_.end(), headings.begin(), headings.end());
     }
+    /// Candidates that are added from here on stand in this room of the site; before, in room 0.
+    void beginRoom(std::size_t room) { rooms_.push_back({size(), room}); }
+    [[nodiscard]] std::size_t roomOf(std::size_t candidate) const {
+        std::size_t room = 0;
+        for (const RoomStart& start : rooms_)
+            if (start.candidate <= candidate) room = start.room;
+        return room;
+    }
     [[nodiscard]] Pose3 pose(std::size_t candidate) const {
         Pose3 pose = mounts_[siteOf(candidate)];
         pose.heading = headings_[candidate];
@@ -48,6 +56,11 @@ class PosedCandidates : public CandidateSet {
     }
 
   private:
+    struct RoomStart {
+        std::size_t candidate = 0, room = 0;
+    };
+
+    std::vector<RoomStart> rooms_;
     std::vector<Pose3> mounts_;    // by site
     std::vector<Angle> headings_;  // by candidate
 };

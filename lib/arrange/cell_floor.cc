@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "arrange/measured_scene.h"
+#include "arrange/coverage_model.h"
 #include "arrange/search/case_values.h"
 #include "base/error.h"
 #include "base/message.h"
@@ -128,10 +128,10 @@ CellWays cellWaysOf(const Environment& environment, const Target& target, const 
     return ways;
 }
 
-void MeasuredScene::setWays() {
+void CoverageModel::setWays() {
     const WayChoice& way = options_.objective.way;
     const std::string name = "between " + printable(way.from) + " and " + printable(way.to);
-    cell_ways_ = cellWaysOf(scene_.environment, target_, way);
+    cell_ways_ = cellWaysOf(only().scene().environment, only().target(), way);
     if (!cell_ways_.exist())
         throw UnmetError("no way " + name + " leads over free cells (--cell M makes them smaller)");
     cases_.ways = &cell_ways_;
@@ -141,7 +141,7 @@ void MeasuredScene::setWays() {
     total_ = cases_.shortest;
 }
 
-std::uint64_t MeasuredScene::leastSeen(std::span<const CountedView> views) const {
+std::uint64_t CoverageModel::leastSeen(std::span<const CountedView> views) const {
     std::vector<SensorCells> cells;
     for (const CountedView& view : views) cells.push_back({&view.cells, view.multiplicity});
     return CaseValues(cases_, cells).worst().value;

@@ -44,15 +44,15 @@ void FacingCells::keepFaces(const SensorModel& sensor, Point2 place, CellSet& ce
     });
 }
 
-void FacingCells::keepFaces(const SensorModel& sensor, Point2 place, CellParts& parts) const {
-    const bool is_camera = std::holds_alternative<Camera>(sensor);
+template <typename IsKept>
+void FacingCells::keep(CellParts& parts, IsKept is_kept) {
     std::vector<CellRun> runs;
     std::vector<std::uint32_t> first = {0};
     for (std::size_t part = 0; part < parts.size(); ++part) {
         for (std::uint32_t r = parts.first[part]; r < parts.first[part + 1]; ++r) {
             std::uint32_t begin = parts.runs[r].first;
             for (std::uint32_t i = begin; i < parts.runs[r].end; ++i) {
-                if (isKept(is_camera, place, i)) continue;
+                if (is_kept(i)) continue;
                 if (begin < i) runs.push_back({begin, i});
                 begin = i + 1;
             }
@@ -62,6 +62,15 @@ void FacingCells::keepFaces(const SensorModel& sensor, Point2 place, CellParts& 
     }
     parts.runs = std::move(runs);
     parts.first = std::move(first);
+}
+
+void FacingCells::keepFaces(const SensorModel& sensor, Point2 place, CellParts& parts) const {
+    const bool is_camera = std::holds_alternative<Camera>(sensor);
+    keep(parts, [&](std::uint32_t cell) { return isKept(is_camera, place, cell); });
+}
+
+void FacingCells::removeAll(CellParts& parts) const {
+    keep(parts, [this](std::uint32_t cell) { return !all_.test(cell); });
 }
 
 }  // namespace ispace

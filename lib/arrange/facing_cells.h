@@ -23,8 +23,12 @@ class FacingCells {
     /// Removes the cells in which a sensor at this point sees no faces.
     void keepFaces(const SensorModel& sensor, Point2 place, CellParts& parts) const;
     void keepFaces(const SensorModel& sensor, Point2 place, CellSet& cells) const;
+    /// Removes the cells of all rules.
+    void removeAll(CellParts& parts) const;
 
   private:
+    template <typename IsKept>
+    static void keep(CellParts& parts, IsKept is_kept);
     [[nodiscard]] bool isKept(bool is_camera, Point2 place, std::size_t cell) const;
 
     struct Part {

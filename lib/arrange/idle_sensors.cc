@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/measured_scene.h"
+#include "arrange/coverage_model.h"
 
 #include <algorithm>
 #include <functional>
@@ -169,7 +169,7 @@ std::vector<std::size_t> idleChoices(const Problem& problem, std::span<const Cho
     });
 }
 
-std::vector<std::size_t> idleViews(const MeasuredScene& model, std::span<const CountedView> views) {
+std::vector<std::size_t> idleViews(const CoverageModel& model, std::span<const CountedView> views) {
     return idleAmong(model.problem(), views, [&](const std::vector<bool>& left) {
         std::vector<CountedView> rest;
         for (std::size_t i = 0; i < views.size(); ++i)

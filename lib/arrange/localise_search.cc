@@ -57,17 +57,18 @@ std::uint64_t concaveWorth(const SpotInformation& spot, double limit) {
 
 class LocaliseSearch {
   public:
-    explicit LocaliseSearch(const MeasuredScene& model)
+    explicit LocaliseSearch(const CoverageModel& model)
         : model_(model),
           problem_(model.problem()),
           limit_(model.options().objective.within),
           plane_(model.options().plane),
           standing_(problem_.cells()) {
-        std::vector<Sensor> sensors;
-        for (const Sensor& sensor : model.scene().sensors)
-            if (kindOf(sensor.model).perceives) sensors.push_back(sensor);
-        const std::vector<CountedView> views = model.viewsOf(sensors);
-        for (std::size_t i = 0; i < sensors.size(); ++i) add(sensors[i], views[i].cells, standing_);
+        std::vector<SiteSensor> sensors;
+        for (const Sensor& sensor : model.only().scene().sensors)
+            if (kindOf(sensor.model).perceives) sensors.push_back({0, sensor});
+        const std::vector<CountedView> views = model.viewsOf(std::span<const SiteSensor>(sensors));
+        for (std::size_t i = 0; i < sensors.size(); ++i)
+            add(sensors[i].sensor, views[i].cells, standing_);
     }
 
     void add(const Sensor& sensor, const CellSet& cells, Spots& spots) const {
@@ -206,7 +207,7 @@ class LocaliseSearch {
     }
 
     void addAt(const Sensor& sensor, std::size_t cell, SpotInformation& spot) const {
-        const Point3 at = spotFor(sensor, model_.target().grid.center(cell), plane_);
+        const Point3 at = spotFor(sensor, model_.only().target().grid.center(cell), plane_);
         spot.add(sensor, informationOf(sensor.model, sensor.pose.position, at));
     }
 
@@ -279,7 +280,7 @@ class LocaliseSearch {
         return most;
     }
 
-    const MeasuredScene& model_;
+    const CoverageModel& model_;
     const Problem& problem_;
     double limit_, plane_;
     Spots standing_;
@@ -287,7 +288,7 @@ class LocaliseSearch {
 
 }  // namespace
 
-std::uint64_t localisedValue(const MeasuredScene& model, std::span<const CountedView> views,
+std::uint64_t localisedValue(const CoverageModel& model, std::span<const CountedView> views,
                              std::span<const Placement> sensors) {
     const LocaliseSearch search(model);
     Spots spots = search.standing();
@@ -296,7 +297,7 @@ std::uint64_t localisedValue(const MeasuredScene& model, std::span<const Counted
     return search.valueOf(spots);
 }
 
-SearchResult searchLocalised(const MeasuredScene& model, Progress& progress) {
+SearchResult searchLocalised(const CoverageModel& model, Progress& progress) {
     const LocaliseSearch search(model);
     SearchResult result = search.searchCover(progress);
     const bool moves = model.options().search.optimizer != Optimizer::Greedy;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "arrange/arrange.h"
-#include "arrange/measured_scene.h"
+#include "arrange/coverage_model.h"
 #include "arrange/search/search.h"
 #include "base/error.h"
 
@@ -18,7 +18,7 @@ constexpr std::uint64_t kNoError = std::uint64_t{1} << 20U;
 
 /// Returns the value of these sensors and the standing ones: over all cells, the sum of weights
 /// times kNoError (1 - error / limit), rounded down. \pre a view for each placement
-std::uint64_t localisedValue(const MeasuredScene& model, std::span<const CountedView> views,
+std::uint64_t localisedValue(const CoverageModel& model, std::span<const CountedView> views,
                              std::span<const Placement> sensors);
 
 /// Searches for the layout with the highest localisedValue().
@@ -31,6 +31,6 @@ std::uint64_t localisedValue(const MeasuredScene& model, std::span<const Counted
 /// And no cell has a value without cover, nor more than the best candidate gives it if all sensors
 /// stand there, which is a problem of coverage. A gap remains in general.
 /// \pre no budget, target or multiplicity is required
-SearchResult searchLocalised(const MeasuredScene& model, Progress& progress);
+SearchResult searchLocalised(const CoverageModel& model, Progress& progress);
 
 }  // namespace ispace

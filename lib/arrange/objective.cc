@@ -7,8 +7,8 @@
 
 #include "arrange/arrange.h"
 #include "arrange/cell_floor.h"
+#include "arrange/coverage_model.h"
 #include "arrange/localise_search.h"
-#include "arrange/measured_scene.h"
 #include "arrange/search/problem.h"
 #include "scene/sensor/camera.h"
 
@@ -30,34 +30,34 @@ void limitCamera(SensorModel& model, const ArrangeOptions& options) {
 }
 
 /// Reports the share of the total weight that is covered at the required multiplicity.
-void reportShare(const MeasuredScene& model, std::span<const CountedView> views,
+void reportShare(const CoverageModel& model, std::span<const CountedView> views,
                  Arrangement& result) {
-    result.value = model.share(model.valueOf(views));
+    result.value = model.shareOf(views);
 }
 
-void reportRobust(const MeasuredScene& model, std::span<const CountedView> views,
+void reportRobust(const CoverageModel& model, std::span<const CountedView> views,
                   Arrangement& result) {
     result.robust = model.robustValuesOf(views, result.sensors);
     result.value = model.isWorstCase() ? result.robust->worst : result.robust->mean;
 }
 
-SearchResult findWorstCase(const MeasuredScene& model, Progress& progress) {
+SearchResult findWorstCase(const CoverageModel& model, Progress& progress) {
     return searchWorstCase(model.cases(), model.searchOptions(), progress);
 }
 
-void reportPath(const MeasuredScene& model, std::span<const CountedView> views,
+void reportPath(const CoverageModel& model, std::span<const CountedView> views,
                 Arrangement& result) {
     result.value = model.share(model.leastSeen(views));
     result.whole = static_cast<double>(model.cases().shortest) * kWayUnit;
 }
 
-void reportLocalised(const MeasuredScene& model, std::span<const CountedView> views,
+void reportLocalised(const CoverageModel& model, std::span<const CountedView> views,
                      Arrangement& result) {
     result.value = model.share(localisedValue(model, views, result.sensors));
     result.whole = model.options().objective.within;
 }
 
-void reportCost(const MeasuredScene& model, std::span<const CountedView> /*views*/,
+void reportCost(const CoverageModel& model, std::span<const CountedView> /*views*/,
                 Arrangement& result) {
     // Few sums, and few roundings, kind by kind.
     std::vector<int> counts(model.kinds().size());

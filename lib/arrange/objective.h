@@ -16,7 +16,7 @@ namespace ispace {
 
 struct Arrangement;
 struct CountedView;
-class MeasuredScene;
+class CoverageModel;
 
 /// A quantity that arrange optimises. To add one, write its functions and a row.
 struct Objective {
@@ -27,11 +27,11 @@ struct Objective {
     /// Limits the region that a sensor covers, before any view is computed; null: no limit.
     void (*limit)(SensorModel&, const ArrangeOptions&) = nullptr;
     /// Searches for the best layout; null: search() or minimumCostCover() of the problem.
-    SearchResult (*find)(const MeasuredScene&, Progress&) = nullptr;
+    SearchResult (*find)(const CoverageModel&, Progress&) = nullptr;
     /// Stores the objective's figures in the result.
     /// \param views of the placed sensors on the search's grid; null: the coverage already is the
     ///        figure
-    void (*report)(const MeasuredScene&, std::span<const CountedView> views,
+    void (*report)(const CoverageModel&, std::span<const CountedView> views,
                    Arrangement&) = nullptr;
 };
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <variant>
 
+#include "arrange/coverage_model.h"
 #include "arrange/gallery/gallery.h"
 #include "arrange/gallery/guard_certificate.h"
-#include "arrange/measured_scene.h"
 #include "arrange/opaque_floor.h"
 #include "arrange/poses/pose_search.h"
 #include "arrange/refine.h"
@@ -98,13 +98,14 @@ Arrangement arrangeOverPoses(const Scene& scene, const std::vector<SensorGroup>&
 
     Arrangement result;
     const std::vector<SensorClass> kinds = kindsOf(groups);
-    std::vector<Pose3> poses;
+    std::vector<RoomPose> poses;
     for (const Point2 p : cover.guards) {
         if (poses.size() == static_cast<std::size_t>(kinds.front().most)) break;
-        poses.push_back({{p.x, p.y, height}, {}, {}, {}});
+        poses.push_back({0, {{p.x, p.y, height}, {}, {}, {}}});
     }
     result.is_reached = !cover.guards.empty() && poses.size() == cover.guards.size();
-    result.sensors = placementsOf(scene, groups, kinds, {std::move(poses)});
+    const Scene* const room = &scene;
+    result.sensors = placementsOf(RoomScenes(&room, 1), groups, kinds, {std::move(poses)});
     result.cost = static_cast<double>(result.sensors.size());
     result.candidates = cover.candidates;
     result.is_complete = cover.isProven() || !progress.stopped();
@@ -130,7 +131,7 @@ poses::Sector sectorOf(const Laser& laser, const Box2& box) {
 
 /// Returns placements of all sensors: those placed, and the others at the pose of the last of them,
 /// or at a point of the floor. \pre the floor is not empty
-std::vector<Placement> placementsOfAll(const MeasuredScene& model, const std::vector<Region>& floor,
+std::vector<Placement> placementsOfAll(const CoverageModel& model, const std::vector<Region>& floor,
                                        const std::vector<Placement>& placed) {
     Pose3 spare;
     if (placed.empty()) {
@@ -143,24 +144,27 @@ std::vector<Placement> placementsOfAll(const MeasuredScene& model, const std::ve
     } else {
         spare = placed.back().pose;
     }
-    std::vector<Pose3> poses;
+    std::vector<RoomPose> poses;
     poses.reserve(placed.size());
-    for (const Placement& placement : placed) poses.push_back(placement.pose);
-    poses.resize(static_cast<std::size_t>(model.groups().front().most), spare);
-    return placementsOf(model.scene(), model.groups(), kindsOf(model.groups()), {std::move(poses)});
+    for (const Placement& placement : placed) poses.push_back({0, placement.pose});
+    poses.resize(static_cast<std::size_t>(model.groups().front().most), RoomPose{0, spare});
+    const Scene* const room = &model.only().scene();
+    return placementsOf(RoomScenes(&room, 1), model.groups(), kindsOf(model.groups()),
+                        {std::move(poses)});
 }
 
 /// Layouts near poses of boxes, by refinement.
 class LayoutTrials {
   public:
     /// \param all placements of all sensors: a layout may have more than were placed
-    LayoutTrials(MeasuredScene& model, const std::vector<Region>& floor,
+    LayoutTrials(CoverageModel& model, const std::vector<Region>& floor,
                  const std::vector<Placement>& placed, const std::vector<Placement>& all)
         : model_(model), floor_(floor) {
         for (const Placement& placement : all)
             sensors_.push_back(sensorOf(model.groups(), placement));
-        const ExactGain gain(model.scene(), model.sight(), std::span(sensors_).first(placed.size()),
-                             model.options().weights, model.options().redundancy);
+        const ExactGain gain(model.only().scene(), model.only().sight(),
+                             std::span(sensors_).first(placed.size()), model.options().weights,
+                             model.options().redundancy);
         found_ = gain.value();
         total_ = gain.total();
     }
@@ -179,7 +183,7 @@ class LayoutTrials {
         }
         RefineOptions options{.multiplicity = model_.options().redundancy};
         options.is_valid = [this](std::size_t, Point2 p) { return isValid(p); };
-        const Refined refined = refine(model_.scene(), model_.sight(), sensors,
+        const Refined refined = refine(model_.only().scene(), model_.only().sight(), sensors,
                                        model_.options().weights, options, progress);
         PosedLayout layout{std::min(refined.after, total_)};
         for (const Pose3& pose : refined.poses)
@@ -196,8 +200,8 @@ class LayoutTrials {
             sensors[i].pose.position.y = layout.poses[i].position.y;
             sensors[i].pose.heading = layout.poses[i].heading;
         }
-        const ExactGain gain(model_.scene(), model_.sight(), sensors, model_.options().weights,
-                             model_.options().redundancy);
+        const ExactGain gain(model_.only().scene(), model_.only().sight(), sensors,
+                             model_.options().weights, model_.options().redundancy);
         if (std::abs(gain.value() - layout.area) > kRounding * total_) Unpacker::refuse();
     }
 
@@ -210,7 +214,7 @@ class LayoutTrials {
                            [p](const Region& region) { return region.locate(p) == Side::Inside; });
     }
 
-    MeasuredScene& model_;
+    CoverageModel& model_;
     const std::vector<Region>& floor_;
     std::vector<Sensor> sensors_;
     double found_ = 0, total_ = 0;
@@ -286,8 +290,8 @@ double freeWeight(const poses::PoseFloor& floor) {
 
 }  // namespace
 
-void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& progress) {
-    const std::vector<Region> floor = floorAt(model.scene(), heightOf(model.options()));
+void boundOfPoses(CoverageModel& model, Arrangement& arrangement, Progress& progress) {
+    const std::vector<Region> floor = floorAt(model.only().scene(), heightOf(model.options()));
     if (floor.empty()) return;
     const auto& laser = std::get<Laser>(model.groups().front().model);
     const poses::PoseFloor cells(floor, kCells, weightingOf(model.options().weights));

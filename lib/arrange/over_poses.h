@@ -26,7 +26,7 @@ Arrangement arrangeOverPoses(const Scene& scene, const std::vector<SensorGroup>&
 GuardCheck checkGuarded(const Scene& scene, const GuardCertificate& certificate,
                         const std::string& name);
 
-class MeasuredScene;
+class CoverageModel;
 
 /// Gap at which a bound of coverage over all poses is close enough, unless another is given.
 constexpr double kPosesGap = 0.005;
@@ -42,7 +42,7 @@ void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
 
 /// Bounds the coverage of the arranged sensors over all poses (Arrangement::poses_bound), and moves
 /// them if a better layout is found on the way.
-void boundOfPoses(MeasuredScene& model, Arrangement& arrangement, Progress& progress);
+void boundOfPoses(CoverageModel& model, Arrangement& arrangement, Progress& progress);
 
 /// A bound of coverage over all poses that was checked, m2.
 struct CheckedPoses {

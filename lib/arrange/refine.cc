@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "arrange/measured_scene.h"
+#include "arrange/coverage_model.h"
 #include "base/error.h"
 #include "base/number.h"
 
@@ -235,36 +235,67 @@ bool areApart(const std::vector<Sensor>& before, const std::vector<Pose3>& poses
 
 }  // namespace
 
-Refined refine(MeasuredScene& model, const std::vector<Placement>& placements, std::uint64_t least,
-               Progress& progress) {
+namespace {
+
+/// Refines the sensors of one room among the others; `placements` receive their poses.
+Refined refineRoom(CoverageModel& model, std::size_t room, std::vector<Placement>& placements,
+                   std::uint64_t least, Progress& progress) {
+    if (!model.hasRoom(room) || !model.site().rooms[room].goals.counts) return {};
+    RoomModel& own = model.room(room);
+    std::vector<std::size_t> moving;
     std::vector<Sensor> sensors;
     std::vector<const SiteValidity*> validities;
-    for (const Placement& placement : placements) {
-        sensors.push_back(sensorOf(model.groups(), placement));
-        validities.push_back(&model.validityAt(placement.pose.position.z));
+    for (std::size_t i = 0; i < placements.size(); ++i) {
+        if (placements[i].room != room) continue;
+        moving.push_back(i);
+        sensors.push_back(sensorOf(model.groups(), placements[i]));
+        validities.push_back(&own.pool().validityAt(placements[i].pose.position.z));
     }
+    if (moving.empty()) return {};
     RefineOptions refining{.multiplicity = model.options().redundancy};
     refining.is_valid = [&](std::size_t i, Point2 place) { return validities[i]->isValid(place); };
     refining.accepts = [&](const std::vector<Pose3>& poses) { return areApart(sensors, poses); };
     const auto refined = [&] {
-        return refine(model.scene(), model.sight(), sensors, model.options().weights, refining,
-                      progress);
+        return refine(own.scene(), own.sight(), sensors, own.options().weights, refining, progress);
+    };
+    const auto with_poses = [&](const std::vector<Pose3>& poses) {
+        std::vector<Placement> moved = placements;
+        for (std::size_t i = 0; i < poses.size(); ++i) moved[moving[i]].pose = poses[i];
+        return moved;
     };
     const auto is_kept = [&](const std::vector<Pose3>& poses) {
-        std::vector<Sensor> moved = sensors;
-        for (std::size_t i = 0; i < poses.size(); ++i) moved[i].pose = poses[i];
-        const std::vector<CountedView> views = model.viewsOf(moved);
+        const std::vector<Placement> moved = with_poses(poses);
+        const std::vector<CountedView> views = model.viewsOf(std::span<const Placement>(moved));
         return model.valueOf(views) >= least &&
                (!model.options().is_connected || model.isConnected(views));
     };
     Refined best = refined();
-    if (is_kept(best.poses)) return best;
-    // The exact optimum may lose a cell on the grid by which results are compared, or break the
-    // connection: then each step is tested for that.
-    refining.accepts = [&](const std::vector<Pose3>& poses) {
-        return areApart(sensors, poses) && is_kept(poses);
-    };
-    return refined();
+    if (!is_kept(best.poses)) {
+        // The exact optimum may lose a cell on the grid by which results are compared, or break the
+        // connection: then each step is tested for that.
+        refining.accepts = [&](const std::vector<Pose3>& poses) {
+            return areApart(sensors, poses) && is_kept(poses);
+        };
+        best = refined();
+    }
+    placements = with_poses(best.poses);
+    return best;
+}
+
+}  // namespace
+
+Refined refine(CoverageModel& model, const std::vector<Placement>& placements, std::uint64_t least,
+               Progress& progress) {
+    std::vector<Placement> moved = placements;
+    Refined all;
+    for (std::size_t room = 0; room < model.site().rooms.size(); ++room) {
+        const Refined own = refineRoom(model, room, moved, least, progress);
+        all.before += own.before;
+        all.after += own.after;
+        all.evaluations += own.evaluations;
+    }
+    for (const Placement& placement : moved) all.poses.push_back(placement.pose);
+    return all;
 }
 
 }  // namespace ispace

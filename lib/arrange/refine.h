@@ -17,7 +17,7 @@
 
 namespace ispace {
 
-class MeasuredScene;
+class CoverageModel;
 
 struct RefineOptions {
     int multiplicity = 1;                ///< a point is covered if this many sensors see it
@@ -58,10 +58,10 @@ void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
 Refined refine(const Scene& scene, const VisibleArea& sight, std::span<const Sensor> sensors,
                const FloorWeights& weights, const RefineOptions& options, Progress& progress);
 
-/// Runs refine() on sensors that a search arranged, by the rules of the search: sites stay valid,
-/// the value on its grid ends no lower than `least`, and connected coverage stays connected.
-/// Sensors that were apart stay 5 cm apart: two housings need their space.
-Refined refine(MeasuredScene& model, const std::vector<Placement>& placements, std::uint64_t least,
+/// Runs refine() on sensors that a search arranged, room by room, by the rules of the search: sites
+/// stay valid, the value on its grid ends no lower than `least`, and connected coverage stays
+/// connected. Sensors that were apart stay 5 cm apart: two housings need their space.
+Refined refine(CoverageModel& model, const std::vector<Placement>& placements, std::uint64_t least,
                Progress& progress);
 
 /// Computes the exact gain of poses: the area that at least `multiplicity` sensors see, in closed

@@ -28,25 +28,30 @@ SensorModel modelFor(const Record& record, const DeviceCatalogue& devices) {
 }
 
 /// Finds the record with this id.
-/// \pre a record of the scene or an added one has the id
-const Record& holderOf(const std::string& id, const Scene& scene,
-                       std::span<const SensorSpec> added) {
-    const auto found = std::find(scene.ids.begin(), scene.ids.end(), id);
-    if (found != scene.ids.end())
-        return scene.records.at(static_cast<std::size_t>(found - scene.ids.begin()));
+/// \pre a record of a room or an added one has the id
+const Record& holderOf(const std::string& id, RoomScenes rooms, std::span<const SensorSpec> added) {
+    for (const Scene* const scene : rooms) {
+        const auto found = std::find(scene->ids.begin(), scene->ids.end(), id);
+        if (found != scene->ids.end())
+            return scene->records.at(static_cast<std::size_t>(found - scene->ids.begin()));
+    }
     const auto is_holder = [&id](const SensorSpec& spec) { return spec.record.writtenId() == id; };
     return std::find_if(added.begin(), added.end(), is_holder)->record;
 }
 
 }  // namespace
 
-std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const SensorSpec> added,
+std::vector<SensorGroup> groupsToPlace(RoomScenes rooms, std::span<const SensorSpec> added,
                                        const DeviceCatalogue& devices, bool open) {
     std::vector<SensorGroup> groups;
-    groups.reserve(scene.pending.size() + added.size());
-    for (const PendingSensor& sensor : scene.pending)
-        groups.push_back({sensor.record, sensor.model, sensor.id, true, 1});
-    std::set<std::string> taken(scene.ids.begin(), scene.ids.end());
+    std::set<std::string> taken;
+    for (std::size_t room = 0; room < rooms.size(); ++room) {
+        for (const PendingSensor& sensor : rooms[room]->pending) {
+            groups.push_back({sensor.record, sensor.model, sensor.id, true, 1});
+            if (rooms.size() > 1) groups.back().room = room;
+        }
+        taken.insert(rooms[room]->ids.begin(), rooms[room]->ids.end());
+    }
     for (const auto& [record, count] : added) {
         for (const char* key : {"at", "heading", "on"})
             if (record.has(key))
@@ -54,11 +59,17 @@ std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const Senso
                                  std::string(key) + '`');
         const std::string id = record.writtenId();
         if (!id.empty() && !taken.insert(id).second)
-            throw UsageError(takenText(id, holderOf(id, scene, added)));
+            throw UsageError(takenText(id, holderOf(id, rooms, added)));
         const int most = count.value_or(open && id.empty() ? kMaxOpen : 1);
         groups.push_back({record, modelFor(record, devices), id, false, most});
     }
     return groups;
+}
+
+std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const SensorSpec> added,
+                                       const DeviceCatalogue& devices, bool open) {
+    const Scene* const room = &scene;
+    return groupsToPlace(RoomScenes(&room, 1), added, devices, open);
 }
 
 Document withoutPlaces(const Document& layout, std::span<const std::string> fixed) {
@@ -112,7 +123,8 @@ std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool ap
         const double cost = group.record.number("cost");
         const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const SensorClass& kind) {
             return !apart && kind.model == group.model && kind.whole == group.whole &&
-                   kind.cost == cost && kind.record.angle("tilt") == group.record.angle("tilt") &&
+                   kind.room == group.room && kind.cost == cost &&
+                   kind.record.angle("tilt") == group.record.angle("tilt") &&
                    kind.record.angle("roll") == group.record.angle("roll");
         });
         if (same != kinds.end()) {
@@ -127,7 +139,8 @@ std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool ap
                              cost,
                              apart ? 1 : group.most,
                              {i},
-                             group.whole});
+                             group.whole,
+                             group.room});
     }
     return kinds;
 }
@@ -143,27 +156,34 @@ std::vector<Placement> sensorsToPlace(const std::vector<SensorGroup>& groups,
     return sensors;
 }
 
-std::vector<Placement> placementsOf(const Scene& scene, const std::vector<SensorGroup>& groups,
+std::vector<Placement> placementsOf(RoomScenes rooms, const std::vector<SensorGroup>& groups,
                                     const std::vector<SensorClass>& kinds,
-                                    const std::vector<std::vector<Pose3>>& poses) {
+                                    const std::vector<std::vector<RoomPose>>& poses) {
     std::vector<std::size_t> used(kinds.size());
     std::vector<Placement> placements;
-    std::vector<Record> records = scene.records;
-    std::vector<std::size_t> added;  // sensors without an id
+    std::vector<std::vector<Record>> records;                   // by room
+    std::vector<std::vector<std::size_t>> added(rooms.size());  // sensors without an id
+    for (const Scene* const scene : rooms)
+        records.push_back(scene != nullptr ? scene->records : std::vector<Record>());
     for (Placement& sensor : sensorsToPlace(groups, kinds)) {
         const SensorGroup& group = groups[sensor.group];
         if (used[sensor.kind] == poses[sensor.kind].size()) continue;
         sensor.sensor = group.id;
-        sensor.pose = poses[sensor.kind][used[sensor.kind]++];
+        const RoomPose& pose = poses[sensor.kind][used[sensor.kind]++];
+        sensor.room = pose.room;
+        sensor.pose = pose.pose;
         if (!group.is_pending) {
-            records.push_back(group.record);
-            added.push_back(placements.size());
+            records[sensor.room].push_back(group.record);
+            added[sensor.room].push_back(placements.size());
         }
         placements.push_back(std::move(sensor));
     }
-    const std::vector<std::string> ids = assignIds(records);
-    for (std::size_t i = 0; i < added.size(); ++i)
-        placements[added[i]].sensor = ids[scene.records.size() + i];
+    for (std::size_t room = 0; room < rooms.size(); ++room) {
+        if (added[room].empty()) continue;
+        const std::vector<std::string> ids = assignIds(records[room]);
+        for (std::size_t i = 0; i < added[room].size(); ++i)
+            placements[added[room][i]].sensor = ids[rooms[room]->records.size() + i];
+    }
     return placements;
 }
 
@@ -183,10 +203,10 @@ Record placedRecord(const SensorGroup& group, const Placement& placement) {
 }
 
 Scene withPlaced(const Scene& scene, const std::vector<SensorGroup>& groups,
-                 const std::vector<Placement>& placements) {
+                 const std::vector<Placement>& placements, std::size_t room) {
     Scene whole = scene;
     for (const Placement& placement : placements)
-        whole.sensors.push_back(sensorOf(groups, placement));
+        if (placement.room == room) whole.sensors.push_back(sensorOf(groups, placement));
     return whole;
 }
 

@@ -26,12 +26,20 @@ struct SensorGroup {
     int most = 1;
     /// The model before objectives limit the floor that it covers; empty: the same.
     std::optional<SensorModel> whole = {};
+    std::optional<std::size_t> room = {};  ///< of several rooms, the one that it stands in
 };
 
-/// Returns all sensors to be placed: the unplaced ones of the scene, then `added`. `open`: the
-/// search finds the number of added sensors without a count, up to kMaxOpen.
+/// Scenes of the rooms of a site; null for those that are left out.
+using RoomScenes = std::span<const Scene* const>;
+
+/// Returns all sensors to be placed: the unplaced ones of the rooms, each to stand in its room,
+/// then `added`, which may stand in any. `open`: the search finds the number of added sensors
+/// without a count, up to kMaxOpen.
 /// \throws UsageError if an added record has a pose or an id that is taken, FormatError as
 ///         withParameters()
+std::vector<SensorGroup> groupsToPlace(RoomScenes rooms, std::span<const SensorSpec> added,
+                                       const DeviceCatalogue& devices, bool open);
+/// As above, for a room alone.
 std::vector<SensorGroup> groupsToPlace(const Scene& scene, std::span<const SensorSpec> added,
                                        const DeviceCatalogue& devices, bool open);
 
@@ -49,6 +57,7 @@ struct SensorClass {
     int most = 0;                           ///< over all its groups
     std::vector<std::size_t> groups = {};   ///< ascending
     std::optional<SensorModel> whole = {};  ///< of its groups
+    std::optional<std::size_t> room = {};   ///< of its groups
 };
 
 /// Returns the kinds of these groups, in order of first appearance; `apart`: one for each sensor.
@@ -57,7 +66,14 @@ std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool ap
 /// A sensor and the pose found for it, if any.
 struct Placement {
     std::size_t group = 0, kind = 0;
-    std::string sensor = {};  ///< id
+    std::string sensor = {};  ///< id, in its room
+    Pose3 pose = {};
+    std::size_t room = 0;  ///< of the site; the pose is in its frame
+};
+
+/// A pose in a room of a site.
+struct RoomPose {
+    std::size_t room = 0;
     Pose3 pose = {};
 };
 
@@ -69,10 +85,10 @@ std::vector<Placement> sensorsToPlace(const std::vector<SensorGroup>& groups,
 inline bool isPartial(const SensorModel& model) { return kindOf(model).together > 1; }
 
 /// Assigns the poses of each kind to the sensors of its groups, in order; removes sensors without a
-/// pose. New sensors get the next free ids.
-std::vector<Placement> placementsOf(const Scene& scene, const std::vector<SensorGroup>& groups,
+/// pose. New sensors get the next free ids of their rooms.
+std::vector<Placement> placementsOf(RoomScenes rooms, const std::vector<SensorGroup>& groups,
                                     const std::vector<SensorClass>& kinds,
-                                    const std::vector<std::vector<Pose3>>& poses);
+                                    const std::vector<std::vector<RoomPose>>& poses);
 
 /// Returns the sensor of a placement.
 Sensor sensorOf(const std::vector<SensorGroup>& groups, const Placement& placement);
@@ -81,8 +97,8 @@ Sensor sensorOf(const std::vector<SensorGroup>& groups, const Placement& placeme
 /// `tilt` are set.
 Record placedRecord(const SensorGroup& group, const Placement& placement);
 
-/// Returns the scene with these sensors placed.
+/// Returns the scene of a room with those of these sensors placed that stand in it.
 Scene withPlaced(const Scene& scene, const std::vector<SensorGroup>& groups,
-                 const std::vector<Placement>& placements);
+                 const std::vector<Placement>& placements, std::size_t room = 0);
 
 }  // namespace ispace

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "arrange/measured_scene.h"
+#include "arrange/coverage_model.h"
 #include "arrange/objective.h"
 #include "arrange/search/case_values.h"
 #include "base/error.h"
@@ -22,25 +22,39 @@ std::uint64_t totalOf(const std::vector<std::uint32_t>& weights) {
 
 }  // namespace
 
-CellSet MeasuredScene::stackedCellsOf(const Sensor& sensor) const {
-    CellSet cells(problem_.cells());
-    for (const auto& room : rooms_)
-        cells |= room->stacked(room->sight.cellsOf(room->target.grid, room->mounted(sensor)),
-                               problem_.cells());
-    return cells;
+void CoverageModel::stackCases() {
+    if (site_.isOneRoom()) return stackOneRoom();
+    // Failures of sensors in any room: the cells of all rooms are those of the one case.
+    cases_.blocks.push_back({0, problem_.cells()});
+    for (std::size_t i = 0; i < rooms_.size(); ++i) {
+        if (rooms_[i].model == nullptr) continue;
+        const Scene& scene = rooms_[i].model->scene();
+        std::vector<SiteSensor> sensors;
+        for (const Sensor& sensor : scene.sensors)
+            if (kindOf(sensor.model).perceives) sensors.push_back({i, sensor});
+        for (CountedView& view : viewsOf(std::span<const SiteSensor>(sensors)))
+            cases_.standing.push_back(std::move(view.cells));
+        for (const SiteSensor& sensor : sensors)
+            standing_ids_.push_back(site_.rooms[i].id + '/' + sensor.sensor.id);
+    }
+    stackFailures();
+    cases_.problem = &problem_;
+    total_ = isWorstCase() ? cases_.totalOf(0) : problem_.totalWeight();
 }
 
-void MeasuredScene::stackRooms() {
+void CoverageModel::stackOneRoom() {
+    RoomModel& model = only();
+    model.makeCases();
     std::vector<double> weights;
     std::vector<std::uint16_t> achieved;
     double first_total = 0;
-    for (const auto& room : rooms_) {
+    for (const auto& room : model.cases()) {
         const std::size_t first = weights.size();
         const Coverage standing = measureCoverage(
             room->scene, room->worlds,
             {.cells = searchCells(options_), .plane = options_.plane, .exact = false});
         room->target = standing.target;
-        std::vector<double> own = cellWeights(room->target, options_);
+        std::vector<double> own = cellWeights(room->target, model.options());
         const double total = std::accumulate(own.begin(), own.end(), 0.0);
         if (total <= 0) throw UnmetError("nothing to cover in " + room->name);
         if (first == 0) first_total = total;
@@ -52,7 +66,7 @@ void MeasuredScene::stackRooms() {
             for (double& weight : own) weight *= first_total / total;
         weights.insert(weights.end(), own.begin(), own.end());
         achieved.resize(weights.size());
-        countStanding(standing.sensors, first, achieved);
+        model.countStanding(standing.sensors, first, achieved);
         room->firsts = {first};
         cases_.blocks.push_back({first, weights.size()});
         if (options_.robust.of == RobustChoice::Of::Failures)
@@ -69,7 +83,7 @@ void MeasuredScene::stackRooms() {
     total_ = isWorstCase() ? cases_.totalOf(0) : problem_.totalWeight();
 }
 
-void MeasuredScene::stackFailures() {
+void CoverageModel::stackFailures() {
     if (unit_ > 1)
         throw UsageError("--robust failures: receivers hear a tag together; leave them out");
     const auto failures = static_cast<std::size_t>(options_.robust.failures);
@@ -88,12 +102,23 @@ void MeasuredScene::stackFailures() {
     problem_.standing = CellSet(problem_.cells());
     cases_.failures = options_.robust.failures;
     cases_.least_total = made.least_total;
-    CaseRoom& room = *rooms_.front();
-    for (std::size_t m = 1; m <= failures; ++m) room.firsts.push_back(m * cells);
-    for (CellSet& view : cases_.standing) view = room.stacked(view, problem_.cells());
+    const auto copy_at = [&](std::vector<std::size_t>& firsts) {
+        const std::size_t first = firsts.front();
+        for (std::size_t m = 1; m <= failures; ++m) firsts.push_back(m * cells + first);
+    };
+    if (site_.isOneRoom())
+        copy_at(only().cases().front()->firsts);
+    else
+        for (Room& room : rooms_) copy_at(room.firsts);
+    for (CellSet& view : cases_.standing) {
+        CellSet stack(problem_.cells());
+        for (std::size_t m = 0; m <= failures; ++m)
+            view.forEach([&](std::size_t cell) { stack.set(m * cells + cell); });
+        view = std::move(stack);
+    }
 }
 
-RobustValues MeasuredScene::robustValuesOf(std::span<const CountedView> views,
+RobustValues CoverageModel::robustValuesOf(std::span<const CountedView> views,
                                            std::span<const Placement> sensors) const {
     std::vector<SensorCells> cells;
     for (const CountedView& view : views) cells.push_back({&view.cells, view.multiplicity});
@@ -108,12 +133,12 @@ RobustValues MeasuredScene::robustValuesOf(std::span<const CountedView> views,
     } else {
         for (const std::uint64_t value : values.ofBlocks())
             robust.shares.push_back(static_cast<double>(value) / unit);
-        for (const auto& room : rooms_) robust.names.push_back(room->name);
+        for (const auto& room : only().cases()) robust.names.push_back(room->name);
     }
     for (const std::size_t failed : worst.failed)
         robust.failed.push_back(failed < standing_ids_.size()
                                     ? standing_ids_[failed]
-                                    : sensors[failed - standing_ids_.size()].sensor);
+                                    : wholeId(site_, sensors[failed - standing_ids_.size()]));
     return robust;
 }
 

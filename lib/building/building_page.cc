@@ -88,6 +88,7 @@ ReportPage buildingPage(const BuildingPageInput& input) {
                     squareMetres(input.coverage.indoor_area);
     page.sections.push_back(buildingSummary(input));
     page.sections.push_back(storeysSection(input));
+    for (const PageSection& section : input.more) page.sections.push_back(section);
     for (std::size_t i = 0; i < input.coverage.storeys.size(); ++i)
         page.sections.push_back(storeySection(input, i));
     if (input.advice != nullptr) page.sections.push_back(adviceSection(*input.advice));

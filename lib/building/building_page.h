@@ -18,6 +18,7 @@ struct BuildingPageInput {
     std::vector<JudgedRequirement> requirements = {};
     const BuildingRunCoverage* run = nullptr;  ///< null: without
     const Advice* advice = nullptr;            ///< null: without
+    std::vector<PageSection> more = {};        ///< after the storeys' table
 };
 
 /// Builds the report of a building: summary, requirements, figures by storey and in sum, then map

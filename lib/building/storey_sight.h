@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "arrange/joined_rooms.h"
 #include "base/cell_set.h"
 #include "base/parallel.h"
 #include "building/building_sight.h"
@@ -15,21 +14,21 @@
 
 namespace ispace {
 
-/// The sight of sensors that may stand anywhere on a storey into other storeys, by cells; rooms of
-/// JoinedRooms are storeys. measureBuilding() counts these cells, too. They agree with the regions
+/// The sight of sensors that may stand anywhere on a storey into other storeys, by cells, as
+/// BuildingSite asks for. measureBuilding() counts these cells, too. They agree with the regions
 /// of viewsBetweenStoreys(), but for centres within 0.3 mm of a boundary: those on the rim of an
 /// opening are not seen. Stores the coupling's reference. Thread-safe.
-class StoreySight final : public SightBetweenRooms {
+class StoreySight {
   public:
     /// \param plane see CoverageOptions
     StoreySight(const Coupling& coupling, double plane);
 
     /// Returns true if there are openings between storeys.
     [[nodiscard]] bool hasOpenings() const { return !coupling_.openings().empty(); }
-    [[nodiscard]] bool maySee(std::size_t from, const Sensor& sensor,
-                              std::size_t to) const override;
+    /// See SiteSight.
+    [[nodiscard]] bool maySee(std::size_t from, const Sensor& sensor, std::size_t to) const;
     void look(std::size_t from, std::span<const Sensor> turned, std::size_t to, const Grid& grid,
-              CellParts& parts) const override;
+              CellParts& parts) const;
     /// Returns the cells that one sensor sees. \param density see CoverageOptions
     [[nodiscard]] CellSet cells(std::size_t from, Sensor sensor, std::size_t to, const Grid& grid,
                                 double density) const;

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "building/building_arrange.h"
 #include "building/building_coverage.h"
 #include "building/storeys.h"
 #include "record/text.h"
+#include "support/test_arrange_building.h"
 #include "support/test_layout.h"
 
 namespace ispace {
@@ -124,19 +124,16 @@ TEST(StoreySight, TheProofHoldsForAllLayoutsOfTheBuilding) {
     record.set("pixels", Tuple{100, 100});
     record.set("range", Tuple{7});
     record.set("tilt", -52.3);
-    SilentProgress progress;
-    const BuildingArrangement found = arrangeBuilding(building, {record, 2}, 2, options, progress);
+    const ArrangedBuilding result = arrangedIn(building, {{record, 2}}, options);
+    const Arrangement& found = result.found;
     EXPECT_EQ(found.candidates, places.size());
-    EXPECT_NEAR(found.value, best, 1e-12);
-    EXPECT_LE(found.bound - found.value, found.rounding + 1e-12) << "proven";
+    EXPECT_NEAR(found.candidate_value, best, 1e-12);
+    EXPECT_LE(result.gap(), found.rounding + 1e-12) << "proven";
     EXPECT_LT(found.rounding, 1e-5);
-    EXPECT_EQ(found.counts[0] + found.counts[1], 2);
-    EXPECT_GE(found.bound, found.value);
+    EXPECT_EQ(result.counts[0] + result.counts[1], 2);
+    EXPECT_GE(found.bound, found.candidate_value);
     // The written layout has that value.
-    const Document layout = buildingLayout(
-        {{}, "house.yaml", building.document.digest(), "grid", "exact"}, building, found);
-    const BuildingScene again = makeBuildingScene(
-        building.document, layoutsOf(layout, building.document), building.devices);
+    const BuildingScene again = written(building, result);
     EXPECT_NEAR(measureBuilding(again, coarseFloor()).coverage.grid.value_or(0), best, 1e-9);
     EXPECT_NEAR(measureBuilding(again, {}).coverage.grid.value_or(0), found.coverage, 1e-12);
 }
@@ -158,14 +155,6 @@ Record cameraToPlace(double fov, double tilt) {
     return record;
 }
 
-/// Returns a building with the sensors of an arrangement, as read from its file.
-BuildingScene written(const BuildingScene& building, const BuildingArrangement& found) {
-    const Document layout = buildingLayout(
-        {{}, "house.yaml", building.document.digest(), "grid", "swap"}, building, found);
-    return makeBuildingScene(building.document, layoutsOf(layout, building.document),
-                             building.devices);
-}
-
 TEST(StoreySight, TheCoverageOfALayoutIsAtTheDensityOfTheSearch) {
     const BuildingScene building = placed(kAtrium, "");
     ArrangeOptions options;
@@ -174,17 +163,15 @@ TEST(StoreySight, TheCoverageOfALayoutIsAtTheDensityOfTheSearch) {
     options.mount.on = MountOn::Wall;
     options.plane = 0.5;
     options.pixel_density = 60;
-    SilentProgress progress;
-    const BuildingArrangement found =
-        arrangeBuilding(building, {cameraToPlace(90, -50), 2}, 2, options, progress);
-    const BuildingScene again = written(building, found);
+    const ArrangedBuilding result = arrangedIn(building, {{cameraToPlace(90, -50), 2}}, options);
+    const BuildingScene again = written(building, result);
     CoverageOptions measure;
     measure.plane = options.plane;
     const double any = measureBuilding(again, measure).coverage.grid.value_or(0);
     measure.density = options.pixel_density;
     const double dense = measureBuilding(again, measure).coverage.grid.value_or(0);
     EXPECT_LT(dense, any - 0.01) << "the density matters";
-    EXPECT_NEAR(found.coverage, dense, 1e-12);
+    EXPECT_NEAR(result.found.coverage, dense, 1e-12);
 }
 
 TEST(StoreySight, TheValueOfALayoutIsItsCoverageByCells) {
@@ -200,19 +187,19 @@ TEST(StoreySight, TheValueOfALayoutIsItsCoverageByCells) {
                 options.mount.heights = {2.4};
                 options.plane = plane;
                 options.pixel_density = density;
-                SilentProgress progress;
-                const BuildingArrangement found =
-                    arrangeBuilding(building, {cameraToPlace(90, -50), 1}, 1, options, progress);
+                const ArrangedBuilding result =
+                    arrangedIn(building, {{cameraToPlace(90, -50), 1}}, options);
                 CoverageOptions measure;
                 measure.cells = CellSize{0.1};
                 measure.plane = plane;
                 measure.density = density;
                 for (const bool is_exact : {false, true}) {
                     measure.exact = is_exact;
-                    const double covered = measureBuilding(written(building, found), measure)
+                    const double covered = measureBuilding(written(building, result), measure)
                                                .coverage.grid.value_or(0);
-                    EXPECT_NEAR(found.value, covered, 1e-9) << text << plane << ' ' << density;
-                    EXPECT_GE(found.bound, covered - 1e-9);
+                    EXPECT_NEAR(result.found.value.value_or(0), covered, 1e-9)
+                        << text << plane << ' ' << density;
+                    EXPECT_GE(result.found.bound, covered - 1e-9);
                 }
             }
 }

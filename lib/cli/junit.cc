@@ -18,15 +18,13 @@ namespace ispace {
 
 namespace {
 
-using Outcome = JunitCase::Outcome;
-
 void addCase(pugi::xml_node list, const std::string& tool, const JunitCase& one) {
     pugi::xml_node test = list.append_child("testcase");
     test.append_attribute("classname") = tool.c_str();
     test.append_attribute("name") = printable(one.name).c_str();
     test.append_attribute("time") = formatMilliseconds(one.time).c_str();
-    if (one.outcome == Outcome::Met) return;
-    const bool is_error = one.outcome == Outcome::Error;
+    if (one.outcome == JunitCase::Outcome::Met) return;
+    const bool is_error = one.outcome == JunitCase::Outcome::Error;
     pugi::xml_node failure = test.append_child(is_error ? "error" : "failure");
     failure.append_attribute("message") = printable(one.message).c_str();
     failure.append_attribute("type") = is_error ? "error" : "unmet";
@@ -38,7 +36,7 @@ void addCase(pugi::xml_node list, const std::string& tool, const JunitCase& one)
 // GitHub's readers share: https://github.com/testmoapp/junitxml
 std::string junitXml(const std::string& tool, const std::string& suite,
                      std::span<const JunitCase> cases) {
-    const auto count = [cases](Outcome outcome) {
+    const auto count = [cases](JunitCase::Outcome outcome) {
         return static_cast<unsigned long>(std::count_if(
             cases.begin(), cases.end(), [=](const JunitCase& c) { return c.outcome == outcome; }));
     };
@@ -53,8 +51,8 @@ std::string junitXml(const std::string& tool, const std::string& suite,
     pugi::xml_node list = root.append_child("testsuite");
     list.append_attribute("name") = printable(suite).c_str();
     list.append_attribute("tests") = static_cast<unsigned long>(cases.size());
-    list.append_attribute("failures") = count(Outcome::Unmet);
-    list.append_attribute("errors") = count(Outcome::Error);
+    list.append_attribute("failures") = count(JunitCase::Outcome::Unmet);
+    list.append_attribute("errors") = count(JunitCase::Outcome::Error);
     list.append_attribute("skipped") = 0;
     list.append_attribute("time") = formatMilliseconds(end).c_str();
     for (const JunitCase& one : cases) addCase(list, tool, one);
@@ -78,7 +76,7 @@ void JunitFile::during(std::span<const std::string> inputs, const std::function<
     try {
         work();
     } catch (...) {
-        JunitCase error{.name = tool_, .outcome = Outcome::Error};
+        JunitCase error{.name = tool_, .outcome = JunitCase::Outcome::Error};
         for (const std::string& input : inputs) error.name += ' ' + displayName(baseName(input));
         for (const std::string& line : currentFailure().lines())
             error.message.append(error.message.empty() ? "" : "; ").append(line);

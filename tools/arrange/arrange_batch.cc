@@ -42,18 +42,17 @@ std::string waysText(const ArrangeOptions& how) {
 }
 
 /// Returns the job of the command. \param places the text of --places and of ways, "" without
-JobId arrangeJob(const ArrangeCommand& command, const SceneInput& input,
-                 const std::string& places) {
+JobId arrangeJob(const ArrangeCommand& command, const SiteInput& input, const std::string& places) {
     const ArrangeToolOptions& options = command.options();
     JobId job;
     job.tool = "arrange";
     if (input.layout) job.history = input.layout->history;
     job.history.push_back(command.historyLine(input.named));
-    job.room = input.scene.digest();
+    job.room = input.digest();
     std::string all;
-    for (const Document* document : {&input.environment, input.layout ? &*input.layout : nullptr})
-        if (document != nullptr)
-            for (const Record& record : document->records) all += formatRecord(record) + '\n';
+    for (const Record& record : input.environmentRecords()) all += formatRecord(record) + '\n';
+    if (input.layout)
+        for (const Record& record : input.layout->records) all += formatRecord(record) + '\n';
     job.inputs = sha256(all + places);
     job.seed = options.common.seed;
     job.form = options.batch.shard ? nameOf(options.how.search.share.what) : "search";

@@ -8,6 +8,8 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "building/building_coverage.h"
+#include "building/building_page.h"
 #include "cli/common_options.h"
 #include "report/map/map.h"
 #include "report/page/coverage_page.h"
@@ -87,7 +89,7 @@ void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
     std::uint32_t scale = 0;
     for (std::size_t i = arrangement.gains.size(); i-- > 0;) {
         const GainMap& gains = arrangement.gains[i];
-        const Scene scene = withPlaced(work.input.scene, work.groups, gains.before);
+        const Scene scene = withPlaced(work.input.only(), work.groups, gains.before);
         Worlds worlds(scene.environment);
         const Coverage coverage = measureCoverage(
             scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
@@ -104,14 +106,47 @@ void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
     }
 }
 
+namespace {
+
+/// Returns the building with the layout that was found.
+BuildingScene placedBuilding(const ArrangeWork& work, const Arrangement& arrangement) {
+    BuildingScene placed = *work.input.building;
+    for (std::size_t i = 0; i < placed.scenes.size(); ++i)
+        placed.scenes[i] = std::make_shared<const Scene>(
+            withPlaced(*placed.scenes[i], work.groups, arrangement.sensors, i));
+    return placed;
+}
+
+CoverageOptions measuredAs(const ArrangeOptions& how) {
+    return {.plane = how.plane, .density = how.pixel_density};
+}
+
+/// Judges the faces in each storey.
+std::vector<FacingResult> facingOf(const ArrangeWork& work, const BuildingCoverage& coverage) {
+    std::vector<FacingResult> all;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
+        for (FacingResult& result :
+             measureFacing(*coverage.floors[i], coverage.storeys[i], work.goals[i].facing)) {
+            result.rule.zone.insert(0, work.input.ids[i] + '/');
+            all.push_back(std::move(result));
+        }
+    return all;
+}
+
+}  // namespace
+
 std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangement& arrangement) {
     if (work.how.facing.empty() && work.how.privacy.empty()) return std::nullopt;
     CameraRules rules{{}, arrangement.privacy};
     if (work.how.facing.empty()) return rules;
-    const Scene scene = withPlaced(work.input.scene, work.groups, arrangement.sensors);
+    if (work.input.building) {
+        rules.facing = facingOf(
+            work, measureBuilding(placedBuilding(work, arrangement), measuredAs(work.how)));
+        return rules;
+    }
+    const Scene scene = withPlaced(work.input.only(), work.groups, arrangement.sensors);
     Worlds worlds(scene.environment);
-    const Coverage coverage = measureCoverage(
-        scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
+    const Coverage coverage = measureCoverage(scene, worlds, measuredAs(work.how));
     rules.facing = measureFacing(scene, coverage, work.how.facing);
     return rules;
 }
@@ -134,7 +169,7 @@ std::optional<ObjectiveFigures> objectivesOf(const ObjectiveChoice& objective, i
 std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
                                              const Arrangement& arrangement) {
     if (work.how.objective.isCoverage()) return std::nullopt;
-    const Scene scene = withPlaced(work.input.scene, work.groups, arrangement.sensors);
+    const Scene scene = withPlaced(work.input.only(), work.groups, arrangement.sensors);
     Worlds worlds(scene.environment);
     // Positions are judged by cells; the regions for ways may take longer than a limit of time
     // allows.
@@ -146,22 +181,62 @@ std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
     return objectivesOf(work.how.objective, work.how.redundancy, scene, coverage);
 }
 
+namespace {
+
+/// Returns the name of the room or building; "" from stdin.
+std::string nameOf(const SiteInput& input) {
+    return input.environment_operand != "-" ? baseName(input.environment_operand) : "";
+}
+
+std::vector<JudgedRequirement> targetOf(const ArrangeWork& work, const Arrangement& arrangement) {
+    if (!work.how.target) return {};
+    return {{formatPercent(*work.how.target), arrangement.is_reached,
+             "the sensors cover " + percentText(arrangement.value.value_or(arrangement.coverage)) +
+                 (work.how.weights.isUniform() ? "" : " of the floor that counts"),
+             arrangement.coverage - *work.how.target}};
+}
+
+/// Returns the bytes of a page by the suffix of its file.
+std::string finished(const ArrangeToolOptions& options, ReportPage page) {
+    return suffixOf(options.report_file) == "pdf" ? pdfOf(page) : htmlOf(page);
+}
+
+std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork& work,
+                           const Arrangement& arrangement, const std::string& command) {
+    const BuildingScene building = placedBuilding(work, arrangement);
+    const BuildingCoverage coverage = measureBuilding(building, measuredAs(work.how));
+    if (suffixOf(options.report_file) == "json") return buildingCoverageJson(building, coverage);
+    BuildingPageInput input{building, coverage, nameOf(work.input), command,
+                            targetOf(work, arrangement)};
+    PageSection result = resultOf(options, work, arrangement);
+    const CameraRules rules{facingOf(work, coverage), arrangement.privacy};
+    for (const JudgedRule& rule : judgedRules(rules))
+        result.blocks.push_back(PageText{rule.rule + ": " + rule.finding});
+    input.more.push_back(std::move(result));
+    ReportPage page = buildingPage(input);
+    page.cover = coverOf(options.page);
+    if (!page.cover.title.empty()) page.title = page.cover.title;
+    page.paper = paperOf(options.page);
+    return finished(options, std::move(page));
+}
+
+}  // namespace
+
 std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& work,
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command) {
-    const Scene scene = makeScene(work.input.environment, &layout, shippedDevices());
+    if (work.input.building) return buildingReport(options, work, arrangement, command);
+    const Scene scene = makeScene(*work.input.environment, &layout, shippedDevices());
     Worlds worlds(scene.environment);
-    const Coverage coverage = measureCoverage(
-        scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
+    const Coverage coverage = measureCoverage(scene, worlds, measuredAs(work.how));
     const CameraRules rules{measureFacing(scene, coverage, work.how.facing), arrangement.privacy};
     ReportParts parts;
     if (!rules.facing.empty() || !rules.privacy.empty()) parts.rules = &rules;
     const auto objectives = objectivesOf(work.how.objective, work.how.redundancy, scene, coverage);
     if (objectives) parts.objectives = &*objectives;
     if (suffixOf(options.report_file) == "json") return coverageJson(coverage.report, parts);
-    CoveragePageInput page{scene, coverage, "", command};
+    CoveragePageInput page{scene, coverage, nameOf(work.input), command};
     page.parts = parts;
-    if (work.input.environment_operand != "-") page.name = baseName(work.input.environment_operand);
     page.more.push_back(resultOf(options, work, arrangement));
     if (work.how.target)
         page.requirements.push_back({formatPercent(*work.how.target), arrangement.is_reached,
@@ -170,8 +245,7 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
     page.cover = coverOf(options.page);
     page.paper = paperOf(options.page);
     page.prices = pricesOf(options.page);
-    const ReportPage pages = coveragePage(page);
-    return suffixOf(options.report_file) == "pdf" ? pdfOf(pages) : htmlOf(pages);
+    return finished(options, coveragePage(page));
 }
 
 }  // namespace ispace

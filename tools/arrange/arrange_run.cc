@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -59,6 +60,68 @@ void takeZones(const ArrangeToolOptions& options, const Environment& environment
 
 namespace {
 
+/// Reads all zones and rules of a building, each for its storeys.
+void takeGoals(const ArrangeToolOptions& options, ArrangeWork& work) {
+    const SiteInput& input = work.input;
+    const ZoneWords& words = options.zones;
+    ArrangeOptions& how = work.how;
+    work.goals.resize(input.rooms.size());
+    const auto room_of = [&](std::size_t room) -> const Environment& {
+        return input.rooms[room]->environment;
+    };
+    const auto each = [&](const char* option, const std::vector<std::string>& texts,
+                          const std::function<void(std::size_t, const NamedZone&)>& add) {
+        for (const std::string& text : texts)
+            forEachRoomOf(input, option, text, [&](std::size_t room, const std::string& own) {
+                for (const NamedZone& zone : zonesOf(options, own, room_of(room))) add(room, zone);
+            });
+    };
+    each("--zone", words.targets, [&](std::size_t room, const NamedZone& zone) {
+        work.goals[room].weights.targets.push_back(zone);
+        how.weights.targets.push_back(zone);
+    });
+    each("--keep-out", words.keep_out, [&](std::size_t room, const NamedZone& zone) {
+        work.goals[room].keep_out.push_back(zone);
+    });
+    each("--keep-in", words.keep_in, [&](std::size_t room, const NamedZone& zone) {
+        work.goals[room].keep_in.push_back(zone);
+        how.mount.keep_in.push_back(zone);
+    });
+    for (const std::string& text : words.weights) {
+        const double weight = splitWeight(text).second;
+        each("--weight", {splitWeight(text).first}, [&](std::size_t room, const NamedZone& zone) {
+            work.goals[room].weights.weights.emplace_back(zone, weight);
+            how.weights.weights.emplace_back(zone, weight);
+        });
+    }
+    how.facing.clear();
+    for (const FacingRule& rule : options.how.facing)
+        forEachRoomOf(input, "--facing", rule.zone, [&](std::size_t room, const std::string& own) {
+            FacingRule here = rule;
+            here.zone = own;
+            for (FacingRule& found : facingIn(room_of(room), {&here, 1})) {
+                work.goals[room].facing.push_back(found);
+                how.facing.push_back(std::move(found));
+            }
+        });
+    for (const PrivacyRule& rule : how.privacy)
+        forEachRoomOf(input, "--privacy", rule.zones,
+                      [&](std::size_t room, const std::string& own) {
+                          PrivacyRule here = rule;
+                          here.zones = own;
+                          static_cast<void>(privateZones(here, room_of(room)));
+                          work.goals[room].privacy.push_back(std::move(here));
+                      });
+    for (RoomGoals& goals : work.goals) {
+        goals.counts = how.weights.targets.empty() || !goals.weights.targets.empty();
+        goals.takes_sensors = how.mount.keep_in.empty() || !goals.keep_in.empty();
+    }
+}
+
+}  // namespace
+
+namespace {
+
 /// Reads the rooms of --robust, each with the layout.
 void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
     if (options.robust_rooms.empty()) return;
@@ -95,36 +158,48 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     for (const std::string& spec : options.sensors)
         added.push_back(ofOption(
             "--sensor", [&] { return readSensorSpec(spec, kinds, sceneSchemas(), devices); }));
-    ArrangeWork work{readScene({options.operands, options.rules, false}), {}, options.how, {}, {}};
-    SceneInput& input = work.input;
+    ArrangeWork work;
+    work.input = readSite({options.operands, options.rules, false});
+    work.how = options.how;
+    SiteInput& input = work.input;
     warnOfImport(options.common, "arrange", input);
+    mustBeOneRoom(input, options.presence                 ? "--presence"
+                         : !options.places_file.empty()   ? "--places"
+                         : !options.page.material.empty() ? "--material"
+                                                          : needsOneRoom(options.how));
     if (!options.fixed.empty()) {
         if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
-        input.layout = withoutPlaces(*input.layout, options.fixed);
-        input.scene = makeScene(input.environment, &*input.layout,
-                                devicesFor({&input.environment, &*input.layout}), &input.scene);
+        input.setLayout(withoutPlaces(*input.layout, options.fixed));
     }
-    warn(options.common, "arrange", sceneWarnings(input.scene, {.checks = {"outside", "buried"}}));
+    warn(options.common, "arrange", siteWarnings(input, {.checks = {"outside", "buried"}}));
     const bool open = options.how.target || options.how.budget;
-    work.groups = groupsToPlace(input.scene, added, devices, open);
+    std::vector<const Scene*> scenes;
+    for (const auto& room : input.rooms) scenes.push_back(room.get());
+    work.groups = groupsToPlace(scenes, added, devices, open);
     if (work.groups.empty())
         throw UsageError("nothing to place: give --sensor, or a LAYOUT with a sensor without `at`");
-    takeZones(options, input.scene.environment, work.how);
-    work.files = filesOf(input);
+    work.files = input.files;
+    if (input.building) {
+        // Devices of --sensor are not among those of the records.
+        if (input.building->devices.devices().empty()) input.building->devices = devices;
+        takeGoals(options, work);
+        work.rooms = std::make_shared<BuildingSite>(*input.building, work.how, work.goals);
+        return work;
+    }
+    const Environment& room = input.only().environment;
+    takeZones(options, room, work.how);
     takeRooms(options, work);
     if (options.presence) {
         work.how.ways = std::make_shared<PeopleWays>(
-            readWays(*options.presence, input.scene, options.common.seed));
+            readWays(*options.presence, input.only(), options.common.seed));
         if (!options.presence->record.empty())
             work.files.push_back(RecordedFiles(options.presence->record).robots);
     }
     if (work.how.objective.of == ObjectiveChoice::Of::Path)
         for (const std::string* zone : {&work.how.objective.way.from, &work.how.objective.way.to})
-            static_cast<void>(
-                ofOption("--objective", [&] { return readZone(*zone, input.scene.environment); }));
-    work.how.facing = facingIn(input.scene.environment, options.how.facing);
-    for (const PrivacyRule& rule : options.how.privacy)
-        static_cast<void>(privateZones(rule, input.scene.environment));
+            static_cast<void>(ofOption("--objective", [&] { return readZone(*zone, room); }));
+    work.how.facing = facingIn(room, options.how.facing);
+    for (const PrivacyRule& rule : options.how.privacy) static_cast<void>(privateZones(rule, room));
     if (!options.places_file.empty()) {
         work.places = options.places_file == "-" ? readStdin() : readAll(options.places_file);
         work.how.list =
@@ -135,6 +210,11 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     return work;
 }
 
+Arrangement ArrangeWork::run(Progress& progress, std::ostream* mps) const {
+    return rooms ? arrange(rooms->site(), groups, how, progress, mps)
+                 : arrange(input.only(), groups, how, progress, mps);
+}
+
 namespace {
 
 /// Numbers of fixed sensors and of those that may be placed.
@@ -143,11 +223,11 @@ struct Numbers {
 };
 
 Numbers numbersOf(const ArrangeWork& work) {
-    const Scene& scene = work.input.scene;
     Numbers numbers;
-    for (const Sensor& sensor : scene.sensors)
-        if (kindOf(sensor.model).perceives)
-            ++(isPartial(sensor.model) ? numbers.receivers : numbers.others);
+    for (const auto& room : work.input.rooms)
+        for (const Sensor& sensor : room->sensors)
+            if (kindOf(sensor.model).perceives)
+                ++(isPartial(sensor.model) ? numbers.receivers : numbers.others);
     for (const SensorGroup& group : work.groups) {
         auto most = static_cast<std::size_t>(group.most);
         if (work.how.budget)
@@ -206,20 +286,17 @@ std::string hintAlongWalls(const ArrangeWork& work) {
     return "";
 }
 
-}  // namespace
-
+/// Warns of sensors above a room. \param prefix of the message
 void warnOfHeights(const ArrangeToolOptions& options, const MountRules& mount,
-                   const Environment& room, const std::string& storey) {
+                   const Environment& room, const std::string& prefix) {
     const double top = room.height();
     for (const double height : mount.heights)
         if (height > top)
             warn(options.common, "arrange",
-                 (storey.empty() ? "" : storey + ": ") + "--z " + formatDouble(height) +
-                     ": the room is " + formatDouble(std::round(1000 * top) / 1000) +
+                 prefix + "--z " + formatDouble(height) + ": the room is " +
+                     formatDouble(std::round(1000 * top) / 1000) +
                      " m high, and nothing is there to mount a sensor on");
 }
-
-namespace {
 
 /// Warns with a reason if coverage is zero, and of redundant sensors.
 void warnOfNothing(const ArrangeToolOptions& options, const ArrangeWork& work,
@@ -234,7 +311,9 @@ void warnOfNothing(const ArrangeToolOptions& options, const ArrangeWork& work,
 void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work) {
     if (const std::string hint = hintAlongWalls(work); !hint.empty())
         warn(options.common, "arrange", hint);
-    warnOfHeights(options, work.how.mount, work.input.scene.environment);
+    for (std::size_t i = 0; i < work.input.rooms.size(); ++i)
+        warnOfHeights(options, work.how.mount, work.input.rooms[i]->environment,
+                      work.input.prefix(i));
 }
 
 void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,

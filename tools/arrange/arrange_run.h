@@ -2,35 +2,39 @@
 // Inputs of arrange, its warnings and its report.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "arrange/arrange.h"
 #include "arrange/arrange_options.h"
+#include "building/building_site.h"
 #include "cli/operands.h"
+#include "cli/site_operands.h"
 
 namespace ispace {
 
 /// Inputs of the search.
 struct ArrangeWork {
-    SceneInput input;
+    SiteInput input;
     std::vector<SensorGroup> groups;
     ArrangeOptions how;
-    std::vector<std::string> files;  ///< for -MD
-    std::string places;              ///< the text of --places
+    std::vector<RoomGoals> goals;         ///< by room; those of `how` for a room alone
+    std::shared_ptr<BuildingSite> rooms;  ///< of a building; else null
+    std::vector<std::string> files;       ///< for -MD
+    std::string places;                   ///< the text of --places
+
+    /// Searches. \throws as arrange()
+    [[nodiscard]] Arrangement run(Progress& progress, std::ostream* mps = nullptr) const;
 };
 
 /// Reads room, layout, sensors, zones and sites. \throws UsageError without a sensor to place, and
 /// as the readers
 ArrangeWork readWork(const ArrangeToolOptions& options);
 
-/// Reads the zones of --zone, --weight, --keep-out and --keep-in.
+/// Reads the zones of --zone, --weight, --keep-out and --keep-in of a room alone.
 void takeZones(const ArrangeToolOptions& options, const Environment& environment,
                ArrangeOptions& how);
-
-/// Warns of sensors above a room. \param storey of a building; "" for a room alone
-void warnOfHeights(const ArrangeToolOptions& options, const MountRules& mount,
-                   const Environment& room, const std::string& storey = "");
 
 /// Warns, before the search, of heights and strategies that cannot do well.
 void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work);

@@ -17,6 +17,8 @@ namespace ispace {
 
 namespace {
 
+constexpr double kProven = 1e-9;  // sums of areas differ by less
+
 std::string counted(std::size_t count, const char* one, const char* many) {
     return std::to_string(count) + ' ' + (count == 1 ? one : many);
 }
@@ -35,7 +37,8 @@ std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) 
     return "over " + counted(arrangement.candidates, "candidate", "candidates") + " (" +
            std::string(nameOf(how.strategy)) + ", " + formatBytes(arrangement.bytes) + ") on " +
            (arrangement.pieces > 0 ? counted(arrangement.pieces, "piece of way", "pieces of way")
-                                   : cellsText(arrangement.grid));
+            : arrangement.rooms.empty() ? cellsText(arrangement.grid)
+                                        : counted(arrangement.cells, "cell", "cells"));
 }
 
 /// Compares value and coverage if they differ by their cells alone; "" if the two agree.
@@ -139,12 +142,25 @@ std::string posesBoundText(const ArrangeOptions& how, const Arrangement& arrange
            (arrangement.is_complete ? "" : ", cut short") + '\n';
 }
 
+/// Returns a line for each of several rooms.
+std::string roomsText(const Arrangement& arrangement) {
+    std::string text;
+    for (const Arrangement::InRoom& room : arrangement.rooms)
+        text += "arrange: storey " + printable(room.id) + ": " +
+                (room.has_floor ? counted(room.sensors, "sensor", "sensors") + ", coverage " +
+                                      percentText(room.coverage)
+                                : std::string("left out, all of its floor is open")) +
+                '\n';
+    return text;
+}
+
 }  // namespace
 
 std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement) {
     if (arrangement.over_poses) return posesText(arrangement);
-    std::string text = "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
-                       ", coverage " + percentText(arrangement.coverage);
+    std::string text = roomsText(arrangement);
+    text += "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") + ", coverage " +
+            percentText(arrangement.coverage);
     // The bound holds for the objective before refinement.
     if (arrangement.value)
         text += "; value " + percentText(arrangement.candidate_value);
@@ -196,6 +212,9 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
 
 double gapOf(const Arrangement& arrangement) {
     const double bound = arrangement.candidate_bound;
+    if (arrangement.rounding > 0 &&
+        bound - arrangement.candidate_value <= arrangement.rounding + kProven)
+        return 0;
     return bound > 0 ? std::max(0.0, (bound - arrangement.candidate_value) / bound) : 0;
 }
 
@@ -279,10 +298,13 @@ std::string doubledText(const Arrangement& arrangement) {
     for (std::size_t i = 0; i < sensors.size(); ++i)
         for (std::size_t k = i + 1; k < sensors.size(); ++k) {
             const Point3 p = sensors[i].pose.position;
-            if (!(p == sensors[k].pose.position)) continue;
-            return printable(sensors[i].sensor) + " and " + printable(sensors[k].sensor) +
-                   " are at one place (" + formatDouble(p.x) + ", " + formatDouble(p.y) + ", " +
-                   formatDouble(p.z) + "): mount them side by side";
+            if (!(p == sensors[k].pose.position) || sensors[i].room != sensors[k].room) continue;
+            const std::string room =
+                arrangement.rooms.empty() ? "" : arrangement.rooms[sensors[i].room].id + '/';
+            return printable(room + sensors[i].sensor) + " and " +
+                   printable(room + sensors[k].sensor) + " are at one place (" + formatDouble(p.x) +
+                   ", " + formatDouble(p.y) + ", " + formatDouble(p.z) +
+                   "): mount them side by side";
         }
     return "";
 }

@@ -3,7 +3,6 @@
 
 #include "arrange/arrange.h"
 #include "arrange/arrange_batch.h"
-#include "arrange/arrange_building.h"
 #include "arrange/arrange_options.h"
 #include "arrange/arrange_report.h"
 #include "arrange/arrange_run.h"
@@ -35,24 +34,28 @@ bool endsWithoutProduct(const ArrangeToolOptions& options) {
 
 void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& options,
                  const ArrangeWork& work, const Arrangement& arrangement) {
-    const SceneInput& input = work.input;
+    const SiteInput& input = work.input;
+    const Document* const before = input.layout ? &*input.layout : nullptr;
     LayoutParts parts{
         input.layout ? input.layout->history : History(),
         environmentFileFor(options.common.output, input.environment_operand),
-        input.scene.digest(),
+        input.digest(),
         work.how.over_poses ? "poses" : std::string(nameOf(work.how.strategy)),
         std::string(nameOf(work.how.over_poses ? Optimizer::Exact : work.how.search.optimizer)),
         std::string(work.how.objective.name())};
     parts.history.push_back(command.historyLine(input.named));
-    const Document layout =
-        layoutDocument(parts, input.layout ? &*input.layout : nullptr, work.groups, arrangement);
+    const auto document = [&](const Arrangement& found) {
+        return input.building ? buildingLayout(parts, *input.building, before, work.groups, found)
+                              : layoutDocument(parts, before, work.groups, found);
+    };
+    const Document layout = document(arrangement);
     if (!options.trace_file.empty())
         writeAll(options.trace_file, writeTrace({parts.history, arrangement.tried}));
     if (!options.report_file.empty())
         writeAll(options.report_file,
                  reportFile(options, work, arrangement, layout, command.historyLine(input.named)));
     if (!options.page.material.empty())
-        writeMaterial(options.page, makeScene(input.environment, &layout, shippedDevices()));
+        writeMaterial(options.page, makeScene(*input.environment, &layout, shippedDevices()));
     if (!options.heat_file.empty()) writeHeat(options, work, arrangement);
     if (const std::string& file = options.certificate_file; !file.empty()) {
         if (const auto& bound = arrangement.poses_bound; bound && bound->certificate)
@@ -67,8 +70,7 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
         writeAll(file, curveFile(arrangement.curve, outputFormat({}, file, curveFormats())));
     for (std::size_t i = 0; i < arrangement.alternatives.size(); ++i)
         writeAll(numberedFile(options.common.output, i + 2),
-                 writeRecordText(layoutDocument(parts, input.layout ? &*input.layout : nullptr,
-                                                work.groups, arrangement.alternatives[i])));
+                 writeRecordText(document(arrangement.alternatives[i])));
     writeAll(options.common.output, writeRecordText(layout));
     writeDependencies(options.common, work.files);
 }
@@ -120,8 +122,7 @@ Arrangement search(const ArrangeToolOptions& options, const ArrangeWork& work, S
     if (!options.mps_file.empty()) mps.emplace(options.mps_file);
     Arrangement arrangement;
     try {
-        arrangement =
-            arrange(work.input.scene, work.groups, work.how, watch, mps ? &mps->stream() : nullptr);
+        arrangement = work.run(watch, mps ? &mps->stream() : nullptr);
     } catch (const UnmetError&) {
         if (watch.signal() == 0) throw;
         endWithNothing(options, watch.signal(),
@@ -215,7 +216,7 @@ void arrangeJob(const ArrangeCommand& command, const BatchJob& job, const Common
     const ArrangeWork work = readWork(options);
     warnOfSearch(options, work);
     SearchWatch watch(std::make_unique<SilentProgress>(), options.time_limit, false);
-    const Arrangement found = arrange(work.input.scene, work.groups, work.how, watch);
+    const Arrangement found = work.run(watch);
     if (found.is_complete) outcome.files = work.files;
     writeLayout(command, options, work, found);
     JsonWriter json = jobLine("arrange", job);
@@ -241,8 +242,7 @@ void arrangeSensors(const ArrangeCommand& command) {
                 arrangeJob(command, job, common, outcome);
             });
     if (!options.batch.merge) {
-        if (!arrangeInBuilding(command)) runCommand(command, nullptr);
-        return;
+        return runCommand(command, nullptr);
     }
     auto parts =
         std::make_unique<JobResults>(mergeParts(options.operands, "arrange", kCommandKey, false));

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/arrange: maps a scene to a weighted coverage problem and its solutions back to
-// sensors.
+// Private to lib/arrange: maps the rooms of a site to a weighted coverage problem and its solutions
+// back to sensors.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -14,22 +15,19 @@
 
 #include "arrange/arrange.h"
 #include "arrange/candidate_generator.h"
-#include "arrange/case_room.h"
-#include "arrange/facing_cells.h"
+#include "arrange/room_model.h"
 #include "arrange/search/cell_ways.h"
 #include "arrange/search/problem.h"
 #include "arrange/search/worst_case.h"
 #include "arrange/sensor_group.h"
+#include "arrange/site.h"
 #include "arrange/tried_pose.h"
 #include "base/cell_set.h"
 #include "base/error.h"
 #include "coverage/coverage.h"
-#include "coverage/presence.h"
-#include "coverage/visible_area.h"
 #include "geom/point.h"
 #include "raster/grid.h"
 #include "scene/scene.h"
-#include "trace/ray_world.h"
 
 namespace ispace {
 
@@ -39,27 +37,53 @@ struct CountedView {
     int multiplicity = 1;
 };
 
-/// Maps a scene with unplaced sensors to a weighted coverage problem, and solutions back to poses.
+/// A sensor at a pose in a room of the site.
+struct SiteSensor {
+    std::size_t room = 0;
+    Sensor sensor;
+};
+
+/// Maps the rooms of a site with unplaced sensors to a weighted coverage problem, and solutions
+/// back to poses.
 ///
-/// Equal sensors are one kind of the problem, with candidates by the options' strategy. The
-/// target's cells have the weights of options.weights; standing sensors add to the multiplicity.
-class MeasuredScene {
+/// Equal sensors are one kind of the problem, with candidates by the options' strategy in all rooms
+/// in which they may stand. The cells of the rooms follow each other; those of one room alone have
+/// the weights of options.weights, those of several count by area, too. Standing sensors add to the
+/// multiplicity, also of floor that they see in other rooms, as candidates do.
+class CoverageModel {
   public:
     /// Builds all candidates. Stores references.
     /// \throws UnmetError if a kind has no valid site, the budget buys no sensor or all weights are
-    ///         0, UsageError if the candidates do not fit in memory or cannot be refined as asked
-    MeasuredScene(const Scene& scene, const std::vector<SensorGroup>& groups,
+    ///         0, UsageError if the candidates do not fit in memory, cannot be refined as asked, or
+    ///         the options need one room
+    CoverageModel(const ArrangeSite& site, const std::vector<SensorGroup>& groups,
                   const ArrangeOptions& options, Progress& progress);
+    ~CoverageModel();
+    CoverageModel(const CoverageModel&) = delete;
+    CoverageModel& operator=(const CoverageModel&) = delete;
 
-    [[nodiscard]] const Scene& scene() const { return scene_; }
+    [[nodiscard]] const ArrangeSite& site() const { return site_; }
     [[nodiscard]] const std::vector<SensorGroup>& groups() const { return groups_; }
     [[nodiscard]] const ArrangeOptions& options() const { return options_; }
     [[nodiscard]] const Problem& problem() const { return problem_; }
     [[nodiscard]] const std::vector<SensorClass>& kinds() const { return kinds_; }
-    [[nodiscard]] const Target& target() const { return target_; }
-    Worlds& worlds() { return worlds_; }
-    /// Computes the visible areas of sensors in the room.
-    [[nodiscard]] const VisibleArea& sight() const { return sight_; }
+    /// Returns the model of a room. \pre it has one, see hasRoom()
+    [[nodiscard]] const RoomModel& room(std::size_t room) const { return *rooms_[room].model; }
+    [[nodiscard]] RoomModel& room(std::size_t room) { return *rooms_[room].model; }
+    [[nodiscard]] bool hasRoom(std::size_t room) const { return rooms_[room].model != nullptr; }
+    /// Returns the model of a room alone.
+    [[nodiscard]] const RoomModel& only() const { return *rooms_.front().model; }
+    [[nodiscard]] RoomModel& only() { return *rooms_.front().model; }
+    /// Returns rooms in parts, in order: candidates of one see no cells of another. Equal parts
+    /// have an equal `alike`.
+    struct Part {
+        std::vector<std::size_t> rooms;
+        std::size_t alike = 0;  ///< the first part with equal rooms and standing sensors
+    };
+    [[nodiscard]] std::vector<Part> parts() const;
+    /// Returns the range of the problem's cells of a room.
+    [[nodiscard]] CellBlock cellsOfRoom(std::size_t room) const;
+
     /// Returns false if progress said to stop before all candidates were built.
     [[nodiscard]] bool isComplete() const { return is_complete_; }
     /// Returns the number of candidates of all kinds.
@@ -67,13 +91,9 @@ class MeasuredScene {
     [[nodiscard]] std::size_t bytes() const;
     /// Returns the search options, with the memory that the candidates leave.
     [[nodiscard]] SearchOptions searchOptions() const;
-    /// Returns the validity test for sites at this height.
-    const SiteValidity& validityAt(double height) { return pool_->validityAt(height); }
 
-    /// Returns the rooms of the cases, each with its cells in the problem; empty: not robust.
-    [[nodiscard]] CaseRooms rooms() const { return rooms_; }
     /// Returns the cases of a robust search.
-    /// \pre rooms() is not empty
+    /// \pre the search is robust
     [[nodiscard]] const WorstCaseProblem& cases() const { return cases_; }
     /// Returns the values of these sensors in the cases.
     [[nodiscard]] RobustValues robustValuesOf(std::span<const CountedView> views,
@@ -85,11 +105,21 @@ class MeasuredScene {
     [[nodiscard]] bool isWorstCase() const {
         const bool is_plain =
             options_.robust.of == RobustChoice::Of::Failures && options_.robust.failures == 0;
-        return !rooms_.empty() && options_.robust.is_worst && !is_plain;
+        return options_.robust.isAsked() && options_.robust.is_worst && !is_plain;
     }
 
-    /// Converts a value of the search to a share of the total weight.
+    /// Converts a value of the search to a share of the total weight. Weights of several rooms are
+    /// areas rounded down to whole numbers, so that the share is at most rounding() too small.
     [[nodiscard]] double share(std::uint64_t value) const;
+    [[nodiscard]] double rounding() const { return rounding_; }
+    /// Returns an upper bound of the share for a bound of the value.
+    [[nodiscard]] double shareBound(std::uint64_t bound) const {
+        return std::min(1.0, share(bound) + rounding_);
+    }
+    /// Returns the share of the weight that these views and standing sensors cover, unrounded.
+    [[nodiscard]] double shareOf(std::span<const CountedView> views) const;
+    /// Returns that of chosen candidates, of which the search says this value.
+    [[nodiscard]] double shareOf(const std::vector<Choice>& chosen, std::uint64_t value) const;
     /// Returns the smallest value that is at least this share, up to rounding.
     [[nodiscard]] std::uint64_t valueFor(double share) const;
     /// Returns the weights of the cells that standing sensors leave uncovered; 0 for the others.
@@ -98,11 +128,17 @@ class MeasuredScene {
     [[nodiscard]] Pose3 poseOf(const Choice& choice) const {
         return sets_[choice.kind]->pose(choice.candidate);
     }
+    [[nodiscard]] std::size_t roomOf(const Choice& choice) const {
+        return sets_[choice.kind]->roomOf(choice.candidate);
+    }
+    /// Returns the position of a candidate in the site.
+    [[nodiscard]] Point3 positionOf(const Choice& choice) const;
     /// Returns the sensors at the poses of the chosen candidates.
     [[nodiscard]] std::vector<Placement> placementsOf(const std::vector<Choice>& chosen) const;
     /// Computes the cells of the search's grid that each sensor sees. Deterministic for any number
     /// of threads.
-    [[nodiscard]] std::vector<CountedView> viewsOf(std::span<const Sensor> sensors) const;
+    [[nodiscard]] std::vector<CountedView> viewsOf(std::span<const SiteSensor> sensors) const;
+    [[nodiscard]] std::vector<CountedView> viewsOf(std::span<const Placement> placements) const;
     /// As valueOf() of the sensors with these views.
     [[nodiscard]] std::uint64_t valueOf(std::span<const CountedView> views) const;
     /// Returns true if these views and the standing coverage, which counts as one part, are
@@ -114,47 +150,65 @@ class MeasuredScene {
     void spreadRedundant(std::vector<Choice>& chosen) const;
     /// Returns every candidate with the share of the total weight that it would add to the standing
     /// coverage and, for a laser, its slice area (eq. 4.4) by the thesis' scan of the pose.
+    /// \pre one room
     [[nodiscard]] std::vector<TriedPose> triedPoses(const std::vector<Choice>& chosen);
     /// Orders chosen sensors, the one that adds most to those before it first, and returns the gain
-    /// of the candidates for each of them.
+    /// of the candidates for each of them. \pre one room
     [[nodiscard]] std::vector<GainMap> gainMaps(std::vector<Choice> chosen) const;
     /// Returns an upper bound of the value of these numbers of sensors at any poses; `most` by
     /// kind.
     [[nodiscard]] std::uint64_t maxFromAnyPlace(const std::vector<int>& most) const;
 
   private:
+    /// A room of the site. Its cells begin at firsts[0] in the problem, and at each further entry
+    /// again.
+    struct Room {
+        std::shared_ptr<RoomModel> model;  ///< null: left out; equal rooms share it
+        std::vector<std::size_t> firsts = {0};
+        std::size_t cells = 0;
+        std::vector<bool> seen = {};  ///< other rooms of which its candidates see cells
+    };
+    /// The cells of another room that the candidates of a site see.
+    struct CellsBeyond {
+        std::size_t room = 0;
+        CellParts parts;  ///< by candidate
+    };
+    class Joiner;
+
     void mustBeAffordable() const;
     void setUnits();
-    void countStanding(const std::vector<SensorView>& views, std::size_t first,
-                       std::vector<std::uint16_t>& achieved) const;
-    void setMultiplicities(const Coverage& standing);
-    /// Replaces the cells of the grid by the pieces of the options' ways.
-    void countWays();
-    [[nodiscard]] CellSet stackedCellsOf(const Sensor& sensor) const;
+    void addRooms();
+    void setAreas(std::vector<double> areas);
+    void countStandingBeyond();
+    [[nodiscard]] std::string nothingText() const;
     /// Sets the cells of all cases, and their weights.
-    void stackRooms();
+    void stackCases();
+    void stackOneRoom();
     void stackFailures();
     /// Sets the ways of an intruder. \throws UnmetError if there is none, or none that can be seen
     void setWays();
-    void addKinds();
+    void addKinds(Progress& progress);
+    [[nodiscard]] std::unique_ptr<PosedCandidates> candidatesOf(const SensorClass& kind,
+                                                                Progress& progress);
+    /// Returns true if sensors of a kind may stand in a room.
+    [[nodiscard]] bool mayStand(const SensorClass& kind, std::size_t room) const;
+    [[nodiscard]] bool sees(std::size_t from, const Sensor& sensor, std::size_t to) const;
+    /// Adds the cells of other rooms that a sensor sees, with a copy for each of their firsts.
+    void addBeyond(std::size_t room, const Sensor& sensor, CellSet& cells) const;
 
-    const Scene& scene_;
+    const ArrangeSite& site_;
     const std::vector<SensorGroup>& groups_;
     const ArrangeOptions& options_;
-    Worlds worlds_;
-    VisibleArea sight_;
     std::vector<SensorClass> kinds_;
     int unit_ = 1;  ///< multiplicity of sensors other than receivers
-    std::optional<FacingCells> facing_;
-    std::optional<PresenceView> ways_;
-    std::vector<std::unique_ptr<CaseRoom>> rooms_;
+    std::vector<Room> rooms_;
     CellWays cell_ways_;
     WorstCaseProblem cases_;
     std::vector<std::string> standing_ids_;  ///< of cases_.standing
-    Target target_;
     Problem problem_;
     std::uint64_t total_ = 0;
-    std::unique_ptr<CandidatePool> pool_;
+    std::vector<double> areas_;  ///< weights of the cells of several rooms, not rounded
+    double rounding_ = 0;        ///< share
     std::vector<std::unique_ptr<PosedCandidates>> sets_;
     bool is_complete_ = true;
 };
@@ -181,7 +235,7 @@ std::uint64_t maxCellsInView(const SensorModel& device, const Grid& grid);
 std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
                               std::span<const SensorModel> devices, std::span<const int> most);
 
-class MeasuredScene;
+class CoverageModel;
 struct CountedView;
 
 /// Finds choices that can all be left out without loss of value or of connection, ascending; later
@@ -189,7 +243,7 @@ struct CountedView;
 std::vector<std::size_t> idleChoices(const Problem& problem, std::span<const Choice> chosen);
 
 /// The same for the views of placed sensors; returns their indices.
-std::vector<std::size_t> idleViews(const MeasuredScene& model, std::span<const CountedView> views);
+std::vector<std::size_t> idleViews(const CoverageModel& model, std::span<const CountedView> views);
 
 /// Spreads idle choices: moves each in turn to the site farthest from all other sensors, among
 /// those that see any weight, with the heading that sees most of the rarely seen cells. Connected

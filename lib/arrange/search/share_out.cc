@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "building/share_out.h"
+#include "arrange/search/share_out.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -15,14 +15,14 @@ double at(const std::vector<double>& curve, std::size_t n) {
 /// The greatest sums of some storeys' entries, by the number of sensors.
 struct Sums {
     std::vector<double> best;
-    std::vector<std::vector<std::size_t>> taken;  ///< by the last storey, in each split
+    std::vector<std::vector<std::size_t>> taken;  ///< by the last part, in each split
 };
 
-/// Adds storeys one by one: the best of n sensors is that of k here and n - k before.
-Sums sumsOf(std::span<const StoreyCurve> curves, std::vector<double> StoreyCurve::*entries,
+/// Adds parts one by one: the best of n sensors is that of k here and n - k before.
+Sums sumsOf(std::span<const GainCurve> curves, std::vector<double> GainCurve::*entries,
             std::size_t sensors) {
     Sums sums;
-    for (const StoreyCurve& curve : curves) {
+    for (const GainCurve& curve : curves) {
         const bool is_first = sums.taken.empty();
         std::vector<double> best(sensors + 1);
         std::vector<std::size_t> taken(sensors + 1);
@@ -44,14 +44,14 @@ Sums sumsOf(std::span<const StoreyCurve> curves, std::vector<double> StoreyCurve
 
 }  // namespace
 
-SharedSensors shareOut(std::span<const StoreyCurve> curves, int sensors) {
+SharedOut shareOut(std::span<const GainCurve> curves, int sensors) {
     const auto total = static_cast<std::size_t>(sensors);
-    SharedSensors shared;
+    SharedOut shared;
     shared.counts.resize(curves.size());
     if (curves.empty()) return shared;
-    const Sums values = sumsOf(curves, &StoreyCurve::values, total);
+    const Sums values = sumsOf(curves, &GainCurve::values, total);
     shared.value = values.best[total];
-    shared.bound = sumsOf(curves, &StoreyCurve::bounds, total).best[total];
+    shared.bound = sumsOf(curves, &GainCurve::bounds, total).best[total];
     std::size_t left = total;
     for (std::size_t i = curves.size(); i-- > 0;) {
         shared.counts[i] = static_cast<int>(values.taken[i][left]);

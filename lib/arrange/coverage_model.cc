@@ -1,0 +1,638 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/coverage_model.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "arrange/beam_cells.h"
+#include "arrange/candidate.h"
+#include "arrange/localise_search.h"
+#include "arrange/objective.h"
+#include "arrange/refine.h"
+#include "arrange/search/problem.h"
+#include "arrange/sensor_group.h"
+#include "base/error.h"
+#include "base/number.h"
+#include "scene/sensor/ultrasound.h"
+#include "sense/scan.h"
+
+namespace ispace {
+
+namespace {
+
+std::vector<SensorModel> devicesOf(const std::vector<SensorClass>& kinds) {
+    std::vector<SensorModel> devices;
+    devices.reserve(kinds.size());
+    for (const SensorClass& kind : kinds) devices.push_back(kind.model);
+    return devices;
+}
+
+CellSet countedCells(const Problem& problem) {
+    CellSet counted(problem.cells());
+    for (std::size_t i = 0; i < problem.cells(); ++i)
+        if (problem.weights[i] > 0) counted.set(i);
+    return counted;
+}
+
+}  // namespace
+
+CoverageModel::CoverageModel(const ArrangeSite& site, const std::vector<SensorGroup>& groups,
+                             const ArrangeOptions& options, Progress& progress)
+    : site_(site),
+      groups_(groups),
+      options_(options),
+      kinds_(kindsOf(groups, drawsForEach(options))) {
+    mustBeAffordable();
+    if (const std::string option = needsOneRoom(options); !option.empty() && !site.isOneRoom())
+        throw UsageError(option + " needs one room");
+    if (options.is_connected && !site.isOneRoom() &&
+        (kinds_.size() > 1 || options.target || options.budget))
+        throw UsageError(
+            "--connected with several kinds of sensors, --target or --budget needs one room");
+    if (options.refine)
+        for (const SiteRoom& room : site.rooms)
+            if (room.scene) mustBeRefinable(*room.scene, devicesOf(kinds_), room.goals.weights);
+    setUnits();
+    addRooms();
+    if (options.robust.isAsked()) stackCases();
+    if (options.objective.of == ObjectiveChoice::Of::Path) setWays();
+    if (options.objective.of == ObjectiveChoice::Of::Localise) total_ *= kNoError;
+    const std::vector<std::uint32_t> left = weightsLeft();
+    for (Room& room : rooms_) {
+        if (room.model == nullptr || room.model->hasPool()) continue;
+        const std::size_t cells = site.isOneRoom() ? left.size() : room.cells;
+        const auto first = left.begin() + static_cast<std::ptrdiff_t>(room.firsts.front());
+        room.model->makePool({first, first + static_cast<std::ptrdiff_t>(cells)}, progress);
+    }
+    addKinds(progress);
+}
+
+CoverageModel::~CoverageModel() = default;
+
+void CoverageModel::mustBeAffordable() const {
+    if (!options_.budget) return;
+    double least = kinds_.front().cost;
+    for (const SensorClass& kind : kinds_) least = std::min(least, kind.cost);
+    if (*options_.budget < least)
+        throw UnmetError("a budget of " + formatDouble(*options_.budget) +
+                         " buys nothing: the cheapest sensor costs " + formatDouble(least));
+}
+
+/// Four receivers count as one sensor; in the presence of receivers, others have multiplicity 4.
+void CoverageModel::setUnits() {
+    const auto is_partial = [](const auto& sensor) { return isPartial(sensor.model); };
+    const bool listens =
+        std::any_of(kinds_.begin(), kinds_.end(), is_partial) ||
+        std::any_of(site_.rooms.begin(), site_.rooms.end(), [&](const SiteRoom& room) {
+            return room.scene &&
+                   std::any_of(room.scene->sensors.begin(), room.scene->sensors.end(), is_partial);
+        });
+    unit_ = listens ? static_cast<int>(kMinReceivers) : 1;
+    problem_.required = unit_ * options_.redundancy;
+    problem_.is_connected = options_.is_connected;
+    problem_.budget = options_.budget;
+}
+
+void CoverageModel::addRooms() {
+    std::map<const Scene*, std::shared_ptr<RoomModel>> known;
+    std::vector<double> weights;
+    for (const SiteRoom& room : site_.rooms) {
+        Room& added = rooms_.emplace_back();
+        added.firsts = {weights.size()};
+        added.seen.resize(site_.rooms.size());
+        if (!room.scene) continue;
+        std::shared_ptr<RoomModel> own;
+        std::shared_ptr<RoomModel>& model = room.goals.isPlain() ? known[room.scene.get()] : own;
+        if (model == nullptr) model = std::make_shared<RoomModel>(room, options_, kinds_, unit_);
+        added.model = model;
+        added.cells = model->weights().size();
+        // Cells of one room are equal; those of several count by area.
+        const double area = site_.isOneRoom() ? 1 : model->areaOfCell();
+        for (const double weight : model->weights()) weights.push_back(area * weight);
+        problem_.achieved.insert(problem_.achieved.end(), model->achieved().begin(),
+                                 model->achieved().end());
+    }
+    if (site_.isOneRoom())
+        problem_.weights = integerWeights(weights);
+    else
+        setAreas(std::move(weights));
+    total_ = problem_.totalWeight();
+    if (total_ == 0)
+        throw UnmetError(options_.ways ? "nothing to detect: nobody walks in the ways of --presence"
+                                       : nothingText());
+    problem_.standing = CellSet(problem_.cells());
+    for (const Room& room : rooms_)
+        if (room.model != nullptr)
+            room.model->standing().forEach(
+                [&](std::size_t cell) { problem_.standing.set(room.firsts.front() + cell); });
+    if (site_.sight != nullptr && site_.sight->joinsRooms()) countStandingBeyond();
+}
+
+void CoverageModel::setAreas(std::vector<double> areas) {
+    const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
+    problem_.weights.assign(areas.size(), 0);
+    if (!(all > 0)) return;
+    const double scale = (1 - 1e-9) * std::numeric_limits<std::uint32_t>::max() / all;
+    for (std::size_t i = 0; i < areas.size(); ++i)
+        problem_.weights[i] = static_cast<std::uint32_t>(scale * areas[i]);
+    rounding_ = 1 - static_cast<double>(problem_.totalWeight()) / (scale * all);
+    for (double& area : areas) area /= all;
+    areas_ = std::move(areas);
+}
+
+void CoverageModel::countStandingBeyond() {
+    for (std::size_t from = 0; from < rooms_.size(); ++from) {
+        if (rooms_[from].model == nullptr) continue;
+        for (const Sensor& sensor : rooms_[from].model->scene().sensors) {
+            if (!kindOf(sensor.model).perceives || isPartial(sensor.model)) continue;
+            CellSet cells(problem_.cells());
+            addBeyond(from, sensor, cells);
+            cells.forEach([&](std::size_t cell) {
+                problem_.achieved[cell] =
+                    static_cast<std::uint16_t>(std::min(problem_.achieved[cell] + unit_, 0xffff));
+            });
+            problem_.standing |= cells;
+        }
+    }
+}
+
+/// Explains why no floor counts.
+/// \pre all cells weigh 0
+std::string CoverageModel::nothingText() const {
+    const bool is_weight =
+        std::any_of(site_.rooms.begin(), site_.rooms.end(), [this](const SiteRoom& room) {
+            if (!room.scene || !room.goals.counts) return false;
+            const RoomModel& model =
+                *rooms_[static_cast<std::size_t>(&room - site_.rooms.data())].model;
+            FloorWeights weights = room.goals.weights;
+            weights.weights.clear();
+            const std::vector<double> unweighted = weightsOfCells(model.target(), weights);
+            return std::any_of(unweighted.begin(), unweighted.end(),
+                               [](double cell) { return cell > 0; });
+        });
+    return is_weight ? "nothing to cover: all of the target weighs 0 (--weight)"
+                     : "nothing to cover: no cell of the target lies indoors; use a larger zone or "
+                       "smaller cells (--cell)";
+}
+
+bool CoverageModel::mayStand(const SensorClass& kind, std::size_t room) const {
+    if (rooms_[room].model == nullptr) return false;
+    if (kind.room) return *kind.room == room;
+    const RoomGoals& goals = site_.rooms[room].goals;
+    const bool is_seen_from = site_.sight != nullptr && site_.sight->joinsRooms();
+    return goals.takes_sensors && (goals.counts || is_seen_from);
+}
+
+bool CoverageModel::sees(std::size_t from, const Sensor& sensor, std::size_t to) const {
+    return to != from && rooms_[to].model != nullptr && site_.sight->maySee(from, sensor, to);
+}
+
+void CoverageModel::addBeyond(std::size_t room, const Sensor& sensor, CellSet& cells) const {
+    if (site_.sight == nullptr || !site_.sight->joinsRooms()) return;
+    for (std::size_t to = 0; to < rooms_.size(); ++to) {
+        if (!sees(room, sensor, to)) continue;
+        CellParts seen;
+        site_.sight->look(room, {&sensor, 1}, to, rooms_[to].model->target().grid, seen);
+        rooms_[to].model->withoutFaces(seen);
+        for (const CellRun& run : seen.runs)
+            for (const std::size_t first : rooms_[to].firsts)
+                for (std::size_t cell = run.first; cell < run.end; ++cell) cells.set(first + cell);
+    }
+}
+
+/// Joins the candidates of one kind in several rooms, with the cells that they see in others.
+class CoverageModel::Joiner {
+  public:
+    Joiner(CoverageModel& model, const SensorClass& kind, Progress& progress)
+        : model_(model), kind_(kind), progress_(progress) {}
+
+    /// Adds the candidates of a room.
+    void add(std::size_t room, const PosedCandidates& own, PosedCandidates& joined) {
+        joined.beginRoom(room);
+        const bool looks = model_.site_.sight != nullptr && model_.site_.sight->joinsRooms();
+        constexpr std::size_t kAtOnce = 256;
+        if (looks)
+            progress_.begin("looking into other rooms", static_cast<std::int64_t>(own.sites()));
+        for (std::size_t first = 0; first < own.sites(); first += kAtOnce) {
+            const std::size_t end = std::min(first + kAtOnce, own.sites());
+            beyond_.assign(end - first, {});
+            if (looks && progress_.stopped()) {
+                model_.is_complete_ = false;
+            } else if (looks) {
+                tbb::parallel_for(first, end, [&](std::size_t site) {
+                    // A thread that waits for rows of cells here must not begin with another site.
+                    tbb::this_task_arena::isolate(
+                        [&] { beyond_[site - first] = look(room, own, site); });
+                });
+                progress_.advance(static_cast<std::int64_t>(end - first));
+            }
+            for (std::size_t site = first; site < end; ++site)
+                addSite(room, own, site, beyond_[site - first], joined);
+            if (joined.bytes() > model_.options_.max_bytes)
+                throw UsageError(
+                    "the candidates of rooms that are searched together take more "
+                    "than " +
+                    formatBytes(model_.options_.max_bytes) +
+                    ": use fewer places, headings or cells, or --max-memory");
+        }
+        if (looks) progress_.end();
+    }
+
+  private:
+    [[nodiscard]] std::vector<CellsBeyond> look(std::size_t from, const PosedCandidates& own,
+                                                std::size_t site) const {
+        std::vector<Sensor> turned;
+        for (std::size_t i = own.firstOf(site); i < own.firstOf(site + 1); ++i)
+            turned.push_back({"", kind_.model, own.pose(i)});
+        std::vector<CellsBeyond> all;
+        for (std::size_t to = 0; to < model_.rooms_.size(); ++to) {
+            if (!model_.sees(from, turned.front(), to)) continue;
+            CellsBeyond seen{to, {}};
+            const RoomModel& room = *model_.rooms_[to].model;
+            model_.site_.sight->look(from, turned, to, room.target().grid, seen.parts);
+            room.withoutFaces(seen.parts);
+            if (!seen.parts.runs.empty()) all.push_back(std::move(seen));
+        }
+        return all;
+    }
+
+    void addShifted(std::span<const CellRun> runs, std::size_t room) {
+        for (const std::size_t first : model_.rooms_[room].firsts) {
+            const auto shift = static_cast<std::uint32_t>(first);
+            for (const CellRun& run : runs)
+                parts_.runs.push_back({run.first + shift, run.end + shift});
+        }
+    }
+    void endPart() { parts_.first.push_back(static_cast<std::uint32_t>(parts_.runs.size())); }
+
+    void addSite(std::size_t room, const PosedCandidates& own, std::size_t site,
+                 const std::vector<CellsBeyond>& beyond, PosedCandidates& joined) {
+        const std::size_t begin = own.firstOf(site), count = own.firstOf(site + 1) - begin;
+        parts_.runs.clear();
+        parts_.first.assign(1, 0);
+        ranges_.clear();
+        headings_.clear();
+        for (std::size_t k = 0; k < count; ++k) headings_.push_back(own.pose(begin + k).heading);
+        if (beyond.empty()) {
+            for (std::size_t k = 0; k <= own.directedParts(site); ++k) {
+                addShifted(own.runsOf(site, k), room);
+                endPart();
+            }
+            for (std::size_t k = 0; k < count; ++k) ranges_.push_back(own.rangeOf(begin + k));
+        } else {
+            for (std::size_t k = 0; k < count; ++k) {
+                addShifted(partOf(own.cellsOf(begin + k)).runs, room);
+                for (const auto& [to, seen] : beyond)
+                    addShifted(std::span(seen.runs).subspan(seen.first[k],
+                                                            seen.first[k + 1] - seen.first[k]),
+                               to);
+                endPart();
+                ranges_.push_back({static_cast<std::uint32_t>(k), 1});
+            }
+            endPart();
+        }
+        joined.addSite(own.pose(begin), headings_, ranges_, parts_);
+        for (const CellsBeyond& seen : beyond) model_.rooms_[room].seen[seen.room] = true;
+    }
+
+    CoverageModel& model_;
+    const SensorClass& kind_;
+    Progress& progress_;
+    // Of the current sites:
+    std::vector<std::vector<CellsBeyond>> beyond_;
+    CellParts parts_;
+    std::vector<CandidateSet::PartRange> ranges_;
+    std::vector<Angle> headings_;
+};
+
+std::unique_ptr<PosedCandidates> CoverageModel::candidatesOf(const SensorClass& kind,
+                                                             Progress& progress) {
+    const auto no_place = [&](bool is_complete, bool is_private) {
+        return is_complete && is_private
+                   ? "no place for " + kind.id + ": all see zones of --privacy"
+                   : "stopped before there was any candidate for " + kind.id;
+    };
+    if (site_.isOneRoom()) {
+        CandidatePool::Made made = only().pool().make(kind);
+        is_complete_ = is_complete_ && made.is_complete;
+        if (made.set->size() == 0)
+            throw UnmetError(no_place(made.is_complete, !options_.privacy.empty()));
+        return std::move(made.set);
+    }
+    auto joined = std::make_unique<PosedCandidates>(problem_.cells());
+    Joiner joiner(*this, kind, progress);
+    std::map<const RoomModel*, std::unique_ptr<PosedCandidates>> known;
+    std::string reason;
+    for (std::size_t room = 0; room < rooms_.size(); ++room) {
+        if (!mayStand(kind, room)) continue;
+        RoomModel& model = *rooms_[room].model;
+        std::unique_ptr<PosedCandidates>& set = known[&model];
+        if (set == nullptr) {
+            try {
+                CandidatePool::Made made = model.pool().make(kind);
+                is_complete_ = is_complete_ && made.is_complete;
+                set = std::move(made.set);
+                if (set->size() == 0 && reason.empty())
+                    reason = no_place(made.is_complete, !model.options().privacy.empty());
+            } catch (const UnmetError& error) {  // another room may have a place
+                set = std::make_unique<PosedCandidates>(model.weights().size());
+                if (reason.empty()) reason = site_.rooms[room].id + ": " + error.what();
+            }
+        }
+        if (set->size() > 0) joiner.add(room, *set, *joined);
+        // Later rooms may be equal.
+        if (rooms_[room].model.use_count() == 1) set.reset();
+    }
+    if (joined->size() == 0)
+        throw UnmetError(reason.empty() ? "no place for " + kind.id + ": no room may hold it"
+                                        : reason);
+    return joined;
+}
+
+void CoverageModel::addKinds(Progress& progress) {
+    for (const SensorClass& kind : kinds_) {
+        sets_.push_back(candidatesOf(kind, progress));
+        problem_.kinds.push_back(
+            {sets_.back().get(), kind.most, kind.cost, isPartial(kind.model) ? 1 : unit_});
+    }
+    cases_.problem = &problem_;
+    if (options_.budget || options_.target) return;
+    for (const Placement& sensor : sensorsToPlace(groups_, kinds_))
+        problem_.order.push_back(sensor.kind);
+}
+
+CellBlock CoverageModel::cellsOfRoom(std::size_t room) const {
+    const std::size_t first = rooms_[room].firsts.front();
+    return {first, first + rooms_[room].cells};
+}
+
+std::vector<CoverageModel::Part> CoverageModel::parts() const {
+    std::vector<std::size_t> of(rooms_.size());
+    std::iota(of.begin(), of.end(), std::size_t{0});
+    for (std::size_t from = 0; from < of.size(); ++from)
+        for (std::size_t to = 0; to < of.size(); ++to) {
+            const std::size_t low = std::min(of[from], of[to]), high = std::max(of[from], of[to]);
+            if (rooms_[from].seen[to] && low != high) std::replace(of.begin(), of.end(), high, low);
+        }
+    std::map<std::size_t, Part> by_first;
+    for (std::size_t i = 0; i < of.size(); ++i)
+        if (rooms_[i].model != nullptr) by_first[of[i]].rooms.push_back(i);
+    std::vector<Part> parts;
+    const auto standing = [this](std::size_t room) {
+        const CellBlock block = cellsOfRoom(room);
+        return std::span(problem_.achieved).subspan(block.first, block.end - block.first);
+    };
+    for (auto& [first, part] : by_first) {
+        part.alike = parts.size();
+        for (std::size_t k = 0; k < parts.size() && part.rooms.size() == 1; ++k) {
+            const std::size_t room = part.rooms.front(), other = parts[k].rooms.front();
+            const auto here = standing(room), there = standing(other);
+            if (parts[k].rooms.size() != 1 || rooms_[room].model != rooms_[other].model ||
+                !std::equal(here.begin(), here.end(), there.begin(), there.end()))
+                continue;
+            part.alike = parts[k].alike;
+            break;
+        }
+        parts.push_back(std::move(part));
+    }
+    return parts;
+}
+
+std::size_t CoverageModel::candidates() const {
+    std::size_t count = 0;
+    for (const auto& set : sets_) count += set->size();
+    return count;
+}
+
+std::size_t CoverageModel::bytes() const {
+    std::size_t bytes = 0;
+    for (const auto& set : sets_) bytes += set->bytes();
+    return bytes;
+}
+
+SearchOptions CoverageModel::searchOptions() const {
+    SearchOptions searching = options_.search;
+    const std::size_t taken = std::min(bytes(), options_.max_bytes);
+    searching.max_bytes = std::min(searching.max_bytes, options_.max_bytes - taken);
+    return searching;
+}
+
+double CoverageModel::share(std::uint64_t value) const {
+    return (1 - rounding_) * (static_cast<double>(value) / static_cast<double>(total_));
+}
+
+double CoverageModel::shareOf(std::span<const CountedView> views) const {
+    if (areas_.empty()) return share(valueOf(views));
+    std::vector<int> met(problem_.achieved.begin(), problem_.achieved.end());
+    for (const CountedView& view : views)
+        view.cells.forEach([&](std::size_t cell) { met[cell] += view.multiplicity; });
+    double covered = 0;
+    for (std::size_t i = 0; i < areas_.size(); ++i)
+        if (met[i] >= problem_.required) covered += areas_[i];
+    return covered;
+}
+
+double CoverageModel::shareOf(const std::vector<Choice>& chosen, std::uint64_t value) const {
+    if (areas_.empty() || options_.robust.isAsked()) return share(value);
+    std::vector<CountedView> views;
+    for (const Choice& choice : chosen) {
+        const SensorType& kind = problem_.kinds[choice.kind];
+        views.push_back({kind.candidates->cellsOf(choice.candidate), kind.multiplicity});
+    }
+    return shareOf(std::span<const CountedView>(views));
+}
+
+std::uint64_t CoverageModel::valueFor(double share) const {
+    return static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_) - 1e-6));
+}
+
+std::vector<std::uint32_t> CoverageModel::weightsLeft() const {
+    std::vector<std::uint32_t> left = problem_.weights;
+    for (std::size_t i = 0; i < left.size(); ++i)
+        if (problem_.achieved[i] >= problem_.required) left[i] = 0;
+    return left;
+}
+
+Point3 CoverageModel::positionOf(const Choice& choice) const {
+    const Point3 position = poseOf(choice).position;
+    return site_.isOneRoom() ? position : site_.rooms[roomOf(choice)].inSite(position);
+}
+
+std::vector<Placement> CoverageModel::placementsOf(const std::vector<Choice>& chosen) const {
+    std::vector<std::vector<RoomPose>> poses(kinds_.size());
+    for (const Choice& choice : chosen)
+        poses[choice.kind].push_back({roomOf(choice), poseOf(choice)});
+    std::vector<const Scene*> scenes;
+    for (const SiteRoom& room : site_.rooms) scenes.push_back(room.scene.get());
+    return ispace::placementsOf(scenes, groups_, kinds_, poses);
+}
+
+std::vector<CountedView> CoverageModel::viewsOf(std::span<const SiteSensor> sensors) const {
+    std::vector<CountedView> views(sensors.size());
+    for (const auto& [room, sensor] : sensors) rooms_[room].model->prepare(sensor);
+    tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
+        // A thread that waits for a level in here must not begin with another sensor.
+        tbb::this_task_arena::isolate([&] {
+            const auto& [room, sensor] = sensors[i];
+            const RoomModel& model = *rooms_[room].model;
+            views[i].multiplicity = isPartial(sensor.model) ? 1 : unit_;
+            views[i].cells = model.cellsOf(sensor, problem_.cells());
+            if (site_.isOneRoom()) return;
+            CellSet cells(problem_.cells());
+            views[i].cells.forEach([&, &firsts = rooms_[room].firsts](std::size_t cell) {
+                for (const std::size_t first : firsts) cells.set(first + cell);
+            });
+            addBeyond(room, sensor, cells);
+            views[i].cells = std::move(cells);
+        });
+    });
+    return views;
+}
+
+std::vector<CountedView> CoverageModel::viewsOf(std::span<const Placement> placements) const {
+    std::vector<SiteSensor> sensors;
+    for (const Placement& placement : placements)
+        sensors.push_back({placement.room, sensorOf(groups_, placement)});
+    return viewsOf(std::span<const SiteSensor>(sensors));
+}
+
+std::uint64_t CoverageModel::valueOf(std::span<const CountedView> views) const {
+    std::vector<int> met(problem_.achieved.begin(), problem_.achieved.end());
+    for (const CountedView& view : views)
+        view.cells.forEach([&](std::size_t cell) { met[cell] += view.multiplicity; });
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < met.size(); ++i)
+        if (met[i] >= problem_.required) value += problem_.weights[i];
+    return value;
+}
+
+bool CoverageModel::isConnected(std::span<const CountedView> views) const {
+    const CellSet counted = countedCells(problem_);
+    std::vector<CellSet> waiting;
+    CellSet reached = problem_.standing;
+    reached &= counted;
+    for (const CountedView& view : views) {
+        waiting.push_back(view.cells);
+        waiting.back() &= counted;
+    }
+    if (reached.empty() && !waiting.empty()) {
+        reached = waiting.back();
+        waiting.pop_back();
+    }
+    // Merges views that share a cell with the merged ones until the set stops growing.
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (std::size_t i = 0; i < waiting.size(); ++i) {
+            if (countCommon(waiting[i], reached) == 0) continue;
+            reached |= waiting[i];
+            waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i--));
+            grows = true;
+        }
+    }
+    return waiting.empty();
+}
+
+void CoverageModel::spreadRedundant(std::vector<Choice>& chosen) const {
+    std::vector<Point3> standing;
+    for (const SiteRoom& room : site_.rooms) {
+        if (!room.scene) continue;
+        for (const Sensor& sensor : room.scene->sensors)
+            if (kindOf(sensor.model).perceives)
+                standing.push_back(site_.isOneRoom() ? sensor.pose.position
+                                                     : room.inSite(sensor.pose.position));
+    }
+    const auto position_of = [this](const Choice& choice) { return positionOf(choice); };
+    ispace::spreadRedundant(problem_, standing, position_of, chosen);
+}
+
+std::uint64_t CoverageModel::maxFromAnyPlace(const std::vector<int>& most) const {
+    if (!site_.isOneRoom()) return total_;
+    return ispace::maxFromAnyPlace(problem_, only().target().grid, devicesOf(kinds_), most);
+}
+
+namespace {
+
+void addSliceAreas(Worlds& worlds, const Laser& laser, std::span<TriedPose> poses) {
+    for (const TriedPose& tried : poses) worlds.prepare(tried.pose);
+    tbb::parallel_for(std::size_t{0}, poses.size(), [&](std::size_t i) {
+        const Sensor placed{"", laser, poses[i].pose};
+        poses[i].slice_area = sliceArea(laser, castBeams(worlds.at(placed.pose), placed));
+    });
+}
+
+}  // namespace
+
+std::vector<TriedPose> CoverageModel::triedPoses(const std::vector<Choice>& chosen) {
+    const WeightSums weights(weightsLeft());
+    std::vector<TriedPose> all;
+    all.reserve(candidates());
+    for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
+        const CandidateSet& set = *problem_.kinds[k].candidates;
+        const SensorClass& kind = kinds_[k];
+        std::vector<std::uint32_t> values(set.size());
+        set.weighAll(weights, values);
+        const double part = static_cast<double>(problem_.kinds[k].multiplicity) / problem_.required;
+        const std::size_t first = all.size();
+        for (std::size_t i = 0; i < set.size(); ++i)
+            all.push_back({kind.id, poseOf({k, i}), part * share(values[i]), false});
+        for (const Choice& choice : chosen)
+            if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
+        if (const auto* laser = std::get_if<Laser>(&kind.model))
+            addSliceAreas(only().worlds(),
+                          options_.beam_step ? withBeamStep(*laser, *options_.beam_step) : *laser,
+                          std::span(all).subspan(first));
+    }
+    return all;
+}
+
+std::vector<GainMap> CoverageModel::gainMaps(std::vector<Choice> chosen) const {
+    std::vector<Placement> placements = placementsOf(chosen);
+    std::vector<std::uint32_t> times(problem_.cells());
+    for (std::size_t i = 0; i < times.size(); ++i) times[i] = problem_.achieved[i];
+    std::vector<GainMap> maps;
+    std::vector<Placement> before;
+    while (!chosen.empty()) {
+        std::vector<std::uint32_t> left = problem_.weights;
+        for (std::size_t i = 0; i < left.size(); ++i)
+            if (times[i] >= static_cast<std::uint32_t>(problem_.required)) left[i] = 0;
+        const WeightSums weights(left);
+        const auto gain_of = [&](const Choice& choice) {
+            return problem_.kinds[choice.kind].candidates->weigh(choice.candidate, weights);
+        };
+        const auto next = std::max_element(
+            chosen.begin(), chosen.end(),
+            [&](const Choice& a, const Choice& b) { return gain_of(a) < gain_of(b); });
+        const auto [kind, candidate] = *next;
+        const Pose3 pose = poseOf(*next);
+        const auto placed = std::find_if(
+            placements.begin(), placements.end(), [&, kind = kind](const Placement& placement) {
+                return placement.kind == kind && placement.pose == pose;
+            });
+        GainMap& map = maps.emplace_back(GainMap{placed->sensor, before});
+        const CandidateSet& set = *problem_.kinds[kind].candidates;
+        std::vector<std::uint32_t> values(set.size());
+        set.weighAll(weights, values);
+        const double part =
+            static_cast<double>(problem_.kinds[kind].multiplicity) / problem_.required;
+        for (std::size_t i = 0; i < set.size(); ++i)
+            map.poses.push_back(
+                {map.sensor, poseOf({kind, i}), part * share(values[i]), i == candidate});
+        const auto added = static_cast<std::uint32_t>(problem_.kinds[kind].multiplicity);
+        set.cellsOf(candidate).forEach([&](std::size_t cell) { times[cell] += added; });
+        before.push_back(*placed);
+        placements.erase(placed);
+        chosen.erase(next);
+    }
+    return maps;
+}
+
+}  // namespace ispace

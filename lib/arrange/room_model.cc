@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/room_model.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "arrange/objective.h"
+#include "base/number.h"
+#include "sense/motion_sense.h"
+
+namespace ispace {
+
+ArrangeOptions optionsOf(const RoomGoals& goals, ArrangeOptions options) {
+    options.weights = goals.weights;
+    options.mount.keep_out = goals.keep_out;
+    options.mount.keep_in = goals.keep_in;
+    options.mount.forbidden = goals.forbidden;
+    options.privacy = goals.privacy;
+    options.facing = goals.facing;
+    return options;
+}
+
+RoomGoals goalsOf(const ArrangeOptions& options) {
+    RoomGoals goals;
+    goals.weights = options.weights;
+    goals.keep_out = options.mount.keep_out;
+    goals.keep_in = options.mount.keep_in;
+    goals.forbidden = options.mount.forbidden;
+    goals.privacy = options.privacy;
+    goals.facing = options.facing;
+    return goals;
+}
+
+RoomModel::RoomModel(const SiteRoom& room, const ArrangeOptions& options,
+                     std::span<const SensorClass> kinds, int unit)
+    : scene_(room.scene),
+      options_(optionsOf(room.goals, options)),
+      unit_(unit),
+      worlds_(scene_->environment),
+      sight_(scene_->environment, options_.plane, &worlds_),
+      counted_(0),
+      standing_(0) {
+    const Coverage standing =
+        measureCoverage(*scene_, worlds_,
+                        {.cells = searchCells(options_), .plane = options_.plane, .exact = false});
+    target_ = standing.target;
+    if (!options_.judges_inside)
+        for (std::size_t i = 0; i < target_.indoor.size(); ++i) target_.indoor.set(i);
+    weights_ = cellWeights(target_, options_);
+    if (!room.goals.counts) std::fill(weights_.begin(), weights_.end(), 0);
+    counted_ = CellSet(weights_.size());
+    for (std::size_t i = 0; i < weights_.size(); ++i)
+        if (weights_[i] > 0) counted_.set(i);
+    if (!options_.facing.empty()) facing_.emplace(scene_->environment, target_, options_.facing);
+    achieved_.assign(target_.grid.size(), 0);
+    countStanding(standing.sensors, 0, achieved_);
+    standing_ = CellSet(target_.grid.size());
+    for (const SensorView& view : standing.sensors) standing_ |= view.cells;
+    if (options_.ways) countWays(kinds);
+}
+
+void RoomModel::makeCases() { cases_ = caseRoomsOf(*scene_, options_); }
+
+double RoomModel::areaOfCell() const {
+    const Grid& grid = target_.grid;
+    const std::size_t indoor = target_.indoor.count();
+    if (!options_.judges_inside || indoor == 0)
+        return grid.limits.width() * grid.limits.depth() / static_cast<double>(grid.size());
+    return scene_->environment.indoor().area() / static_cast<double>(indoor);
+}
+
+void RoomModel::countStanding(const std::vector<SensorView>& views, std::size_t first,
+                              std::vector<std::uint16_t>& achieved) const {
+    for (const SensorView& view : views) {
+        const int part = view.isPartial() ? 1 : unit_;
+        CellSet cells = view.cells;
+        if (facing_)
+            facing_->keepFaces(scene_->sensors[view.index].model, view.pose.position.onFloor(),
+                               cells);
+        cells.forEach([&](std::size_t cell) {
+            achieved[first + cell] =
+                static_cast<std::uint16_t>(std::min(achieved[first + cell] + part, 0xffff));
+        });
+    }
+}
+
+void RoomModel::countWays(std::span<const SensorClass> kinds) {
+    for (const SensorClass& kind : kinds)
+        if (!detectsMotion(kind.model))
+            throw UsageError("--presence: " + kind.id +
+                             " detects no motion: give PIR sensors or "
+                             "radars");
+    const PresenceView& view = ways_.emplace(*options_.ways, options_.plane);
+    weights_.clear();
+    for (const WayPiece& piece : options_.ways->pieces) weights_.push_back(piece.length);
+    achieved_.assign(weights_.size(), 0);
+    standing_ = CellSet(weights_.size());
+    for (const Sensor& sensor : scene_->sensors) {
+        if (!detectsMotion(sensor.model)) continue;
+        sight_.prepare(sensor);
+        const CellSet pieces = view.detected(sensor, worlds_);
+        standing_ |= pieces;
+        pieces.forEach([&](std::size_t i) {
+            achieved_[i] = static_cast<std::uint16_t>(std::min(achieved_[i] + unit_, 0xffff));
+        });
+    }
+}
+
+void RoomModel::prepare(const Sensor& sensor) const {
+    sight_.prepare(sensor);
+    for (const auto& room : cases_) room->sight.prepare(room->mounted(sensor));
+}
+
+CellSet RoomModel::cellsOf(const Sensor& sensor, std::size_t all) const {
+    CellSet cells = ways_            ? ways_->detected(sensor, worlds_)
+                    : cases_.empty() ? sight_.cellsOf(target_.grid, sensor)
+                                     : CellSet(all);
+    for (const auto& room : cases_)
+        cells |= room->stacked(room->sight.cellsOf(room->target.grid, room->mounted(sensor)), all);
+    if (facing_) facing_->keepFaces(sensor.model, sensor.pose.position.onFloor(), cells);
+    return cells;
+}
+
+void RoomModel::withoutFaces(CellParts& parts) const {
+    if (facing_) facing_->removeAll(parts);
+}
+
+void RoomModel::makePool(std::vector<std::uint32_t> left, Progress& progress) {
+    pool_ = std::make_unique<CandidatePool>(
+        scene_->environment, worlds_, target_, CandidateWeights{counted_, std::move(left)},
+        options_, progress, cases_, facing_ ? &*facing_ : nullptr, ways_ ? &*ways_ : nullptr);
+}
+
+}  // namespace ispace

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/search_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "arrange/search/share_out.h"
+
+namespace ispace {
+
+namespace {
+
+/// The problem of one part, whose cells and candidates follow each other as in that of the site.
+class PartProblem {
+  public:
+    PartProblem(const CoverageModel& model, std::span<const std::size_t> rooms)
+        : set_(cellsOf(model, rooms)) {
+        const Problem& whole = model.problem();
+        std::uint32_t cells = 0;
+        for (const std::size_t room : rooms) {
+            const CellBlock block = model.cellsOfRoom(room);
+            shifts_.push_back({block, cells});
+            for (std::size_t cell = block.first; cell < block.end; ++cell) {
+                problem_.weights.push_back(whole.weights[cell]);
+                problem_.achieved.push_back(whole.achieved[cell]);
+            }
+            cells = static_cast<std::uint32_t>(problem_.weights.size());
+        }
+        problem_.required = whole.required;
+        problem_.is_connected = whole.is_connected;
+        problem_.standing = CellSet(problem_.cells());
+        for (const auto& [block, first] : shifts_)
+            for (std::size_t cell = block.first; cell < block.end; ++cell)
+                if (whole.standing.test(cell)) problem_.standing.set(first + cell - block.first);
+        const CandidateSet& all = *whole.kinds.front().candidates;
+        for (std::size_t site = 0; site < all.sites(); ++site) {
+            const std::size_t room = model.roomOf({0, all.firstOf(site)});
+            if (std::find(rooms.begin(), rooms.end(), room) != rooms.end()) addSite(all, site);
+        }
+        problem_.kinds.push_back({&set_, 1, 1, whole.kinds.front().multiplicity});
+    }
+    PartProblem(const PartProblem&) = delete;
+    PartProblem& operator=(const PartProblem&) = delete;
+
+    [[nodiscard]] Problem& problem() { return problem_; }
+    /// Returns the candidates in the set of the site.
+    [[nodiscard]] const std::vector<std::size_t>& candidates() const { return candidates_; }
+
+  private:
+    static std::size_t cellsOf(const CoverageModel& model, std::span<const std::size_t> rooms) {
+        std::size_t cells = 0;
+        for (const std::size_t room : rooms) {
+            const CellBlock block = model.cellsOfRoom(room);
+            cells += block.end - block.first;
+        }
+        return cells;
+    }
+
+    [[nodiscard]] CellRun moved(const CellRun& run) const {
+        for (const auto& [block, first] : shifts_)
+            if (run.first >= block.first && run.first < block.end) {
+                const auto shift = first - static_cast<std::uint32_t>(block.first);  // may wrap
+                return {run.first + shift, run.end + shift};
+            }
+        return {0, 0};
+    }
+
+    void addSite(const CandidateSet& all, std::size_t site) {
+        CellParts parts;
+        parts.first.push_back(0);
+        for (std::size_t k = 0; k <= all.directedParts(site); ++k) {
+            for (const CellRun& run : all.runsOf(site, k)) parts.runs.push_back(moved(run));
+            parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
+        }
+        std::vector<CandidateSet::PartRange> ranges;
+        for (std::size_t i = all.firstOf(site); i < all.firstOf(site + 1); ++i) {
+            ranges.push_back(all.rangeOf(i));
+            candidates_.push_back(i);
+        }
+        set_.addSite(ranges, parts);
+    }
+
+    struct Shift {
+        CellBlock block;
+        std::uint32_t first = 0;
+    };
+
+    std::vector<Shift> shifts_;
+    CandidateSet set_;
+    Problem problem_;
+    std::vector<std::size_t> candidates_;
+};
+
+/// The results of a part, in [n - 1] with the n candidates of the part's own set.
+struct PartResults {
+    std::vector<SearchResult> by_number = {};
+    std::vector<std::size_t> candidates = {};  ///< in the set of the site
+
+    /// \param standing weight that standing sensors cover
+    [[nodiscard]] GainCurve curve(double standing) const {
+        GainCurve curve{{standing}, {standing}};
+        for (const SearchResult& result : by_number) {
+            curve.values.push_back(
+                std::max(curve.values.back(), static_cast<double>(result.best.value)));
+            curve.bounds.push_back(static_cast<double>(result.bound));
+        }
+        // A bound for n sensors holds for fewer.
+        for (std::size_t i = curve.bounds.size(); i-- > 2;)
+            curve.bounds[i - 1] = std::min(curve.bounds[i - 1], curve.bounds[i]);
+        return curve;
+    }
+};
+
+PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> rooms, int most,
+                      Progress& progress) {
+    PartProblem part(model, rooms);
+    PartResults results;
+    results.candidates = part.candidates();
+    const auto last = std::min(static_cast<std::size_t>(most), results.candidates.size());
+    for (std::size_t n = 1; n <= last; ++n) {
+        part.problem().kinds.front().most = static_cast<int>(n);
+        part.problem().order.assign(n, 0);
+        results.by_number.push_back(search(part.problem(), model.searchOptions(), progress));
+    }
+    return results;
+}
+
+}  // namespace
+
+bool isSearchedByParts(const CoverageModel& model) {
+    const ArrangeOptions& options = model.options();
+    return !model.site().isOneRoom() && model.kinds().size() == 1 && !options.budget &&
+           !options.target && !options.robust.isAsked() &&
+           options.search.share.results == nullptr && !options.search.share.own &&
+           model.parts().size() > 1;
+}
+
+std::vector<SearchResult> searchParts(const CoverageModel& model, Progress& progress) {
+    const Problem& whole = model.problem();
+    const int most = whole.kinds.front().most;
+    const std::vector<CoverageModel::Part> parts = model.parts();
+    std::vector<PartResults> results(parts.size());
+    std::vector<GainCurve> curves;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::size_t alike = parts[i].alike;
+        if (alike == i) {
+            results[i] = resultsOf(model, parts[i].rooms, most, progress);
+        } else {
+            results[i].by_number = results[alike].by_number;
+            results[i].candidates = PartProblem(model, parts[i].rooms).candidates();
+        }
+        double standing = 0;
+        for (const std::size_t room : parts[i].rooms) {
+            const CellBlock block = model.cellsOfRoom(room);
+            for (std::size_t cell = block.first; cell < block.end; ++cell)
+                if (whole.achieved[cell] >= whole.required) standing += whole.weights[cell];
+        }
+        curves.push_back(results[i].curve(standing));
+    }
+    std::vector<SearchResult> all;
+    for (int n = 1; n <= most; ++n) {
+        const SharedOut shared = shareOut(curves, n);
+        SearchResult& result = all.emplace_back();
+        result.best.value = static_cast<std::uint64_t>(std::llround(shared.value));
+        result.bound = static_cast<std::uint64_t>(std::llround(shared.bound));
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const auto count = static_cast<std::size_t>(shared.counts[i]);
+            if (count == 0 || results[i].by_number.empty()) continue;
+            const std::size_t last = std::min(count, results[i].by_number.size());
+            const SearchResult& own = results[i].by_number[last - 1];
+            result.is_complete = result.is_complete && own.is_complete;
+            for (const Choice& choice : own.best.chosen)
+                result.best.chosen.push_back({0, results[i].candidates[choice.candidate]});
+        }
+    }
+    return all;
+}
+
+}  // namespace ispace

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rooms in which sensors are placed together, and how they see each other.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/cell_set.h"
+#include "coverage/camera_rules.h"
+#include "coverage/coverage.h"
+#include "coverage/target.h"
+#include "env/zone.h"
+#include "geom/pose.h"
+#include "raster/grid.h"
+#include "scene/scene.h"
+#include "scene/sensor/sensor.h"
+
+namespace ispace {
+
+/// What is asked of one room.
+struct RoomGoals {
+    FloorWeights weights;
+    bool counts = true;  ///< false: none of its floor counts, as that of other rooms is asked
+    bool takes_sensors = true;  ///< false: sensors that may stand anywhere are kept to other rooms
+    std::vector<NamedZone> keep_out = {}, keep_in = {};
+    /// Cameras must not see these zones. Candidates that see a cell of one are left out; layouts
+    /// that see more than kMinPiece are searched again without the cameras that do.
+    std::vector<PrivacyRule> privacy = {};
+    /// In these zones floor counts only where a camera sees faces. Headings are known.
+    std::vector<FacingRule> facing = {};
+    std::vector<Pose3> forbidden = {};  ///< candidates that are left out
+
+    /// Returns true if nothing is asked but its floor.
+    [[nodiscard]] bool isPlain() const;
+};
+
+/// A room of a site. Sensors stand in its frame.
+struct SiteRoom {
+    std::string id;  ///< "" of a room alone
+    /// The room with all that stands around it; null for one whose floor is all open: it is left
+    /// out. Rooms that are equal may share it, and are then searched once.
+    std::shared_ptr<const Scene> scene;
+    RoomGoals goals = {};
+    Point3 origin = {};  ///< of its frame in the site
+    Angle turn = {};     ///< of its frame
+
+    /// Converts a point of the room to the frame of the site.
+    [[nodiscard]] Point3 inSite(Point3 point) const;
+};
+
+/// Figures of a site: areas add up, shares are of the floor of all rooms.
+struct SiteFigures {
+    Metric coverage;                        ///< share
+    Metric effective_area;                  ///< m2, eq. (4.6)
+    double indoor_area = 0, free_area = 0;  ///< m2
+    std::vector<Metric> rooms;              ///< coverage of each, a share
+};
+
+/// How the rooms of a site see each other. Thread-safe.
+class SiteSight {
+  public:
+    virtual ~SiteSight() = default;
+    /// Returns false if no room sees another one.
+    [[nodiscard]] virtual bool joinsRooms() const = 0;
+    /// False if no sensor of this kind, at its position with any heading, sees cells of another
+    /// room.
+    [[nodiscard]] virtual bool maySee(std::size_t from, const Sensor& sensor,
+                                      std::size_t to) const = 0;
+    /// Computes the cells of a room that sensors of another one see there: a part for each sensor.
+    /// \param turned differ in heading alone \pre maySee() of them
+    virtual void look(std::size_t from, std::span<const Sensor> turned, std::size_t to,
+                      const Grid& grid, CellParts& parts) const = 0;
+    /// Measures all rooms, as `coverage` does, with these sensors added to each.
+    [[nodiscard]] virtual SiteFigures measure(std::span<const std::vector<Sensor>> added,
+                                              const CoverageOptions& options) const = 0;
+};
+
+/// Rooms, one or several. The cells of all of them are one problem: a sensor covers floor of its
+/// room, and floor of the others that it sees. Cells count by area.
+struct ArrangeSite {
+    std::vector<SiteRoom> rooms;
+    /// Of several rooms; null for one alone. Not owned.
+    const SiteSight* sight = nullptr;
+
+    [[nodiscard]] bool isOneRoom() const { return rooms.size() == 1 && sight == nullptr; }
+};
+
+struct Placement;
+/// Returns the id of a placed sensor across the site: "ground/c1"; its own in a room alone.
+std::string wholeId(const ArrangeSite& site, const Placement& placement);
+
+}  // namespace ispace

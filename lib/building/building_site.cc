@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/building_site.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "building/building_coverage.h"
+
+namespace ispace {
+
+namespace {
+
+/// Returns the height up to which candidates see floor: of the highest site, and of the plane.
+double highestSite(const BuildingScene& building, const ArrangeOptions& options) {
+    double highest = options.plane;
+    for (const double height : options.mount.heights) highest = std::max(highest, height);
+    if (!options.mount.heights.empty()) return highest;
+    for (const auto& scene : building.scenes)
+        highest = std::max(highest, scene->environment.height());
+    return highest;
+}
+
+}  // namespace
+
+BuildingSite::BuildingSite(const BuildingScene& building, const ArrangeOptions& options,
+                           std::vector<RoomGoals> goals)
+    : building_(building), coupling_(building_), sight_(coupling_, options.plane) {
+    goals.resize(building_.scenes.size());
+    const auto floors = coupling_.floors(highestSite(building_, options));
+    for (std::size_t i = 0; i < floors.size(); ++i) {
+        const Storey& storey = building_.document.storeys[i];
+        const Point2 at = storey.building_from_storey.position;
+        site_.rooms.push_back({storey.id,
+                               hasFloor(*floors[i]) ? floors[i] : nullptr,
+                               std::move(goals[i]),
+                               {at.x, at.y, storey.floor},
+                               storey.building_from_storey.heading});
+    }
+    site_.sight = this;
+}
+
+SiteFigures BuildingSite::measure(std::span<const std::vector<Sensor>> added,
+                                  const CoverageOptions& options) const {
+    BuildingScene placed = building_;
+    for (std::size_t i = 0; i < placed.scenes.size(); ++i) {
+        if (added[i].empty()) continue;  // equal storeys share a scene
+        Scene scene = *building_.scenes[i];
+        scene.sensors.insert(scene.sensors.end(), added[i].begin(), added[i].end());
+        placed.scenes[i] = std::make_shared<const Scene>(std::move(scene));
+    }
+    const BuildingCoverage coverage = measureBuilding(placed, options);
+    SiteFigures figures{coverage.coverage,
+                        coverage.total_effective_area,
+                        coverage.indoor_area,
+                        coverage.free_area,
+                        {}};
+    for (const Coverage& storey : coverage.storeys) figures.rooms.push_back(storey.report.coverage);
+    return figures;
+}
+
+Document buildingLayout(LayoutParts parts, const BuildingScene& building, const Document* before,
+                        const std::vector<SensorGroup>& groups, const Arrangement& arrangement) {
+    parts.whole = [&building](std::size_t storey, Record record, const std::string& id) {
+        return inBuilding(building.document.storeys[storey], std::move(record), id);
+    };
+    return layoutDocument(parts, before, groups, arrangement);
+}
+
+}  // namespace ispace

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Operands that are rooms: one, or those of a building.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "building/building_scene.h"
+#include "cli/building_operands.h"
+#include "cli/operands.h"
+#include "env/zone.h"
+#include "record/record.h"
+#include "scene/findings/findings.h"
+#include "scene/scene.h"
+
+namespace ispace {
+
+/// The rooms that a tool was given, and a layout of all of them.
+struct SiteInput {
+    std::string environment_operand, layout_operand;
+    std::vector<std::string> named;  ///< as SceneInput::named
+    std::vector<std::string> files;  ///< all that were read, for -MD
+    std::optional<Document> layout;
+    std::vector<std::shared_ptr<const Scene>> rooms;      ///< scenes; equal storeys share one
+    std::vector<std::string> ids;                         ///< of the rooms; "" of one alone
+    std::optional<Document> environment;                  ///< of a room alone
+    std::optional<BuildingScene> building;                ///< of several rooms
+    std::vector<Diagnostic> warnings = {}, choices = {};  ///< of importers
+
+    [[nodiscard]] bool isOneRoom() const { return !building; }
+    /// Returns the scene of a room alone.
+    [[nodiscard]] const Scene& only() const { return *rooms.front(); }
+    /// Returns the digest of the room's environment, or of the building.
+    [[nodiscard]] std::string digest() const;
+    /// Returns all records of the environment, for digests of jobs.
+    [[nodiscard]] std::vector<Record> environmentRecords() const;
+    /// Returns "ID: ", the beginning of a message about a room; "" for one alone.
+    [[nodiscard]] std::string prefix(std::size_t room) const;
+
+    /// Replaces the layout, and the scenes by those with it. \throws as makeScene(), layoutsOf()
+    void setLayout(Document changed);
+};
+
+/// Reads ENV and LAYOUT: a room, a storey that --storey chooses, or a building. \throws as
+/// readScene() and readBuildingInput()
+SiteInput readSite(const SceneRequest& request);
+
+/// Prints the warnings and choices of importers, as warnOfImport() of a room.
+void warnOfImport(const CommonOptions& options, const std::string& tool, const SiteInput& input);
+
+/// Returns checkScene() of each room, and of buildings what stands around it, as warnings.
+std::vector<Diagnostic> siteWarnings(const SiteInput& input, const FindingFilter& filter);
+
+/// Reads a text about zones in the rooms of a site: `STOREY/TEXT` for each storey that the glob
+/// STOREY matches, `TEXT` for all. Calls read(room, text); rooms of which it throws UsageError are
+/// left out, unless there is no other. \param option for messages
+/// \throws UsageError for a storey that does not exist, for rectangles and polygons without a
+/// storey, and the first error of `read` if all rooms are left out
+void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,
+                   const std::function<void(std::size_t room, const std::string& text)>& read);
+
+/// \throws UsageError saying that an option needs one room, with the storeys to choose from; does
+/// nothing for "" and for a room alone
+void mustBeOneRoom(const SiteInput& input, const std::string& option);
+
+}  // namespace ispace
