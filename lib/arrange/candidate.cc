@@ -85,6 +85,32 @@ void inOrderOf(std::span<const Angle> limits, std::span<const Angle> sorted, con
 
 }  // namespace
 
+SiteSights::SiteSights(std::span<const Site> sites, const Grid& grid) : cells_(grid.size()) {
+    places_.reserve(sites.size());
+    for (const Site& site : sites) places_.emplace_back(site.place.x, site.place.y);
+    std::sort(places_.begin(), places_.end());
+    places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
+    sights_ = std::vector<Of>(places_.size());
+}
+
+SiteSights::~SiteSights() = default;
+
+bool SiteSights::isWorthwhile(std::span<const Site> sites, const Grid& grid) {
+    constexpr std::size_t kMaxBytes = 100'000'000, kCellsPerByte = 4;
+    return sites.size() <= kMaxBytes / (1 + grid.size() / kCellsPerByte);
+}
+
+SiteSights::Held SiteSights::at(Point2 place) {
+    const auto found =
+        std::lower_bound(places_.begin(), places_.end(), std::pair(place.x, place.y));
+    if (found == places_.end() || *found != std::pair(place.x, place.y)) return {};
+    Of& of = sights_[static_cast<std::size_t>(found - places_.begin())];
+    std::unique_lock lock(of.mutex, std::try_to_lock);
+    if (lock && of.sight == nullptr) of.sight = std::make_unique<KnownSight>(cells_);
+    KnownSight* const sight = lock ? of.sight.get() : nullptr;
+    return {std::move(lock), sight};
+}
+
 struct CandidateViews::Data {
     const Grid& grid;
     const VisibleArea& sight;
@@ -98,6 +124,7 @@ struct CandidateViews::Data {
     const SiteErrors* errors = nullptr;    // of mounting; null: none
     const FacingCells* facing = nullptr;   // null: none
     const PresenceView* ways = nullptr;    // null: its cells are those of the grid
+    SiteSights* sights = nullptr;          // null: of this tilt alone
 
     [[nodiscard]] std::size_t headingsOf(const Site& site) const {
         return is_round ? 1 : site.headings.size();
@@ -136,8 +163,23 @@ struct CandidateViews::Data {
         }
         parts.first.push_back(parts.first.back());
     }
+    /// Returns a table for the headings that most sites share, if it is worth building.
+    [[nodiscard]] std::optional<TurnedViews> turnedFor(std::span<const Site> sites) const {
+        constexpr std::ptrdiff_t kWorthwhile = 24;  // sites
+        if (is_round || errors != nullptr || ways != nullptr || looks_in_slice || sites.empty())
+            return std::nullopt;
+        const std::vector<Angle>& headings = sites[sites.size() / 2].headings;
+        if (std::count_if(sites.begin(), sites.end(), [&](const Site& site) {
+                return site.headings == headings;
+            }) < kWorthwhile)
+            return std::nullopt;
+        const auto ahead = fieldOfView(at({{}, {Angle()}}, 0));
+        return ahead ? turnedViews(*ahead, headings, sight.plane(), grid) : std::nullopt;
+    }
     /// Computes the cells of each heading, one part each, and an empty part shared by all.
-    void lookAtPlane(const Site& site, CellParts& parts) const {
+    /// \param turned of turnedFor()
+    void lookAtPlane(const Site& site, const std::optional<TurnedViews>& turned,
+                     CellParts& parts) const {
         const std::size_t headings = headingsOf(site);
         parts.runs.clear();
         parts.first.assign(headings + 2, 0);
@@ -147,7 +189,13 @@ struct CandidateViews::Data {
         for (std::size_t k = 0; k < headings; ++k)
             if (const auto field = fieldOfView(at(site, k))) fields.push_back(*field);
         if (!fields.empty()) {
-            cellsByView(grid, sight.meshFor(device), fields, sight.plane(), parts, window);
+            const bool is_known =
+                turned && std::equal(site.headings.begin(), site.headings.end(),
+                                     turned->headings().begin(), turned->headings().end());
+            const SiteSights::Held known =
+                sights != nullptr ? sights->at(site.place) : SiteSights::Held();
+            cellsByView(grid, sight.meshFor(device), fields, sight.plane(), parts, window,
+                        is_known ? &*turned : nullptr, known.get());
         } else {  // lasers
             parts.first.resize(1);
             for (std::size_t k = 0; k < headings; ++k) {
@@ -186,6 +234,10 @@ CandidateViews::~CandidateViews() = default;
 
 void CandidateViews::lookAtWays(const PresenceView& ways) { data_->ways = &ways; }
 
+void CandidateViews::share(SiteSights& sights) {
+    if (data_->errors == nullptr) data_->sights = &sights;
+}
+
 bool CandidateViews::isRound() const { return data_->is_round; }
 
 namespace {
@@ -205,7 +257,9 @@ class Scanner {
           share_(share),
           grace_(grace != nullptr ? *grace : own_grace_),
           least_(std::min(least, sites.size())),
-          at_once_(data_.looks_in_slice ? 512 : 32) {}
+          at_once_(data_.looks_in_slice ? 512 : 32) {
+        for (const StackedViews& one : stack) turned_.push_back(one.views->data().turnedFor(sites));
+    }
 
     /// Returns true if all sites were scanned.
     bool run(std::size_t max_bytes) {
@@ -332,20 +386,20 @@ class Scanner {
 
     void lookFrom(std::size_t i) {
         if (stack_.size() == 1 && stack_.front().firsts == std::vector<std::size_t>{0})
-            return lookIn(data_, i, parts_[i]);
+            return lookIn(0, i, parts_[i]);
         std::vector<CellParts> views(stack_.size());
-        for (std::size_t k = 0; k < stack_.size(); ++k)
-            lookIn(stack_[k].views->data(), i, views[k]);
+        for (std::size_t k = 0; k < stack_.size(); ++k) lookIn(k, i, views[k]);
         stack(views, parts_[i]);
     }
 
-    void lookIn(const CandidateViews::Data& data, std::size_t i, CellParts& parts) const {
+    void lookIn(std::size_t room, std::size_t i, CellParts& parts) const {
+        const CandidateViews::Data& data = stack_[room].views->data();
         const Site& site = sites_[turns_[i]];
         assert(!site.headings.empty());
         if (data.looks_in_slice)
             data.lookBySector(site, sectors_[sectors_of_[i]].limits, parts);
         else
-            data.lookAtPlane(site, parts);
+            data.lookAtPlane(site, turned_[room], parts);
         if (data.counted) data.counted->keepIn(parts);
         if (data.facing != nullptr) data.facing->keepFaces(data.device, site.place, parts);
     }
@@ -386,6 +440,7 @@ class Scanner {
     std::span<const Site> sites_;
     Progress& progress_;
     const SearchShare& share_;
+    std::vector<std::optional<TurnedViews>> turned_;  // by case
     StopGrace own_grace_;
     StopGrace& grace_;
     std::size_t least_, at_once_;
@@ -422,11 +477,12 @@ bool addCandidates(PosedCandidates& set, std::span<const StackedViews> stack,
 
 std::vector<Site> sitesOutOfSight(const CandidateViews& views, std::span<const Site> sites) {
     const CandidateViews::Data& data = views.data();
+    const std::optional<TurnedViews> turned = data.turnedFor(sites);
     std::vector<Site> out(sites.begin(), sites.end());
     tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) {
         tbb::this_task_arena::isolate([&] {
             CellParts parts;
-            data.lookAtPlane(out[i], parts);
+            data.lookAtPlane(out[i], turned, parts);
             if (data.counted) data.counted->keepIn(parts);
             std::vector<Angle> headings;
             for (std::size_t k = 0; k < data.headingsOf(out[i]); ++k)

@@ -5,8 +5,10 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "arrange/placement_rules.h"
@@ -68,6 +70,44 @@ class PosedCandidates : public CandidateSet {
 class FacingCells;
 class PresenceView;
 class SiteErrors;
+struct KnownSight;
+
+/// The cells to which sensors at each of some sites, all at one height, have a free sight: views of
+/// several tilts share them. Thread-safe.
+class SiteSights {
+  public:
+    /// \pre isWorthwhile()
+    SiteSights(std::span<const Site> sites, const Grid& grid);
+    ~SiteSights();
+    SiteSights(const SiteSights&) = delete;
+    SiteSights& operator=(const SiteSights&) = delete;
+    /// Returns true if the sights of these sites fit in memory.
+    [[nodiscard]] static bool isWorthwhile(std::span<const Site> sites, const Grid& grid);
+
+    /// The sight of a site while one thread looks from there.
+    class Held {
+      public:
+        Held() = default;
+        Held(std::unique_lock<std::mutex> lock, KnownSight* sight)
+            : lock_(std::move(lock)), sight_(lock_.owns_lock() ? sight : nullptr) {}
+        /// Returns null if the site is unknown, or another thread looks from there.
+        [[nodiscard]] KnownSight* get() const { return sight_; }
+
+      private:
+        std::unique_lock<std::mutex> lock_;
+        KnownSight* sight_ = nullptr;
+    };
+    [[nodiscard]] Held at(Point2 place);
+
+  private:
+    struct Of {
+        std::mutex mutex;
+        std::unique_ptr<KnownSight> sight;
+    };
+    std::size_t cells_;
+    std::vector<std::pair<double, double>> places_;  // sorted, all different
+    std::vector<Of> sights_;
+};
 
 /// Computes the cells of a grid that a kind of sensor sees from any site, mounted at one height
 /// with one tilt and roll: the cells that VisibleArea::cellsOf() returns for a sensor there, unless
@@ -97,6 +137,9 @@ class CandidateViews {
     /// Makes its cells the pieces of these ways on which a sensor detects people, instead of those
     /// of the grid. Stores the reference. \pre detectsMotion(device), and `counted` is null
     void lookAtWays(const PresenceView& ways);
+
+    /// Keeps the sight of each site for views of the same height and device. Stores the reference.
+    void share(SiteSights& sights);
 
     /// Returns true if the view does not depend on the heading: a laser with a field of view of 360
     /// degrees, a cone that points straight down. A site then has one candidate, with its first

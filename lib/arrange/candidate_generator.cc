@@ -270,7 +270,10 @@ struct CandidatePool::Data {
         std::size_t places = 0;
         for (const SitesAtHeight& level : levels) places += level.sites.size() * tilts.size();
         bool is_complete = true;
-        for (const SitesAtHeight& level : levels)
+        for (const SitesAtHeight& level : levels) {
+            std::optional<SiteSights> sights;
+            if (tilts.size() > 1 && SiteSights::isWorthwhile(level.sites, target.grid))
+                sights.emplace(level.sites, target.grid);
             for (const Angle tilt : tilts) {
                 if (level.sites.empty()) continue;
                 if (!is_complete && least == 0) return false;
@@ -283,11 +286,13 @@ struct CandidatePool::Data {
                                      ways == nullptr ? &weights.counted : nullptr, by_beams,
                                      nullptr, facing);
                 if (ways != nullptr) views.lookAtWays(*ways);
+                if (sights) views.share(*sights);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
                 const std::vector<Site> sites = allowedSites(kind, mount, level.sites);
                 if (sites.empty()) continue;
                 if (!look(set, views, kind, mount, sites, share)) is_complete = false;
             }
+        }
         return is_complete;
     }
 

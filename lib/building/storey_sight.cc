@@ -47,6 +47,28 @@ bool StoreySight::maySee(std::size_t from, const Sensor& sensor, std::size_t to)
     return !between.empty() && bounds_.maySee(between, from, to, sensor, plane_);
 }
 
+/// Returns rows and columns with all cells that are seen through openings of all these floors.
+CellWindow StoreySight::windowThrough(const Grid& grid, Point3 eye, std::span<const Passed> floors,
+                                      double plane) {
+    CellWindow window{0, grid.rows, 0, grid.columns};
+    for (const Passed& floor : floors) {
+        const double share = (floor.height - eye.z) / (plane - eye.z);
+        if (!(share > 0)) continue;
+        Box2 box;
+        for (const Polygon& outline : floor.outlines)
+            for (const Point2 p : outline)
+                box.add(eye.onFloor() + (1 / share) * (p - eye.onFloor()));
+        if (box.empty()) return {0, 0, 0, 0};
+        box = box.expanded(kRim);
+        const GridAxis rows = GridAxis::rowsOf(grid), columns = GridAxis::columnsOf(grid);
+        window.first_row = std::max(window.first_row, rows.firstNotBelow(box.low.y));
+        window.end_row = std::min(window.end_row, rows.firstAbove(box.high.y));
+        window.first_column = std::max(window.first_column, columns.firstNotBelow(box.low.x));
+        window.end_column = std::min(window.end_column, columns.firstAbove(box.high.x));
+    }
+    return window;
+}
+
 /// In the frame of the storey that is seen.
 std::vector<StoreySight::Passed> StoreySight::floorsBetween(std::size_t from,
                                                             std::size_t to) const {
@@ -87,12 +109,14 @@ void StoreySight::look(std::size_t from, std::span<const Sensor> turned, std::si
             view.sensor.model);
         views.push_back(*fieldOfView(view.sensor));
     }
-    const auto& room = rooms_[to].get(
-        [&] { return std::make_shared<const SurroundedRoom>(*coupling_.surroundings(to)); });
-    cellsByView(grid, room->mesh(), views, plane_, parts);
     // Only through openings of all floors between, not past the outlines of floors.
     const Point3 eye = views.front().frame.origin;
     const std::vector<Passed> floors = floorsBetween(from, to);
+    const CellWindow window = windowThrough(grid, eye, floors, plane_);
+    if (window.first_row >= window.end_row || window.first_column >= window.end_column) return;
+    const auto& room = rooms_[to].get(
+        [&] { return std::make_shared<const SurroundedRoom>(*coupling_.surroundings(to)); });
+    cellsByView(grid, room->mesh(), views, plane_, parts, window);
     const auto is_framed = [&](std::size_t cell) {
         const Point2 place = grid.center(cell);
         return std::all_of(floors.begin(), floors.end(), [&](const Passed& floor) {

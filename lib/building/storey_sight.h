@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "building/building_sight.h"
 #include "building/opening_bounds.h"
+#include "coverage/plane_cells.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -39,6 +40,8 @@ class StoreySight {
         double height = 0;
         std::vector<Polygon> outlines;
     };
+    static CellWindow windowThrough(const Grid& grid, Point3 eye, std::span<const Passed> floors,
+                                    double plane);
     [[nodiscard]] std::vector<Passed> floorsBetween(std::size_t from, std::size_t to) const;
 
     const Coupling& coupling_;

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "geom/interval.h"
+#include "scene/sensor/lens_resolution.h"
+
 namespace ispace {
 
 namespace {
@@ -93,6 +96,15 @@ struct SeenRectangle {
     }
 };
 
+/// Bounds the pixels a metre within `radius` of a point, with a margin for rounding.
+Interval densityAround(const FieldOfView& view, Vec3 center, double distance, double radius) {
+    constexpr double kRounding = 1e-9;
+    if (!(radius < distance)) return {0, HUGE_VAL};
+    const Interval a_radian = view.resolution->around(center, radius);
+    return {(1 - kRounding) * a_radian.low / (distance + radius),
+            (1 + kRounding) * a_radian.high / (distance - radius)};
+}
+
 }  // namespace
 
 HeldViews::HeldViews(std::span<const FieldOfView> views) : views_(views) {
@@ -144,7 +156,11 @@ HeldViews::Verdict HeldViews::decide(Point3 center, Vec2 half, std::uint64_t amo
             continue;
         else if (answer == PictureTable::Answer::Unsure)
             margin.least = -HUGE_VAL;
-        if (view.least_density > 0) margin.least = -HUGE_VAL;  // varies with the direction
+        if (view.least_density > 0) {
+            const Interval density = densityAround(view, seen.center, distance, radius);
+            if (density.high < view.least_density) continue;
+            if (!(density.low > view.least_density)) margin.least = -HUGE_VAL;
+        }
         if (margin.least > slack)
             verdict.held |= bits & -bits;
         else if (margin.most >= -slack)

@@ -85,18 +85,20 @@ template <typename TargetOf>
 class RowLook {
   public:
     RowLook(const Grid& grid, const RayWorld& mesh, const Reach& reach, const TargetOf& target_of,
-            const CellWindow& window)
+            const CellWindow& window, KnownSight* known)
         : grid_(grid),
           columns_(GridAxis::columnsOf(grid)),
           mesh_(mesh),
           reach_(reach),
           target_of_(target_of),
-          window_(window) {}
+          window_(window),
+          known_(known) {}
 
     /// Appends the cells of a row that each view sees to its runs.
     void add(int row, RunsByView& runs) {
         findTargets(row);
         if (targets_.empty()) return;
+        if (known_ != nullptr) return addKnown(runs);
         seen_.resize(targets_.size());
         mesh_.query(reach_.origin, targets_, seen_);
         for (std::size_t i = 0; i < targets_.size(); ++i)
@@ -104,6 +106,24 @@ class RowLook {
     }
 
   private:
+    /// Casts rays to cells that are not known yet.
+    void addKnown(RunsByView& runs) {
+        unknown_cells_.clear();
+        unknown_.clear();
+        for (std::size_t i = 0; i < targets_.size(); ++i) {
+            if (known_->tested.test(cells_[i])) continue;
+            unknown_cells_.push_back(cells_[i]);
+            unknown_.push_back(targets_[i]);
+        }
+        seen_.resize(unknown_.size());
+        if (!unknown_.empty()) mesh_.query(reach_.origin, unknown_, seen_);
+        for (std::size_t i = 0; i < unknown_.size(); ++i) {
+            known_->tested.set(unknown_cells_[i]);
+            if (seen_[i] != 0 || unknown_[i] == reach_.origin) known_->seen.set(unknown_cells_[i]);
+        }
+        for (std::size_t i = 0; i < targets_.size(); ++i)
+            if (known_->seen.test(cells_[i])) runs.add(cells_[i], held_[i]);
+    }
     /// Finds the cells of the row that lie in any view.
     void findTargets(int row) {
         cells_.clear();
@@ -131,8 +151,9 @@ class RowLook {
     Reach reach_;
     TargetOf target_of_;
     CellWindow window_;
-    std::vector<std::uint32_t> cells_;
-    std::vector<Point3> targets_;
+    KnownSight* known_;
+    std::vector<std::uint32_t> cells_, unknown_cells_;
+    std::vector<Point3> targets_, unknown_;
     std::vector<std::uint64_t> held_;
     std::vector<std::uint8_t> seen_;
 };
@@ -140,13 +161,16 @@ class RowLook {
 /// Appends a part for each view. Bands of rows run in parallel.
 template <typename TargetOf>
 void addParts(const Grid& grid, const RayWorld& mesh, const Reach& reach, std::size_t views,
-              const TargetOf& target_of, CellParts& parts, const CellWindow& window = {}) {
+              const TargetOf& target_of, CellParts& parts, const CellWindow& window = {},
+              KnownSight* known = nullptr) {
     constexpr int kCellsOfBand = 1 << 16;
     const int rows = std::max(1, kCellsOfBand / grid.columns);
     const auto bands = static_cast<std::size_t>((grid.rows + rows - 1) / rows);
     std::vector<RunsByView> runs(bands, RunsByView(views));
     const auto look = [&](std::size_t band) {
-        RowLook<TargetOf> row_look(grid, mesh, reach, target_of, window);
+        // Bands that run in parallel share no words of cells.
+        RowLook<TargetOf> row_look(grid, mesh, reach, target_of, window,
+                                   bands == 1 ? known : nullptr);
         const int first = static_cast<int>(band) * rows;
         for (int row = std::max(first, window.first_row);
              row < std::min({first + rows, grid.rows, window.end_row}); ++row)
@@ -233,6 +257,44 @@ class ViewTargets {
     std::vector<std::uint64_t> held_;
 };
 
+/// The same targets by the table of the views. Tests single points near the edges of views.
+class TurnedTargets {
+  public:
+    TurnedTargets(const Grid& grid, const HeldViews& views, const TurnedViews& turned, Point2 foot,
+                  double height, const CellWindow& window)
+        : columns_(GridAxis::columnsOf(grid)),
+          rows_(GridAxis::rowsOf(grid)),
+          views_(views),
+          turned_(turned),
+          foot_(foot),
+          height_(height),
+          window_(window),
+          row_(static_cast<std::size_t>(std::max(0, window.end_column - window.first_column))) {}
+
+    CellTarget operator()(Point2 center, int column, int row) {
+        if (row != known_row_) {
+            known_row_ = row;
+            turned_.find(columns_.center(window_.first_column) - foot_.x,
+                         columns_.extent / columns_.count, rows_.center(row) - foot_.y, row_);
+        }
+        const HeldViews::Verdict& verdict =
+            *row_[static_cast<std::size_t>(column - window_.first_column)];
+        const Point3 place{center.x, center.y, height_};
+        if (verdict.unsure == 0) return {place, verdict.held};
+        return {place, verdict.held | views_.holding(place, verdict.unsure)};
+    }
+
+  private:
+    GridAxis columns_, rows_;
+    const HeldViews& views_;
+    const TurnedViews& turned_;
+    Point2 foot_;
+    double height_;
+    CellWindow window_;
+    int known_row_ = -1;
+    std::vector<const HeldViews::Verdict*> row_;
+};
+
 /// A laser that scans in one tilted plane covers the floor below or above that plane.
 void addScan(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, CellParts& parts) {
     const Point3 origin = sensor.pose.position;
@@ -289,7 +351,8 @@ CellWindow CellWindow::of(const Grid& grid, const CellSet& cells) {
 }
 
 void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
-                 double height, CellParts& parts, const CellWindow& window) {
+                 double height, CellParts& parts, const CellWindow& window,
+                 const TurnedViews* turned, KnownSight* known) {
     parts.runs.clear();
     parts.first.assign(1, 0);
     for (std::size_t begin = 0; begin < views.size(); begin += HeldViews::kMax) {
@@ -302,9 +365,24 @@ void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOf
         }
         const HeldViews held(some);
         const CellWindow near = reach->within(grid, window);
-        addParts(grid, mesh, *reach, some.size(), ViewTargets(grid, held, height, near), parts,
-                 near);
+        if (turned != nullptr)
+            addParts(grid, mesh, *reach, some.size(),
+                     TurnedTargets(grid, held, *turned, origin.onFloor(), height, near), parts,
+                     near, known);
+        else
+            addParts(grid, mesh, *reach, some.size(), ViewTargets(grid, held, height, near), parts,
+                     near, known);
     }
+}
+
+std::optional<TurnedViews> turnedViews(const FieldOfView& ahead, std::span<const Angle> headings,
+                                       double height, const Grid& grid) {
+    if (headings.empty() || headings.size() > HeldViews::kMax) return std::nullopt;
+    const auto reach =
+        Reach::of(ahead.frame.origin, ahead.farthest(), height - ahead.frame.origin.z);
+    if (!reach) return std::nullopt;
+    const double most = std::hypot(grid.limits.width(), grid.limits.depth());
+    return TurnedViews(ahead, headings, height, std::min(reach->distance, most));
 }
 
 CellSet cellsOnPlane(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "base/cell_set.h"
+#include "coverage/turned_views.h"
 #include "raster/grid.h"
 #include "scene/sensor/field_of_view.h"
 #include "scene/sensor/sensor.h"
@@ -31,9 +33,24 @@ struct CellWindow {
     static CellWindow of(const Grid& grid, const CellSet& cells);
 };
 
+/// Cells of a plane to which rays from one point were cast: views of several tilts share them.
+struct KnownSight {
+    CellSet tested, seen;
+    explicit KnownSight(std::size_t cells) : tested(cells), seen(cells) {}
+};
+
 /// Computes the cells of several fields of view at one position that differ only in heading: part k
 /// of `parts` is the view k, as far as it lies in the window. O(cells in reach * views + rays)
+/// \param turned their table, if there is one: O(cells in reach + rays)
+/// \param known of the same grid, mesh, position and height, if views look again from there
 void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
-                 double height, CellParts& parts, const CellWindow& window = {});
+                 double height, CellParts& parts, const CellWindow& window = {},
+                 const TurnedViews* turned = nullptr, KnownSight* known = nullptr);
+
+/// Returns the table of views with these headings over the plane at `height`, for points that are
+/// no farther than the grid's corners are apart; `ahead` is the view at heading 0. Empty if no
+/// point is in range, or with more headings than a table holds.
+std::optional<TurnedViews> turnedViews(const FieldOfView& ahead, std::span<const Angle> headings,
+                                       double height, const Grid& grid);
 
 }  // namespace ispace

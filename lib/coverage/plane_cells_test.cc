@@ -100,6 +100,7 @@ TEST(PlaneCells, HeadSeesBearingsAndElevations) {
     }
 }
 
+// With a table of turned views, too.
 TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
     const Room room("ispace size=12,9,3", 150, 110);
     Worlds worlds(room.scene.environment);
@@ -118,21 +119,31 @@ TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
           "projection=omni fov=360 pixels=512,512 range=5",
           "projection=omni fov=220 mirror=0.9 pixels=480,480 range=6",
           "projection=omni mirror=0.6 fx=300 pixels=640,480 range=7"}) {
-        const SensorModel model =
+        const Camera camera =
             parametersOf<Camera>(testing::sensorRecord(std::string("camera ") + lens), nullptr);
         std::size_t held = 0;
-        for (const double tilt : {-90.0, -47.0, -3.0, 20.0}) {
+        const auto look = [&](const SensorModel& model, double tilt, double step) {
+            const auto view_at = [&](Point3 place, double heading) {
+                return *fieldOfView(
+                    {"",
+                     model,
+                     {place, Angle::degrees(heading), Angle::degrees(tilt), Angle::degrees(4)}});
+            };
             std::vector<FieldOfView> views;
-            for (int k = 0; k < 5; ++k)
-                views.push_back(*fieldOfView({"",
-                                              model,
-                                              {{-1.3, 0.7, 2.6},
-                                               Angle::degrees(71.0 * k),
-                                               Angle::degrees(tilt),
-                                               Angle::degrees(4)}}));
+            std::vector<Angle> headings;
+            for (int k = 0; k < 5; ++k) {
+                headings.push_back(Angle::degrees(step * k));
+                views.push_back(view_at({-1.3, 0.7, 2.6}, step * k));
+            }
             sight.prepare({"", model, {}});
-            CellParts parts;
+            CellParts parts, by_table;
             cellsByView(room.grid, sight.meshFor(model), views, 0, parts);
+            const auto turned = turnedViews(view_at({0, 0, 2.6}, 0), headings, 0, room.grid);
+            EXPECT_TRUE(turned || parts.runs.empty()) << lens;
+            cellsByView(room.grid, sight.meshFor(model), views, 0, by_table, {},
+                        turned ? &*turned : nullptr);
+            EXPECT_EQ(parts.first, by_table.first) << lens;
+            EXPECT_EQ(parts.runs, by_table.runs) << lens;
             for (std::size_t k = 0; k < views.size(); ++k) {
                 const CellSet cells = cellsOf(parts, k, room.grid.size());
                 for (std::size_t cell = 0; cell < room.grid.size(); ++cell) {
@@ -142,6 +153,11 @@ TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
                 }
                 held += cells.count();
             }
+        };
+        for (const double tilt : {-90.0, -47.0, -3.0, 20.0}) look(camera, tilt, 71);
+        for (const double tilt : {-60.0, -30.0}) {
+            look(camera, tilt, 22.5);
+            look(withDensity(camera, 40), tilt, 22.5);
         }
         EXPECT_GT(held, 100U) << lens;
     }
