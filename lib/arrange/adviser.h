@@ -2,6 +2,7 @@
 // The search behind suggestChanges().
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -14,7 +15,9 @@
 
 #include "arrange/arrange.h"
 #include "arrange/suggestion.h"
+#include "coverage/exact_shares.h"
 #include "coverage/private_floor.h"
+#include "coverage/requirement.h"
 #include "coverage/visible_area.h"
 #include "scene/placement_schemas.h"
 #include "trace/ray_world.h"
@@ -96,7 +99,12 @@ class Adviser {
     [[nodiscard]] MeasuredState after(const Scene& scene, std::span<const Edit> edits) {
         Scene changed = makeScene(edited(scene.records, edits, sceneSchemas()), scene, devices_);
         Worlds worlds(changed.environment);
-        Coverage coverage = measureCoverage(changed, worlds, options_.measure);
+        const bool is_by_density =
+            std::any_of(options_.requirements.begin(), options_.requirements.end(),
+                        [](const Requirement& one) { return one.density.has_value(); });
+        auto shares = is_by_density ? std::nullopt : exactShares(changed, worlds, options_.measure);
+        Coverage coverage =
+            shares ? *std::move(shares) : measureCoverage(changed, worlds, options_.measure);
         const double missing =
             missingFloor(changed, coverage, options_, privateFloorOf(changed.environment));
         return {std::move(changed), std::move(coverage), missing};
@@ -125,6 +133,7 @@ class Adviser {
         best = std::move(suggestion);
     }
 
+    double mostWithout(const MeasuredState& now, const std::string& id);
     std::vector<Suggestion> turnAndShift(const MeasuredState& now);
     void leaveOutNeedless(const MeasuredState& now, std::vector<Suggestion>& steps);
     std::vector<Suggestion> additions(const MeasuredState& now);

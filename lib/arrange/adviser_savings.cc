@@ -2,6 +2,7 @@
 // Suggestions about furniture, and those that save a sensor or its cost.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -54,7 +55,8 @@ std::optional<Suggestion> Adviser::furniture(const MeasuredState& now) {
     const FindingFilter filter{.checks = {"objects", "outside", "buried", "collisions"}};
     const std::size_t accepted = checkScene(now.scene, filter).size();
     std::optional<Suggestion> best;
-    for (const Piece& piece : pieces)
+    for (const Piece& piece : pieces) {
+        if (best && mostWithout(now, piece.id) <= best->gained) continue;
         for (const Vec2 by : displacements(kPieceShifts)) {
             if (isStopped()) return best;
             std::vector<Edit> edits = {moveOf(piece.id, by)};
@@ -66,7 +68,25 @@ std::optional<Suggestion> Adviser::furniture(const MeasuredState& now) {
                                      formatFixed(by.y, 2) + ") m",
                                  std::move(edits)));
         }
+    }
     return best;
+}
+
+/// Bounds the floor gained by moving a piece by that gained without it; infinite where less
+/// furniture may be worse, or is not known to help.
+double Adviser::mostWithout(const MeasuredState& now, const std::string& id) {
+    constexpr double kUnknown = std::numeric_limits<double>::infinity(), kRounding = 1e-6;
+    if (now.missing > 0 || !options_.privacy.empty() || !options_.facing.empty()) return kUnknown;
+    try {
+        const std::vector<Edit> edits = {parseEdit(Edit::Kind::Delete, id)};
+        const MeasuredState then = after(now.scene, edits);
+        if (then.coverage.report.indoor_area != now.coverage.report.indoor_area) return kUnknown;
+        return (coveredShare(then.coverage) - coveredShare(now.coverage)) *
+                   now.coverage.report.indoor_area +
+               kRounding;
+    } catch (const UsageError&) {  // something stands on it
+        return kUnknown;
+    }
 }
 
 std::optional<Suggestion> Adviser::replacement(const MeasuredState& now) {

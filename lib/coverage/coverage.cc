@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "coverage/exact_shares.h"
 #include "coverage/far_holes.h"
 #include "coverage/metrics.h"
 #include "coverage/outside_view.h"
@@ -136,8 +137,14 @@ double reachOfScans(const Scene& scene) {
 /// Computes the view of each laser, ranger and receiver of a scene, in this order, in parallel.
 class Viewer {
   public:
-    Viewer(const Scene& scene, Worlds& worlds, const Grid& grid, const CoverageOptions& options)
-        : scene_(scene), worlds_(worlds), grid_(grid), options_(options) {}
+    /// \param only_regions computes neither cells, beams nor classes of density
+    Viewer(const Scene& scene, Worlds& worlds, const Grid& grid, const CoverageOptions& options,
+           bool only_regions = false)
+        : scene_(scene),
+          worlds_(worlds),
+          grid_(grid),
+          options_(options),
+          only_regions_(only_regions) {}
 
     std::vector<SensorView> run() {
         makeViews();
@@ -175,6 +182,7 @@ class Viewer {
                          });
     }
     void prepareWorlds() {
+        if (only_regions_) return;
         for (const SensorView& view : views_) {
             const Sensor& sensor = sensorOf(view);
             if (sensor.is<Laser>()) worlds_.prepare(sensor.pose);
@@ -207,6 +215,10 @@ class Viewer {
         if (auto* camera = std::get_if<Camera>(&sensor.model)) {
             *camera = withDensity(*camera, options_.density);
             view.max_range = camera->max_range;
+        }
+        if (only_regions_) {
+            setRegion(regionOf(sensor), scene_.environment.limits(), view);
+            return;
         }
         const Laser* laser = std::get_if<Laser>(&sensor.model);
         if (laser != nullptr) view.beams = castBeams(worlds_.at(sensor.pose), sensor);
@@ -254,6 +266,7 @@ class Viewer {
     Worlds& worlds_;
     const Grid& grid_;
     const CoverageOptions& options_;
+    bool only_regions_;
     VisibleArea sight_{scene_.environment, options_.plane, &worlds_, reachOfScans(scene_)};
     std::vector<SensorView> views_;
 };
@@ -455,6 +468,42 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
 
 Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options) {
     return measure(scene, scene, worlds, options, {});
+}
+
+std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
+                                    const CoverageOptions& options) {
+    if (!options.exact) return std::nullopt;
+    const Environment& environment = scene.environment;
+    Coverage coverage;
+    const auto level = environment.level(options.height);
+    CoverageReport& report = coverage.report;
+    coverage.target.grid = report.grid = gridOver(environment.limits(), options.cells);
+    coverage.target.height = options.height;
+    coverage.sensors = Viewer(scene, worlds, report.grid, options, true).run();
+    for (const SensorView& view : coverage.sensors) {
+        if (view.isPartial() || !view.region) return std::nullopt;
+        coverage.sets.push_back({CellSet(), view.region});
+        SensorMetrics& metrics =
+            report.sensors.emplace_back(SensorMetrics{.id = view.id, .model = view.model});
+        metrics.kind = view.kind;
+        metrics.area.exact = std::max(0.0, signedArea(*view.region));
+    }
+    FarHoles holes(environment.indoor(), level->freeFloor(), level->slice().sheets);
+    report.free_area = totalArea(level->freeFloor());
+    report.digest = scene.digest();
+    report.limits = environment.limits();
+    report.height = options.height;
+    report.plane = options.plane;
+    report.density = options.density;
+    report.indoor_area = environment.indoor().area();
+    const std::vector<Zone> zones = zonesOf(environment);
+    report.zones = zoneMetricsOf(environment, zones);
+    try {
+        addExactShares(coverage, environment, holes, zones, options.keep_depths);
+    } catch (const FormatError&) {
+        return std::nullopt;
+    }
+    return coverage;
 }
 
 Coverage measureWithOutside(const Scene& scene, Worlds& worlds, const CoverageOptions& options,

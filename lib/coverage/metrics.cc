@@ -331,6 +331,52 @@ FloorCurves floorCurvesOf(const Environment& environment, const std::vector<Regi
     return floor;
 }
 
+namespace {
+
+/// Sets the shares of the floor by the areas of all faces.
+void setShares(const Areas& areas, CoverageReport& report) {
+    report.total_effective_area.exact = std::max(0.0, areas.covered);
+    report.overlap.exact = std::max(0.0, areas.repeated);
+    double indoor_covered = 0;
+    for (const double area : areas.indoor_by_count) indoor_covered += area;
+    report.coverage.exact = shareOf(indoor_covered, report.indoor_area);
+    report.free_coverage.exact = shareOf(areas.free_covered, report.free_area);
+    report.redundancy_exact.emplace();
+    report.redundancy_exact->push_back(
+        shareOf(report.indoor_area - indoor_covered, report.indoor_area));
+    for (std::size_t k = 1; k < areas.indoor_by_count.size(); ++k)
+        report.redundancy_exact->push_back(shareOf(areas.indoor_by_count[k], report.indoor_area));
+}
+
+}  // namespace
+
+void addExactShares(Coverage& coverage, const Environment& environment, FarHoles& holes,
+                    const std::vector<Zone>& zones, bool keep_depths) {
+    Areas areas(coverage.sets.size());
+    const auto level = environment.level(coverage.target.height);
+    const FloorCurves floor{curvesWithArcs(environment.indoor()),
+                            holes.curvesWithout(coverage.sets)};
+    for (std::size_t first = 0; first == 0 || first < zones.size(); first += kZonesAtOnce) {
+        const std::size_t count = std::min(kZonesAtOnce, zones.size() - first);
+        const std::vector<Layer> layers =
+            layersOf(coverage, floor, std::span(zones).subspan(first, count));
+        ZoneAreas by_zone{std::vector<double>(count)};
+        const auto add = [&](const LayerLabel& label, double area) {
+            if (first == 0) areas.add(label, area);
+            by_zone.add(label, area);
+        };
+        if (first > 0)
+            forEachArea(layers, add);
+        else if (keep_depths)
+            Overlay(layers, level->slice().sheets).addAreas(add);
+        else
+            Overlay(layers, level->slice().sheets,
+                    Overlay::Coarse{.label = withoutDepths, .add_area = add});
+        by_zone.setShares(std::span(coverage.report.zones).subspan(first, count));
+    }
+    setShares(areas, coverage.report);
+}
+
 void addExactMetrics(Coverage& coverage, const Environment& environment, FarHoles& holes,
                      const std::vector<Zone>& zones, bool keep_depths) {
     CoverageReport& report = coverage.report;
@@ -363,16 +409,7 @@ void addExactMetrics(Coverage& coverage, const Environment& environment, FarHole
     addReceivers(coverage);
     coverage.overlay = std::move(main);  // does not throw from here on
 
-    report.total_effective_area.exact = std::max(0.0, areas.covered);
-    report.overlap.exact = std::max(0.0, areas.repeated);
-    double indoor_covered = 0;
-    for (const double area : areas.indoor_by_count) indoor_covered += area;
-    report.coverage.exact = shareOf(indoor_covered, report.indoor_area);
-    report.free_coverage.exact = shareOf(areas.free_covered, report.free_area);
-    areas.indoor_by_count[0] = report.indoor_area - indoor_covered;
-    report.redundancy_exact.emplace();
-    for (const double area : areas.indoor_by_count)
-        report.redundancy_exact->push_back(shareOf(area, report.indoor_area));
+    setShares(areas, report);
     addSensors(coverage, areas);
     addPieces(report, *coverage.overlay, holes);
 }

@@ -61,6 +61,10 @@ class FarHoles;
 void addExactMetrics(Coverage& coverage, const Environment& environment, FarHoles& holes,
                      const std::vector<Zone>& zones, bool keep_depths);
 
+/// Sets only the shares of floor and zones, to the same values.
+void addExactShares(Coverage& coverage, const Environment& environment, FarHoles& holes,
+                    const std::vector<Zone>& zones, bool keep_depths);
+
 /// Returns the figures whose robustness is reported: coverage, free coverage, that of each zone,
 /// and those of the requirements, each once, as requirements of 0.
 std::vector<Requirement> figuresOf(const CoverageReport& report,

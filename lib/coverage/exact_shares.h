@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "coverage/coverage.h"
+
+namespace ispace {
+
+/// Computes the exact shares of floor and zones and the sensors' regions as measureCoverage() does,
+/// to the same values, but no cells, beams, pieces, pictures or classes of density. Empty if a
+/// region or a share is not known exactly, and with receivers.
+std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
+                                    const CoverageOptions& options);
+
+}  // namespace ispace
