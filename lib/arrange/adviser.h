@@ -133,6 +133,8 @@ class Adviser {
         best = std::move(suggestion);
     }
 
+    /// Returns the sight in the first environment that keeps regions; null in others.
+    const VisibleArea* sightIn(const Environment& environment);
     double mostWithout(const MeasuredState& now, const std::string& id);
     std::vector<Suggestion> turnAndShift(const MeasuredState& now);
     void leaveOutNeedless(const MeasuredState& now, std::vector<Suggestion>& steps);
@@ -156,6 +158,16 @@ class Adviser {
     const SuggestOptions& options_;
     const DeviceCatalogue& devices_;
     Progress& progress_;
+    /// Of the first environment.
+    struct FirstSight {
+        Environment environment;  // shares its data
+        VisibleArea sight;
+        FirstSight(const Environment& first, double plane)
+            : environment(first), sight(environment, plane) {
+            sight.keepRegions();
+        }
+    };
+    std::unique_ptr<FirstSight> first_sight_;
     /// Of the first environment, and of the last other one.
     std::array<std::unique_ptr<PrivateFloor>, 2> private_floors_;
 };

@@ -128,6 +128,13 @@ PrivateFloor& Adviser::privateFloorOf(const Environment& environment) {
     return *made;
 }
 
+const VisibleArea* Adviser::sightIn(const Environment& environment) {
+    if (first_sight_ == nullptr)
+        first_sight_ = std::make_unique<FirstSight>(environment, options_.measure.plane);
+    const bool is_first = first_sight_->environment.digest() == environment.digest();
+    return is_first ? &first_sight_->sight : nullptr;
+}
+
 std::size_t Adviser::intruders(const Scene& scene) {
     PrivateFloor& floor = privateFloorOf(scene.environment);
     return static_cast<std::size_t>(

@@ -98,8 +98,9 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     std::erase_if(others.sensors, [](const Sensor& sensor) {
         return !sensor.mount && !sensor.person && kindOf(sensor.model).is_arranged;
     });
-    const VisibleArea sight(now.scene.environment, options_.measure.plane);
-    ExactGain gain(others, sight, sensors, weightsFor(now), 1);
+    const VisibleArea own(now.scene.environment, options_.measure.plane);
+    const VisibleArea* const known = sightIn(now.scene.environment);
+    ExactGain gain(others, known != nullptr ? *known : own, sensors, weightsFor(now), 1);
     gain.prepareAll();
     RuleTrials rules_of_cameras(now, options_, privateFloorOf(now.scene.environment));
     std::optional<Trial> turn, shift;

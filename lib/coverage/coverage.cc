@@ -138,13 +138,15 @@ double reachOfScans(const Scene& scene) {
 class Viewer {
   public:
     /// \param only_regions computes neither cells, beams nor classes of density
+    /// \param known of an equal environment, see exactShares()
     Viewer(const Scene& scene, Worlds& worlds, const Grid& grid, const CoverageOptions& options,
-           bool only_regions = false)
+           bool only_regions = false, const VisibleArea* known = nullptr)
         : scene_(scene),
           worlds_(worlds),
           grid_(grid),
           options_(options),
-          only_regions_(only_regions) {}
+          only_regions_(only_regions),
+          known_(known) {}
 
     std::vector<SensorView> run() {
         makeViews();
@@ -240,7 +242,8 @@ class Viewer {
 
     [[nodiscard]] std::optional<std::vector<Curve>> regionOf(const Sensor& sensor) const {
         try {
-            return sight_.regionOf(sensor);
+            const bool is_known = known_ != nullptr && !scansSlice(sensor);
+            return (is_known ? *known_ : sight_).regionOf(sensor);
         } catch (const FormatError&) {
             return std::nullopt;  // too many crossings for an overlay
         }
@@ -267,6 +270,7 @@ class Viewer {
     const Grid& grid_;
     const CoverageOptions& options_;
     bool only_regions_;
+    const VisibleArea* known_;
     VisibleArea sight_{scene_.environment, options_.plane, &worlds_, reachOfScans(scene_)};
     std::vector<SensorView> views_;
 };
@@ -471,7 +475,7 @@ Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptio
 }
 
 std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
-                                    const CoverageOptions& options) {
+                                    const CoverageOptions& options, const VisibleArea* sight) {
     if (!options.exact) return std::nullopt;
     const Environment& environment = scene.environment;
     Coverage coverage;
@@ -479,7 +483,7 @@ std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
     CoverageReport& report = coverage.report;
     coverage.target.grid = report.grid = gridOver(environment.limits(), options.cells);
     coverage.target.height = options.height;
-    coverage.sensors = Viewer(scene, worlds, report.grid, options, true).run();
+    coverage.sensors = Viewer(scene, worlds, report.grid, options, true, sight).run();
     for (const SensorView& view : coverage.sensors) {
         if (view.isPartial() || !view.region) return std::nullopt;
         coverage.sets.push_back({CellSet(), view.region});

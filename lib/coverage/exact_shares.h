@@ -4,13 +4,16 @@
 #include <optional>
 
 #include "coverage/coverage.h"
+#include "coverage/visible_area.h"
 
 namespace ispace {
 
 /// Computes the exact shares of floor and zones and the sensors' regions as measureCoverage() does,
 /// to the same values, but no cells, beams, pieces, pictures or classes of density. Empty if a
 /// region or a share is not known exactly, and with receivers.
+/// \param sight of an equal environment and the same plane, which may know regions; null: none
 std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
-                                    const CoverageOptions& options);
+                                    const CoverageOptions& options,
+                                    const VisibleArea* sight = nullptr);
 
 }  // namespace ispace

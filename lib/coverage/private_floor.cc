@@ -34,6 +34,7 @@ double areaInBoth(const std::vector<Curve>& floor, const std::vector<Curve>& vie
 PrivateFloor::PrivateFloor(const Environment& environment, double plane,
                            std::span<const PrivacyRule> rules)
     : environment_(environment), sight_(environment_, plane) {
+    sight_.keepRegions();
     for (const PrivacyRule& rule : rules) {
         Rule& own = rules_.emplace_back(Rule{rule.density, {}});
         for (const std::string& id : privateZones(rule, environment_)) {
@@ -61,6 +62,10 @@ PrivateFloor::Sight PrivateFloor::seenBy(const Sensor& sensor) const {
     for (const Rule& rule : rules_) {
         Sensor camera = sensor;
         camera.model = withDensity(sensor.as<Camera>(), rule.density);
+        const Box2 reach = sight_.boxOf(camera);
+        if (std::none_of(rule.pieces.begin(), rule.pieces.end(),
+                         [&](const Piece& piece) { return reach.meets(piece.box); }))
+            continue;
         const std::optional<std::vector<Curve>> view = sight_.regionOf(camera);
         const Box2 box = view ? boundsOfAll(*view) : Box2();
         for (const Piece& piece : rule.pieces) {

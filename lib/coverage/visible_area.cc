@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <tuple>
 #include <utility>
 
 #include "coverage/plane_cells.h"
@@ -49,6 +52,45 @@ CellSet cellsOfScan(const Grid& grid, const LevelViews& level, const Sensor& sen
 
 }  // namespace
 
+/// Regions by model and pose.
+class VisibleArea::KnownRegions {
+  public:
+    using Region = std::optional<std::vector<Curve>>;
+
+    /// Returns null for a region that is not known.
+    std::shared_ptr<const Region> find(const Sensor& sensor) {
+        const std::lock_guard lock(mutex_);
+        const auto [first, last] = regions_.equal_range(keyOf(sensor.pose));
+        const auto known = std::find_if(first, last, [&](const auto& one) {
+            return one.second.pose == sensor.pose && one.second.model == sensor.model;
+        });
+        return known == last ? nullptr : known->second.region;
+    }
+    void store(const Sensor& sensor, std::shared_ptr<const Region> region) {
+        constexpr std::size_t kMost = 20'000;
+        const std::lock_guard lock(mutex_);
+        if (regions_.size() < kMost)
+            regions_.emplace(keyOf(sensor.pose),
+                             Known{sensor.model, sensor.pose, std::move(region)});
+    }
+
+  private:
+    struct Known {
+        SensorModel model;
+        Pose3 pose;
+        std::shared_ptr<const Region> region;
+    };
+    using Key = std::tuple<double, double, double>;
+    static Key keyOf(const Pose3& pose) {
+        return {pose.position.x, pose.position.y, pose.heading.degrees()};
+    }
+
+    std::mutex mutex_;
+    std::multimap<Key, Known> regions_;
+};
+
+void VisibleArea::keepRegions() { known_ = std::make_shared<KnownRegions>(); }
+
 void VisibleArea::prepare(const Sensor& sensor) const {
     if (!scansSlice(sensor)) worlds_->prepareMesh(kindOf(sensor.model).stopped_by);
 }
@@ -62,7 +104,13 @@ std::optional<std::vector<Curve>> VisibleArea::regionOf(const Sensor& sensor) co
     const std::shared_ptr<const Level> level = levelAt(place.z);
     if (scansSlice(sensor)) return regionOfScan(*level, reach_, sensor);
     if (level->isInsideSolid(place.onFloor())) return std::vector<Curve>();
-    return shadows_.get([this] { return ShadowCaster(environment_); }).regionSeen(sensor, plane_);
+    if (known_ != nullptr)
+        if (const auto known = known_->find(sensor)) return *known;
+    auto region =
+        shadows_.get([this] { return ShadowCaster(environment_); }).regionSeen(sensor, plane_);
+    if (known_ != nullptr)
+        known_->store(sensor, std::make_shared<const KnownRegions::Region>(region));
+    return region;
 }
 
 Box2 VisibleArea::boxOf(const Sensor& sensor) const {

@@ -33,6 +33,10 @@ class VisibleArea {
                 double reach = std::numeric_limits<double>::infinity())
         : environment_(environment), plane_(plane), worlds_(worlds), reach_(reach) {}
 
+    /// Keeps the regions of sensors that scan no slice, for calls with equal models and poses.
+    /// \pre no call has been made
+    void keepRegions();
+
     /// Builds the world for sensors of the same model, height, tilt and roll. One thread must call
     /// it before cellsOf(). \pre worlds is not null
     void prepare(const Sensor& sensor) const;
@@ -53,11 +57,14 @@ class VisibleArea {
     [[nodiscard]] const RayWorld& meshFor(const SensorModel& model) const;
 
   private:
+    class KnownRegions;
+
     const Environment& environment_;
     double plane_;
     Worlds* worlds_;
     double reach_;
     Lazy<ShadowCaster> shadows_;
+    std::shared_ptr<KnownRegions> known_;  // null: none are kept
 };
 
 }  // namespace ispace
