@@ -8,7 +8,9 @@ manuals describe them. The right area is that of the room's corners by the shoel
 SVG: a bounding box of the element's own numbers) must find a line of the drawing along each side of the
 room, so that the corners are those of the file and not of this script.
 
-Runs envc on each file and prints a table: right, warned (wrong, with a warning), refused, or silent
+Rooms in the other formats come from formats.py.
+
+Runs envc on each file and prints a table, and one by format: right, warned (wrong, with a warning), refused, or silent
 (wrong without a word). Status 1 if a drawing has another result than `expected` says; 77 without ezdxf.
 """
 import json
@@ -19,6 +21,9 @@ import subprocess
 import sys
 import xml.etree.ElementTree
 
+import formats
+
+RESULTS = ("right", "warned", "silent", "refused")
 TOLERANCE = 0.012  # of the area: a threshold counts as floor or as wall
 
 # The flat, in metres: outer walls of 0.3 m, a partition of 0.12 m, a door in each, three windows.
@@ -531,6 +536,92 @@ def upright_face():
     return d
 
 
+def dashed(d, layer, a, b, kind):
+    """A line of another type than that of its layer."""
+    before = len(d.entities)
+    d.line(layer, a, b)
+    line = d.entities[before:].replace("8\n%s\n" % layer, "8\n%s\n6\n%s\n" % (layer, kind), 1)
+    d.entities = d.entities[:before] + line
+
+
+def overhead():
+    """AutoCAD's linetypes acad.lin: edges above the cut are HIDDEN, axes CENTER, on the layer of all."""
+    d = flat(Dxf("mm", None, "AC1032"), "0")
+    dashed(d, "0", (.3, 3.4), (5, 3.4), "HIDDEN")
+    dashed(d, "0", (-1, 3.2), (10, 3.2), "CENTER2")
+    return d
+
+
+def thresholds():
+    """The floor changes at a door: a line on each face of the wall, besides leaf and swing."""
+    d = flat(Dxf("mm", None, "AC1032"), "0")
+    for a, b in [((1, 0), (1.9, 0)), ((1, .3), (1.9, .3)), ((5, 2), (5, 2.8)), ((5.12, 2), (5.12, 2.8))]:
+        d.line("0", a, b)
+    return d
+
+
+def roof():
+    d = flat(Dxf("mm", None, "AC1032"), "0")
+    d.poly("0", [(-.6, -.6), (9.6, -.6), (9.6, 7.1), (-.6, 7.1)])
+    return d
+
+
+def tiles():
+    d = flat(Dxf("mm", None, "AC1032"), "0")
+    for i in range(1, 15):
+        d.line("0", (5.12, .3 + i * .4), (8.7, .3 + i * .4))
+    for i in range(1, 9):
+        d.line("0", (5.12 + i * .4, .3), (5.12 + i * .4, 6.2))
+    return d
+
+
+def mirrored():
+    """A whole plan as one block, inserted seen from below (AutoCAD's MIRROR)."""
+    d = Dxf("mm", None, "AC1032")
+    d.block("PLAN", lambda: flat(d, "WALL", "DOOR", "WINDOW"))
+    d.add("INSERT", "0", "2\nPLAN\n10\n0\n20\n0\n41\n-1\n42\n1\n")
+    return d
+
+
+def pieces_of_walls():
+    """FreeCAD's Draft rectangles: each wall is one, and they overlap at corners."""
+    d = Dxf("mm", None, "AC1021")
+    for x0, y0, x1, y1 in [(0, 0, 1, .3), (1.9, 0, 9, .3), (8.7, 0, 9, 2.5), (8.7, 4, 9, 6.5), (0, 6.2, 1.5, 6.5),
+                           (3, 6.2, 6, 6.5), (7.5, 6.2, 9, 6.5), (0, 0, .3, 6.5), (5, .3, 5.12, 2),
+                           (5, 2.8, 5.12, 6.2)]:
+        d.poly("Wall", [(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+    for hinge, leaf, latch, width in DOORS:
+        d.line("Door", hinge, ends(hinge, leaf, latch, width)[0])
+        d.arc("Door", hinge, width, min(leaf, latch), max(leaf, latch))
+    for x0, y0, x1, y1 in WINDOWS:
+        d.poly("Window", [(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+    return d
+
+
+def paper_space():
+    d = librecad()
+    before = len(d.entities)
+    frame(d, "0")
+    d.entities = d.entities[:before] + d.entities[before:].replace("\n8\n0\n", "\n67\n1\n8\n0\n")
+    return d
+
+
+def outlines_of_areas():
+    """Revit's areas, and rooms as polygons of their net floor."""
+    d = revit()
+    for layer in ("A-AREA", "Raumpolygone"):
+        d.poly(layer, [(.3, .3), (5, .3), (5, 6.2), (.3, 6.2)])
+        d.poly(layer, [(5.12, .3), (8.7, .3), (8.7, 6.2), (5.12, 6.2)])
+    return d
+
+
+def coloured_pier():
+    """A pier that is only filled: wider than walls."""
+    d = flat(Dxf("mm", None, "AC1032"), "0")
+    d.solid_hatch("0", [(6, 4), (7.8, 4), (7.8, 5.8), (6, 5.8)])
+    return d
+
+
 OUTSIDE_BAY = [(0, 0), (6, 0), (6, 1)] + [
     (6 + 1.5 * math.cos(math.pi * (i / 400 - .5)), 2.5 + 1.5 * math.sin(math.pi * (i / 400 - .5)))
     for i in range(1, 400)] + [(6, 4), (6, 5), (0, 5)]
@@ -592,6 +683,19 @@ DXF = {
     "upright-face": (upright_face, "m", None, "warned"),
     "single-lines": (single_lines, "m", AXES_FLOOR, "right"),
     "survey": (survey, "m", FLOOR, "right"),
+    "overhead": (overhead, "mm", FLOOR, "right"),
+    "thresholds": (thresholds, "mm", FLOOR, "right"),
+    "roof": (roof, "mm", FLOOR, "warned"),
+    "tiles": (tiles, "mm", FLOOR, "warned"),
+    "mirrored": (mirrored, "mm", [(-x, y) for x, y in FLOOR], "right"),
+    "pieces-of-walls": (pieces_of_walls, "mm", FLOOR, "right"),
+    "paper-space": (paper_space, "mm", FLOOR, "right"),
+    "outlines-of-areas": (outlines_of_areas, "mm", FLOOR, "right"),
+    "coloured-pier": (coloured_pier, "mm", None, "warned"),
+    "vietnamese": (lambda: planners("Tường", "Cửa đi", "Cửa sổ", "Nội thất", "Kích thước"), "cm", FLOOR, "right"),
+    "hindi": (lambda: planners("दीवार", "दरवाजा", "खिड़की", "फर्नीचर", "माप"), "cm", FLOOR, "right"),
+    "latvian": (lambda: planners("SIENAS", "DURVIS", "LOGI", "MĒBELES", "IZMĒRI"), "cm", FLOOR, "right"),
+    "russian": (lambda: planners("Стены", "Двери", "Окна", "Мебель", "Размеры"), "cm", FLOOR, "right"),
 }
 
 
@@ -797,6 +901,57 @@ def clipped():
     return d
 
 
+def dashes():
+    """Illustrator and Inkscape dash edges above the cut (stroke-dasharray)."""
+    d = svg_flat(Svg(), id_group, more=THIN)
+    d.path([(.3, 3.4), (5, 3.4)], False, 'style="fill:none;stroke:#000;stroke-dasharray:8, 4"')
+    return d
+
+
+def masked_furniture():
+    """Figma clips what it exports by masks: those of furniture hide no wall."""
+    d = svg_flat(Svg(), id_group, more=THIN)
+    d.body = '<mask id="m"><rect width="1200" height="800"/></mask>' + d.body
+    return svg_things(d, 'id="furniture" mask="url(#m)"')
+
+
+def figma():
+    """Figma exports each wall as a filled rectangle, without names."""
+    d = Svg(100, 'width="12000mm" height="8000mm" viewBox="0 0 1200 800"')
+    for x0, y0, x1, y1 in [(0, 0, 1, .3), (1.9, 0, 9, .3), (8.7, 0, 9, 2.5), (8.7, 4, 9, 6.5), (0, 6.2, 1.5, 6.5),
+                           (3, 6.2, 6, 6.5), (7.5, 6.2, 9, 6.5), (0, 0, .3, 6.5), (5, .3, 5.12, 2),
+                           (5, 2.8, 5.12, 6.2)] + WINDOWS:
+        d.path([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], True, 'fill="#333333"')
+    for hinge, leaf, latch, width in DOORS:
+        open_end, shut_end = ends(hinge, leaf, latch, width)
+        d.line(hinge, open_end, 'stroke="black"')
+        d.swing(*((open_end, shut_end) if leaf > latch else (shut_end, open_end)), width, 'stroke="black" fill="none"')
+    return d
+
+
+def painted_over():
+    """Black walls without gaps, and doors as white boxes above them: the boxes close the doors."""
+    d = Svg()
+    for x0, y0, x1, y1 in [(0, 0, 9, .3), (8.7, 0, 9, 6.5), (0, 6.2, 9, 6.5), (0, 0, .3, 6.5), (5, .3, 5.12, 6.2)]:
+        d.path([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], True, 'fill="#000"')
+    for x0, y0, x1, y1 in [(1, 0, 1.9, .3), (5, 2, 5.12, 2.8)] + WINDOWS:
+        d.path([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], True, 'fill="#fff"')
+    return d
+
+
+def named_rooms():
+    """Rooms as filled outlines in a group, a name drawn as paths, furniture by a label."""
+    d = Svg()
+    d.open('id="rooms"')
+    d.polygon([(.3, .3), (5, .3), (5, 6.2), (.3, 6.2)], 'fill="#eee"')
+    d.polygon([(5.12, .3), (8.7, .3), (8.7, 6.2), (5.12, 6.2)], 'fill="#eee"')
+    d.close()
+    svg_flat(d, id_group, more=THIN)
+    d.body += '<g aria-label="Bedroom" id="text12"><path d="M 300,300 h 60 v 80 h -60 Z"/></g>'
+    d.body += '<g id="g12" inkscape:label="Sofa 3"><rect x="140" y="110" width="160" height="200"/></g>'
+    return d
+
+
 def by_percent():
     d = Svg(100, 'width="12000mm" height="8000mm" viewBox="0 0 1200 800"')
     svg_flat(d, id_group, more=THIN)
@@ -826,6 +981,11 @@ SVG = {
     "clipped": (clipped, FLOOR, "right"),
     "by-percent": (by_percent, FLOOR, "right"),
     "wide-strokes": (wide_strokes, MIDDLE, "right"),
+    "dashes": (dashes, FLOOR, "right"),
+    "figma": (figma, FLOOR, "right"),
+    "painted-over": (painted_over, FLOOR, "warned"),
+    "named-rooms": (named_rooms, FLOOR, "right"),
+    "masked-furniture": (masked_furniture, FLOOR, "right"),
 }
 
 
@@ -902,18 +1062,18 @@ def undrawn(corners, pieces, scale, offset, openings):
     return missing
 
 
-def measured(path):
+def measured(path, options=(), key="indoor_area"):
     """The floor area that envc reads, whether it warned, and its messages."""
-    run = subprocess.run(["envc", path, "--info", "--json"], capture_output=True, text=True)
-    area = json.loads(run.stdout)["indoor_area"] if run.returncode == 0 else None
+    run = subprocess.run(["envc", path, *options, "--info", "--json"], capture_output=True, text=True)
+    area = json.loads(run.stdout)[key] if run.returncode == 0 else None
     return area, " warning: " in run.stderr, run.stderr
 
 
-def result(path, right):
-    area, warned, messages = measured(path)
+def result(path, right, options=(), key="indoor_area", tolerance=TOLERANCE):
+    area, warned, messages = measured(path, options, key)
     if area is None:
         return "refused", area, messages
-    if right is not None and abs(area - right) <= TOLERANCE * right:
+    if right is not None and abs(area - right) <= tolerance * right:
         return "right", area, messages
     return ("warned" if warned else "silent"), area, messages
 
@@ -929,7 +1089,10 @@ def run_dxf(folder, only, rows):
         right, fault = None, ""
         if corners is not None:
             right = shoelace(corners)
-            missing = undrawn(corners, pieces_by_ezdxf(path, UNITS[unit]), UNITS[unit], drawing.offset, OPENINGS)
+            openings = OPENINGS
+            if corners[0][0] < 0:  # seen from below
+                openings = [(-x1, y0, -x0, y1) for x0, y0, x1, y1 in OPENINGS]
+            missing = undrawn(corners, pieces_by_ezdxf(path, UNITS[unit]), UNITS[unit], drawing.offset, openings)
             if missing:
                 fault = "ezdxf finds no line at %s" % missing[:3]
         rows.append((name + ".dxf", expected, right, fault) + result(path, right))
@@ -966,9 +1129,11 @@ def main():
     rows = []
     run_dxf(folder, only, rows)
     run_svg(folder, only, rows)
+    formats.run(folder, only, rows, result)
     counts, faults = {}, 0
     for name, expected, right, fault, found, area, messages in rows:
-        counts[found] = counts.get(found, 0) + 1
+        for kind in (formats.format_of(name), "all"):
+            counts.setdefault(kind, dict.fromkeys(RESULTS, 0))[found] += 1
         is_fault = found != expected or fault
         faults += bool(is_fault)
         print("%-28s %-8s %10s %10s %s" % (name, found, "-" if right is None else "%.3f" % right,
@@ -976,7 +1141,9 @@ def main():
                                           "EXPECTED " + expected + " " + fault if is_fault else ""))
         if is_fault or only:
             print("    " + messages.replace("\n", "\n    ").rstrip())
-    print(", ".join("%d %s" % (counts[kind], kind) for kind in sorted(counts)))
+    print("\n%-8s" % "" + "".join("%9s" % found for found in RESULTS))
+    for kind in sorted(counts, key=lambda kind: (kind == "all", kind)):
+        print("%-8s" % kind + "".join("%9d" % counts[kind][found] for found in RESULTS))
     return 1 if faults else 0
 
 

@@ -170,6 +170,20 @@ TEST(Building, WallsWithoutABodyAreCounted) {
     EXPECT_EQ(building.unread.front().kind, "IFCWALL without a body");
 }
 
+TEST(Building, SolidsWithoutFacesAreCounted) {
+    const Building building =
+        readBuilding(oneStorey("#30=IFCWALL('w',$,'north:1',$,$,#13,#90,$,$);\n"
+                               "#90=IFCPRODUCTDEFINITIONSHAPE($,$,(#91));\n"
+                               "#91=IFCSHAPEREPRESENTATION($,'Body','AdvancedBrep',(#92));\n"
+                               "#92=IFCADVANCEDBREP($);\n",
+                               "#30"),
+                     std::nullopt, ampleWork());
+    ASSERT_EQ(building.unread.size(), 1U);
+    EXPECT_EQ(building.unread.front().kind, "IFCADVANCEDBREP without faces");
+    EXPECT_EQ(building.unread.front().owner, "IFCWALL north");
+    EXPECT_EQ(building.unread.front().storey, 0U);
+}
+
 TEST(Building, ASpaceWithPartialPartsIsASpace) {
     const auto spaces = [](const char* shape, const char* kind) {
         return readBuilding(oneStorey("#30=IFCSPACE('w',$,'w',$,$,#13," + std::string(shape) +

@@ -120,7 +120,9 @@ void IfcShapes::addItem(StepId id, IfcShape& shape, int depth) {
     if (item.type == "IFCBOOLEANRESULT" || item.type == "IFCBOOLEANCLIPPINGRESULT")
         return addBoolean(item, shape, depth);
     if (item.type == "IFCCSGSOLID") return addItem(item[0].reference(), shape, depth + 1);
-    shape.push_back({ifcFaces(curves_, item), {}});
+    IfcFaces faces = ifcFaces(curves_, item);
+    if (faces.corners.empty()) throw UnreadGeometry(std::string(item.type) + " without faces");
+    shape.push_back({std::move(faces), {}});
 }
 
 void IfcShapes::addMapped(const StepInstance& item, IfcShape& shape, int depth) {
