@@ -218,7 +218,7 @@ TEST(OverPoses, BoundsTheCoverageOfAnyPoses) {
 
 constexpr const char* kPlainRoom = "#env 1\nfence path=0,0;6,0;6,5;0,5 closed=yes\ninside at=3,2\n";
 
-/// Options whose candidates are one pose, so that a search over candidates places one sensor.
+/// Options with one pose as candidates, so that a search over candidates places one sensor.
 ArrangeOptions fromOnePlace() {
     ArrangeOptions options = coarse();
     options.refine = options.over_poses = true;

@@ -13,7 +13,7 @@ namespace ispace {
 
 namespace {
 
-/// The problem of one part, whose cells and candidates follow each other as in that of the site.
+/// The problem of one part; its cells and candidates follow each other as in that of the site.
 class PartProblem {
   public:
     PartProblem(const CoverageModel& model, std::span<const std::size_t> rooms)

@@ -41,8 +41,8 @@ struct RoomGoals {
 /// A room of a site. Sensors stand in its frame.
 struct SiteRoom {
     std::string id;  ///< "" of a room alone
-    /// The room with all that stands around it; null for one whose floor is all open: it is left
-    /// out. Rooms that are equal may share it, and are then searched once.
+    /// The room with all that stands around it; null for one with a floor that is all open: it is
+    /// left out. Rooms that are equal may share it, and are then searched once.
     std::shared_ptr<const Scene> scene;
     RoomGoals goals = {};
     Point3 origin = {};  ///< of its frame in the site

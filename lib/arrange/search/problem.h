@@ -41,9 +41,9 @@ struct Problem {
     std::optional<double> budget;
     /// Kinds in the order in which greedy search adds them; empty: the best first.
     std::vector<std::size_t> order;
-    /// Requires connected coverage: the graph whose nodes are sensors and whose edges join sensors
-    /// that share a cell of positive weight must be connected. Standing sensors are one node, which
-    /// sees `standing`; the node is absent if no cell of that has positive weight.
+    /// Requires connected coverage: the graph with sensors as nodes, and with edges that join
+    /// sensors that share a cell of positive weight must be connected. Standing sensors are one
+    /// node, which sees `standing`; the node is absent if no cell of that has positive weight.
     bool is_connected = false;
     CellSet standing = CellSet();
 
