@@ -65,13 +65,14 @@ void writeModel(const CoverageModel& model, std::ostream& mps) {
     for (const SensorClass& kind : model.kinds()) names.push_back(kind.id);
     const auto pose_text = [&model](const Choice& choice) {
         const Pose3 pose = model.poseOf(choice);
-        std::string text;
+        std::string text = model.site().rooms[model.roomOf(choice)].id;
         for (const double number : {pose.position.x, pose.position.y, pose.position.z,
                                     pose.heading.degrees(), pose.tilt.degrees()})
             text.append(text.empty() ? "" : " ").append(formatDouble(number));
         return text;
     };
-    writeMps(model.problem(), names, "x y z (m) heading tilt (degrees)", pose_text, mps);
+    const std::string head = model.site().isOneRoom() ? "" : "room ";
+    writeMps(model.problem(), names, head + "x y z (m) heading tilt (degrees)", pose_text, mps);
 }
 
 /// \param by_number receives results of 1, 2, ... sensors if they are found on the way
