@@ -148,7 +148,7 @@ TriangleMesh ifcMesh(std::string_view bytes, Budget& work) {
 namespace {
 
 constexpr double kFootprintHeight = 2.5;  // metres
-/// Who takes the work: elements may share a shape without a map.
+/// Pays for the work: elements may share a shape without a map.
 constexpr const char* kShared = "shared shapes";
 
 /// Builds the surface that a profile sweeps through frames, which map its plane into space; closed

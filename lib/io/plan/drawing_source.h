@@ -71,7 +71,7 @@ void checkScale(double extent, const DrawingSource& drawing, const std::string& 
 /// which other lines clutter, one in the frame of a sheet, and one off an outline around all of
 /// these walls, as of a parcel, are passed to DrawingSource::better_layers, if there is one; else
 /// warns. A parcel is drawn as one line: an outline of two lines, as of a wall, is that of a hall
-/// around a core whose walls have other names. Where the house has walls of one line, too, it is
+/// around a core with walls of other names. Where the house has walls of one line, too, it is
 /// one from a share of the parcel on. Rooms below a square metre, and those
 /// that need wider gaps closed than the one that was taken, are no advice.
 /// \param names with their numbers of lines \param taken the room

@@ -467,7 +467,7 @@ std::vector<DxfPolyline> hatchOf(const Entity& entity, std::size_t& most) {
     return rings;
 }
 
-/// Returns true for a hatch whose fill is a colour: its first number 70.
+/// Returns true for a hatch filled with a colour: its first number 70.
 bool isSolid(const Entity& hatch) {
     const auto flag = std::find_if(hatch.sequence.begin(), hatch.sequence.end(),
                                    [](const auto& group) { return group.first == 70; });

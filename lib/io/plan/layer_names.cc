@@ -345,7 +345,7 @@ constexpr auto kNoWallWords = std::to_array<std::string_view>(
      "millwork", "tree",    "trees",     "plants", "marker",  "markers",     "symbol",
      "symbols",  "legend"});
 
-/// Words of doors, and beginnings of those whose endings vary.
+/// Words of doors, and beginnings of those with various endings.
 constexpr auto kDoorWords = std::to_array<std::string_view>(
     {"cua",    "door",  "doors",  "tür",   "türen",  "tuer",    "tueren",  "tur",    "porte",
      "portes", "porta", "portas", "porte", "puerta", "puertas", "deur",    "deuren", "drzwi",

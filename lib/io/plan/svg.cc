@@ -326,7 +326,7 @@ class SvgReader {
         return false;
     }
 
-    /// Adds the first child whose conditions hold, as browsers do that have no extensions.
+    /// Adds the first child with conditions that hold, as browsers do that have no extensions.
     void addSwitch(pugi::xml_node node, const Around& around) {
         for (const pugi::xml_node child : node.children()) {
             if (child.type() != pugi::node_element) continue;
