@@ -37,6 +37,9 @@ std::string needsOneRoom(const ArrangeOptions& options) {
     if (options.strategy == Strategy::List) return "--places";
     if (options.wants_trace) return "--trace";
     if (options.wants_gains) return "--heat";
+    // Each part of a site has a proof of its own.
+    const SearchShare& share = options.search.share;
+    if (share.what == Shared::Tree && (share.own || share.joined > 0)) return "--share tree";
     return "";
 }
 
@@ -265,6 +268,8 @@ std::vector<SearchResult> searchByNumber(const SearchResult& found, const Covera
 
 std::vector<CurvePoint> curveTo(const SearchResult& found, std::vector<SearchResult> by_number,
                                 const CoverageModel& model, Progress& progress) {
+    // With fewer candidates than sensors there are fewer points.
+    by_number.resize(std::min(by_number.size(), found.best.chosen.size()));
     std::vector<SearchResult> results =
         by_number.empty() ? searchByNumber(found, model, progress) : std::move(by_number);
     // One more sensor never covers less; a bound for n sensors holds for fewer.

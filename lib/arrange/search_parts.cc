@@ -134,7 +134,6 @@ bool isSearchedByParts(const CoverageModel& model) {
     const ArrangeOptions& options = model.options();
     return !model.site().isOneRoom() && model.kinds().size() == 1 && !options.budget &&
            !options.target && !options.robust.isAsked() &&
-           options.search.share.results == nullptr && !options.search.share.own &&
            model.parts().size() > 1;
 }
 

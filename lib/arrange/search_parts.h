@@ -16,7 +16,8 @@ bool isSearchedByParts(const CoverageModel& model);
 
 /// Searches each part of a site with 1, 2, ... sensors, equal parts once, and shares numbers out:
 /// in [n - 1] the result for n sensors. The bound holds for every split. Weaker nowhere than a
-/// search of all rooms together, and faster: parts are small. Connected coverage is that of each
+/// search of all rooms together, and faster: parts are small. The searches do not depend on each
+/// other, so that shards can divide each of them. Connected coverage is that of each
 /// part.
 /// \pre isSearchedByParts()
 std::vector<SearchResult> searchParts(const CoverageModel& model, Progress& progress);
