@@ -879,6 +879,19 @@ def wide_strokes():
     return d
 
 
+def wide_lines():
+    """Each wall is one wide line, with gaps at doors; symbols of doors begin at its faces."""
+    d = Svg(100, 'width="12000mm" height="8000mm" viewBox="0 0 1200 800"')
+    for corners, width in [([(1.9, .15), (8.85, .15), (8.85, 6.35), (.15, 6.35), (.15, .15), (1, .15)], 30),
+                           ([(5.06, .15), (5.06, 2)], 12), ([(5.06, 2.8), (5.06, 6.35)], 12)]:
+        d.path(corners, False, 'style="fill:none;stroke:#000;stroke-width:%d"' % width)
+    for hinge, leaf, latch, width in DOORS:
+        open_end, shut_end = ends(hinge, leaf, latch, width)
+        d.line(hinge, open_end, 'stroke="black"')
+        d.swing(*((open_end, shut_end) if leaf > latch else (shut_end, open_end)), width, 'stroke="black" fill="none"')
+    return d
+
+
 def on_paper(scale, head):
     """A plan at a scale on a page in millimetres, as Inkscape's default page has it (its user unit is a
     millimetre since 0.92: wiki.inkscape.org, "Units In Inkscape")."""
@@ -981,6 +994,7 @@ SVG = {
     "clipped": (clipped, FLOOR, "right"),
     "by-percent": (by_percent, FLOOR, "right"),
     "wide-strokes": (wide_strokes, MIDDLE, "right"),
+    "wide-lines": (wide_lines, MIDDLE, "right"),
     "dashes": (dashes, FLOOR, "right"),
     "figma": (figma, FLOOR, "right"),
     "painted-over": (painted_over, FLOOR, "warned"),

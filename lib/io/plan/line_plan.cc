@@ -75,8 +75,12 @@ class LinePlan {
         doors.insert(doors.end(), std::make_move_iterator(drawn.swings.begin()),
                      std::make_move_iterator(drawn.swings.end()));
         const auto find = [&] {
-            return findOpenings(doors, shapes.windows, pieces_, budget,
-                                sizes_ ? &*sizes_ : nullptr);
+            std::vector<double> thickness;
+            if (!sizes_)
+                for (const PlanPath& path : paths_)
+                    thickness.insert(thickness.end(), path.pieceCount(), path.thickness);
+            return findOpenings(doors, shapes.windows, pieces_, budget, sizes_ ? &*sizes_ : nullptr,
+                                thickness);
         };
         PlanOpenings found = find();
         if (auto straight = withoutJoints(paths_, found.lost_in, budget); straight && !sizes_) {

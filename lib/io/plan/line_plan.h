@@ -82,9 +82,13 @@ using DrawnSizes = std::map<int, DrawnSize>;
 /// skipped if both that and the leaf lie on walls, like the sides of a shower. If a drawing with
 /// such swings marks the ends of three doors by short lines across their wall, two more of these,
 /// 0.4 m to 1.3 m apart, are a doorway.
+///
+/// \param thickness of each wall, as drawn around its line: symbols end at its faces; empty: the
+/// lines are faces
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
                           std::span<const Segment2> walls, Budget& work,
-                          const DrawnSizes* sizes = nullptr);
+                          const DrawnSizes* sizes = nullptr,
+                          std::span<const double> thickness = {});
 
 /// Doors that a drawing shows among its walls.
 struct DrawnDoors {

@@ -49,19 +49,22 @@ struct Anchor {
 
 class Walls {
   public:
-    Walls(std::span<const Segment2> walls, Budget& work) : walls_(walls), search_(walls, work) {}
+    Walls(std::span<const Segment2> walls, std::span<const double> thickness, Budget& work)
+        : walls_(walls), thickness_(thickness), search_(walls, work) {
+        for (const double each : thickness) thickest_ = std::max(thickest_, each / 2);
+    }
 
     /// Returns the nearest end of a wall, else the nearest point of one, in reach.
     [[nodiscard]] std::optional<Anchor> anchor(Point2 p) const {
         std::optional<Anchor> corner, foot;
-        const auto keep_nearest = [p](std::optional<Anchor>& best, Point2 place) {
-            const double apart = distance(p, place);
+        const auto keep_nearest = [&](std::optional<Anchor>& best, std::size_t wall, Point2 place) {
+            const double apart = std::max(0.0, distance(p, place) - halfOf(wall));
             if (apart <= kReach && (!best || apart < best->apart)) best = Anchor{place, apart};
         };
-        for (const std::size_t i : search_.near(p, kReach)) {
-            keep_nearest(corner, walls_[i].a);
-            keep_nearest(corner, walls_[i].b);
-            keep_nearest(foot, nearestPoint(walls_[i], p));
+        for (const std::size_t i : search_.near(p, kReach + thickest_)) {
+            keep_nearest(corner, i, walls_[i].a);
+            keep_nearest(corner, i, walls_[i].b);
+            keep_nearest(foot, i, nearestPoint(walls_[i], p));
         }
         if (!corner && foot) foot->place = wholeMicrometres(foot->place);
         return corner ? corner : foot;
@@ -70,8 +73,9 @@ class Walls {
     /// Returns the nearest wall piece on which both ends lie.
     [[nodiscard]] std::optional<std::size_t> wallUnder(const Segment2& line, double reach) const {
         std::optional<std::size_t> nearest;
-        for (const std::size_t i : search_.near(line.a, reach)) {
-            const double off = std::max(distance(line.a, walls_[i]), distance(line.b, walls_[i]));
+        for (const std::size_t i : search_.near(line.a, reach + thickest_)) {
+            const double off = std::max({0.0, distance(line.a, walls_[i]) - halfOf(i),
+                                         distance(line.b, walls_[i]) - halfOf(i)});
             if (nearest ? off >= reach : off > reach) continue;
             nearest = i;
             reach = off;
@@ -138,7 +142,14 @@ class Walls {
     }
 
   private:
+    /// Returns the distance of the faces of a wall from its line.
+    [[nodiscard]] double halfOf(std::size_t wall) const {
+        return thickness_.empty() ? 0 : thickness_[wall] / 2;
+    }
+
     std::span<const Segment2> walls_;
+    std::span<const double> thickness_;
+    double thickest_ = 0;  // half of it
     NearSegments search_;
 };
 
@@ -152,8 +163,9 @@ struct Swing {
 class Finder {
   public:
     /// \param has_lines whether a symbol has a straight piece, which may be the leaf of a swing
-    Finder(std::span<const Segment2> walls, bool has_lines, const DrawnSizes* sizes, Budget& work)
-        : walls_(walls, work), has_lines_(has_lines), sizes_(sizes), work_(work) {}
+    Finder(std::span<const Segment2> walls, std::span<const double> thickness, bool has_lines,
+           const DrawnSizes* sizes, Budget& work)
+        : walls_(walls, thickness, work), has_lines_(has_lines), sizes_(sizes), work_(work) {}
 
     void find(std::span<const PlanShape> symbols, bool are_windows) {
         are_windows_ = are_windows;
@@ -449,7 +461,8 @@ class Finder {
 }  // namespace
 
 PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const PlanShape> windows,
-                          std::span<const Segment2> walls, Budget& work, const DrawnSizes* sizes) {
+                          std::span<const Segment2> walls, Budget& work, const DrawnSizes* sizes,
+                          std::span<const double> thickness) {
     if (doors.empty() && windows.empty()) return {};
     const auto has_lines = [](std::span<const PlanShape> symbols) {
         return std::any_of(symbols.begin(), symbols.end(), [](const PlanShape& shape) {
@@ -457,7 +470,7 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
                                [](const PlanChord& chord) { return !chord.center; });
         });
     };
-    Finder finder(walls, has_lines(doors) || has_lines(windows), sizes, work);
+    Finder finder(walls, thickness, has_lines(doors) || has_lines(windows), sizes, work);
     finder.find(doors, false);
     if (std::any_of(doors.begin(), doors.end(),
                     [](const PlanShape& door) { return door.is_guess; }))

@@ -60,6 +60,16 @@ TEST(PlanOpenings, SwingsOpenFromTheHingeToTheWall) {
     EXPECT_EQ(corner.openings[0].line, (Segment2{{2.9, 0}, {2, 0}}));
 }
 
+TEST(PlanOpenings, SwingsEndAtTheFacesOfThickWalls) {
+    // A wall of 0.3 m, drawn by its middle.
+    const std::vector<double> thickness{0.3, 0.3};
+    const std::vector door{swing({2, 0.15}, {2.9, 0.15}, {2, 1.05})};
+    const auto found = findOpenings(door, {}, wallWithGap(), ampleWork(), nullptr, thickness);
+    ASSERT_EQ(found.openings.size(), 1U);
+    EXPECT_EQ(found.openings[0].line, (Segment2{{2, 0}, {2.9, 0}}));
+    EXPECT_TRUE(findOpenings(door, {}, wallWithGap(), ampleWork()).openings.empty());
+}
+
 TEST(PlanOpenings, DoubleDoors) {
     const auto found = findOpenings(
         std::vector{swing({2, 0}, {2.45, 0}, {2, 0.45}), swing({2.9, 0}, {2.9, 0.45}, {2.45, 0}),
