@@ -2,6 +2,7 @@
 #include "base/zstd_text.h"
 
 #include <zstd.h>
+#include <cstdint>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -56,10 +57,15 @@ std::string ZstdPacker::end() { return run({}, true); }
 
 struct TextFile::Unpacker {
     std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context{ZSTD_createDCtx(), &ZSTD_freeDCtx};
-    std::string bytes = {};  // read
-    std::size_t used = 0;    // of them
-    bool is_full = false;    // more text may wait in the context
+    std::string bytes = {};                  // read
+    std::size_t used = 0;                    // of them
+    bool is_full = false;                    // more text may wait in the context
+    std::uint64_t packed = 0, unpacked = 0;  // bytes so far
 };
+
+/// A table of numbers, of which each line differs, takes at least a thousandth of its bytes; what
+/// is packed tighter, as blank lines are, keeps a reader busy for hours.
+constexpr std::uint64_t kMaxRatio = 1000, kFreeBytes = 64'000'000;
 
 TextFile::TextFile(const std::string& name, InputKind kind) : name_(name), file_(name, kind) {
     if (!name.ends_with(kZstdSuffix)) return;
@@ -89,6 +95,12 @@ bool TextFile::read(std::string& text) {
         if (ZSTD_isError(result) != 0)
             throw FormatError({displayName(name_), 0, 0,
                                std::string("cannot be unpacked: ") + ZSTD_getErrorName(result)});
+        own.packed += from.pos - own.used;
+        own.unpacked += to.pos;
+        if (own.unpacked > kFreeBytes + kMaxRatio * own.packed)
+            throw FormatError({displayName(name_), 0, 0,
+                               "a byte is unpacked to more than 1000 bytes of text: unpack it with "
+                               "`zstd -d` if that is right"});
         own.used = from.pos;
         own.is_full = to.pos == to.size;
         if (to.pos > 0) return true;

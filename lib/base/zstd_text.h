@@ -47,7 +47,7 @@ class TextFile {
     TextFile& operator=(TextFile&&) noexcept;
 
     /// Appends the available bytes of the text; false at the end. \throws FormatError for bytes
-    /// that zstd did not write
+    /// that zstd did not write, and for text of more than 64 MB and 1000 bytes for each of them
     bool read(std::string& text);
 
   private:

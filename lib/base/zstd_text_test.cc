@@ -73,6 +73,16 @@ TEST_F(ZstdText, ReadsSeveralFrames) {
     EXPECT_EQ(read(bytes), "one\ntwo\n");
 }
 
+TEST_F(ZstdText, RefusesBlankLinesWithoutEnd) {
+    constexpr std::size_t kBlock = 8'000'000;
+    std::string bytes;
+    ZstdPacker packer;
+    for (int i = 0; i < 8; ++i) bytes += packer.pack(std::string(kBlock, '\n'));
+    EXPECT_EQ(read(bytes).size(), 8 * kBlock);
+    for (int i = 0; i < 8; ++i) bytes += packer.pack(std::string(kBlock, '\n'));
+    EXPECT_THROW((void)read(bytes), FormatError);
+}
+
 TEST_F(ZstdText, RefusesOtherBytes) {
     EXPECT_THROW((void)read("t,id,x,y\n"), FormatError);
     ZstdPacker packer;
