@@ -166,7 +166,9 @@ std::string buildingCoverageJson(const BuildingScene& building, const BuildingCo
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         json.beginObject().key("id").value(building.document.storeys[i].id).key("report");
         text += json.take() +
-                coverageJson(coverage.storeys[i].report, {.run = run ? &run->storeys[i] : nullptr});
+                coverageJson(coverage.storeys[i].report,
+                             {.run = run ? &run->storeys[i] : nullptr,
+                              .rules = coverage.rules.empty() ? nullptr : &coverage.rules[i]});
         text.pop_back();  // its newline
         json.endObject();
     }
@@ -215,7 +217,8 @@ std::string buildingCoverageText(const BuildingScene& building, const BuildingCo
     std::string text;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         text += "storey " + building.document.storeys[i].id + '\n' +
-                coverageText(coverage.storeys[i].report) + '\n';
+                coverageText(coverage.storeys[i].report) +
+                (coverage.rules.empty() ? "" : cameraRulesText(coverage.rules[i])) + '\n';
         if (run != nullptr && !run->storeys[i].members.empty())
             text += runText(run->storeys[i]) + '\n';
     }

@@ -10,6 +10,7 @@
 #include "building/building_run_coverage.h"
 #include "building/building_scene.h"
 #include "coverage/coverage.h"
+#include "report/camera_rules_report.h"
 #include "report/coverage_report.h"
 #include "report/suggestion_report.h"
 
@@ -26,6 +27,7 @@ struct BuildingCoverage {
     std::optional<double> outside;          ///< see CoverageReport, m2
     Metric coverage, free_coverage;         ///< shares; empty if that of a storey is unknown
     std::vector<double> redundancy;         ///< see CoverageReport
+    std::vector<CameraRules> rules = {};    ///< of facing, by storey; empty: none
 };
 
 /// Measures the floor of all storeys, without openings in it; those with equal rooms and views

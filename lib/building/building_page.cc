@@ -6,8 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include "building/building_facing.h"
 #include "report/coverage_report.h"
 #include "report/map/map.h"
+#include "report/page/cables.h"
+#include "report/page/installation.h"
 #include "report/run_report.h"
 
 namespace ispace {
@@ -78,19 +81,65 @@ PageSection storeySection(const BuildingPageInput& input, std::size_t storey) {
     return section;
 }
 
+/// Lists the rules of facing of all storeys.
+PageSection facingSection(const BuildingPageInput& input) {
+    return {"rules",
+            "Faces",
+            {rulesTable("directions of faces, by storey",
+                        judgedInBuilding(input.building, input.coverage.rules))}};
+}
+
+/// Adds the installation of a storey, its pictures, and with a cover a sheet for each camera.
+void addSensorsOf(const BuildingPageInput& input, const CabledRoom& room, std::size_t storey,
+                  ReportPage& page, std::vector<PageSection>& sheets) {
+    const Storey& own = input.building.document.storeys[storey];
+    const Coverage& coverage = input.coverage.storeys[storey];
+    const std::vector<Installation> installations = installationsOf(room.scene);
+    if (installations.empty()) return;
+    const std::string id = "storey" + std::to_string(storey + 1);
+    const PageTable table = installationTable(room.scene, coverage, installations, room.cables);
+    PageSection section{id + "-installation", "Storey " + own.id + ": installation", {}};
+    section.blocks.push_back(table);
+    section.blocks.push_back(installationPlan(room.scene, coverage, installations));
+    section.blocks.push_back(wallFacesTable(installations));
+    std::vector<PageFigure> figures = sensorPictures(room.scene, coverage);
+    if (input.cover.isGiven())
+        for (PageSection& sheet : cameraSheets(room.scene, table, figures)) {
+            sheet.id.insert(0, id + '-');
+            sheet.title += " of storey " + own.id;
+            sheets.push_back(std::move(sheet));
+        }
+    for (PageFigure& figure : figures) section.blocks.push_back(std::move(figure));
+    page.sections.push_back(std::move(section));
+}
+
 }  // namespace
 
 ReportPage buildingPage(const BuildingPageInput& input) {
     ReportPage page;
     page.title =
         input.name + (input.name.empty() ? "" : ": ") + (input.run == nullptr ? "coverage" : "run");
+    page.cover = input.cover;
+    if (!page.cover.title.empty()) page.title = page.cover.title;
+    page.paper = input.paper;
     page.subtitle = std::to_string(input.coverage.storeys.size()) + " storeys · " +
                     squareMetres(input.coverage.indoor_area);
     page.sections.push_back(buildingSummary(input));
     page.sections.push_back(storeysSection(input));
     for (const PageSection& section : input.more) page.sections.push_back(section);
-    for (std::size_t i = 0; i < input.coverage.storeys.size(); ++i)
+    if (!input.coverage.rules.empty()) page.sections.push_back(facingSection(input));
+    std::vector<CabledRoom> rooms;
+    std::vector<PageSection> sheets;
+    for (std::size_t i = 0; i < input.coverage.storeys.size(); ++i) {
+        const Scene& scene = *input.building.scenes[i];
+        rooms.push_back({scene, cablesOf(scene)});
         page.sections.push_back(storeySection(input, i));
+        addSensorsOf(input, rooms.back(), i, page, sheets);
+    }
+    const std::vector<MaterialItem> material = materialOf(rooms, input.prices);
+    if (!material.empty())
+        page.sections.push_back({"material", "Material", {materialTable(material)}});
+    for (PageSection& sheet : sheets) page.sections.push_back(std::move(sheet));
     if (input.advice != nullptr) page.sections.push_back(adviceSection(*input.advice));
     if (input.advice != nullptr && !input.advice->suggestions.empty())
         page.sections.push_back(adviceCommands(*input.advice));

@@ -18,11 +18,15 @@ struct BuildingPageInput {
     std::vector<JudgedRequirement> requirements = {};
     const BuildingRunCoverage* run = nullptr;  ///< null: without
     const Advice* advice = nullptr;            ///< null: without
-    std::vector<PageSection> more = {};        ///< after the storeys' table
+    PageCover cover = {};
+    Paper paper = Paper::A4;
+    PriceList prices = {};
+    std::vector<PageSection> more = {};  ///< after the storeys' table
 };
 
-/// Builds the report of a building: summary, requirements, figures by storey and in sum, then map
-/// and figures of each storey.
+/// Builds the report of a building: summary, requirements, figures by storey and in sum; map,
+/// figures and the sheet of the installer of each storey; the material of all. With a cover each
+/// camera has a sheet.
 ReportPage buildingPage(const BuildingPageInput& input);
 
 }  // namespace ispace

@@ -83,7 +83,20 @@ Paper paperOf(const ReportWords& words) {
 
 void writeMaterial(const ReportWords& words, const Scene& scene) {
     if (words.material.empty()) return;
-    writeAll(words.material, materialCsv(materialOf(scene, cablesOf(scene), pricesOf(words))));
+    const CabledRoom room{scene, cablesOf(scene)};
+    writeMaterial(words, {&room, 1});
+}
+
+void writeMaterial(const ReportWords& words, std::span<const CabledRoom> rooms) {
+    if (words.material.empty()) return;
+    writeAll(words.material, materialCsv(materialOf(rooms, pricesOf(words))));
+}
+
+std::string priceWarning(const ReportWords& words, std::span<const CabledRoom> rooms) {
+    if (words.prices.empty()) return "";
+    const PriceList prices = pricesOf(words);
+    const std::string text = unusedPrices(prices, materialOf(rooms, prices));
+    return text.empty() ? "" : words.prices + ": " + text;
 }
 
 }  // namespace ispace

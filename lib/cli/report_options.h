@@ -2,6 +2,7 @@
 // Options of a report that is handed over: its cover, paper, prices and material.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "report/page/coverage_page.h"
@@ -30,5 +31,10 @@ Paper paperOf(const ReportWords& words);
 
 /// Writes the file of --material, if asked for.
 void writeMaterial(const ReportWords& words, const Scene& scene);
+/// The same for the storeys of a building.
+void writeMaterial(const ReportWords& words, std::span<const CabledRoom> rooms);
+
+/// Returns a warning about prices that no item of the material has; "" if there are none.
+std::string priceWarning(const ReportWords& words, std::span<const CabledRoom> rooms);
 
 }  // namespace ispace

@@ -164,6 +164,12 @@ FacingRule parseFacing(std::string_view text) {
             throw UsageError('`' + std::string(text) +
                              "`: the angle is not above 0, up to 180 degrees");
     };
+    std::string storey;  // `ground/` in `ground/door:...`
+    if (const auto slash = rest.find('/');
+        slash < rest.find(',') && rest.substr(slash + 1).starts_with(kDoorPrefix)) {
+        storey = rest.substr(0, slash + 1);
+        rest.remove_prefix(slash + 1);
+    }
     if (rest.starts_with(kDoorPrefix)) {
         std::vector<std::string_view> pieces;
         for (auto comma = rest.find(','); comma != std::string_view::npos;
@@ -171,6 +177,7 @@ FacingRule parseFacing(std::string_view text) {
             pieces.push_back(rest.substr(comma + 1, rest.find(',', comma + 1) - comma - 1));
         rule.zone = rest.substr(0, rest.find(','));
         parseDoorPieces(pieces, std::string(text), rule);
+        rule.zone.insert(0, storey);
         check_angle();
         return rule;
     }
@@ -344,7 +351,7 @@ std::vector<FacingResult> measureFacing(const Scene& scene, const Coverage& cove
         for (const FacingPart& part : rule.parts) {
             std::vector<std::vector<Curve>> faced;
             for (const SensorView& view : coverage.sensors) {
-                if (!scene.sensors[view.index].is<Camera>()) continue;
+                if (view.kind != &Camera::kKind) continue;
                 if (!view.region) {
                     is_known = false;
                     continue;

@@ -12,6 +12,7 @@
 #include "base/message.h"
 #include "base/run_files.h"
 #include "building/building_coverage.h"
+#include "building/building_facing.h"
 #include "building/building_page.h"
 #include "building/building_suggestions.h"
 #include "building/coupling.h"
@@ -22,6 +23,7 @@
 #include "coverage/coverage_run.h"
 #include "report/coverage_formats.h"
 #include "report/map/map.h"
+#include "report/page/cables.h"
 #include "scene/run/run_reader.h"
 
 namespace ispace {
@@ -47,9 +49,6 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
     if (!options.run.empty() && recordedBuilding(options.run).empty()) option = "--run of one room";
     if (options.presence) option = "--presence";
     if (!options.privacy.empty()) option = "--privacy";
-    if (!options.facing.empty()) option = "--facing";
-    if (!options.page.material.empty()) option = "--material";
-    if (!options.page.prices.empty()) option = "--prices";
     if (options.perturb) option = "--perturb";
     if (options.failures > 0) option = "--failures";
     if (options.crowd) option = "--crowd";
@@ -185,11 +184,20 @@ std::string buildingReport(const CoverageToolOptions& options, const BuildingInp
         page.requirements.push_back(
             {requirementPhrase(requirement), verdict.is_met, verdict.text, verdict.margin});
     }
-    ReportPage pages = buildingPage(page);
-    pages.cover = coverOf(options.page);
-    if (!pages.cover.title.empty()) pages.title = pages.cover.title;
-    pages.paper = paperOf(options.page);
+    page.cover = coverOf(options.page);
+    page.paper = paperOf(options.page);
+    page.prices = pricesOf(options.page);
+    const ReportPage pages = buildingPage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
+}
+
+/// Writes --material, and warns of prices that no item has.
+void writeBuildingMaterial(const CoverageToolOptions& options, const BuildingScene& building) {
+    std::vector<CabledRoom> rooms;
+    for (const auto& scene : building.scenes) rooms.push_back({*scene, cablesOf(*scene)});
+    writeMaterial(options.page, rooms);
+    if (const std::string text = priceWarning(options.page, rooms); !text.empty())
+        warn(options.common, "coverage", text);
 }
 
 }  // namespace
@@ -211,13 +219,17 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
         if (auto deaf = receiverFinding(*input.building.scenes[i]))
             warn(options.common, "coverage",
                  input.building.document.storeys[i].id + ": " + deaf->message);
-    const BuildingCoverage coverage = measureBuilding(input.building, options.measure);
+    BuildingCoverage coverage = measureBuilding(input.building, options.measure);
+    if (!options.facing.empty())
+        coverage.rules = measureBuildingFacing(input.building, coverage, options.facing);
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
         if (const std::string text =
                 largeCellsText(options.measure, coverage.storeys[i].report.grid);
             !text.empty())
             tell(options.common, "coverage", input.building.document.storeys[i].id + ": " + text);
-    const std::vector<JunitCase> verdicts = judgeBuilding(options, input.building, coverage);
+    std::vector<JunitCase> verdicts = judgeBuilding(options, input.building, coverage);
+    for (JunitCase& verdict : judge(judgedInBuilding(input.building, coverage.rules)))
+        verdicts.push_back(std::move(verdict));
     const std::optional<BuildingRunCoverage> run = measureStoreyRuns(options, input);
     if (options.format != nullptr) {
         if (isPattern(options.common.output))
@@ -234,6 +246,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     writeAll("-", options.json ? buildingCoverageJson(input.building, coverage, of_run, of_advice)
                                : buildingCoverageText(input.building, coverage, of_run) +
                                      (advice ? suggestionsText(*advice) : ""));
+    writeBuildingMaterial(options, input.building);
     for (const JunitCase& verdict : verdicts)
         if (verdict.outcome == JunitCase::Outcome::Met)
             logInfo(options.common, "coverage", verdict.message);

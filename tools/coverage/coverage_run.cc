@@ -174,9 +174,11 @@ std::optional<ObjectiveFigures> objectivesOf(const CoverageToolOptions& options,
     return figures;
 }
 
-std::vector<JunitCase> judge(const CameraRules& rules) {
+std::vector<JunitCase> judge(const CameraRules& rules) { return judge(judgedRules(rules)); }
+
+std::vector<JunitCase> judge(std::span<const JudgedRule> rules) {
     std::vector<JunitCase> verdicts;
-    for (const JudgedRule& rule : judgedRules(rules))
+    for (const JudgedRule& rule : rules)
         if (rule.is_required)
             verdicts.push_back(
                 {.name = rule.rule,

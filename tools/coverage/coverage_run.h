@@ -61,6 +61,7 @@ std::optional<ObjectiveFigures> objectivesOf(const CoverageToolOptions& options,
 
 /// Returns a verdict for each rule that requires something.
 std::vector<JunitCase> judge(const CameraRules& rules);
+std::vector<JunitCase> judge(std::span<const JudgedRule> rules);
 
 /// Writes the map to -o, with its accompanying file. \pre there is a format
 void writeProduct(const CoverageToolOptions& options, const SceneInput& input,

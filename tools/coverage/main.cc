@@ -157,6 +157,9 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     if (!options.report.empty())
         writeAll(options.report, reportFile(options, input, measured.coverage, parts));
     writeMaterial(options.page, input.scene);
+    const CabledRoom room{input.scene, cablesOf(input.scene)};
+    if (const std::string text = priceWarning(options.page, {&room, 1}); !text.empty())
+        warn(options.common, "coverage", text);
     writeAll("-", reportText(options, report, parts));
     logInfo(options.common, "coverage",
             std::to_string(report.sensors.size()) + " sensors measured on " +

@@ -316,13 +316,11 @@ PageTable tableOf(std::string caption, std::string sides, std::vector<TextRow> r
     return table;
 }
 
-void addCameraRules(const CoveragePageInput& input, ReportPage& page) {
-    if (input.parts.rules == nullptr) return;
-    PageTable table{"directions of faces, and zones that cameras must not see",
-                    "lll",
-                    {"rule", "result", "measured"},
-                    {}};
-    for (const JudgedRule& rule : judgedRules(*input.parts.rules)) {
+}  // namespace
+
+PageTable rulesTable(std::string caption, std::span<const JudgedRule> rules) {
+    PageTable table{std::move(caption), "lll", {"rule", "result", "measured"}, {}};
+    for (const JudgedRule& rule : rules) {
         table.rows.push_back({rule.rule,
                               !rule.is_required ? "-"
                               : rule.is_met     ? "met"
@@ -332,7 +330,17 @@ void addCameraRules(const CoveragePageInput& input, ReportPage& page) {
                               : rule.is_met     ? Tone::Good
                                                 : Tone::Bad);
     }
-    page.sections.push_back({"rules", "Faces and privacy", {std::move(table)}});
+    return table;
+}
+
+namespace {
+
+void addCameraRules(const CoveragePageInput& input, ReportPage& page) {
+    if (input.parts.rules == nullptr) return;
+    page.sections.push_back({"rules",
+                             "Faces and privacy",
+                             {rulesTable("directions of faces, and zones that cameras must not see",
+                                         judgedRules(*input.parts.rules))}});
 }
 
 void addObjectives(const CoveragePageInput& input, ReportPage& page) {

@@ -45,6 +45,9 @@ std::vector<PageText> incidentsOf(const RunCoverage& run);
 /// Builds the table of requirements, with margins in percentage points.
 PageTable requirementsTable(std::span<const JudgedRequirement> requirements);
 
+/// Builds the table of rules of cameras.
+PageTable rulesTable(std::string caption, std::span<const JudgedRule> rules);
+
 /// Builds the section of suggestions.
 PageSection adviceSection(const Advice& advice);
 /// Builds the appendix with the command of each suggestion; without blocks if there are none.

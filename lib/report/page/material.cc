@@ -153,11 +153,19 @@ PriceList readPrices(std::string_view text, const std::string& file) {
     return list;
 }
 
-std::vector<MaterialItem> materialOf(const Scene& scene, const std::vector<Cable>& cables,
-                                     const PriceList& prices) {
+namespace {
+
+/// Pieces of all items by name.
+struct AllPieces {
+    std::map<std::string, Pieces> devices, mounts;
+    Pieces cable;
+
+    void add(const Scene& scene, const std::vector<Cable>& cables, const PriceList& prices);
+};
+
+void AllPieces::add(const Scene& scene, const std::vector<Cable>& cables, const PriceList& prices) {
     std::map<std::string, std::size_t> records;
     for (std::size_t i = 0; i < scene.records.size(); ++i) records.emplace(scene.ids[i], i);
-    std::map<std::string, Pieces> devices, mounts;
     for (const Sensor& sensor : scene.sensors) {
         const std::string device = deviceText(sensor);
         std::optional<double> price = prices.of(device);
@@ -170,19 +178,54 @@ std::vector<MaterialItem> materialOf(const Scene& scene, const std::vector<Cable
         const std::string mount = mountOf(scene, one);
         mounts[mount].add(1, prices.of(mount));
     }
-    Pieces cable;
     for (const Cable& one : cables) {
         if (!(one.length > 0)) continue;
         const auto own = one.cost > 0 ? std::optional(one.cost / one.length) : std::nullopt;
         const auto listed = prices.of("cable");
         cable.add(one.length, listed ? listed : own);
     }
+}
+
+}  // namespace
+
+std::vector<MaterialItem> materialOf(std::span<const CabledRoom> rooms, const PriceList& prices) {
+    AllPieces all;
+    for (const CabledRoom& room : rooms) all.add(room.scene, room.cables, prices);
     std::vector<MaterialItem> items;
-    items.reserve(devices.size() + mounts.size() + 1);
-    for (const auto& [device, pieces] : devices) items.push_back(pieces.item(device, false));
-    for (const auto& [mount, pieces] : mounts) items.push_back(pieces.item(mount, false));
-    if (cable.number > 0) items.push_back(cable.item("cable", true));
+    items.reserve(all.devices.size() + all.mounts.size() + 1);
+    for (const auto& [device, pieces] : all.devices) items.push_back(pieces.item(device, false));
+    for (const auto& [mount, pieces] : all.mounts) items.push_back(pieces.item(mount, false));
+    if (all.cable.number > 0) items.push_back(all.cable.item("cable", true));
     return items;
+}
+
+std::vector<MaterialItem> materialOf(const Scene& scene, const std::vector<Cable>& cables,
+                                     const PriceList& prices) {
+    const CabledRoom room{scene, cables};
+    return materialOf({&room, 1}, prices);
+}
+
+std::string unusedPrices(const PriceList& prices, const std::vector<MaterialItem>& items) {
+    constexpr std::string_view kUsual[] = {"ceiling mount", "wall mount", "stand", "cable"};
+    constexpr std::size_t kListed = 5;
+    std::string unused, known;
+    std::size_t count = 0;
+    for (const MaterialItem& item : items)
+        known.append(known.empty() ? "" : ", ").append(printable(item.item));
+    for (const auto& listed : prices.prices) {
+        const std::string& name = listed.first;
+        const bool is_used = std::any_of(items.begin(), items.end(), [&](const MaterialItem& item) {
+            return smallLetters(item.item) == name;
+        });
+        if (is_used || std::find(std::begin(kUsual), std::end(kUsual), name) != std::end(kUsual))
+            continue;
+        if (++count <= kListed) unused.append(unused.empty() ? "" : ", ").append(printable(name));
+    }
+    if (count == 0) return "";
+    if (count > kListed) unused += " and " + std::to_string(count - kListed) + " more";
+    return "the material has no " + unused + ", which " +
+           (count == 1 ? "has a price" : "have prices") +
+           (known.empty() ? "" : "; its items: " + known);
 }
 
 PageTable materialTable(const std::vector<MaterialItem>& items) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,18 @@ struct MaterialItem {
 /// of the top of the highest wall or above; else on a stand.
 std::vector<MaterialItem> materialOf(const Scene& scene, const std::vector<Cable>& cables,
                                      const PriceList& prices);
+/// A room with its cables.
+struct CabledRoom {
+    const Scene& scene;
+    std::vector<Cable> cables;
+};
+/// Counts the same over several rooms.
+std::vector<MaterialItem> materialOf(std::span<const CabledRoom> rooms, const PriceList& prices);
+
+/// Returns a sentence about the prices of devices that no item has, with the items; "" if there are
+/// none. Mounts and cables are not told: not every layout has all.
+std::string unusedPrices(const PriceList& prices, const std::vector<MaterialItem>& items);
+
 constexpr double kAtCeiling = 0.4, kAtWall = 0.25;  ///< metres
 
 /// Returns a row for each item and the sum; without any price there are no columns of prices.

@@ -55,6 +55,25 @@ TEST(Material, PricesOfAListCountBeforeThoseOfRecords) {
     EXPECT_EQ(table.rows.back(), (TextRow{"together", "", "", "823.5"}));
 }
 
+TEST(Material, TellsOfPricesThatNoItemHas) {
+    const auto items = materialOf(sceneOf(kRoom), {}, {});
+    EXPECT_EQ(unusedPrices(readPrices("camera,1\nlaser,2\nstand,3\ncable,1\n", ""), items), "");
+    EXPECT_EQ(unusedPrices(readPrices("camera,1\ncamrea,9\n", ""), items),
+              "the material has no camrea, which has a price; its items: camera, laser, ceiling "
+              "mount, stand, wall mount");
+    const std::string many = unusedPrices(readPrices("a,1\nb,1\nc,1\nd,1\ne,1\nf,1\n", ""), items);
+    EXPECT_TRUE(
+        many.starts_with("the material has no a, b, c, d, e and 1 more, which have prices"));
+}
+
+TEST(Material, CountsSeveralRooms) {
+    const Scene scene = sceneOf(kRoom);
+    const CabledRoom rooms[] = {{scene, {}}, {scene, {}}};
+    const auto items = materialOf(rooms, {});
+    EXPECT_EQ(items[0].number, 4);
+    EXPECT_EQ(items[0].cost, 340);
+}
+
 TEST(Material, HasNoPricesWithoutAny) {
     const Scene scene = sceneOf("ispace size=4,4\nlaser id=l at=1,1\n");
     const PageTable table = materialTable(materialOf(scene, {}, {}));

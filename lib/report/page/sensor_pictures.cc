@@ -282,9 +282,9 @@ double lensDensity(const Sensor& sensor, Point3 place) {
 }
 
 std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& coverage) {
-    const auto cameras = std::count_if(
-        coverage.sensors.begin(), coverage.sensors.end(),
-        [&scene](const SensorView& view) { return scene.sensors[view.index].is<Camera>(); });
+    const auto cameras =
+        std::count_if(coverage.sensors.begin(), coverage.sensors.end(),
+                      [](const SensorView& view) { return view.kind == &Camera::kKind; });
     // Many pictures are smaller, so that the page stays light.
     constexpr double kWide = 640, kNarrow = 360;
     constexpr std::ptrdiff_t kFew = 8;
@@ -293,6 +293,7 @@ std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& cover
     std::vector<PageFigure> figures;
     for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
         const SensorView& view = coverage.sensors[i];
+        if (view.index >= scene.sensors.size()) continue;  // of another storey
         const Sensor& sensor = scene.sensors[view.index];
         if (sensor.mount || sensor.person) continue;
         if (sensor.is<Camera>())

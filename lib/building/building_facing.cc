@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "building/building_facing.h"
+
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "base/glob.h"
+#include "env/zone.h"
+
+namespace ispace {
+
+namespace {
+
+/// Lists the doors of all storeys, or the zones, for a rule that no storey has.
+std::string unknownRule(const std::string& zone, bool is_of_doors, const BuildingScene& building) {
+    std::string list;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Storey& storey = building.document.storeys[i];
+        const Environment& room = building.scenes[i]->environment;
+        if (is_of_doors) {
+            if (const std::string doors = doorList(room, storey.id + '/'); !doors.empty())
+                list += (list.empty() ? "" : ", ") + doors;
+            continue;
+        }
+        for (const Element& element : room.elements())
+            if (element.record.keyword() == "zone")
+                list += (list.empty() ? "" : ", ") + wholeId(storey, element.id);
+    }
+    const std::string kind = is_of_doors ? "door" : "zone";
+    return "--facing: " + excerpt(zone) + " meets no " + kind +
+           (list.empty() ? ": the building has none"
+                         : "; the " + kind + "s of the building: " + list);
+}
+
+/// Splits `GLOB/ZONE`; without a slash all storeys are meant.
+std::pair<std::string, std::string> splitStorey(const std::string& zone) {
+    const std::size_t slash = zone.find('/');
+    if (slash == std::string::npos) return {"*", zone};
+    return {zone.substr(0, slash), zone.substr(slash + 1)};
+}
+
+bool hasZone(const Environment& room, const std::string& zone) {
+    if (zone.starts_with(kDoorPrefix)) {
+        const Glob doors(zone.substr(kDoorPrefix.size(), zone.rfind(',') - kDoorPrefix.size()));
+        for (const Doorway& door : doorwaysOf(room))
+            if (doors.matches(door.id)) return true;
+        return false;
+    }
+    const Glob zones(zone);
+    for (const Element& element : room.elements())
+        if (element.record.keyword() == "zone" && zones.matches(element.id)) return true;
+    return false;
+}
+
+}  // namespace
+
+std::vector<CameraRules> measureBuildingFacing(const BuildingScene& building,
+                                               const BuildingCoverage& coverage,
+                                               std::span<const FacingRule> rules) {
+    std::vector<CameraRules> measured(building.scenes.size());
+    for (const FacingRule& rule : rules) {
+        const auto [storeys, zone] = splitStorey(rule.zone);
+        const Glob named(storeys);
+        bool is_met = false;
+        for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+            const Scene& floor = *coverage.floors[i];
+            if (!named.matches(building.document.storeys[i].id) ||
+                !hasZone(floor.environment, zone))
+                continue;
+            is_met = true;
+            FacingRule own = rule;
+            own.zone = zone;
+            std::vector<FacingResult> results =
+                measureFacing(floor, coverage.storeys[i], {&own, 1});
+            measured[i].facing.insert(measured[i].facing.end(),
+                                      std::make_move_iterator(results.begin()),
+                                      std::make_move_iterator(results.end()));
+        }
+        if (!is_met)
+            throw UsageError(unknownRule(rule.zone, zone.starts_with(kDoorPrefix), building));
+    }
+    return measured;
+}
+
+std::vector<JudgedRule> judgedInBuilding(const BuildingScene& building,
+                                         std::span<const CameraRules> rules) {
+    std::vector<JudgedRule> all;
+    for (std::size_t i = 0; i < rules.size(); ++i)
+        for (JudgedRule& rule : judgedRules(rules[i])) {
+            rule.rule.insert(0, building.document.storeys[i].id + ": ");
+            all.push_back(std::move(rule));
+        }
+    return all;
+}
+
+}  // namespace ispace
