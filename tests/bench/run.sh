@@ -7,7 +7,7 @@ mkdir -p "$build/bench"
 # For the scenes and poses that benchmarks make, and remove.
 TMPDIR=$(cd "$build/bench" && pwd)
 export TMPDIR
-for program in start days kernel plan load ray_rate sight_scan depth_rate render_rate scan_rate server_rate sim_rate visibility \
+for program in start planner days kernel plan load ray_rate sight_scan depth_rate render_rate scan_rate server_rate sim_rate visibility \
     union coverage set_cover gallery poses arrange; do
     "$build/tests/${program}_bench" --benchmark_out="$build/bench/$program.json" \
         --benchmark_out_format=json
