@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/number.h"
 #include "drawing/plan/plan.h"
@@ -95,28 +96,73 @@ void drawSensorMark(Picture& picture, Point2 page, const SensorMark& mark, doubl
     picture.pop();
 }
 
+LabelPlacer::LabelPlacer(const Box2& frame, double em) : frame_(frame), em_(em) {
+    constexpr double kMostCells = 256;  // along a side
+    side_ = std::max({em, frame.width() / kMostCells, frame.depth() / kMostCells});
+    columns_ = static_cast<std::size_t>(std::max(1.0, std::ceil(frame.width() / side_)));
+    rows_ = static_cast<std::size_t>(std::max(1.0, std::ceil(frame.depth() / side_)));
+    cells_.resize(columns_ * rows_);
+}
+
+LabelPlacer::CellRange LabelPlacer::cellsOf(const Box2& box) const {
+    const auto cell = [this](double offset, std::size_t count) {
+        return static_cast<std::size_t>(
+            std::clamp(offset / side_, 0.0, static_cast<double>(count - 1)));
+    };
+    return {cell(box.low.x - frame_.low.x, columns_), cell(box.high.x - frame_.low.x, columns_),
+            cell(box.low.y - frame_.low.y, rows_), cell(box.high.y - frame_.low.y, rows_)};
+}
+
+void LabelPlacer::addBox(const Box2& box, std::vector<Box2> Cell::*list) {
+    const CellRange range = cellsOf(box);
+    for (std::size_t row = range.low; row <= range.high; ++row)
+        for (std::size_t i = range.left; i <= range.right; ++i)
+            (cells_[row * columns_ + i].*list).push_back(box);
+}
+
+void LabelPlacer::addLine(const Segment2& page_line) {
+    const Vec2 way = page_line.b - page_line.a;
+    const double steps = std::clamp(std::ceil(std::max(std::abs(way.x), std::abs(way.y)) / side_),
+                                    1.0, 2.0 * static_cast<double>(columns_ + rows_));
+    // Cells about each piece of the line; neighbours share some.
+    CellRange before{1, 0, 1, 0};
+    for (double i = 0; i < steps; ++i) {
+        Box2 box;
+        box.add(page_line.a + i / steps * way);
+        box.add(page_line.a + (i + 1) / steps * way);
+        const CellRange range = cellsOf(box.expanded(1e-6 * side_));
+        for (std::size_t row = range.low; row <= range.high; ++row)
+            for (std::size_t k = range.left; k <= range.right; ++k)
+                if (row < before.low || row > before.high || k < before.left || k > before.right)
+                    cells_[row * columns_ + k].lines.push_back(page_line);
+        before = range;
+    }
+}
+
 void LabelPlacer::addMark(Point2 page, std::optional<Angle> heading) {
-    marks_.push_back(boxAround(page, 0.45 * em_, 0.45 * em_));
+    addBox(boxAround(page, 0.45 * em_, 0.45 * em_), &Cell::marks);
     if (!heading) return;
     const Vec2 forward = em_ * unitVector(*heading);
-    marks_.push_back(boxAround({page.x + forward.x, page.y - forward.y}, 0.4 * em_, 0.4 * em_));
+    addBox(boxAround({page.x + forward.x, page.y - forward.y}, 0.4 * em_, 0.4 * em_), &Cell::marks);
 }
 
 Point2 LabelPlacer::placeSign(Point2 page, double radius) {
     const double half = radius + 0.1 * em_;
     Point2 best = page;
-    double least = costOf(boxAround(page, half, half));
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    double least = costOf(boxAround(page, half, half), kAny);
     for (const double away : {1.2, 2.4}) {
         for (int turn = 0; turn < 8 && least > 0; ++turn) {
             const Vec2 off = away * em_ * unitVector(Angle::degrees(45.0 * turn));
             const Point2 place{page.x + off.x, page.y - off.y};
-            if (const double cost = costOf(boxAround(place, half, half)) + away; cost < least) {
+            if (const double cost = costOf(boxAround(place, half, half), least) + away;
+                cost < least) {
                 least = cost;
                 best = place;
             }
         }
     }
-    labels_.push_back(boxAround(best, half, half));
+    addBox(boxAround(best, half, half), &Cell::labels);
     return best;
 }
 
@@ -132,14 +178,15 @@ std::optional<Point2> LabelPlacer::placeLabel(Point2 page, Angle heading, double
             const Point2 middle{page.x + away.x * (ring * em_ + half_width),
                                 page.y - away.y * (ring * em_ + half_height)};
             const Box2 box = boxAround(middle, half_width, half_height);
-            if (const double cost = costOf(box) + static_cast<double>(i) / 10; cost < least) {
+            const double cost = costOf(box, least) + static_cast<double>(i) / 10;
+            if (cost < least) {
                 least = cost;
                 best = middle;
             }
         }
         if (least < 1 || crowd) break;  // farther away only from marks and lines
     }
-    if (best) labels_.push_back(boxAround(*best, half_width, half_height));
+    if (best) addBox(boxAround(*best, half_width, half_height), &Cell::labels);
     return best;
 }
 
@@ -154,19 +201,40 @@ void drawMarkLabel(Picture& picture, Point2 mark, Point2 middle, const std::stri
 }
 
 bool LabelPlacer::take(const Box2& box, bool over_lines, std::optional<Segment2> own) {
-    if (costOf(box, over_lines, own) > 0) return false;
-    labels_.push_back(box);
+    if (costOf(box, 1, over_lines, own) > 0) return false;
+    addBox(box, &Cell::labels);
     return true;
 }
 
-double LabelPlacer::costOf(const Box2& box, bool over_lines, std::optional<Segment2> own) const {
-    double cost = frame_.contains(box) ? 0 : 100;
-    for (const Box2& label : labels_) cost += label.overlaps(box) ? 100 : 0;
-    for (const Box2& mark : marks_) cost += mark.overlaps(box) ? 5 : 0;
+double LabelPlacer::costOf(const Box2& box, double enough, bool over_lines,
+                           std::optional<Segment2> own) const {
+    constexpr double kOverFrame = 100, kOverLabel = 100, kOverMark = 5, kOverLine = 2;
+    double cost = frame_.contains(box) ? 0 : kOverFrame;
+    const CellRange range = cellsOf(box);
+    // Boxes that overlap share several cells: they count in the first of them.
+    const auto add = [&](const std::vector<Box2>& boxes, std::size_t column, std::size_t row,
+                         double each) {
+        for (const Box2& one : boxes) {
+            if (!one.overlaps(box)) continue;
+            const CellRange cells = cellsOf(one);
+            const bool is_first =
+                column == std::max(range.left, cells.left) && row == std::max(range.low, cells.low);
+            if (is_first && (cost += each) >= enough) return;
+        }
+    };
     const auto is_crossed = [&](const Segment2& line) {
         return crosses(line, box) && !(own && own->a == line.a && own->b == line.b);
     };
-    if (!over_lines && std::any_of(lines_.begin(), lines_.end(), is_crossed)) cost += 2;
+    bool is_over_line = over_lines;  // not to be looked for
+    for (std::size_t row = range.low; row <= range.high && cost < enough; ++row)
+        for (std::size_t i = range.left; i <= range.right && cost < enough; ++i) {
+            const Cell& cell = cells_[row * columns_ + i];
+            add(cell.labels, i, row, kOverLabel);
+            if (cost < enough) add(cell.marks, i, row, kOverMark);
+            if (cost >= enough || is_over_line) continue;
+            is_over_line = std::any_of(cell.lines.begin(), cell.lines.end(), is_crossed);
+            if (is_over_line) cost += kOverLine;
+        }
     return cost;
 }
 

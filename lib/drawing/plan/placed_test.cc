@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <random>
 #include <vector>
 
 #include "drawing/plan/plan.h"
@@ -55,6 +58,43 @@ TEST(LabelPlacer, LabelsLieBesideWallsAndMarks) {
     near.addLine({{0, 0}, {90, 90}});
     near.addLine({{90, 140}, {140, 190}});
     EXPECT_TRUE(near.take({{100, 100}, {120, 120}}));
+}
+
+/// Boxes and lines of all sizes, also at and beyond the edges of the frame.
+TEST(LabelPlacer, ABoxIsFreeIfNoShapeAtAllLiesInIt) {
+    std::mt19937_64 random(11);
+    const auto within = [&random](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    for (int round = 0; round < 20; ++round) {
+        const Box2 frame{{-50, 10}, {within(-40, 400), 410}};
+        LabelPlacer placer(frame, kEm);
+        std::vector<Box2> boxes;
+        std::vector<Segment2> lines;
+        for (int i = 0; i < 20; ++i) {
+            const Point2 mark{within(-80, 450), within(-20, 450)};
+            placer.addMark(mark, std::nullopt);
+            boxes.push_back(Box2{mark, mark}.expanded(0.45 * kEm));
+            const Point2 from{within(-900, 900), within(-900, 900)};
+            const double way = within(0, round % 2 == 0 ? 3000 : 60), turn = within(0, 6.3);
+            lines.push_back({from, from + way * Vec2{std::cos(turn), std::sin(turn)}});
+            placer.addLine(lines.back());
+        }
+        for (int i = 0; i < 300; ++i) {
+            const Point2 low{within(-60, 400), within(0, 400)};
+            const Box2 box{low, low + Vec2{within(1, 60), within(1, 20)}};
+            const bool over_lines = i % 3 == 0;
+            const bool is_free =
+                frame.contains(box) &&
+                std::none_of(boxes.begin(), boxes.end(),
+                             [&](const Box2& other) { return other.overlaps(box); }) &&
+                (over_lines || std::none_of(lines.begin(), lines.end(), [&](const Segment2& line) {
+                     return crosses(line, box);
+                 }));
+            ASSERT_EQ(placer.take(box, over_lines), is_free) << round << ' ' << i;
+            if (is_free) boxes.push_back(box);
+        }
+    }
 }
 
 TEST(LabelPlacer, ALineJoinsAMarkAndItsDistantLabel) {

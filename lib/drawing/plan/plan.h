@@ -69,15 +69,16 @@ void drawMarkLabel(Picture& picture, Point2 mark, Point2 middle, const std::stri
 /// Returns true if part of a line is inside the box.
 bool crosses(const Segment2& line, const Box2& box);
 
-/// Finds positions of signs and labels where they cover little, in page units.
+/// Finds positions of signs and labels where they cover little, in page units. Each looks at the
+/// shapes near it alone.
 class LabelPlacer {
   public:
-    LabelPlacer(const Box2& frame, double em) : frame_(frame), em_(em) {}
+    LabelPlacer(const Box2& frame, double em);
 
     /// Adds a mark and its arrow, which labels should not cover.
     void addMark(Point2 page, std::optional<Angle> heading);
     /// Adds a line, such as a wall, which labels cover only where nothing else is free.
-    void addLine(const Segment2& page_line) { lines_.push_back(page_line); }
+    void addLine(const Segment2& page_line);
     /// Finds the position of a sign of this radius: at the point, or the nearest free one around
     /// it.
     Point2 placeSign(Point2 page, double radius);
@@ -91,13 +92,24 @@ class LabelPlacer {
     bool take(const Box2& box, bool over_lines = false, std::optional<Segment2> own = {});
 
   private:
-    [[nodiscard]] double costOf(const Box2& box, bool over_lines = false,
+    /// Shapes by the cells of a grid over the frame; cells at its edges reach outwards without end.
+    struct Cell {
+        std::vector<Box2> marks, labels;
+        std::vector<Segment2> lines;
+    };
+    struct CellRange {
+        std::size_t left, right, low, high;  // all included
+    };
+    [[nodiscard]] CellRange cellsOf(const Box2& box) const;
+    void addBox(const Box2& box, std::vector<Box2> Cell::*list);
+    /// Computes the cost of a box, or any number from `enough` on if it is as much.
+    [[nodiscard]] double costOf(const Box2& box, double enough, bool over_lines = false,
                                 std::optional<Segment2> own = {}) const;
 
     Box2 frame_;
-    double em_;
-    std::vector<Box2> marks_, labels_;
-    std::vector<Segment2> lines_;
+    double em_, side_;
+    std::size_t columns_, rows_;
+    std::vector<Cell> cells_;
 };
 
 /// Style of a plan, and its position on the page.

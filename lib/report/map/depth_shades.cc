@@ -35,12 +35,13 @@ void addDepthShades(Coverage& coverage, const Scene& scene) {
         return shade;
     };
     const auto level = scene.environment.level(coverage.target.height);
+    coverage.overlay.reset();  // as large as the one that follows
     try {
-        Overlay overlay(layers, level->slice().sheets,
-                        {.label = shade_of, .add_area = [](const LayerLabel&, double) {}});
-        coverage.overlay = std::move(overlay);
+        coverage.overlay.emplace(
+            layers, level->slice().sheets,
+            Overlay::Coarse{.label = shade_of, .add_area = [](const LayerLabel&, double) {}});
     } catch (const FormatError&) {
-        return;
+        return;  // maps by cells
     }
 }
 

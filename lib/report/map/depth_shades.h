@@ -15,7 +15,7 @@ constexpr std::size_t kFewDepths = 24;
 /// show: floor that one sensor alone sees, with its number, and the classes of their colours, each
 /// with the lowest count of its floor above 1. Where hundreds of views overlap that is a small part
 /// of all depths. The overlay has no marks but kIndoorMark. Without effect if the coverage has no
-/// overlay, or if its views cross too often for one.
+/// overlay, which it loses if its views cross too often for the other one.
 void addDepthShades(Coverage& coverage, const Scene& scene);
 
 }  // namespace ispace

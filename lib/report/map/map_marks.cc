@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/message.h"
 #include "raster/contour.h"
@@ -85,6 +86,33 @@ Point2 pageOf(const MapPicture& map, const SensorView& sensor) {
     return map.view * sensor.pose.position.onFloor();
 }
 
+/// Points by cells as wide as the distance at which they are near.
+class PointsNear {
+  public:
+    explicit PointsNear(double reach) : reach_(reach) {}
+
+    /// Returns whether a point added before is nearer than the reach.
+    bool addAndFind(Point2 p) {
+        const std::pair cell{std::floor(p.x / reach_), std::floor(p.y / reach_)};
+        bool is_near = false;
+        for (const double right : {-1, 0, 1})
+            for (const double up : {-1, 0, 1}) {
+                const auto found = cells_.find({cell.first + right, cell.second + up});
+                if (found == cells_.end()) continue;
+                is_near = is_near || std::any_of(found->second.begin(), found->second.end(),
+                                                 [&](Point2 q) { return distance(p, q) < reach_; });
+            }
+        // Of points at one point the first is enough.
+        std::vector<Point2>& points = cells_[cell];
+        if (std::find(points.begin(), points.end(), p) == points.end()) points.push_back(p);
+        return is_near;
+    }
+
+  private:
+    double reach_;
+    std::map<std::pair<double, double>, std::vector<Point2>> cells_;
+};
+
 /// Draws the marks of sensors on the plan; `hollow`: of the layout that this one is compared with.
 void drawSensors(Picture& picture, const MapPicture& map, const Box2& frame, bool hollow,
                  LabelPlacer& places) {
@@ -92,20 +120,17 @@ void drawSensors(Picture& picture, const MapPicture& map, const Box2& frame, boo
     const double radius = map.em * (sensors.size() > kCrowd ? 0.24
                                     : sensors.size() > 14   ? 0.3
                                                             : 0.36);
+    PointsNear marks(0.4 * radius);
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const Point2 page = pageOf(map, sensors[i]);
+        const bool on_top = marks.addAndFind(page);
         if (!frame.contains({page, page})) continue;
         SensorMark mark = markOf(map, i);
         mark.hollow = hollow;
         if (hollow) mark.color = palette::kOtherSensor;
-        // A mark on top of another one is smaller, so that both are visible.
-        const auto is_here = [&](const SensorView& sensor) {
-            return distance(pageOf(map, sensor), page) < 0.4 * radius;
-        };
-        const auto end = sensors.begin() + static_cast<std::ptrdiff_t>(i);
-        const bool on_top = std::any_of(sensors.begin(), end, is_here);
         picture.pushGroup(hollow ? "" : sensors[i].id,
                           sensors[i].id + ": " + std::string(sensors[i].kind->keyword));
+        // A mark on top of another one is smaller, so that both are visible.
         drawSensorMark(picture, page, mark, on_top ? 0.5 * radius : radius);
         picture.pop();
         places.addMark(page, mark.heading);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/json_writer.h"
 #include "base/message.h"
@@ -136,7 +139,7 @@ class HtmlWriter {
         out_.append("</main>\n<script>\n//<![CDATA[\n");
         out_.append(between(kPageScript, kPageScriptEnd)).append("//]]>\n</script>\n");
         out_ += "</body>\n</html>\n";
-        return std::move(out_);
+        return joined();
     }
 
   private:
@@ -200,20 +203,39 @@ class HtmlWriter {
                 .append("\"");
         if (figure.width < 1)
             out_.append(" style=\"width:").append(formatDouble(100 * figure.width)).append("%\"");
-        out_.append(">\n").append(svgElement(figure.picture, nextPrefix()));
+        out_ += ">\n";
+        addPicture(figure.picture);
         out_.append("<figcaption>").append(escapedXml(figure.caption));
         out_ += "</figcaption>\n</figure>\n";
     }
 
     void add(const PageMap& map) {
         out_.append("<figure class=\"map\" data-index=\"").append(escapedXml(indexJson(map.index)));
-        out_.append("\">\n").append(svgElement(map.screen, nextPrefix()));
+        out_ += "\">\n";
+        addPicture(map.screen);
         out_.append("<figcaption>").append(escapedXml(map.paper.caption));
         out_ += "</figcaption>\n</figure>\n";
     }
 
-    std::string nextPrefix() { return "f" + std::to_string(++figures_) + "-"; }
+    /// Pictures are most of a page, megabytes each: they are not copied while it grows.
+    void addPicture(const Picture& picture) {
+        parts_.push_back(std::move(out_));
+        parts_.push_back(svgElement(picture, "f" + std::to_string(++figures_) + "-"));
+        out_.clear();
+    }
 
+    /// Joins all parts, and frees each with its copy.
+    std::string joined() {
+        parts_.push_back(std::move(out_));
+        std::size_t size = 0;
+        for (const std::string& part : parts_) size += part.size();
+        std::string text;
+        text.reserve(size);
+        for (std::string& part : parts_) text += std::exchange(part, {});
+        return text;
+    }
+
+    std::vector<std::string> parts_;  // before out_
     std::string out_;
     int figures_ = 0;
 };
