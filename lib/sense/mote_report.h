@@ -22,7 +22,8 @@ struct MoteReport {
     int frame = 0;
     Pose3 pose;
     double lux = 0;                     ///< as a `lux` at its pose reports
-    std::vector<Neighbour> neighbours;  ///< in the order of the scene
+    std::vector<Neighbour> neighbours;  ///< in the order of the scene, the strongest if it hears
+                                        ///< more than Mote::kMostNeighbours
 
     static const ReadingKind kKind;
 };
@@ -30,7 +31,8 @@ struct MoteReport {
 /// Measures the light on a mote and lists the motes that it hears: those whose signal, in free
 /// space and less `loss` for each wall between (see wallsBetween(), sense/walls_between.h), is as
 /// strong as over `radio` metres. Movers weaken no signal. A mote on a robot or a person sends from
-/// the axis of the mover's body, at the height of its record.
+/// the axis of the mover's body, at the height of its record. Near motes are tried first, and
+/// far ones only while the table has space for weaker signals.
 MoteReport readingOf(const Mote& mote, const Moment& now);
 
 }  // namespace ispace

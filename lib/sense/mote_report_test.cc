@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/test_readings.h"
@@ -101,6 +103,37 @@ TEST(MoteReport, CarriedMotesHearAsTheyAreHeard) {
                     20 * std::log10(30 / length(reports[1].pose.position - Point3{1, 1, 1})), 1e-9)
             << carried;
     }
+}
+
+TEST(MoteReport, OfManyMotesItListsTheStrongest) {
+    // Behind the wall a signal loses 6 dB: half of the distance.
+    std::string layout = "mote id=a at=0,0,1\n";
+    std::vector<std::pair<double, int>> order;
+    for (int i = 0; i < 300; ++i) {
+        const double x = 0.06 * (i * 7 % 300) - 9, y = 0.3 * (i % 11) - 1.5;
+        layout += "mote id=m" + std::to_string(i) + " at=" + std::to_string(x) + ',' +
+                  std::to_string(y) + ",1\n";
+        order.emplace_back(std::hypot(x, y) * (x > 0.1 ? std::pow(10, 0.3) : 1), i);
+    }
+    std::sort(order.begin(), order.end());
+    const auto reports = reportsIn("wall from=0.1,-6 to=0.1,6\n", layout);
+    ASSERT_EQ(reports.size(), 301U);
+    const std::vector<Neighbour>& heard = reports.front().neighbours;
+    ASSERT_EQ(heard.size(), Mote::kMostNeighbours);
+    std::vector<int> best;
+    for (std::size_t i = 0; i < heard.size(); ++i) best.push_back(order[i].second);
+    std::sort(best.begin(), best.end());
+    for (std::size_t i = 0; i < heard.size(); ++i)
+        EXPECT_EQ(heard[i].mote, "m" + std::to_string(best[i])) << "in the order of the scene";
+    for (const MoteReport& one : reports) EXPECT_EQ(one.neighbours.size(), Mote::kMostNeighbours);
+    // At one point, and of equal signals, the first ones.
+    std::string heap;
+    for (int i = 0; i < 100; ++i) heap += "mote at=1,1,1\n";
+    const auto crowd = reportsIn("", heap);
+    ASSERT_EQ(crowd.size(), 100U);
+    EXPECT_EQ(crowd.back().neighbours.size(), Mote::kMostNeighbours);
+    EXPECT_EQ(crowd.back().neighbours.front().mote, "mote1");
+    EXPECT_EQ(crowd.back().neighbours.back().mote, "mote64");
 }
 
 TEST(MoteReport, MeasuresLightAsAMeterDoes) {

@@ -88,6 +88,9 @@ void lookUpLightsAndMotes(SensorModel& model, const Record& /*record*/, const Ro
     Mote& mote = std::get<Mote>(model);
     lookUpLights(mote.meter, room);
     mote.motes = room.shared<MoteRadio>([&room] { return radiosOf(room); });
+    mote.grid = room.shared<MoteGrid>([&mote] {
+        return std::vector{MoteGrid({mote.motes.begin(), mote.motes.end()})};
+    });
 }
 
 /// Builds a housing with a stub antenna.

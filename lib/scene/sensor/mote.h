@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -8,6 +9,7 @@
 #include "geom/pose.h"
 #include "record/record.h"
 #include "scene/sensor/lux.h"
+#include "scene/sensor/mote_grid.h"
 #include "scene/sensor/shared_list.h"
 
 namespace ispace {
@@ -27,6 +29,9 @@ struct MoteRadio {
 
 /// A node of a wireless sensor network: it measures light, and hears other nodes.
 struct Mote {
+    /// Neighbours that it lists at most, as nodes have tables of neighbours.
+    static constexpr std::size_t kMostNeighbours = 64;
+
     std::string model;     ///< "" for the bare mote
     Lux meter;             ///< its light sensor, which faces along the mote's axis
     double radio = 30;     ///< metres: from farther nodes it hears none, without walls between
@@ -34,11 +39,14 @@ struct Mote {
     double rate = 1;       ///< readings a second
     double max_range = 0;  ///< it covers no floor
     SharedList<MoteRadio> motes;  ///< of the room, this one included
+    SharedList<MoteGrid> grid;    ///< of `motes`: one, or none without motes
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     /// Walls between stop a ray each.
-    [[nodiscard]] std::size_t rays() const { return meter.rays() + 4 * motes.size(); }
+    [[nodiscard]] std::size_t rays() const {
+        return meter.rays() + 4 * std::min(motes.size(), kMostNeighbours);
+    }
     [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return false; }
     [[nodiscard]] bool isNoisy() const { return meter.isNoisy(); }
     static const SensorKind kKind;
