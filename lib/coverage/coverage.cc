@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <map>
 #include <utility>
@@ -72,8 +73,8 @@ void setRegion(std::optional<std::vector<Curve>> region, const Box2& limits, Sen
     view.beyond = std::move(cut.outside);
 }
 
-std::optional<std::vector<Curve>> regionHeardByEnough(
-    std::span<const SensorView* const> receivers) {
+std::optional<std::vector<Curve>> regionHeardByEnough(std::span<const SensorView* const> receivers,
+                                                      std::size_t most_crossings) {
     std::vector<Layer> layers;
     layers.reserve(receivers.size());
     for (const SensorView* view : receivers) {
@@ -81,7 +82,9 @@ std::optional<std::vector<Curve>> regionHeardByEnough(
         layers.push_back({.curves = *view->region});
     }
     try {
-        return Overlay(layers).curves([](const LayerLabel& label) {
+        const Overlay overlay(layers, {},
+                              {.label = {}, .add_area = {}, .most_crossings = most_crossings});
+        return overlay.curves([](const LayerLabel& label) {
             return label.count >= static_cast<std::int32_t>(kMinReceivers);
         });
     } catch (const FormatError&) {
@@ -134,17 +137,37 @@ double reachOfScans(const Scene& scene) {
     return reach;
 }
 
+/// Returns the crossings that an overlay of views may have: views of sensors in reach of each
+/// other and in the light of hundreds of things cross by squares and cubes of their numbers, those
+/// of a building by some hundreds each.
+std::size_t mostCrossings(const CoverageOptions& options, const Slice& slice, const Scene& scene) {
+    constexpr std::size_t kForAny = 500'000, kPerSensor = 2000, kPerLine = 200;
+    if (options.max_work) return static_cast<std::size_t>(*options.max_work);
+    const auto sensors =
+        std::count_if(scene.sensors.begin(), scene.sensors.end(),
+                      [](const Sensor& sensor) { return kindOf(sensor.model).perceives; });
+    std::size_t lines = slice.sheets.size();
+    for (const Polygon& solid : slice.solids) lines += solid.size();
+    return kForAny + kPerSensor * static_cast<std::size_t>(sensors) + kPerLine * lines;
+}
+
+/// Returns the edges that all views may have together: each takes the memory of several crossings.
+std::size_t mostEdges(std::size_t most_crossings) { return most_crossings / 4; }
+
 /// Computes the view of each laser, ranger and receiver of a scene, in this order, in parallel.
+/// Without exact regions if those of all views have more than `most_edges` together: hundreds of
+/// sensors that see the shadows of hundreds of things.
 class Viewer {
   public:
     /// \param only_regions computes neither cells, beams nor classes of density
     /// \param known of an equal environment, see exactShares()
     Viewer(const Scene& scene, Worlds& worlds, const Grid& grid, const CoverageOptions& options,
-           bool only_regions = false, const VisibleArea* known = nullptr)
+           std::size_t most_edges, bool only_regions = false, const VisibleArea* known = nullptr)
         : scene_(scene),
           worlds_(worlds),
           grid_(grid),
           options_(options),
+          most_(most_edges),
           only_regions_(only_regions),
           known_(known) {}
 
@@ -168,8 +191,20 @@ class Viewer {
                 });
             });
         });
+        if (hasTooManyEdges())
+            for (SensorView& view : views_) {
+                view.region.reset();
+                view.beyond.clear();
+            }
+        tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t i) {
+            const Sensor& sensor = sensorOf(views_[i]);
+            if (sensor.is<Camera>() && !only_regions_)
+                tbb::this_task_arena::isolate([&] { addClasses(views_[i], sensor); });
+        });
         return std::move(views_);
     }
+
+    [[nodiscard]] bool hasTooManyEdges() const { return edges_ > most_; }
 
   private:
     void makeViews() {
@@ -212,14 +247,14 @@ class Viewer {
         return sight_.levelAt(place.z)->isInsideSolid(place.onFloor());
     }
 
-    void look(SensorView& view) const {
+    void look(SensorView& view) {
         Sensor sensor = sensorOf(view);
         if (auto* camera = std::get_if<Camera>(&sensor.model)) {
             *camera = withDensity(*camera, options_.density);
             view.max_range = camera->max_range;
         }
         if (only_regions_) {
-            setRegion(regionOf(sensor), scene_.environment.limits(), view);
+            addRegion(view, sensor);
             return;
         }
         const Laser* laser = std::get_if<Laser>(&sensor.model);
@@ -230,8 +265,15 @@ class Viewer {
         view.cells = by_beams && (scansSlice(sensor) || !isInsideSolid(sensor))
                          ? cellsAmongBeams(grid_, sensor, view.beams)
                          : sight_.cellsOf(grid_, sensor);
-        if (options_.exact) setRegion(regionOf(sensor), scene_.environment.limits(), view);
-        if (sensor.is<Camera>()) addClasses(view, sensor);
+        if (options_.exact) addRegion(view, sensor);
+    }
+
+    void addRegion(SensorView& view, const Sensor& sensor) {
+        if (hasTooManyEdges()) return;
+        setRegion(regionOf(sensor), scene_.environment.limits(), view);
+        if (!view.region) return;
+        for (const Curve& curve : *view.region) edges_ += curve.size();
+        for (const Curve& curve : view.beyond) edges_ += curve.size();
     }
 
     [[nodiscard]] std::optional<std::vector<Curve>> withinLimits(
@@ -249,14 +291,16 @@ class Viewer {
         }
     }
 
-    void addClasses(SensorView& view, const Sensor& sensor) const {
-        const Sensor& whole = sensorOf(view);
+    void addClasses(SensorView& view, const Sensor& whole) const {
+        Sensor sensor = whole;
+        auto& camera = std::get<Camera>(sensor.model);
+        camera = withDensity(camera, options_.density);
         CoveredSet seen{view.cells, view.region};
         if (options_.density > 0) {
             seen.cells = sight_.cellsOf(grid_, whole);
-            if (options_.exact) seen.region = withinLimits(regionOf(whole));
+            if (options_.exact && !hasTooManyEdges()) seen.region = withinLimits(regionOf(whole));
         }
-        const FloorDensity density(sensor.as<Camera>(), sensor.pose, options_.plane);
+        const FloorDensity density(camera, sensor.pose, options_.plane);
         try {
             view.classes = classesOf(density, grid_, seen);
         } catch (const FormatError&) {
@@ -269,14 +313,17 @@ class Viewer {
     Worlds& worlds_;
     const Grid& grid_;
     const CoverageOptions& options_;
+    std::size_t most_;
     bool only_regions_;
     const VisibleArea* known_;
+    std::atomic<std::size_t> edges_ = 0;  // of all regions, or of enough of them to be too many
     VisibleArea sight_{scene_.environment, options_.plane, &worlds_, reachOfScans(scene_)};
     std::vector<SensorView> views_;
 };
 
 /// Returns the region heard by at least kMinReceivers receivers.
-CoveredSet heardByEnough(const std::vector<const SensorView*>& receivers, const Grid& grid) {
+CoveredSet heardByEnough(const std::vector<const SensorView*>& receivers, const Grid& grid,
+                         std::size_t most_crossings) {
     CoveredSet set;
     set.cells = CellSet(grid.size());
     std::vector<std::uint16_t> heard(grid.size());
@@ -284,20 +331,21 @@ CoveredSet heardByEnough(const std::vector<const SensorView*>& receivers, const 
         view->cells.forEach([&](std::size_t cell) {
             if (++heard[cell] == kMinReceivers) set.cells.set(cell);
         });
-    set.region = regionHeardByEnough(receivers);
+    set.region = regionHeardByEnough(receivers, most_crossings);
     return set;
 }
 
 /// Returns the covered sets of these views: one for each laser and ranger, then one for all
 /// receivers.
-std::vector<CoveredSet> setsOf(const std::vector<SensorView>& views, const Grid& grid) {
+std::vector<CoveredSet> setsOf(const std::vector<SensorView>& views, const Grid& grid,
+                               std::size_t most_crossings) {
     std::vector<const SensorView*> receivers, others;
     for (const SensorView& view : views) (view.isPartial() ? receivers : others).push_back(&view);
     std::vector<CoveredSet> sets(others.size());
     tbb::parallel_for(std::size_t{0}, sets.size(), [&](std::size_t i) {
         sets[i] = {others[i]->cells, others[i]->region};
     });
-    if (!receivers.empty()) sets.push_back(heardByEnough(receivers, grid));
+    if (!receivers.empty()) sets.push_back(heardByEnough(receivers, grid, most_crossings));
     return sets;
 }
 
@@ -330,8 +378,9 @@ void mustFit(const Scene& scene, const Grid& grid) {
 
 /// Computes the exact metrics, or stores the reason why they are missing.
 void tryExactMetrics(Coverage& coverage, const Environment& environment, FarHoles& holes,
-                     const std::vector<Zone>& zones, bool keep_depths) {
+                     const std::vector<Zone>& zones, bool keep_depths, std::size_t most_crossings) {
     std::string& missing = coverage.report.exact_missing;
+    if (!missing.empty()) return;
     for (const SensorView& view : coverage.sensors)
         if (!view.region) {
             missing = "what " + view.id + " sees is known by cells only";
@@ -343,14 +392,14 @@ void tryExactMetrics(Coverage& coverage, const Environment& environment, FarHole
             return;
         }
     try {
-        addExactMetrics(coverage, environment, holes, zones, keep_depths);
+        addExactMetrics(coverage, environment, holes, zones, keep_depths, most_crossings);
     } catch (const FormatError& error) {
         missing = error.diagnostics().front().message;
     }
 }
 
 /// Computes the area beyond the limits that any sensor sees; empty if a region is not known.
-std::optional<double> outsideOf(const std::vector<SensorView>& views) {
+std::optional<double> outsideOf(const std::vector<SensorView>& views, std::size_t most_crossings) {
     std::vector<Layer> layers;
     std::vector<SensorView> receivers;
     for (const SensorView& view : views) {
@@ -365,7 +414,7 @@ std::optional<double> outsideOf(const std::vector<SensorView>& views) {
         std::vector<const SensorView*> all;
         all.reserve(receivers.size());
         for (const SensorView& view : receivers) all.push_back(&view);
-        auto heard = regionHeardByEnough(all);
+        auto heard = regionHeardByEnough(all, most_crossings);
         if (!heard) return std::nullopt;
         layers.push_back({.curves = std::move(*heard)});
     }
@@ -373,9 +422,12 @@ std::optional<double> outsideOf(const std::vector<SensorView>& views) {
     if (layers.size() == 1) return std::max(0.0, signedArea(layers.front().curves));
     double area = 0;
     try {
-        forEachArea(layers, [&area](const LayerLabel& label, double part) {
-            if (label.count > 0) area += part;
-        });
+        forEachArea(
+            layers,
+            [&area](const LayerLabel& label, double part) {
+                if (label.count > 0) area += part;
+            },
+            most_crossings);
     } catch (const FormatError&) {
         return std::nullopt;
     }
@@ -437,16 +489,26 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
     const auto level = environment.level(options.height);
     CoverageReport& report = coverage.report;
     std::optional<FarHoles> holes;
-    runBoth([&] { coverage.sensors = Viewer(own, worlds, grid, options).run(); },
-            [&] {
-                coverage.target = makeTarget(environment, options.cells, options.height);
-                report.free_area = totalArea(level->freeFloor());
-                if (options.exact)
-                    holes.emplace(environment.indoor(), level->freeFloor(), level->slice().sheets);
-                static_cast<void>(scene.digest());  // cached, in parallel with the views
-            });
+    const std::size_t most_crossings = mostCrossings(options, level->slice(), scene);
+    runBoth(
+        [&] {
+            const std::size_t most_edges = mostEdges(most_crossings);
+            Viewer viewer(own, worlds, grid, options, most_edges);
+            coverage.sensors = viewer.run();
+            if (viewer.hasTooManyEdges())
+                report.exact_missing = "outlines of views have more than " +
+                                       std::to_string(most_edges) + " edges (`--max-work " +
+                                       std::to_string(2 * most_crossings) + "` allows more)";
+        },
+        [&] {
+            coverage.target = makeTarget(environment, options.cells, options.height);
+            report.free_area = totalArea(level->freeFloor());
+            if (options.exact)
+                holes.emplace(environment.indoor(), level->freeFloor(), level->slice().sheets);
+            static_cast<void>(scene.digest());  // cached, in parallel with the views
+        });
     addOutside(outside, own.sensors.size(), options, coverage, grid, scene);
-    coverage.sets = setsOf(coverage.sensors, grid);
+    coverage.sets = setsOf(coverage.sensors, grid, most_crossings);
 
     report.digest = scene.digest();
     report.limits = environment.limits();
@@ -460,8 +522,9 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
         report.sensors.push_back(metricsOf(scene, view, grid, options.plane));
     const std::vector<Zone> zones = zonesOf(environment);
     report.zones = zoneMetricsOf(environment, zones);
-    if (options.exact) report.outside = outsideOf(coverage.sensors);
-    if (holes) tryExactMetrics(coverage, environment, *holes, zones, options.keep_depths);
+    if (options.exact) report.outside = outsideOf(coverage.sensors, most_crossings);
+    if (holes)
+        tryExactMetrics(coverage, environment, *holes, zones, options.keep_depths, most_crossings);
     addCellMetrics(coverage, zones);
     addDensities(coverage, environment, level->freeFloor(), zones, options.whole_densities);
     if (options.parallax) addParallax(coverage, environment, *options.parallax);
@@ -483,7 +546,9 @@ std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
     CoverageReport& report = coverage.report;
     coverage.target.grid = report.grid = gridOver(environment.limits(), options.cells);
     coverage.target.height = options.height;
-    coverage.sensors = Viewer(scene, worlds, report.grid, options, true, sight).run();
+    const std::size_t most_crossings = mostCrossings(options, level->slice(), scene);
+    coverage.sensors =
+        Viewer(scene, worlds, report.grid, options, mostEdges(most_crossings), true, sight).run();
     for (const SensorView& view : coverage.sensors) {
         if (view.isPartial() || !view.region) return std::nullopt;
         coverage.sets.push_back({CellSet(), view.region});
@@ -503,7 +568,7 @@ std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
     const std::vector<Zone> zones = zonesOf(environment);
     report.zones = zoneMetricsOf(environment, zones);
     try {
-        addExactShares(coverage, environment, holes, zones, options.keep_depths);
+        addExactShares(coverage, environment, holes, zones, options.keep_depths, most_crossings);
     } catch (const FormatError&) {
         return std::nullopt;
     }

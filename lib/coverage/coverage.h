@@ -45,6 +45,9 @@ struct CoverageOptions {
     /// of densities find the largest gap.
     bool whole_densities = true;
     std::optional<ParallaxChoice> parallax = {};
+    /// Crossings of outlines that exact figures may take; by default half a million, and some for
+    /// each sensor and line of the room. With more, figures are known by cells.
+    std::optional<std::uint64_t> max_work = {};
 };
 
 /// A metric by cells and in closed form. Empty (null in JSON) if unknown, e.g. a share by cells of

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -406,6 +408,37 @@ TEST(Compare, TellsGainAndLoss) {
     compare(now, coverageOf(all), up.environment.indoor(), "all.3dm");
     EXPECT_NEAR(*now.report.comparison->gained.exact, 0, 1e-5);
     EXPECT_NEAR(*now.report.comparison->lost.exact, 32, 1e-5);
+}
+
+/// Views that all cross each other end in figures by cells, which say how to get the others.
+TEST(CoverageExact, CrowdsOfViewsHaveTheFiguresOfCells) {
+    std::string text = "ispace size=40,30\n";
+    for (int i = 0; i < 12; ++i)
+        for (int k = 0; k < 12; ++k) {
+            const std::string at = std::to_string(3 * i - 17) + ',' + std::to_string(2 * k - 11);
+            text += (i + k) % 2 == 0 ? "cube at=" + at + " size=0.1\n" : "uwb at=" + at + ",2\n";
+        }
+    const Scene scene = sceneOf(text);
+    const auto measured = [&scene](std::optional<std::uint64_t> max_work) {
+        CoverageOptions options{.keep_depths = false};
+        options.max_work = max_work;
+        Worlds worlds(scene.environment);
+        return measureCoverage(scene, worlds, options);
+    };
+    const Coverage by_cells = measured(150'000), whole = measured(std::nullopt);
+    EXPECT_EQ(by_cells.report.exact_missing,
+              "outlines cross more than 150000 times (`--max-work 300000` allows more)");
+    EXPECT_FALSE(by_cells.overlay);
+    EXPECT_FALSE(by_cells.report.coverage.exact);
+    ASSERT_TRUE(whole.overlay) << whole.report.exact_missing;
+    EXPECT_NEAR(*whole.report.coverage.exact, *by_cells.report.coverage.grid, 1e-3);
+    EXPECT_EQ(by_cells.report.sensors.front().area.exact, whole.report.sensors.front().area.exact)
+        << "each view by itself is exact";
+    const Coverage without_regions = measured(10'000);
+    EXPECT_EQ(without_regions.report.exact_missing,
+              "outlines of views have more than 2500 edges (`--max-work 20000` allows more)");
+    EXPECT_FALSE(without_regions.report.sensors.front().area.exact);
+    EXPECT_EQ(without_regions.report.coverage.grid, whole.report.coverage.grid);
 }
 
 }  // namespace

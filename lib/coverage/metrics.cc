@@ -351,7 +351,7 @@ void setShares(const Areas& areas, CoverageReport& report) {
 }  // namespace
 
 void addExactShares(Coverage& coverage, const Environment& environment, FarHoles& holes,
-                    const std::vector<Zone>& zones, bool keep_depths) {
+                    const std::vector<Zone>& zones, bool keep_depths, std::size_t most_crossings) {
     Areas areas(coverage.sets.size());
     const auto level = environment.level(coverage.target.height);
     const FloorCurves floor{curvesWithArcs(environment.indoor()),
@@ -366,19 +366,22 @@ void addExactShares(Coverage& coverage, const Environment& environment, FarHoles
             by_zone.add(label, area);
         };
         if (first > 0)
-            forEachArea(layers, add);
+            forEachArea(layers, add, most_crossings);
         else if (keep_depths)
-            Overlay(layers, level->slice().sheets).addAreas(add);
+            Overlay(layers, level->slice().sheets,
+                    {.label = {}, .add_area = {}, .most_crossings = most_crossings})
+                .addAreas(add);
         else
             Overlay(layers, level->slice().sheets,
-                    Overlay::Coarse{.label = withoutDepths, .add_area = add});
+                    Overlay::Coarse{
+                        .label = withoutDepths, .add_area = add, .most_crossings = most_crossings});
         by_zone.setShares(std::span(coverage.report.zones).subspan(first, count));
     }
     setShares(areas, coverage.report);
 }
 
 void addExactMetrics(Coverage& coverage, const Environment& environment, FarHoles& holes,
-                     const std::vector<Zone>& zones, bool keep_depths) {
+                     const std::vector<Zone>& zones, bool keep_depths, std::size_t most_crossings) {
     CoverageReport& report = coverage.report;
     Areas areas(coverage.sets.size());
     const auto level = environment.level(coverage.target.height);
@@ -397,12 +400,17 @@ void addExactMetrics(Coverage& coverage, const Environment& environment, FarHole
             by_zone.add(label, area);
         };
         if (first > 0) {
-            forEachArea(layers, add);
+            forEachArea(layers, add, most_crossings);
         } else if (keep_depths) {
-            main.emplace(layers, sheets);
+            main.emplace(
+                layers, sheets,
+                Overlay::Coarse{.label = {}, .add_area = {}, .most_crossings = most_crossings});
             main->addAreas(add);
         } else {
-            main.emplace(layers, sheets, Overlay::Coarse{.label = withoutDepths, .add_area = add});
+            main.emplace(
+                layers, sheets,
+                Overlay::Coarse{
+                    .label = withoutDepths, .add_area = add, .most_crossings = most_crossings});
         }
         by_zone.setShares(std::span(report.zones).subspan(first, count));
     }

@@ -21,7 +21,9 @@ Layer markLayer(std::vector<Curve> curves, std::uint64_t marks);
 /// Sets the exact region of a view, cut along the limits of the room.
 void setRegion(std::optional<std::vector<Curve>> region, const Box2& limits, SensorView& view);
 /// Returns the region heard by at least kMinReceivers of these receivers; empty if unknown.
-std::optional<std::vector<Curve>> regionHeardByEnough(std::span<const SensorView* const> receivers);
+std::optional<std::vector<Curve>> regionHeardByEnough(
+    std::span<const SensorView* const> receivers,
+    std::size_t most_crossings = Overlay::kAnyCrossings);
 /// A zone of the environment.
 struct Zone {
     std::string id;
@@ -58,12 +60,14 @@ class FarHoles;
 /// Builds the overlay, with or without depths, and sets the exact metrics of the report. \pre all
 /// regions are known
 /// \param holes of the free floor at the target's height
+/// \param most_crossings of an overlay
+/// \throws FormatError if an overlay has more
 void addExactMetrics(Coverage& coverage, const Environment& environment, FarHoles& holes,
-                     const std::vector<Zone>& zones, bool keep_depths);
+                     const std::vector<Zone>& zones, bool keep_depths, std::size_t most_crossings);
 
 /// Sets only the shares of floor and zones, to the same values.
 void addExactShares(Coverage& coverage, const Environment& environment, FarHoles& holes,
-                    const std::vector<Zone>& zones, bool keep_depths);
+                    const std::vector<Zone>& zones, bool keep_depths, std::size_t most_crossings);
 
 /// Returns the figures whose robustness is reported: coverage, free coverage, that of each zone,
 /// and those of the requirements, each once, as requirements of 0.

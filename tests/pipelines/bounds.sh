@@ -100,3 +100,22 @@ for threads in 1 2; do
         --record crowd$threads
 done
 cmp crowd1/people.csv crowd2/people.csv || fail "a crowd sets out in another order with two threads"
+
+# Hundreds of receivers in sight of hundreds of things: figures by cells, with the way to the others; and a dense floor of
+# lasers on a page.
+python3 - <<'END'
+spots = [(round(-19 + 0.35 * (i % 108), 2), round(-14 + 7 * (i // 108), 2)) for i in range(400)]
+with open("uwb.3dm", "w", encoding="ascii") as file:
+    file.write("#3dm 1\n")
+    file.writelines(f"cube at={x},{y} size=0.1 tag=T{i}\n" if i % 2 else f"uwb at={x},{y},2\n" for i, (x, y) in enumerate(spots))
+with open("lasers.3dm", "w", encoding="ascii") as file:
+    file.write("#3dm 1\n")
+    file.writelines(f"laser at={-19.5 + 0.6 * (i % 66):.1f},{-14.5 + i // 66:.1f} range=3\n" for i in range(1500))
+END
+printf '#env 1\nispace size=40,30\n' >hall.env
+(ulimit -t "$(grep -q 'ISPACE_SANITIZE:[A-Z]*=OFF' "$binary_dir/CMakeCache.txt" && echo 6 || echo 120)"
+ expect_status 0 coverage hall.env uwb.3dm
+ has 'no exact figures of all together: outlines .* more than [0-9]* [a-z]* (`--max-work [0-9]*` allows more)' <out ||
+     fail "$(head -n 20 out)"
+ expect_status 0 coverage hall.env lasers.3dm --report page.html
+ ! has "no exact figures" <out || fail "$(head -n 20 out)")

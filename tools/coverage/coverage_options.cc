@@ -285,6 +285,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
 
     o.history_line = line.historyLine(o.operands);
     if (const auto cells = words.cells.choice()) o.measure.cells = *cells;
+    o.measure.max_work = o.rules.max_work;
     if (words.cells_by == "beams") o.measure.cells_by = CellRule::Beams;
     if (words.color == "sensor") o.map.color = MapColor::Sensor;
     if (words.color == "density") o.map.color = MapColor::Density;

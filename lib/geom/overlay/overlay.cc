@@ -366,13 +366,14 @@ struct Rounded {
         : curves(layers), lattice(curves.box), sets(layers.size()) {}
 
     void forEachPart(std::span<const Layer> layers, std::span<const Segment2> walls,
-                     const lattice::PartVisitor& visit) {
+                     std::size_t most_crossings, const lattice::PartVisitor& visit) {
         lattice::PointTable table;
         std::vector<lattice::Edge> edges =
             latticeEdges(curves, layers.size(), walls, lattice, table);
         curves.vertices = {};
         edges = merged(std::move(edges), table.points(), sets);
-        lattice::forEachPart(layers, std::move(edges), std::move(table), sets, 0, visit);
+        lattice::forEachPart(layers, std::move(edges), std::move(table), sets, 0, visit,
+                             most_crossings);
     }
 };
 
@@ -385,13 +386,14 @@ Overlay::Overlay(std::span<const Layer> layers, std::span<const Segment2> walls,
     if (unit_ == 0) return;
     middle_ = rounded.lattice.middle();
     Maker maker(*this, rounded.curves, coarse);
-    rounded.forEachPart(layers, walls,
+    rounded.forEachPart(layers, walls, coarse.most_crossings,
                         [&](lattice::Part part) { return maker.visit(std::move(part)); });
     maker.finish();
 }
 
 void forEachArea(std::span<const Layer> layers,
-                 const std::function<void(const LayerLabel&, double)>& add) {
+                 const std::function<void(const LayerLabel&, double)>& add,
+                 std::size_t most_crossings) {
     /// Adds the area that each edge between different labels contributes to the face on its left.
     struct Areas {
         std::vector<lattice::EdgeLabels> labels;
@@ -400,7 +402,7 @@ void forEachArea(std::span<const Layer> layers,
     Rounded rounded(layers);
     const Lattice& lattice = rounded.lattice;
     if (lattice.unit() == 0) return;
-    rounded.forEachPart(layers, {}, [&](lattice::Part part) {
+    rounded.forEachPart(layers, {}, most_crossings, [&](lattice::Part part) {
         auto found = std::make_shared<Areas>(Areas{std::move(part.labels), {}});
         std::size_t count = 0;
         found->areas.reserve(part.edges.size());

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -59,7 +60,9 @@ class Overlay {
         Point2 center = {};
     };
 
-    /// Reduces the stored faces of an overlay by mapping their labels.
+    static constexpr std::size_t kAnyCrossings = std::numeric_limits<std::size_t>::max();
+
+    /// Reduces the stored faces of an overlay by mapping their labels, and bounds its work.
     struct Coarse {
         /// Maps labels: neighbouring faces with equal new labels are merged into one face with that
         /// label. Called by several threads at once. \pre label({}) == {}
@@ -67,6 +70,8 @@ class Overlay {
         /// Receives the areas of all faces as addAreas() reports them, on one thread, in an order
         /// that depends only on the input.
         std::function<void(const LayerLabel&, double)> add_area;
+        /// Of all pairs of an edge and an end or crossing that it passes, the measure of time.
+        std::size_t most_crossings = kAnyCrossings;
     };
 
     /// `walls` separate the regions of regions() without changing any label.
@@ -76,7 +81,7 @@ class Overlay {
         : Overlay(layers, walls, Coarse()) {}
     /// Memory is required for the stored edges and for those of some strips.
     /// \throws FormatError (without a line number) for outlines that cross by the ten million in
-    /// one strip
+    /// one strip, or more than `coarse` allows in all
     Overlay(std::span<const Layer> layers, std::span<const Segment2> walls, const Coarse& coarse);
 
     /// Edges between faces of different labels, in an order that depends only on the input.
@@ -131,7 +136,8 @@ class Overlay {
         return areaLeftOf(middle_, edge.from, edge.to, edge.bulge);
     }
     friend void forEachArea(std::span<const Layer> layers,
-                            const std::function<void(const LayerLabel&, double)>& add);
+                            const std::function<void(const LayerLabel&, double)>& add,
+                            std::size_t most_crossings);
     /// Builds the pieces with these boundaries: for each of edges_ and then of walls_.
     [[nodiscard]] std::vector<Region> trace(const std::vector<Sides>& sides) const;
     [[nodiscard]] std::vector<Curve> withArcs(std::span<const Region> regions) const;
@@ -147,7 +153,8 @@ class Overlay {
 
 /// Computes Overlay(layers).addAreas(add) without storing edges. \throws FormatError as for Coarse
 void forEachArea(std::span<const Layer> layers,
-                 const std::function<void(const LayerLabel&, double)>& add);
+                 const std::function<void(const LayerLabel&, double)>& add,
+                 std::size_t most_crossings = Overlay::kAnyCrossings);
 
 template <typename Add>
 void Overlay::addAreas(Add add) const {

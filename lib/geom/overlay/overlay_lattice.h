@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -127,6 +128,19 @@ struct Columns {
 /// \throws FormatError (without a line number) for more crossings than some gigabytes hold
 void mustBeFew(std::size_t crossings);
 
+/// Adds up the passes of several threads: pairs of an edge and an end or crossing that it passes.
+/// Whether a sum is too large does not depend on their order.
+class PassBudget {
+  public:
+    explicit PassBudget(std::size_t most) : most_(most) {}
+    /// \throws FormatError (without a line number) for more passes in all than allowed
+    void spend(std::size_t passes);
+
+  private:
+    std::size_t most_;
+    std::atomic<std::size_t> spent_ = 0;
+};
+
 /// Points through which each edge is routed, between its ends and in their order.
 struct EdgeWaypoints {
     std::vector<std::size_t> first;  // of the points of each edge, and the end
@@ -143,9 +157,10 @@ struct EdgeWaypoints {
 std::vector<Edge> splitAtVertices(const std::vector<Edge>& edges, const std::vector<Point>& points);
 /// Then, edges pass all ends and crossings in these columns, rounded to the lattice, which are
 /// inserted in the table. Crossings in other columns are ignored.
-/// \throws FormatError (without a line number) for edges that cross by the ten million
+/// \throws FormatError (without a line number) for edges that cross by the ten million, or more
+/// often than the budget allows
 EdgeWaypoints waysThroughPixels(const std::vector<Edge>& edges, PointTable& table,
-                                const Columns& columns);
+                                const Columns& columns, PassBudget& budget);
 /// Cuts each edge into pieces from point to point; pieces from or to kNone are skipped.
 std::vector<Edge> routed(const std::vector<Edge>& edges, const EdgeWaypoints& ways);
 

@@ -23,6 +23,14 @@ void mustBeFew(std::size_t crossings) {
             {"", 0, 0, "outlines cross more than " + std::to_string(kMaxCrossings) + " times"});
 }
 
+void PassBudget::spend(std::size_t passes) {
+    if ((spent_ += passes) > most_)
+        throw FormatError({"", 0, 0,
+                           "outlines cross more than " + std::to_string(most_) +
+                               " times (`--max-work " + std::to_string(2 * most_) +
+                               "` allows more)"});
+}
+
 namespace {
 
 /// An edge passes a point.
@@ -147,12 +155,13 @@ bool crossingOf(const Span& s, const Span& t, Point& pixel) {
 
 /// Finds all edges that meet the pixels of ends and crossings.
 std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& table,
-                                 const Columns& columns) {
+                                 const Columns& columns, PassBudget& budget) {
     std::vector<Pass> passes;
     passes.reserve(4 * edges.size());
     std::vector<Index> pixels;
     std::vector<Span> spans;
     forEachCell(table.points(), edges, columns, [&](const Cell& cell) {
+        const std::size_t passes_before = passes.size();
         pixels.assign(cell.points.begin(), cell.points.end());
         spans.clear();
         for (const Index i : cell.edges) spans.emplace_back(i, edges[i], table.points());
@@ -173,6 +182,7 @@ std::vector<Pass> passesOfPixels(const std::vector<Edge>& edges, PointTable& tab
             }
         }
         mustBeFew(passes.size());
+        budget.spend(passes.size() - passes_before);
     });
     return passes;
 }
@@ -201,13 +211,14 @@ std::vector<Edge> splitAtVertices(const std::vector<Edge>& edges,
 }
 
 EdgeWaypoints waysThroughPixels(const std::vector<Edge>& edges, PointTable& table,
-                                const Columns& columns) {
-    return waysOf(passesOfPixels(edges, table, columns), edges.size());
+                                const Columns& columns, PassBudget& budget) {
+    return waysOf(passesOfPixels(edges, table, columns, budget), edges.size());
 }
 
 std::vector<Edge> snapRounded(std::vector<Edge> edges, PointTable& table, SetStore& sets) {
     edges = merged(splitAtVertices(edges, table.points()), table.points(), sets);
-    const EdgeWaypoints ways = waysThroughPixels(edges, table, {});
+    PassBudget budget(Overlay::kAnyCrossings);
+    const EdgeWaypoints ways = waysThroughPixels(edges, table, {}, budget);
     return merged(routed(edges, ways), table.points(), sets);
 }
 

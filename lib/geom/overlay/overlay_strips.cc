@@ -166,8 +166,8 @@ std::size_t stripAt(const std::vector<Strip>& strips, std::int32_t x) {
 class Sweep {
   public:
     Sweep(std::span<const Layer> layers, const std::vector<Edge>& edges,
-          const std::vector<Point>& points, const SetStore& sets)
-        : layers_(layers), edges_(edges), points_(points), sets_(sets) {}
+          const std::vector<Point>& points, const SetStore& sets, PassBudget& budget)
+        : layers_(layers), edges_(edges), points_(points), sets_(sets), budget_(budget) {}
 
     /// Makes strips with so many ends in each. Returns false, without strips, if they are too
     /// narrow.
@@ -254,7 +254,7 @@ class Sweep {
     }
 
     /// Computes the routes of its edges inside the strip.
-    void find(Strip& strip) const {
+    void find(Strip& strip) {
         strip.table.reserve(2 * strip.points.size());
         for (const Index i : strip.points) strip.table.add(points_[i]);
         strip.parts.reserve(strip.edges.size());
@@ -264,7 +264,7 @@ class Sweep {
             part.to = strip.table.add(points_[part.to]);
             strip.parts.push_back(part);
         }
-        strip.ways = waysThroughPixels(strip.parts, strip.table, strip.columns);
+        strip.ways = waysThroughPixels(strip.parts, strip.table, strip.columns, budget_);
     }
 
     /// Joins the routes in a strip to those in the strips before it.
@@ -339,6 +339,7 @@ class Sweep {
     const std::vector<Edge>& edges_;
     const std::vector<Point>& points_;
     const SetStore& sets_;
+    PassBudget& budget_;
     std::vector<Strip> strips_;
     std::vector<Index> strip_of_;   // of each point
     std::vector<Last> last_of_;     // edges that lie in several strips
@@ -348,7 +349,9 @@ class Sweep {
 }  // namespace
 
 void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTable table,
-                 SetStore& sets, std::size_t at_least, const PartVisitor& visit) {
+                 SetStore& sets, std::size_t at_least, const PartVisitor& visit,
+                 std::size_t most_passes) {
+    PassBudget budget(most_passes);
     // A waiting thread must not start other work.
     if (tbb::this_task_arena::isolate([&] {
             if (layers.size() < kManyLayers || table.points().size() < 2 * kQuick)
@@ -356,7 +359,7 @@ void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTa
             else
                 edges = EndRouter(edges, table.points(), sets).run();
             std::size_t ends = at_least == 0 ? kQuick : at_least;
-            Sweep sweep(layers, edges, table.points(), sets);
+            Sweep sweep(layers, edges, table.points(), sets, budget);
             for (; 2 * ends <= table.points().size(); ends *= 2) {
                 if (!sweep.divide(ends)) continue;
                 sweep.run(visit);
@@ -365,7 +368,7 @@ void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTa
             return false;
         }))
         return;
-    const EdgeWaypoints ways = waysThroughPixels(edges, table, {});
+    const EdgeWaypoints ways = waysThroughPixels(edges, table, {}, budget);
     edges = merged(routed(edges, ways), table.points(), sets);
     std::vector<EdgeLabels> labels = labelsOf(layers, table.points(), edges, sets);
     visit({table.points(), std::move(edges), std::move(labels), true})();

@@ -30,8 +30,10 @@ using PartVisitor = std::function<std::function<void()>(Part)>;
 /// their number depends on the input alone. Data of a strip are freed once it is visited.
 /// \pre edges are merged()
 /// \param at_least ends of edges in each strip; 0: the fastest number
+/// \param most_passes of the strips together; see PassBudget
 /// \throws FormatError as snapRounded, for each strip
 void forEachPart(std::span<const Layer> layers, std::vector<Edge> edges, PointTable table,
-                 SetStore& sets, std::size_t at_least, const PartVisitor& visit);
+                 SetStore& sets, std::size_t at_least, const PartVisitor& visit,
+                 std::size_t most_passes = Overlay::kAnyCrossings);
 
 }  // namespace ispace::lattice
