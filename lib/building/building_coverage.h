@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "building/building_run_coverage.h"
 #include "building/building_scene.h"
+#include "coverage/camera_rules.h"
 #include "coverage/coverage.h"
 #include "report/camera_rules_report.h"
 #include "report/coverage_report.h"
@@ -33,6 +35,17 @@ struct BuildingCoverage {
 /// Measures the floor of all storeys, without openings in it; those with equal rooms and views
 /// once. Rangers and cameras see through shafts and over stairs, see viewsBetweenStoreys().
 BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options);
+
+/// Measures rules of facing in the storeys that have their doors or zones; a rule `GLOB/ZONE` or
+/// `GLOB/door:...` only in storeys with matching ids. Cameras of other storeys count, as for the
+/// floor. Returns the results by storey.
+/// \throws UsageError for a rule that no storey has, with the doors or zones of all storeys
+std::vector<CameraRules> measureBuildingFacing(const BuildingScene& building,
+                                               const BuildingCoverage& coverage,
+                                               std::span<const FacingRule> rules);
+/// Returns the rules of all storeys, with the storey before each.
+std::vector<JudgedRule> judgedInBuilding(const BuildingScene& building,
+                                         std::span<const CameraRules> rules);
 
 /// Returns the rows of a table, its heads first: storeys, then the building.
 std::vector<TextRow> storeyRows(const BuildingScene& building, const BuildingCoverage& coverage);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "building/building_facing.h"
-
+// Rules of facing of building_coverage.h.
 #include <cstddef>
 #include <iterator>
 #include <string>
@@ -8,6 +7,8 @@
 
 #include "base/error.h"
 #include "base/glob.h"
+#include "building/building_coverage.h"
+#include "coverage/camera_rules.h"
 #include "env/zone.h"
 
 namespace ispace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "building/building_facing.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "building/building_coverage.h"
 
 namespace ispace {
 namespace {

@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "building/building_facing.h"
 #include "report/coverage_report.h"
 #include "report/map/map.h"
 #include "report/page/cables.h"

@@ -12,7 +12,6 @@
 #include "base/message.h"
 #include "base/run_files.h"
 #include "building/building_coverage.h"
-#include "building/building_facing.h"
 #include "building/building_page.h"
 #include "building/building_suggestions.h"
 #include "building/coupling.h"
@@ -23,7 +22,6 @@
 #include "coverage/coverage_run.h"
 #include "report/coverage_formats.h"
 #include "report/map/map.h"
-#include "report/page/cables.h"
 #include "scene/run/run_reader.h"
 
 namespace ispace {
