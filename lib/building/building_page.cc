@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "building/building_page.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <iterator>
 #include <optional>
@@ -35,10 +36,7 @@ PageSection buildingSummary(const BuildingPageInput& input) {
                  (sensors == 1 ? " sensor." : " sensors.")});
     section.blocks.push_back(PageText{seenText(coverage.coverage)});
     if (input.run != nullptr && !input.run->sum.all.time_shares.empty())
-        section.blocks.push_back(
-            PageText{"In the run of " + formatFixed(input.run->sum.end - input.run->sum.begin, 2) +
-                     " s robots and people on storeys were seen for " +
-                     percentText(1 - input.run->sum.all.time_shares.front()) + " of their time."});
+        section.blocks.push_back(sightInRun(input.run->sum, "robots and people on storeys"));
     if (input.run != nullptr)
         for (PageText& text : incidentsOf(input.run->sum))
             section.blocks.push_back(std::move(text));
@@ -70,11 +68,17 @@ PageSection storeySection(const BuildingPageInput& input, std::size_t storey) {
     MapOptions options;
     options.redundancy_scale = redundancyScale(input.coverage);
     options.run = run;
+    for (const StoreyPassage& passage : input.building.document.passages)
+        if (std::find(passage.storeys.begin(), passage.storeys.end(), storey) !=
+            passage.storeys.end())
+            options.passages.push_back(
+                {passage.id, passage.record.keyword(), footprintOf(passage, own)});
     PageSection section{"storey" + std::to_string(storey + 1), "Storey " + own.id, {}};
     section.blocks.push_back(PageFigure{
         run == nullptr ? "Floor by the number of sensors that see it; coordinates in metres."
                        : "Ways of robots and people by the number of sensors that saw them.",
         coverageMap(*input.coverage.floors[storey], coverage, options)});
+    for (PageBlock& table : zoneTables(coverage.report)) section.blocks.push_back(std::move(table));
     section.blocks.push_back(PageCode{coverageText(coverage.report)});
     if (run != nullptr) section.blocks.push_back(PageCode{runText(*run)});
     return section;
@@ -112,6 +116,22 @@ void addSensorsOf(const BuildingPageInput& input, const CabledRoom& room, std::s
     page.sections.push_back(std::move(section));
 }
 
+PageSection recordsOf(const BuildingPageInput& input) {
+    PageSection section{"records", "Appendix: records and command", {}};
+    section.blocks.push_back(
+        PageText{"Digest of the building: " + input.building.document.digest(), Tone::Small});
+    for (std::size_t i = 0; i < input.coverage.floors.size(); ++i) {
+        if (input.coverage.floors[i]->placed.empty()) continue;
+        section.blocks.push_back(PageText{
+            "The layout of " + input.building.document.storeys[i].id + ", as a .3dm file holds it:",
+            Tone::Small});
+        section.blocks.push_back(PageCode{layoutText(*input.coverage.floors[i])});
+    }
+    section.blocks.push_back(PageText{"The command of this report:", Tone::Small});
+    section.blocks.push_back(PageCode{input.command});
+    return section;
+}
+
 }  // namespace
 
 ReportPage buildingPage(const BuildingPageInput& input) {
@@ -138,17 +158,13 @@ ReportPage buildingPage(const BuildingPageInput& input) {
     const std::vector<MaterialItem> material = materialOf(rooms, input.prices);
     if (!material.empty())
         page.sections.push_back({"material", "Material", {materialTable(material)}});
+    page.sections.push_back(methodsSection(input.coverage.storeys.front().report));
     for (PageSection& sheet : sheets) page.sections.push_back(std::move(sheet));
     if (input.advice != nullptr) page.sections.push_back(adviceSection(*input.advice));
     if (input.advice != nullptr && !input.advice->suggestions.empty())
         page.sections.push_back(adviceCommands(*input.advice));
-    PageSection records{"records", "Appendix: records and command", {}};
-    records.blocks.push_back(
-        PageText{"Digest of the building: " + input.building.document.digest(), Tone::Small});
-    records.blocks.push_back(PageText{"The command of this report:", Tone::Small});
-    records.blocks.push_back(PageCode{input.command});
-    page.sections.push_back(std::move(records));
-    return page;
+    page.sections.push_back(recordsOf(input));
+    return typeset(std::move(page));
 }
 
 }  // namespace ispace

@@ -151,7 +151,7 @@ expect_same found.json merged.json "the report of a merge"
 # envc writes the page of a room, alone or beside its product.
 envc room.env --report room.html
 [ "$(grep -c '<section ' room.html)" -eq 5 ] || fail "sections of a room: $(grep '<section ' room.html)"
-grep -q '48.00 m2' room.html || fail "the area of the room is missing"
+grep -q '48.00 m²' room.html || fail "the area of the room is missing"
 envc room.env --report room.pdf -o room.glb
 [ -s room.glb ] || fail "no product beside the report"
 envc room.env --report room.json

@@ -157,6 +157,7 @@ void drawPlanSeen(Picture& picture, const MapPicture& map) {
     plan.drawWalls();
     plan.drawOpenings();
     plan.drawZones();
+    drawPassages(picture, map);
 }
 
 }  // namespace

@@ -29,6 +29,14 @@ enum class FanStyle {
                ///< sensors
 };
 
+/// Stairs, a lift or a shaft to other storeys, on the floor of this one.
+struct MapPassage {
+    std::string id;
+    std::string kind;  ///< its keyword
+    /// Of stairs: from the foot's right corner to the head's, its left one, and that of the foot.
+    Polygon outline;
+};
+
 struct MapOptions {
     PictureFormat format = PictureFormat::Png;
     int width = 1200;        ///< of PNG and SVG, in pixels
@@ -45,6 +53,7 @@ struct MapOptions {
     const RunCoverage* run = nullptr;
     /// Ways of intruders to draw; null: none. It outlives the options.
     const ObjectiveFigures* objectives = nullptr;
+    std::vector<MapPassage> passages = {};
 };
 
 /// Returns the number of sensors to which the colours of a map by itself reach.

@@ -47,6 +47,12 @@ std::vector<Polygon> drawable(const MapPicture& map, std::vector<Polygon> curves
 /// Likewise for exact curves: chords replace arcs.
 std::vector<Polygon> drawable(const MapPicture& map, const std::vector<Curve>& curves);
 
+// Passages (map_passages.cc).
+
+/// Draws stairs with their steps and an arrow upwards, lifts with a cross, and shafts with a dashed
+/// rim, each with its id.
+void drawPassages(Picture& picture, const MapPicture& map);
+
 // Floor (map_floor.cc).
 
 /// Classes of redundancy with a colour each: class c (1..count) holds the floor seen by (c - 1) *

@@ -108,17 +108,7 @@ PageSection summaryOf(const CoveragePageInput& input) {
                                       " m, and " + sensorsText(input.scene) + "."});
     if (!input.scene.sensors.empty()) section.blocks.push_back(sightOf(input));
     if (input.parts.run != nullptr && !input.parts.run->all.time_shares.empty())
-        section.blocks.push_back(PageText{
-            "In the run of " + formatFixed(input.parts.run->end - input.parts.run->begin, 2) +
-            " s robots and people were seen for " +
-            percentText(1 - input.parts.run->all.time_shares.front()) + " of their time; " +
-            (input.parts.run->all.longest_gap
-                 ? "the longest time without sight was " +
-                       formatFixed(input.parts.run->all.longest_gap->end -
-                                       input.parts.run->all.longest_gap->begin,
-                                   2) +
-                       " s."
-                 : "sight was never lost.")});
+        section.blocks.push_back(sightInRun(*input.parts.run, "robots and people"));
     if (input.parts.run != nullptr)
         for (PageText& text : incidentsOf(*input.parts.run))
             section.blocks.push_back(std::move(text));
@@ -228,10 +218,7 @@ void addRequirements(const CoveragePageInput& input, ReportPage& page) {
         {}};
     if (!input.requirements.empty())
         section.blocks.push_back(requirementsTable(input.requirements));
-    if (!report.zones.empty()) section.blocks.push_back(zonesOfReport(report));
-    if (has_cameras)
-        for (const DensityStandard standard : kStandards)
-            section.blocks.push_back(densitiesOfReport(report, standard));
+    for (PageBlock& table : zoneTables(report)) section.blocks.push_back(std::move(table));
     page.sections.push_back(std::move(section));
 }
 
@@ -389,8 +376,9 @@ void addRun(const CoveragePageInput& input, ReportPage& page) {
           PageCode{runText(*input.parts.run)}}});
 }
 
-PageSection methodsOf(const CoveragePageInput& input) {
-    const CoverageReport& report = input.coverage.report;
+}  // namespace
+
+PageSection methodsSection(const CoverageReport& report) {
     PageSection section{"methods", "Methods and limits", {}};
     const auto add = [&](std::string text) { section.blocks.push_back(PageText{std::move(text)}); };
     add("A level laser sees the floor in its slice, at its height; all other sensors see the plane "
@@ -417,7 +405,6 @@ PageSection methodsOf(const CoveragePageInput& input) {
     return section;
 }
 
-/// Returns the records of placed sensors, robots and people as text.
 std::string layoutText(const Scene& scene) {
     Document layout;
     layout.kind = DocumentKind::Layout;
@@ -425,6 +412,26 @@ std::string layoutText(const Scene& scene) {
         layout.records.push_back(scene.records[placed.record]);
     return writeRecordText(layout);
 }
+
+PageText sightInRun(const RunCoverage& run, const std::string& movers) {
+    return {"In the run of " + formatFixed(run.end - run.begin, 2) + " s " + movers +
+            " were seen for " + percentText(1 - run.all.time_shares.front()) + " of their time; " +
+            (run.all.longest_gap
+                 ? "the longest time without sight was " +
+                       formatFixed(run.all.longest_gap->end - run.all.longest_gap->begin, 2) + " s."
+                 : "sight was never lost.")};
+}
+
+std::vector<PageBlock> zoneTables(const CoverageReport& report) {
+    std::vector<PageBlock> tables;
+    if (!report.zones.empty()) tables.emplace_back(zonesOfReport(report));
+    if (!report.densities.indoor.empty())
+        for (const DensityStandard standard : kStandards)
+            tables.emplace_back(densitiesOfReport(report, standard));
+    return tables;
+}
+
+namespace {
 
 PageSection recordsOf(const CoveragePageInput& input) {
     PageSection section{"records", "Appendix: records and command", {}};
@@ -492,11 +499,11 @@ ReportPage coveragePage(const CoveragePageInput& input) {
     if (input.parts.advice != nullptr) page.sections.push_back(adviceSection(*input.parts.advice));
     addInstallation(input, page);
     if (input.parts.run != nullptr) addRun(input, page);
-    page.sections.push_back(methodsOf(input));
+    page.sections.push_back(methodsSection(input.coverage.report));
     if (input.parts.advice != nullptr && !input.parts.advice->suggestions.empty())
         page.sections.push_back(adviceCommands(*input.parts.advice));
     page.sections.push_back(recordsOf(input));
-    return page;
+    return typeset(std::move(page));
 }
 
 }  // namespace ispace

@@ -42,6 +42,16 @@ struct CoveragePageInput {
 /// Tells of collisions and of targets that were given up; empty without any.
 std::vector<PageText> incidentsOf(const RunCoverage& run);
 
+/// Tells for which share of their time movers were seen, and the longest time without sight.
+/// \param movers e.g. "robots and people"
+PageText sightInRun(const RunCoverage& run, const std::string& movers);
+/// Builds the tables of zones and of the densities of cameras; empty without either.
+std::vector<PageBlock> zoneTables(const CoverageReport& report);
+/// Builds the section on methods and their limits.
+PageSection methodsSection(const CoverageReport& report);
+/// Returns the records of placed sensors, robots and people as text.
+std::string layoutText(const Scene& scene);
+
 /// Builds the table of requirements, with margins in percentage points.
 PageTable requirementsTable(std::span<const JudgedRequirement> requirements);
 

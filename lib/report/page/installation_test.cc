@@ -349,13 +349,13 @@ TEST(CoveragePage, LeavesOutTheSheetWithoutSensors) {
     EXPECT_EQ(outlineOf("ispace size=4,4\nrobot id=r at=1,1\n"),
               (std::vector<std::string>{
                   "summary", "map", "methods", "records",
-                  "The room has 16.00 m2 of indoor floor, 16.00 m2 of it free at 0.15 m, and no "
+                  "The room has 16.00 m² of indoor floor, 16.00 m² of it free at 0.15 m, and no "
                   "sensors."}));
     // One that rides on a robot is in no plan, and alone sees no floor twice.
     EXPECT_EQ(outlineOf("ispace size=4,4\nrobot id=r at=1,1\nlaser on=r range=9 fov=360\n"),
               (std::vector<std::string>{
                   "summary", "map", "sensors", "material", "methods", "records",
-                  "The room has 16.00 m2 of indoor floor, 16.00 m2 of it free at 0.15 m, and 1 "
+                  "The room has 16.00 m² of indoor floor, 16.00 m² of it free at 0.15 m, and 1 "
                   "sensor: 1 × laser.",
                   "The sensors see 100.00% of the indoor floor.", "No requirement was given."}));
 }

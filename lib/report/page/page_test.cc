@@ -100,6 +100,25 @@ std::size_t pagesOf(const std::string& pdf) {
     return count;
 }
 
+TEST(Page, UnitsAreTypesetInTextsAndTables) {
+    ReportPage page{"m2", "12.00 m2 · 3 rooms", {}};
+    page.sections.push_back({"s",
+                             "Section",
+                             {PageText{"It has 1.00 m2, 2 m2 of it free; cam2 and m2x stay."},
+                              PageTable{"in m2", "lr", {"zone", "indoor m2"}, {{"m2b", "(3 m2)"}}},
+                              PageCode{"coverage --require 3 m2\n"}}});
+    const ReportPage typed = typeset(page);
+    EXPECT_EQ(typed.subtitle, "12.00 m² · 3 rooms");
+    const std::vector<PageBlock>& blocks = typed.sections[0].blocks;
+    EXPECT_EQ(std::get<PageText>(blocks[0]).text,
+              "It has 1.00 m², 2 m² of it free; cam2 and m2x stay.");
+    const PageTable& table = std::get<PageTable>(blocks[1]);
+    EXPECT_EQ(table.caption, "in m²");
+    EXPECT_EQ(table.heads[1], "indoor m²");
+    EXPECT_EQ(table.rows[0], (TextRow{"m2b", "(3 m²)"}));
+    EXPECT_EQ(std::get<PageCode>(blocks[2]).text, "coverage --require 3 m2\n");
+}
+
 TEST(Page, PdfKeepsTheColumnsOfText) {
     ReportPage page{"text", "", {}};
     page.sections.push_back({"s",

@@ -108,7 +108,7 @@ ReportPage roomPage(const RoomPageInput& input) {
         page.sections.push_back(
             {"rooms", "Rooms that were found", {PageCode{roomsText(*input.found)}}});
     page.sections.push_back(recordsOf(input));
-    return page;
+    return typeset(std::move(page));
 }
 
 }  // namespace ispace

@@ -212,7 +212,7 @@ WebAdmission WebPage::open(const WebRequest& request) {
         return {.status = 404, .why = "the WebSocket is /ws"};
     if (!origin_->mayConnect(request.origin))
         return {.status = 403, .why = "only the page of this server may connect"};
-    // Requests are about the run, whose clock is that of its first room, whichever room is drawn.
+    // Requests are about the run; its clock is that of its first room, whichever room is drawn.
     WebFrames& frames = rooms_[static_cast<std::size_t>(*room)].frames;
     return {.dialogue =
                 std::make_unique<PageDialogue>(*rooms_.front().state, frames, request.peer)};
