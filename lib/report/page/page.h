@@ -108,7 +108,7 @@ struct ReportPage {
 /// Returns the lines of a cover, such as {"Client", "ACME"}.
 std::vector<std::pair<std::string, std::string>> coverLines(const PageCover& cover);
 
-/// Writes units in texts and tables as people do, m² for m2. Code to copy stays as it is.
+/// Writes units in texts and tables as people do, m² for m2. Code to copy keeps its text.
 ReportPage typeset(ReportPage page);
 
 /// Writes the page as one HTML file without references to others: styles, script and pictures are

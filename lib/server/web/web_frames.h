@@ -22,7 +22,7 @@ struct WebSceneFacts {
     std::vector<RunMark> marks = {};            ///< of a replay
     /// Beginnings of records that the page offers to add; empty: it changes no rooms.
     std::vector<std::string> additions = {};
-    /// Writes the mesh of a room as GLB; null: there is none.
+    /// Writes the mesh of a room as GLB; may be null.
     std::function<std::string(const Scene& scene)> mesh = {};
 };
 
