@@ -25,7 +25,7 @@ refused() {
 }
 
 refused dxf_missing 60000 plan.dxf
-quick dxf_missing_nested 60000
+refused dxf_missing_nested 60000 plan.dxf
 refused dxf_empty_block 60000 plan.dxf
 refused dxf_empty_polylines 60000 plan.dxf
 refused dxf_circles_of_nothing 60000 plan.dxf

@@ -831,7 +831,7 @@ def lists_of(family):
 
 # Readers that refuse a file of 60 kB: a budget ends its work, or it is no room. All others read theirs.
 REFUSED = frozenset("""
-    dxf_missing dxf_empty_block dxf_empty_polylines dxf_circles_of_nothing dxf_lines dxf_crossing_blocks
+    dxf_missing dxf_missing_nested dxf_empty_block dxf_empty_polylines dxf_circles_of_nothing dxf_lines dxf_crossing_blocks
     svg_use_text svg_use_hidden svg_use_unknown svg_use_empty sdf_same sdf_apart sdf_nested sdf_frames
     env_bad_meshes env_collinear yaml_parts yaml_empty_parts yaml_repeats yaml_long_ids yaml_aliases yaml_includes
     gltf_instances gltf_tree ifc_mappings ifc_mapped_walls ifc_shared_walls ifc_clips ifc_curves ifc_profiles
