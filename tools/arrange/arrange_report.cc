@@ -197,7 +197,7 @@ std::vector<JudgedRequirement> targetOf(const ArrangeWork& work, const Arrangeme
 }
 
 /// Returns the bytes of a page by the suffix of its file.
-std::string finished(const ArrangeToolOptions& options, ReportPage page) {
+std::string finished(const ArrangeToolOptions& options, const ReportPage& page) {
     return suffixOf(options.report_file) == "pdf" ? pdfOf(page) : htmlOf(page);
 }
 
@@ -217,7 +217,7 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
     page.cover = coverOf(options.page);
     if (!page.cover.title.empty()) page.title = page.cover.title;
     page.paper = paperOf(options.page);
-    return finished(options, std::move(page));
+    return finished(options, page);
 }
 
 }  // namespace
