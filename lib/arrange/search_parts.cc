@@ -103,8 +103,7 @@ struct PartResults {
     [[nodiscard]] GainCurve curve(double standing) const {
         GainCurve curve{{standing}, {standing}};
         for (const SearchResult& result : by_number) {
-            curve.values.push_back(
-                std::max(curve.values.back(), static_cast<double>(result.best.value)));
+            curve.values.push_back(static_cast<double>(result.best.value));
             curve.bounds.push_back(static_cast<double>(result.bound));
         }
         // A bound for n sensors holds for fewer.
@@ -113,6 +112,18 @@ struct PartResults {
         return curve;
     }
 };
+
+/// Adds the first candidate that is not chosen yet. \pre there is one
+Solution withOneMore(Solution solution, std::size_t candidates) {
+    for (std::size_t i = 0; i < candidates; ++i) {
+        if (std::find(solution.chosen.begin(), solution.chosen.end(), Choice{0, i}) !=
+            solution.chosen.end())
+            continue;
+        solution.chosen.push_back({0, i});
+        break;
+    }
+    return solution;
+}
 
 PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> rooms, int most,
                       Progress& progress) {
@@ -123,7 +134,11 @@ PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> r
     for (std::size_t n = 1; n <= last; ++n) {
         part.problem().kinds.front().most = static_cast<int>(n);
         part.problem().order.assign(n, 0);
-        results.by_number.push_back(search(part.problem(), model.searchOptions(), progress));
+        SearchResult found = search(part.problem(), model.searchOptions(), progress);
+        // One more sensor never covers less.
+        if (n > 1 && found.best.value < results.by_number.back().best.value)
+            found.best = withOneMore(results.by_number.back().best, results.candidates.size());
+        results.by_number.push_back(std::move(found));
     }
     return results;
 }
@@ -133,8 +148,7 @@ PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> r
 bool isSearchedByParts(const CoverageModel& model) {
     const ArrangeOptions& options = model.options();
     return !model.site().isOneRoom() && model.kinds().size() == 1 && !options.budget &&
-           !options.target && !options.robust.isAsked() &&
-           model.parts().size() > 1;
+           !options.target && !options.robust.isAsked() && model.parts().size() > 1;
 }
 
 std::vector<SearchResult> searchParts(const CoverageModel& model, Progress& progress) {
