@@ -65,7 +65,7 @@ void writeModel(const CoverageModel& model, std::ostream& mps) {
     mustFitInModel(model.problem());
     std::vector<std::string> names;
     names.reserve(model.kinds().size());
-    for (const SensorClass& kind : model.kinds()) names.push_back(kind.id);
+    for (const SensorClass& kind : model.kinds()) names.push_back(model.nameOf(kind));
     const auto pose_text = [&model](const Choice& choice) {
         const Pose3 pose = model.poseOf(choice);
         std::string text = model.site().rooms[model.roomOf(choice)].id;
@@ -364,6 +364,9 @@ Arrangement arrangeLimited(const ArrangeSite& site, const std::vector<SensorGrou
     if (options.over_poses) boundOfPoses(model, result, progress);
     if (share.own) return {};
     measure(result, model);
+    // Candidates whose views of other rooms were not computed in time see more than they know of.
+    if (!model.isComplete() && !site.isOneRoom() && result.value)
+        result.candidate_value = *result.value;
     if (options.wants_curve) {
         result.curve = curveTo(found, std::move(by_number), model, progress);
         result.is_complete = result.is_complete && !progress.stopped();
@@ -396,6 +399,46 @@ Arrangement arrangeFromResults(const ArrangeSite& site, const std::vector<Sensor
     }
 }
 
+/// A camera of another room, and what it sees of a private zone, m2 by cells.
+struct CameraBeyond {
+    std::size_t room = 0;
+    std::string id;
+    double seen = 0;
+};
+
+/// Finds the cameras of other rooms that see a zone.
+std::vector<CameraBeyond> camerasBeyond(const ArrangeSite& site,
+                                        const std::vector<SensorGroup>& groups,
+                                        const Arrangement& found, std::size_t to,
+                                        const std::string& zone, double density) {
+    std::vector<CameraBeyond> cameras;
+    if (site.sight == nullptr || !site.sight->joinsRooms()) return cameras;
+    const Environment& room = site.rooms[to].scene->environment;
+    const Target target = makeTarget(room, RoomCells(), kScanHeight);
+    const std::vector<double> inside =
+        weightsOfCells(target, {.targets = {readZone(zone, room)}, .weights = {}});
+    const double cell = target.grid.limits.width() * target.grid.limits.depth() /
+                        static_cast<double>(target.grid.size());
+    for (std::size_t from = 0; from < site.rooms.size(); ++from) {
+        if (from == to) continue;
+        for (Sensor sensor :
+             withPlaced(*site.rooms[from].scene, groups, found.sensors, from).sensors) {
+            auto* const camera = std::get_if<Camera>(&sensor.model);
+            if (camera == nullptr) continue;
+            *camera = withDensity(*camera, density);
+            if (!site.sight->maySee(from, sensor, to)) continue;
+            CellParts parts;
+            site.sight->look(from, {&sensor, 1}, to, target.grid, parts);
+            CameraBeyond beyond{from, sensor.id};
+            for (const CellRun& run : parts.runs)
+                for (std::size_t i = run.first; i < run.end; ++i)
+                    if (inside[i] > 0) beyond.seen += cell;
+            if (beyond.seen > 0) cameras.push_back(std::move(beyond));
+        }
+    }
+    return cameras;
+}
+
 /// Measures the privacy of a layout, and forbids the poses of placed cameras that see zones.
 /// \param whole the rooms with sensors that see all that they can \param stricter receives poses
 std::vector<PrivacyResult> forbidWhatSees(const ArrangeSite& whole,
@@ -405,15 +448,23 @@ std::vector<PrivacyResult> forbidWhatSees(const ArrangeSite& whole,
     std::vector<PrivacyResult> all;
     for (std::size_t i = 0; i < whole.rooms.size(); ++i) {
         const SiteRoom& room = whole.rooms[i];
-        if (!room.scene || room.goals.privacy.empty()) continue;
+        if (room.goals.privacy.empty()) continue;
         std::vector<PrivacyResult> results = measurePrivacy(
             withPlaced(*room.scene, groups, found.sensors, i), plane, room.goals.privacy);
         std::set<std::string> seeing;
         for (PrivacyResult& result : results) {
             if (!isMet(result)) seeing.insert(result.cameras.begin(), result.cameras.end());
+            const auto beyond = camerasBeyond(whole, groups, found, i, result.zone, result.density);
             if (!room.id.empty()) {
                 result.zone.insert(0, room.id + '/');
                 for (std::string& camera : result.cameras) camera.insert(0, room.id + '/');
+            }
+            for (const CameraBeyond& camera : beyond) {
+                if (result.seen) result.seen = std::min(*result.seen + camera.seen, result.area);
+                result.cameras.push_back(whole.rooms[camera.room].id + '/' + camera.id);
+                for (const Placement& placement : found.sensors)
+                    if (placement.room == camera.room && placement.sensor == camera.id)
+                        stricter.rooms[camera.room].goals.forbidden.push_back(placement.pose);
             }
             all.push_back(std::move(result));
         }
@@ -435,7 +486,6 @@ ArrangeSite limitedSite(const ArrangeSite& site, const ArrangeOptions& options) 
     ArrangeSite limited = site;
     std::map<const Scene*, std::shared_ptr<const Scene>> known;  // equal rooms stay equal
     for (SiteRoom& room : limited.rooms) {
-        if (!room.scene) continue;
         std::shared_ptr<const Scene>& scene = known[room.scene.get()];
         if (scene == nullptr) {
             Scene own = *room.scene;

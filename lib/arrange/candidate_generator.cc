@@ -213,7 +213,8 @@ struct CandidatePool::Data {
                                                  const std::vector<Site>& sites) const {
         const SensorModel& whole = kind.whole ? *kind.whole : kind.model;
         const auto* camera = std::get_if<Camera>(&whole);
-        if (camera == nullptr || options.privacy.empty()) return sites;
+        if (camera == nullptr || (options.privacy.empty() && options.mount.forbidden.empty()))
+            return sites;
         std::vector<Site> allowed = sites;
         for (Site& site : allowed)
             for (const Pose3& pose : options.mount.forbidden)

@@ -55,12 +55,14 @@ CoverageModel::CoverageModel(const ArrangeSite& site, const std::vector<SensorGr
     if (const std::string option = needsOneRoom(options); !option.empty() && !site.isOneRoom())
         throw UsageError(option + " needs one room");
     if (options.is_connected && !site.isOneRoom() &&
-        (kinds_.size() > 1 || options.target || options.budget))
+        (kinds_.size() > 1 || options.target || options.budget || options.refine ||
+         options.alternatives > 0))
         throw UsageError(
-            "--connected with several kinds of sensors, --target or --budget needs one room");
+            "--connected with several kinds of sensors, --target, --budget, --refine or "
+            "--alternatives needs one room");
     if (options.refine)
         for (const SiteRoom& room : site.rooms)
-            if (room.scene) mustBeRefinable(*room.scene, devicesOf(kinds_), room.goals.weights);
+            if (room.has_floor) mustBeRefinable(*room.scene, devicesOf(kinds_), room.goals.weights);
     setUnits();
     addRooms();
     if (options.robust.isAsked()) stackCases();
@@ -93,8 +95,7 @@ void CoverageModel::setUnits() {
     const bool listens =
         std::any_of(kinds_.begin(), kinds_.end(), is_partial) ||
         std::any_of(site_.rooms.begin(), site_.rooms.end(), [&](const SiteRoom& room) {
-            return room.scene &&
-                   std::any_of(room.scene->sensors.begin(), room.scene->sensors.end(), is_partial);
+            return std::any_of(room.scene->sensors.begin(), room.scene->sensors.end(), is_partial);
         });
     unit_ = listens ? static_cast<int>(kMinReceivers) : 1;
     problem_.required = unit_ * options_.redundancy;
@@ -109,7 +110,7 @@ void CoverageModel::addRooms() {
         Room& added = rooms_.emplace_back();
         added.firsts = {weights.size()};
         added.seen.resize(site_.rooms.size());
-        if (!room.scene) continue;
+        if (!room.has_floor) continue;
         std::shared_ptr<RoomModel> own;
         std::shared_ptr<RoomModel>& model = room.goals.isPlain() ? known[room.scene.get()] : own;
         if (model == nullptr) model = std::make_shared<RoomModel>(room, options_, kinds_, unit_);
@@ -141,7 +142,11 @@ void CoverageModel::setAreas(std::vector<double> areas) {
     const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
     problem_.weights.assign(areas.size(), 0);
     if (!(all > 0)) return;
-    const double scale = (1 - 1e-9) * std::numeric_limits<std::uint32_t>::max() / all;
+    // Copies of cells for failures need room for their weights.
+    const double most = options_.robust.of == RobustChoice::Of::Failures
+                            ? 1 << 25
+                            : std::numeric_limits<std::uint32_t>::max();
+    const double scale = (1 - 1e-9) * most / all;
     for (std::size_t i = 0; i < areas.size(); ++i)
         problem_.weights[i] = static_cast<std::uint32_t>(scale * areas[i]);
     rounding_ = 1 - static_cast<double>(problem_.totalWeight()) / (scale * all);
@@ -151,8 +156,7 @@ void CoverageModel::setAreas(std::vector<double> areas) {
 
 void CoverageModel::countStandingBeyond() {
     for (std::size_t from = 0; from < rooms_.size(); ++from) {
-        if (rooms_[from].model == nullptr) continue;
-        for (const Sensor& sensor : rooms_[from].model->scene().sensors) {
+        for (const Sensor& sensor : site_.rooms[from].scene->sensors) {
             if (!kindOf(sensor.model).perceives || isPartial(sensor.model)) continue;
             CellSet cells(problem_.cells());
             addBeyond(from, sensor, cells);
@@ -170,7 +174,7 @@ void CoverageModel::countStandingBeyond() {
 std::string CoverageModel::nothingText() const {
     const bool is_weight =
         std::any_of(site_.rooms.begin(), site_.rooms.end(), [this](const SiteRoom& room) {
-            if (!room.scene || !room.goals.counts) return false;
+            if (!room.has_floor || !room.goals.counts) return false;
             const RoomModel& model =
                 *rooms_[static_cast<std::size_t>(&room - site_.rooms.data())].model;
             FloorWeights weights = room.goals.weights;
@@ -207,6 +211,29 @@ void CoverageModel::addBeyond(std::size_t room, const Sensor& sensor, CellSet& c
             for (const std::size_t first : rooms_[to].firsts)
                 for (std::size_t cell = run.first; cell < run.end; ++cell) cells.set(first + cell);
     }
+}
+
+std::vector<bool> CoverageModel::seesPrivate(std::size_t room, const SensorClass& kind,
+                                             const PosedCandidates& own, std::size_t site) const {
+    std::vector<bool> is_seeing(own.firstOf(site + 1) - own.firstOf(site));
+    const SensorModel& whole = kind.whole ? *kind.whole : kind.model;
+    const auto* camera = std::get_if<Camera>(&whole);
+    if (camera == nullptr) return is_seeing;
+    for (std::size_t to = 0; to < rooms_.size(); ++to)
+        for (const PrivacyRule& rule : site_.rooms[to].goals.privacy) {
+            std::vector<Sensor> turned;
+            for (std::size_t i = own.firstOf(site); i < own.firstOf(site + 1); ++i)
+                turned.push_back({"", withDensity(*camera, rule.density), own.pose(i)});
+            if (!sees(room, turned.front(), to)) continue;
+            CellParts seen;
+            site_.sight->look(room, turned, to, rooms_[to].model->target().grid, seen);
+            const CellSet zone = rooms_[to].model->privateCells(rule);
+            for (std::size_t k = 0; k < is_seeing.size(); ++k)
+                for (std::uint32_t r = seen.first[k]; r < seen.first[k + 1]; ++r)
+                    for (std::size_t cell = seen.runs[r].first; cell < seen.runs[r].end; ++cell)
+                        if (zone.test(cell)) is_seeing[k] = true;
+        }
+    return is_seeing;
 }
 
 /// Joins the candidates of one kind in several rooms, with the cells that they see in others.
@@ -281,7 +308,12 @@ class CoverageModel::Joiner {
         parts_.first.assign(1, 0);
         ranges_.clear();
         headings_.clear();
-        for (std::size_t k = 0; k < count; ++k) headings_.push_back(own.pose(begin + k).heading);
+        std::vector<bool> is_left_out(count);
+        if (!beyond.empty() && !model_.options_.privacy.empty())
+            is_left_out = model_.seesPrivate(room, kind_, own, site);
+        for (std::size_t k = 0; k < count; ++k)
+            if (!is_left_out[k]) headings_.push_back(own.pose(begin + k).heading);
+        if (headings_.empty()) return;
         if (beyond.empty()) {
             for (std::size_t k = 0; k <= own.directedParts(site); ++k) {
                 addShifted(own.runsOf(site, k), room);
@@ -290,13 +322,14 @@ class CoverageModel::Joiner {
             for (std::size_t k = 0; k < count; ++k) ranges_.push_back(own.rangeOf(begin + k));
         } else {
             for (std::size_t k = 0; k < count; ++k) {
+                if (is_left_out[k]) continue;
                 addShifted(partOf(own.cellsOf(begin + k)).runs, room);
                 for (const auto& [to, seen] : beyond)
                     addShifted(std::span(seen.runs).subspan(seen.first[k],
                                                             seen.first[k + 1] - seen.first[k]),
                                to);
+                ranges_.push_back({static_cast<std::uint32_t>(parts_.size()), 1});
                 endPart();
-                ranges_.push_back({static_cast<std::uint32_t>(k), 1});
             }
             endPart();
         }
@@ -318,8 +351,8 @@ std::unique_ptr<PosedCandidates> CoverageModel::candidatesOf(const SensorClass& 
                                                              Progress& progress) {
     const auto no_place = [&](bool is_complete, bool is_private) {
         return is_complete && is_private
-                   ? "no place for " + kind.id + ": all see zones of --privacy"
-                   : "stopped before there was any candidate for " + kind.id;
+                   ? "no place for " + nameOf(kind) + ": all see zones of --privacy"
+                   : "stopped before there was any candidate for " + nameOf(kind);
     };
     if (site_.isOneRoom()) {
         CandidatePool::Made made = only().pool().make(kind);
@@ -353,7 +386,9 @@ std::unique_ptr<PosedCandidates> CoverageModel::candidatesOf(const SensorClass& 
         if (rooms_[room].model.use_count() == 1) set.reset();
     }
     if (joined->size() == 0)
-        throw UnmetError(reason.empty() ? "no place for " + kind.id + ": no room may hold it"
+        throw UnmetError(reason.empty() ? "no place for " + nameOf(kind) +
+                                              (kind.room ? ": all floor of its room is open"
+                                                         : ": no room may hold it")
                                         : reason);
     return joined;
 }
@@ -452,7 +487,9 @@ double CoverageModel::shareOf(const std::vector<Choice>& chosen, std::uint64_t v
 }
 
 std::uint64_t CoverageModel::valueFor(double share) const {
-    return static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_) - 1e-6));
+    const auto total = static_cast<double>(total_);
+    return static_cast<std::uint64_t>(
+        std::ceil(std::max(0.0, share * total - 1e-6 - rounding_ * total)));
 }
 
 std::vector<std::uint32_t> CoverageModel::weightsLeft() const {
@@ -478,18 +515,19 @@ std::vector<Placement> CoverageModel::placementsOf(const std::vector<Choice>& ch
 
 std::vector<CountedView> CoverageModel::viewsOf(std::span<const SiteSensor> sensors) const {
     std::vector<CountedView> views(sensors.size());
-    for (const auto& [room, sensor] : sensors) rooms_[room].model->prepare(sensor);
+    for (const auto& [room, sensor] : sensors)
+        if (rooms_[room].model != nullptr) rooms_[room].model->prepare(sensor);
     tbb::parallel_for(std::size_t{0}, sensors.size(), [&](std::size_t i) {
         // A thread that waits for a level in here must not begin with another sensor.
         tbb::this_task_arena::isolate([&] {
             const auto& [room, sensor] = sensors[i];
-            const RoomModel& model = *rooms_[room].model;
+            const Room& own = rooms_[room];
             views[i].multiplicity = isPartial(sensor.model) ? 1 : unit_;
-            views[i].cells = model.cellsOf(sensor, problem_.cells());
+            if (own.model != nullptr) views[i].cells = own.model->cellsOf(sensor, problem_.cells());
             if (site_.isOneRoom()) return;
             CellSet cells(problem_.cells());
-            views[i].cells.forEach([&, &firsts = rooms_[room].firsts](std::size_t cell) {
-                for (const std::size_t first : firsts) cells.set(first + cell);
+            views[i].cells.forEach([&](std::size_t cell) {
+                for (const std::size_t first : own.firsts) cells.set(first + cell);
             });
             addBeyond(room, sensor, cells);
             views[i].cells = std::move(cells);
@@ -544,7 +582,6 @@ bool CoverageModel::isConnected(std::span<const CountedView> views) const {
 void CoverageModel::spreadRedundant(std::vector<Choice>& chosen) const {
     std::vector<Point3> standing;
     for (const SiteRoom& room : site_.rooms) {
-        if (!room.scene) continue;
         for (const Sensor& sensor : room.scene->sensors)
             if (kindOf(sensor.model).perceives)
                 standing.push_back(site_.isOneRoom() ? sensor.pose.position

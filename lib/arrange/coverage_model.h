@@ -67,6 +67,10 @@ class CoverageModel {
     [[nodiscard]] const ArrangeOptions& options() const { return options_; }
     [[nodiscard]] const Problem& problem() const { return problem_; }
     [[nodiscard]] const std::vector<SensorClass>& kinds() const { return kinds_; }
+    /// Returns the name of a kind in the site: that of one kept to a room begins with it.
+    [[nodiscard]] std::string nameOf(const SensorClass& kind) const {
+        return kind.room ? site_.rooms[*kind.room].id + '/' + kind.id : kind.id;
+    }
     /// Returns the model of a room. \pre it has one, see hasRoom()
     [[nodiscard]] const RoomModel& room(std::size_t room) const { return *rooms_[room].model; }
     [[nodiscard]] RoomModel& room(std::size_t room) { return *rooms_[room].model; }
@@ -120,7 +124,7 @@ class CoverageModel {
     [[nodiscard]] double shareOf(std::span<const CountedView> views) const;
     /// Returns that of chosen candidates, of which the search says this value.
     [[nodiscard]] double shareOf(const std::vector<Choice>& chosen, std::uint64_t value) const;
-    /// Returns the smallest value that is at least this share, up to rounding.
+    /// Returns the smallest value that is at least this share, up to rounding().
     [[nodiscard]] std::uint64_t valueFor(double share) const;
     /// Returns the weights of the cells that standing sensors leave uncovered; 0 for the others.
     [[nodiscard]] std::vector<std::uint32_t> weightsLeft() const;
@@ -193,6 +197,10 @@ class CoverageModel {
     /// Returns true if sensors of a kind may stand in a room.
     [[nodiscard]] bool mayStand(const SensorClass& kind, std::size_t room) const;
     [[nodiscard]] bool sees(std::size_t from, const Sensor& sensor, std::size_t to) const;
+    /// Returns true for the candidates of a site from which a camera sees private zones of other
+    /// rooms, by cells.
+    [[nodiscard]] std::vector<bool> seesPrivate(std::size_t room, const SensorClass& kind,
+                                                const PosedCandidates& own, std::size_t site) const;
     /// Adds the cells of other rooms that a sensor sees, with a copy for each of their firsts.
     void addBeyond(std::size_t room, const Sensor& sensor, CellSet& cells) const;
 

@@ -132,11 +132,18 @@ PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> r
     results.candidates = part.candidates();
     const auto last = std::min(static_cast<std::size_t>(most), results.candidates.size());
     for (std::size_t n = 1; n <= last; ++n) {
+        if (n > 1 && progress.stopped()) {
+            results.by_number.push_back(
+                {withOneMore(results.by_number.back().best, results.candidates.size()),
+                 part.problem().totalWeight(), false});
+            continue;
+        }
         part.problem().kinds.front().most = static_cast<int>(n);
         part.problem().order.assign(n, 0);
         SearchResult found = search(part.problem(), model.searchOptions(), progress);
         // One more sensor never covers less.
-        if (n > 1 && found.best.value < results.by_number.back().best.value)
+        if (n > 1 && !part.problem().is_connected &&
+            found.best.value < results.by_number.back().best.value)
             found.best = withOneMore(results.by_number.back().best, results.candidates.size());
         results.by_number.push_back(std::move(found));
     }
@@ -180,11 +187,12 @@ std::vector<SearchResult> searchParts(const CoverageModel& model, Progress& prog
         result.best.value = static_cast<std::uint64_t>(std::llround(shared.value));
         result.bound = static_cast<std::uint64_t>(std::llround(shared.bound));
         for (std::size_t i = 0; i < parts.size(); ++i) {
+            for (const SearchResult& one : results[i].by_number)
+                result.is_complete = result.is_complete && one.is_complete;
             const auto count = static_cast<std::size_t>(shared.counts[i]);
             if (count == 0 || results[i].by_number.empty()) continue;
             const std::size_t last = std::min(count, results[i].by_number.size());
             const SearchResult& own = results[i].by_number[last - 1];
-            result.is_complete = result.is_complete && own.is_complete;
             for (const Choice& choice : own.best.chosen)
                 result.best.chosen.push_back({0, results[i].candidates[choice.candidate]});
         }

@@ -41,12 +41,15 @@ struct RoomGoals {
 /// A room of a site. Sensors stand in its frame.
 struct SiteRoom {
     std::string id;  ///< "" of a room alone
-    /// The room with all that stands around it; null for one with a floor that is all open: it is
-    /// left out. Rooms that are equal may share it, and are then searched once.
+    /// The room with all that stands around it. Rooms that are equal may share it, and are then
+    /// searched once.
     std::shared_ptr<const Scene> scene;
     RoomGoals goals = {};
     Point3 origin = {};  ///< of its frame in the site
     Angle turn = {};     ///< of its frame
+    /// False: all of its floor is open. No sensor is placed there; those that stand there see
+    /// others.
+    bool has_floor = true;
 
     /// Converts a point of the room to the frame of the site.
     [[nodiscard]] Point3 inSite(Point3 point) const;

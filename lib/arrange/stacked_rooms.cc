@@ -27,10 +27,8 @@ void CoverageModel::stackCases() {
     // Failures of sensors in any room: the cells of all rooms are those of the one case.
     cases_.blocks.push_back({0, problem_.cells()});
     for (std::size_t i = 0; i < rooms_.size(); ++i) {
-        if (rooms_[i].model == nullptr) continue;
-        const Scene& scene = rooms_[i].model->scene();
         std::vector<SiteSensor> sensors;
-        for (const Sensor& sensor : scene.sensors)
+        for (const Sensor& sensor : site_.rooms[i].scene->sensors)
             if (kindOf(sensor.model).perceives) sensors.push_back({i, sensor});
         for (CountedView& view : viewsOf(std::span<const SiteSensor>(sensors)))
             cases_.standing.push_back(std::move(view.cells));

@@ -31,10 +31,11 @@ BuildingSite::BuildingSite(const BuildingScene& building, const ArrangeOptions& 
         const Storey& storey = building_.document.storeys[i];
         const Point2 at = storey.building_from_storey.position;
         site_.rooms.push_back({storey.id,
-                               hasFloor(*floors[i]) ? floors[i] : nullptr,
+                               floors[i],
                                std::move(goals[i]),
                                {at.x, at.y, storey.floor},
-                               storey.building_from_storey.heading});
+                               storey.building_from_storey.heading,
+                               hasFloor(*floors[i])});
     }
     site_.sight = this;
 }

@@ -218,6 +218,85 @@ TEST(BuildingSite, PrivacyHoldsInItsStorey) {
     EXPECT_LE(secret.found.candidate_value, open.found.candidate_value + 1e-12);
 }
 
+/// Two storeys around an atrium, with a zone below it.
+BuildingScene atrium(const std::string& layout = "") {
+    StoreyedDocument document = readBuilding(
+        "- storey: {id: ground, height: 2.8, records: [{fence: {path: [[0, 0], [8, 0], [8, 6], [0, "
+        "6]], closed: yes, height: 2.8}}, {zone: {id: desk, at: [4, 3], size: 2 x 1}}]}\n"
+        "- storey: {id: gallery, z: 3, height: 2.8, records: [{fence: {path: [[0, 0], [8, 0], [8, "
+        "6], [0, 6]], closed: yes, height: 2.8}}]}\n"
+        "- shaft: {storeys: 'ground,gallery', path: [[2, 1.5], [6, 1.5], [6, 4.5], [2, 4.5]]}\n",
+        "house.yaml", {});
+    std::vector<Document> layouts;
+    if (!layout.empty())
+        layouts = layoutsOf(readRecordText("#3dm 1\n" + layout, "l.3dm", sceneSchemas()), document);
+    return makeBuildingScene(std::move(document), layouts, {});
+}
+
+TEST(BuildingSite, PrivacyHoldsAgainstCamerasAbove) {
+    Record camera(*sceneSchemas().find("camera"));
+    camera.set("fov", Tuple{90});
+    camera.set("tilt", -50.0);
+    camera.set("range", Tuple{8});
+    ArrangeOptions options;
+    options.density = {1, 1, 8};
+    options.cells = CellSize{0.25};
+    std::vector<RoomGoals> goals(2);
+    goals[0].privacy = {parsePrivacy("desk")};
+    goals[0].takes_sensors = false;
+    options.privacy = goals[0].privacy;
+    const ArrangedBuilding result = arrangedIn(atrium(), {{camera, 1}}, options, goals);
+    ASSERT_EQ(result.found.privacy.size(), 1U);
+    EXPECT_TRUE(isMet(result.found.privacy[0]));
+    EXPECT_GT(result.found.coverage, 0);
+    // A standing camera over the zone is named.
+    const std::string above = "camera id=gallery/c fov=90 at=4,3,2.5 tilt=-90 range=8\n";
+    const ArrangedBuilding seen = arrangedIn(atrium(above), {{camera, 1}}, options, goals);
+    ASSERT_EQ(seen.found.privacy.size(), 1U);
+    EXPECT_FALSE(isMet(seen.found.privacy[0]));
+    EXPECT_EQ(seen.found.privacy[0].cameras, std::vector<std::string>{"gallery/c"});
+}
+
+TEST(BuildingSite, StandingSensorsOfOpenStoreysCount) {
+    const std::string text =
+        "- storey: {id: ground, height: 2.8, records: [{ispace: {size: 5 x 4}}]}\n"
+        "- storey: {id: gallery, z: 3, height: 2.8, records: [{ispace: {size: 5 x 4}}]}\n"
+        "- shaft: {storeys: 'ground,gallery', path: [[-3, -3], [3, -3], [3, 3], [-3, 3]]}\n";
+    StoreyedDocument document = readBuilding(text, "house.yaml", {});
+    const Document layout =
+        readRecordText("#3dm 1\ncamera id=gallery/c fov=90 at=0,0,2.5 tilt=-90 range=9\n", "l.3dm",
+                       sceneSchemas());
+    const BuildingScene building = makeBuildingScene(document, layoutsOf(layout, document), {});
+    const double before = measureBuilding(building, {}).coverage.grid.value_or(0);
+    ASSERT_GT(before, 0.5);
+    ArrangeOptions options = coarse();
+    options.cells = CellSize{0.1};
+    const ArrangedBuilding result = arrangedIn(building, {lasers(1)}, options);
+    EXPECT_GE(result.found.candidate_value, before - 1e-6);
+    EXPECT_NEAR(result.found.candidate_value, result.found.coverage, 0.01);
+    EXPECT_FALSE(result.found.rooms[1].has_floor);
+}
+
+TEST(BuildingSite, ATargetThatIsMetExactlyIsReached) {
+    const BuildingScene building = makeBuildingScene(
+        readBuilding("- storey: {id: big, records: [{ispace: {size: 12 x 8}}]}\n"
+                     "- storey: {id: small, z: 3, records: [{ispace: {size: 6 x 4}}]}\n",
+                     "house.yaml", {}),
+        {}, {});
+    ArrangeOptions options = coarse();
+    options.x = 1;
+    options.y = 1;
+    options.target = 0.2;
+    Record laser(*sceneSchemas().find("laser"));
+    laser.set("range", Tuple{20});
+    laser.set("fov", 360.0);
+    std::vector<RoomGoals> goals(2);
+    goals[0].takes_sensors = false;
+    const ArrangedBuilding result = arrangedIn(building, {{laser, 1}}, options, goals);
+    EXPECT_TRUE(result.found.is_reached);
+    EXPECT_NEAR(result.found.candidate_value, 0.2, 1e-6);
+}
+
 TEST(BuildingSite, AFailedSensorMayBeInAnyStorey) {
     const BuildingScene building = twoStoreys();
     ArrangeOptions options = coarse();

@@ -98,7 +98,6 @@ namespace {
 struct RoomsNamed {
     std::vector<std::size_t> rooms;
     std::string text;
-    bool is_glob = true;  ///< rooms without the zone are left out
 };
 
 RoomsNamed roomsNamed(const SiteInput& input, std::string_view option, const std::string& text) {
@@ -116,13 +115,11 @@ RoomsNamed roomsNamed(const SiteInput& input, std::string_view option, const std
     const Glob glob(storey);
     for (std::size_t i = 0; i < input.ids.size(); ++i)
         if (glob.matches(input.ids[i])) named.rooms.push_back(i);
-    if (named.rooms.size() == 1) named.is_glob = false;
     if (named.rooms.empty()) {
         const StoreyedDocument& document = input.building->document;
         const Storey* const one =
             ofOption(std::string(option), [&] { return &document.storey(storey); });
         named.rooms = {static_cast<std::size_t>(one - document.storeys.data())};
-        named.is_glob = false;
     }
     return named;
 }

@@ -193,7 +193,7 @@ std::vector<JudgedRequirement> targetOf(const ArrangeWork& work, const Arrangeme
     return {{formatPercent(*work.how.target), arrangement.is_reached,
              "the sensors cover " + percentText(arrangement.value.value_or(arrangement.coverage)) +
                  (work.how.weights.isUniform() ? "" : " of the floor that counts"),
-             arrangement.coverage - *work.how.target}};
+             arrangement.value.value_or(arrangement.coverage) - *work.how.target}};
 }
 
 /// Returns the bytes of a page by the suffix of its file.

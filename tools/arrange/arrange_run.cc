@@ -180,6 +180,10 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
         throw UsageError("nothing to place: give --sensor, or a LAYOUT with a sensor without `at`");
     work.files = input.files;
     if (input.building) {
+        for (const SensorGroup& group : work.groups)
+            if (group.id.find('/') != std::string::npos)
+                throw UsageError("--sensor id=" + group.id +
+                                 ": the storey comes before it by itself; leave it out");
         // Devices of --sensor are not among those of the records.
         if (input.building->devices.devices().empty()) input.building->devices = devices;
         takeGoals(options, work);
