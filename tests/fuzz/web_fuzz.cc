@@ -83,7 +83,7 @@ class Browser {
     }
 
     fuzz::ServedRoom room_;
-    WebPage page_{room_.state(), "room.env"};
+    WebPage page_{room_.state(), "room.env", {}};
     boost::asio::io_context io_;
     std::shared_ptr<WebConnection> connection_;
     int end_ = -1;
