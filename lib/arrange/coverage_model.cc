@@ -105,27 +105,34 @@ void CoverageModel::setUnits() {
 
 void CoverageModel::addRooms() {
     std::map<const Scene*, std::shared_ptr<RoomModel>> known;
-    std::vector<double> weights;
+    std::vector<double> weights, areas;  // areas: by room
     for (const SiteRoom& room : site_.rooms) {
         Room& added = rooms_.emplace_back();
         added.firsts = {weights.size()};
         added.seen.resize(site_.rooms.size());
+        areas.push_back(0);
         if (!room.has_floor) continue;
         std::shared_ptr<RoomModel> own;
         std::shared_ptr<RoomModel>& model = room.goals.isPlain() ? known[room.scene.get()] : own;
         if (model == nullptr) model = std::make_shared<RoomModel>(room, options_, kinds_, unit_);
         added.model = model;
         added.cells = model->weights().size();
-        // Cells of one room are equal; those of several count by area.
-        const double area = site_.isOneRoom() ? 1 : model->areaOfCell();
-        for (const double weight : model->weights()) weights.push_back(area * weight);
+        areas.back() = model->areaOfCell();
+        weights.insert(weights.end(), model->weights().begin(), model->weights().end());
         problem_.achieved.insert(problem_.achieved.end(), model->achieved().begin(),
                                  model->achieved().end());
     }
-    if (site_.isOneRoom())
+    const double most = *std::max_element(areas.begin(), areas.end());
+    if (std::all_of(areas.begin(), areas.end(),
+                    [most](double area) { return area == 0 || area == most; })) {
+        // All cells are equal, as those of one room are.
         problem_.weights = integerWeights(weights);
-    else
+    } else {
+        for (std::size_t i = 0; i < rooms_.size(); ++i)
+            for (std::size_t k = 0; k < rooms_[i].cells; ++k)
+                weights[rooms_[i].firsts.front() + k] *= areas[i];
         setAreas(std::move(weights));
+    }
     total_ = problem_.totalWeight();
     if (total_ == 0)
         throw UnmetError(options_.ways ? "nothing to detect: nobody walks in the ways of --presence"

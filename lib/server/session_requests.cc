@@ -228,7 +228,8 @@ void Session::records(Words words) {
                            std::to_string(state_->limits().pending), " of an answer"});
     out_.append("OK RECORDS t=").append(formatMilliseconds(world().time()));
     out_.append(" room=").append(std::to_string(counts[0]));
-    out_.append(" placed=").append(std::to_string(counts[1])).append("\n");
+    out_.append(" placed=").append(std::to_string(counts[1]));
+    out_.append(" bytes=").append(std::to_string(texts[0].size() + texts[1].size())).append("\n");
     out_.append(texts[0]).append(texts[1]);
 }
 

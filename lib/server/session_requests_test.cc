@@ -364,6 +364,7 @@ TEST(Session, RecordsAreWrittenWithTheirIds) {
     EXPECT_TRUE(head.starts_with("OK RECORDS t=0.000 room=")) << head;
     const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
     EXPECT_EQ(lines, 1 + talk.room.world.scene().records.size());
+    EXPECT_TRUE(head.ends_with(" bytes=" + std::to_string(text.size() - head.size() - 1))) << head;
     for (const std::string& id : talk.room.world.scene().ids)
         EXPECT_TRUE(id.empty() || text.find(" id=" + id) != std::string::npos) << id << text;
     EXPECT_EQ(talk.ask(world, "RECORDS upper"),

@@ -573,10 +573,16 @@ class Threads(unittest.TestCase):
     def test_a_late_answer_is_that_of_its_own_question(self):
         with self.run_.world() as world, self.run_.robot("r1") as robot:
             world.connection.ask("TIME")
-            for _ in range(20):
-                with self.assertRaises(ispace.Timeout):
+            late = 0
+            for _ in range(2000):  # on an idle machine many answers are in time
+                try:
                     robot.connection.ask("STATUS", 0)
+                except ispace.Timeout:
+                    late += 1
                 self.assertEqual(robot.odometry().pose, (0, 0, 0))
+                if late == 20:
+                    break
+            self.assertGreater(late, 0)
 
     def test_closing_ends_the_wait_of_another(self):
         robot = self.run_.robot("r1")
@@ -602,6 +608,15 @@ class Complete(unittest.TestCase):
                     if not inspect.getdoc(value):
                         silent.append(f"{name}.{key}")
         self.assertEqual(silent, [])
+
+    def test_records_are_those_of_the_world(self):
+        with ispace.simrun(DATA / "square.env", DATA / "session.3dm", clock="step") as run:
+            with ispace.World(run.address) as world:
+                records = world.records()
+                self.assertTrue(any(" id=r1" in record for record in records), records)
+                added = world.add("zone at=1,1 size=0.2,0.2")
+                self.assertEqual(len(world.records()), len(records) + 1)
+                self.assertTrue(any(f" id={added} " in record for record in world.records()))
 
     def test_both_clients_have_every_request(self):
         client = SOURCE / "lib" / "client"

@@ -143,7 +143,9 @@ class Connection {
         const bool carriage = end > 0 && buffer_[end - 1] == '\r';
         message = parseMessage(buffer_.substr(0, carriage ? end - 1 : end));
         std::size_t bytes = 0;
-        if (message.word(0) == "SCAN" && message.fields.has("bytes")) {
+        const bool has_bytes =
+            message.word(0) == "SCAN" || (message.word(0) == "OK" && message.word(1) == "RECORDS");
+        if (has_bytes && message.fields.has("bytes")) {
             const double count = message.fields.number("bytes");
             if (!(count >= 0 && count <= 1e9)) throw ProtocolError("a frame of " + message.line);
             bytes = static_cast<std::size_t>(count);

@@ -138,6 +138,18 @@ class World {
         states.erase("t");
         return states;
     }
+    /// Returns the records of the world, as in a file: those of the room, then robots, people and
+    /// sensors. \param room a storey, a lift or stairs of a building
+    std::vector<std::string> records(const std::string& room = "") {
+        const std::string text = ask("RECORDS" + (room.empty() ? "" : " " + room)).data;
+        std::vector<std::string> lines;
+        for (std::size_t begin = 0; begin < text.size();) {
+            const std::size_t end = text.find('\n', begin);
+            lines.push_back(text.substr(begin, end - begin));
+            begin = end == std::string::npos ? text.size() : end + 1;
+        }
+        return lines;
+    }
     /// Adds a record, as in an environment or layout: add("cube id=b at=1,1 size=1,1,1").
     /// \return its id
     std::string add(const std::string& record) { return change("ADD " + record).text("id"); }

@@ -209,7 +209,8 @@ class Connection:
         line = self._buffer[:newline].decode("utf-8", "replace").removesuffix("\r")
         message = parse_message(line)
         count = 0
-        if message.word(0) == "SCAN" and "bytes" in message.fields:
+        has_bytes = message.word(0) == "SCAN" or message.words[:2] == ["OK", "RECORDS"]
+        if has_bytes and "bytes" in message.fields:
             count = message.fields.integer("bytes")
         while len(self._buffer) < newline + 1 + count:
             if not self._receive(end):

@@ -148,6 +148,13 @@ class World(Client):
         fields = self._ask(f"STATE {id}".rstrip()).fields
         return {key: value for key, value in fields.items() if key != "t"}
 
+    def records(self, room: str = "") -> List[str]:
+        """The records of the world, as in a file: those of the room, then robots, people and sensors.
+
+        ``room`` is a storey, a lift or stairs of a building.
+        """
+        return self._ask(f"RECORDS {room}".rstrip()).data.decode("utf-8", "replace").splitlines()
+
     def add(self, record: str) -> str:
         """Adds a record, as in an environment or layout: ``add("cube id=b at=1,1 size=1,1,1")``; its id."""
         return self._change(f"ADD {record}")["id"]
