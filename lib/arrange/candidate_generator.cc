@@ -61,6 +61,18 @@ struct SitesAtHeight {
 
 }  // namespace
 
+CellSet privateCells(const PrivacyRule& rule, const Environment& environment,
+                     const Target& target) {
+    CellSet cells(target.grid.size());
+    for (const std::string& zone : privateZones(rule, environment)) {
+        const std::vector<double> inside =
+            weightsOfCells(target, {.targets = {readZone(zone, environment)}, .weights = {}});
+        for (std::size_t i = 0; i < inside.size(); ++i)
+            if (inside[i] > 0) cells.set(i);
+    }
+    return cells;
+}
+
 struct CandidatePool::Data {
     const Environment& environment;
     Worlds& worlds;
@@ -223,25 +235,13 @@ struct CandidatePool::Data {
                     std::erase(site.headings, pose.heading);
         std::erase_if(allowed, [](const Site& site) { return site.headings.empty(); });
         for (const PrivacyRule& rule : options.privacy) {
-            const CellSet cells = cellsOf(rule);
+            const CellSet cells = privateCells(rule, environment, target);
             if (cells.empty()) continue;
             const CandidateViews views(sight, target.grid, withDensity(*camera, rule.density),
                                        mount, &cells);
             allowed = sitesOutOfSight(views, allowed);
         }
         return allowed;
-    }
-
-    /// Returns the cells of the zones of a rule.
-    [[nodiscard]] CellSet cellsOf(const PrivacyRule& rule) const {
-        CellSet cells(target.grid.size());
-        for (const std::string& zone : privateZones(rule, environment)) {
-            const std::vector<double> inside =
-                weightsOfCells(target, {.targets = {readZone(zone, environment)}, .weights = {}});
-            for (std::size_t i = 0; i < inside.size(); ++i)
-                if (inside[i] > 0) cells.set(i);
-        }
-        return cells;
     }
 
     /// Adds candidates with views in the room, or in all rooms of a robust search.

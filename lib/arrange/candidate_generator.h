@@ -20,6 +20,9 @@ struct CandidateWeights {
     std::vector<std::uint32_t> left;  ///< weights of the cells not covered yet, else 0
 };
 
+/// Returns the cells of the zones of a rule of privacy. \throws UsageError as privateZones()
+CellSet privateCells(const PrivacyRule& rule, const Environment& environment, const Target& target);
+
 struct CaseRoom;
 class FacingCells;
 /// Rooms in which candidates look, instead of the environment alone; empty: not robust.

@@ -220,34 +220,21 @@ void CoverageModel::addBeyond(std::size_t room, const Sensor& sensor, CellSet& c
     }
 }
 
-std::vector<bool> CoverageModel::seesPrivate(std::size_t room, const SensorClass& kind,
-                                             const PosedCandidates& own, std::size_t site) const {
-    std::vector<bool> is_seeing(own.firstOf(site + 1) - own.firstOf(site));
-    const SensorModel& whole = kind.whole ? *kind.whole : kind.model;
-    const auto* camera = std::get_if<Camera>(&whole);
-    if (camera == nullptr) return is_seeing;
-    for (std::size_t to = 0; to < rooms_.size(); ++to)
-        for (const PrivacyRule& rule : site_.rooms[to].goals.privacy) {
-            std::vector<Sensor> turned;
-            for (std::size_t i = own.firstOf(site); i < own.firstOf(site + 1); ++i)
-                turned.push_back({"", withDensity(*camera, rule.density), own.pose(i)});
-            if (!sees(room, turned.front(), to)) continue;
-            CellParts seen;
-            site_.sight->look(room, turned, to, rooms_[to].model->target().grid, seen);
-            const CellSet zone = rooms_[to].model->privateCells(rule);
-            for (std::size_t k = 0; k < is_seeing.size(); ++k)
-                for (std::uint32_t r = seen.first[k]; r < seen.first[k + 1]; ++r)
-                    for (std::size_t cell = seen.runs[r].first; cell < seen.runs[r].end; ++cell)
-                        if (zone.test(cell)) is_seeing[k] = true;
-        }
-    return is_seeing;
-}
-
 /// Joins the candidates of one kind in several rooms, with the cells that they see in others.
 class CoverageModel::Joiner {
   public:
     Joiner(CoverageModel& model, const SensorClass& kind, Progress& progress)
-        : model_(model), kind_(kind), progress_(progress) {}
+        : model_(model), kind_(kind), progress_(progress) {
+        const SensorModel& whole = kind.whole ? *kind.whole : kind.model;
+        const auto* camera = std::get_if<Camera>(&whole);
+        for (std::size_t room = 0; camera != nullptr && room < model.rooms_.size(); ++room) {
+            if (model.rooms_[room].model == nullptr) continue;
+            const RoomModel& own = *model.rooms_[room].model;
+            for (const PrivacyRule& rule : own.options().privacy)
+                private_.push_back({room, withDensity(*camera, rule.density),
+                                    privateCells(rule, own.scene().environment, own.target())});
+        }
+    }
 
     /// Adds the candidates of a room.
     void add(std::size_t room, const PosedCandidates& own, PosedCandidates& joined) {
@@ -259,18 +246,21 @@ class CoverageModel::Joiner {
         for (std::size_t first = 0; first < own.sites(); first += kAtOnce) {
             const std::size_t end = std::min(first + kAtOnce, own.sites());
             beyond_.assign(end - first, {});
+            is_seeing_.assign(end - first, {});
             if (looks && progress_.stopped()) {
                 model_.is_complete_ = false;
             } else if (looks) {
                 tbb::parallel_for(first, end, [&](std::size_t site) {
                     // A thread that waits for rows of cells here must not begin with another site.
-                    tbb::this_task_arena::isolate(
-                        [&] { beyond_[site - first] = look(room, own, site); });
+                    tbb::this_task_arena::isolate([&] {
+                        beyond_[site - first] = look(room, own, site);
+                        is_seeing_[site - first] = seesPrivate(room, own, site);
+                    });
                 });
                 progress_.advance(static_cast<std::int64_t>(end - first));
             }
             for (std::size_t site = first; site < end; ++site)
-                addSite(room, own, site, beyond_[site - first], joined);
+                addSite(room, own, site, beyond_[site - first], is_seeing_[site - first], joined);
             if (joined.bytes() > model_.options_.max_bytes)
                 throw UsageError(
                     "the candidates of rooms that are searched together take more "
@@ -282,6 +272,35 @@ class CoverageModel::Joiner {
     }
 
   private:
+    /// Zones of a room that cameras must not see with so many pixels.
+    struct PrivateZones {
+        std::size_t room = 0;
+        Camera camera;
+        CellSet cells;
+    };
+
+    /// Returns the candidates of a site from which a camera sees private zones of other rooms;
+    /// empty if there are none.
+    [[nodiscard]] std::vector<bool> seesPrivate(std::size_t from, const PosedCandidates& own,
+                                                std::size_t site) const {
+        std::vector<bool> is_seeing;
+        for (const auto& [to, camera, cells] : private_) {
+            std::vector<Sensor> turned;
+            for (std::size_t i = own.firstOf(site); i < own.firstOf(site + 1); ++i)
+                turned.push_back({"", camera, own.pose(i)});
+            if (!model_.sees(from, turned.front(), to)) continue;
+            is_seeing.resize(turned.size());
+            CellParts seen;
+            model_.site_.sight->look(from, turned, to, model_.rooms_[to].model->target().grid,
+                                     seen);
+            for (std::size_t k = 0; k < turned.size(); ++k)
+                for (std::uint32_t r = seen.first[k]; r < seen.first[k + 1]; ++r)
+                    for (std::size_t cell = seen.runs[r].first; cell < seen.runs[r].end; ++cell)
+                        if (cells.test(cell)) is_seeing[k] = true;
+        }
+        return is_seeing;
+    }
+
     [[nodiscard]] std::vector<CellsBeyond> look(std::size_t from, const PosedCandidates& own,
                                                 std::size_t site) const {
         std::vector<Sensor> turned;
@@ -309,27 +328,27 @@ class CoverageModel::Joiner {
     void endPart() { parts_.first.push_back(static_cast<std::uint32_t>(parts_.runs.size())); }
 
     void addSite(std::size_t room, const PosedCandidates& own, std::size_t site,
-                 const std::vector<CellsBeyond>& beyond, PosedCandidates& joined) {
+                 const std::vector<CellsBeyond>& beyond, const std::vector<bool>& is_seeing,
+                 PosedCandidates& joined) {
         const std::size_t begin = own.firstOf(site), count = own.firstOf(site + 1) - begin;
         parts_.runs.clear();
         parts_.first.assign(1, 0);
         ranges_.clear();
         headings_.clear();
-        std::vector<bool> is_left_out(count);
-        if (!beyond.empty() && !model_.options_.privacy.empty())
-            is_left_out = model_.seesPrivate(room, kind_, own, site);
+        const auto is_left_out = [&](std::size_t k) { return !is_seeing.empty() && is_seeing[k]; };
         for (std::size_t k = 0; k < count; ++k)
-            if (!is_left_out[k]) headings_.push_back(own.pose(begin + k).heading);
+            if (!is_left_out(k)) headings_.push_back(own.pose(begin + k).heading);
         if (headings_.empty()) return;
         if (beyond.empty()) {
             for (std::size_t k = 0; k <= own.directedParts(site); ++k) {
                 addShifted(own.runsOf(site, k), room);
                 endPart();
             }
-            for (std::size_t k = 0; k < count; ++k) ranges_.push_back(own.rangeOf(begin + k));
+            for (std::size_t k = 0; k < count; ++k)
+                if (!is_left_out(k)) ranges_.push_back(own.rangeOf(begin + k));
         } else {
             for (std::size_t k = 0; k < count; ++k) {
-                if (is_left_out[k]) continue;
+                if (is_left_out(k)) continue;
                 addShifted(partOf(own.cellsOf(begin + k)).runs, room);
                 for (const auto& [to, seen] : beyond)
                     addShifted(std::span(seen.runs).subspan(seen.first[k],
@@ -347,8 +366,10 @@ class CoverageModel::Joiner {
     CoverageModel& model_;
     const SensorClass& kind_;
     Progress& progress_;
+    std::vector<PrivateZones> private_;
     // Of the current sites:
     std::vector<std::vector<CellsBeyond>> beyond_;
+    std::vector<std::vector<bool>> is_seeing_;
     CellParts parts_;
     std::vector<CandidateSet::PartRange> ranges_;
     std::vector<Angle> headings_;

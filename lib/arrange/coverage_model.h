@@ -197,10 +197,6 @@ class CoverageModel {
     /// Returns true if sensors of a kind may stand in a room.
     [[nodiscard]] bool mayStand(const SensorClass& kind, std::size_t room) const;
     [[nodiscard]] bool sees(std::size_t from, const Sensor& sensor, std::size_t to) const;
-    /// Returns true for the candidates of a site from which a camera sees private zones of other
-    /// rooms, by cells.
-    [[nodiscard]] std::vector<bool> seesPrivate(std::size_t room, const SensorClass& kind,
-                                                const PosedCandidates& own, std::size_t site) const;
     /// Adds the cells of other rooms that a sensor sees, with a copy for each of their firsts.
     void addBeyond(std::size_t room, const Sensor& sensor, CellSet& cells) const;
 

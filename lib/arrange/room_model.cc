@@ -125,18 +125,6 @@ void RoomModel::withoutFaces(CellParts& parts) const {
     if (facing_) facing_->removeAll(parts);
 }
 
-CellSet RoomModel::privateCells(const PrivacyRule& rule) const {
-    CellSet cells(target_.grid.size());
-    const Environment& room = scene_->environment;
-    for (const std::string& zone : privateZones(rule, room)) {
-        const std::vector<double> inside =
-            weightsOfCells(target_, {.targets = {readZone(zone, room)}, .weights = {}});
-        for (std::size_t i = 0; i < inside.size(); ++i)
-            if (inside[i] > 0) cells.set(i);
-    }
-    return cells;
-}
-
 void RoomModel::makePool(std::vector<std::uint32_t> left, Progress& progress) {
     pool_ = std::make_unique<CandidatePool>(
         scene_->environment, worlds_, target_, CandidateWeights{counted_, std::move(left)},

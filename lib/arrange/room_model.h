@@ -71,8 +71,6 @@ class RoomModel {
     [[nodiscard]] CellSet cellsOf(const Sensor& sensor, std::size_t all) const;
     /// Removes the cells of rules of faces, as for a sensor outside of the room.
     void withoutFaces(CellParts& parts) const;
-    /// Returns the cells of the zones of a rule of privacy.
-    [[nodiscard]] CellSet privateCells(const PrivacyRule& rule) const;
 
     /// Builds the pool of candidates. \param left weights of the cells that are not covered yet
     void makePool(std::vector<std::uint32_t> left, Progress& progress);

@@ -13,6 +13,20 @@ namespace ispace {
 
 namespace {
 
+bool holds(std::span<const std::size_t> rooms, std::size_t room) {
+    return std::find(rooms.begin(), rooms.end(), room) != rooms.end();
+}
+
+/// Returns the candidates in these rooms, of the set of the site.
+std::vector<std::size_t> candidatesIn(const CoverageModel& model,
+                                      std::span<const std::size_t> rooms) {
+    const CandidateSet& all = *model.problem().kinds.front().candidates;
+    std::vector<std::size_t> candidates;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (holds(rooms, model.roomOf({0, i}))) candidates.push_back(i);
+    return candidates;
+}
+
 /// The problem of one part; its cells and candidates follow each other as in that of the site.
 class PartProblem {
   public:
@@ -36,18 +50,14 @@ class PartProblem {
             for (std::size_t cell = block.first; cell < block.end; ++cell)
                 if (whole.standing.test(cell)) problem_.standing.set(first + cell - block.first);
         const CandidateSet& all = *whole.kinds.front().candidates;
-        for (std::size_t site = 0; site < all.sites(); ++site) {
-            const std::size_t room = model.roomOf({0, all.firstOf(site)});
-            if (std::find(rooms.begin(), rooms.end(), room) != rooms.end()) addSite(all, site);
-        }
+        for (std::size_t site = 0; site < all.sites(); ++site)
+            if (holds(rooms, model.roomOf({0, all.firstOf(site)}))) addSite(all, site);
         problem_.kinds.push_back({&set_, 1, 1, whole.kinds.front().multiplicity});
     }
     PartProblem(const PartProblem&) = delete;
     PartProblem& operator=(const PartProblem&) = delete;
 
     [[nodiscard]] Problem& problem() { return problem_; }
-    /// Returns the candidates in the set of the site.
-    [[nodiscard]] const std::vector<std::size_t>& candidates() const { return candidates_; }
 
   private:
     static std::size_t cellsOf(const CoverageModel& model, std::span<const std::size_t> rooms) {
@@ -76,10 +86,8 @@ class PartProblem {
             parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
         }
         std::vector<CandidateSet::PartRange> ranges;
-        for (std::size_t i = all.firstOf(site); i < all.firstOf(site + 1); ++i) {
+        for (std::size_t i = all.firstOf(site); i < all.firstOf(site + 1); ++i)
             ranges.push_back(all.rangeOf(i));
-            candidates_.push_back(i);
-        }
         set_.addSite(ranges, parts);
     }
 
@@ -91,7 +99,6 @@ class PartProblem {
     std::vector<Shift> shifts_;
     CandidateSet set_;
     Problem problem_;
-    std::vector<std::size_t> candidates_;
 };
 
 /// The results of a part, in [n - 1] with the n candidates of the part's own set.
@@ -129,7 +136,7 @@ PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> r
                       Progress& progress) {
     PartProblem part(model, rooms);
     PartResults results;
-    results.candidates = part.candidates();
+    results.candidates = candidatesIn(model, rooms);
     const auto last = std::min(static_cast<std::size_t>(most), results.candidates.size());
     for (std::size_t n = 1; n <= last; ++n) {
         if (n > 1 && progress.stopped()) {
@@ -170,7 +177,7 @@ std::vector<SearchResult> searchParts(const CoverageModel& model, Progress& prog
             results[i] = resultsOf(model, parts[i].rooms, most, progress);
         } else {
             results[i].by_number = results[alike].by_number;
-            results[i].candidates = PartProblem(model, parts[i].rooms).candidates();
+            results[i].candidates = candidatesIn(model, parts[i].rooms);
         }
         double standing = 0;
         for (const std::size_t room : parts[i].rooms) {

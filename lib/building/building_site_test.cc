@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 #include <span>
 #include <string>
@@ -18,23 +17,10 @@
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "support/test_arrange_building.h"
+#include "support/test_splits.h"
 
 namespace ispace {
 namespace {
-
-/// Calls visit(counts) for every split of `sensors` over the storeys.
-void forEachSplit(std::size_t storeys, int sensors,
-                  const std::function<void(const std::vector<int>&)>& visit) {
-    std::vector<int> counts(storeys);
-    const std::function<void(std::size_t, int)> split = [&](std::size_t i, int left) {
-        if (i + 1 == storeys) {
-            counts[i] = left;
-            return visit(counts);
-        }
-        for (counts[i] = 0; counts[i] <= left; ++counts[i]) split(i + 1, left - counts[i]);
-    };
-    split(0, sensors);
-}
 
 /// Two storeys: one room with a wall across, and one hall.
 BuildingScene twoStoreys() {

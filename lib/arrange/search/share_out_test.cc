@@ -5,30 +5,17 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <numeric>
 #include <random>
 #include <vector>
+
+#include "support/test_splits.h"
 
 namespace ispace {
 namespace {
 
 double at(const std::vector<double>& curve, int n) {
     return curve[std::min(static_cast<std::size_t>(n), curve.size() - 1)];
-}
-
-/// Calls visit(counts) for every split of `sensors` over the parts.
-void forEachSplit(std::size_t storeys, int sensors,
-                  const std::function<void(const std::vector<int>&)>& visit) {
-    std::vector<int> counts(storeys);
-    const std::function<void(std::size_t, int)> split = [&](std::size_t i, int left) {
-        if (i + 1 == storeys) {
-            counts[i] = left;
-            return visit(counts);
-        }
-        for (counts[i] = 0; counts[i] <= left; ++counts[i]) split(i + 1, left - counts[i]);
-    };
-    split(0, sensors);
 }
 
 TEST(ShareOut, IsTheBestOfAllSplits) {
