@@ -63,6 +63,11 @@ BuildingScene makeBuildingScene(StoreyedDocument document, const std::vector<Doc
 /// - shafts: outlines with less than three corners or that cross themselves;
 /// - storeys of one part of the building that overlap in height.
 std::vector<Diagnostic> checkBuilding(const BuildingScene& building);
+/// Returns true if a person can step off the end of a flight, to any side: else checkBuilding()
+/// reports it. \param end in the building \param back direction of the flight from there; empty:
+/// unknown
+bool hasWayOn(const BuildingScene& building, std::size_t storey, Point2 end,
+              std::optional<Vec2> back);
 
 /// Returns one JSON object and a newline, schema ispace-building-info/1: by storey and in sum.
 std::string buildingInfoJson(const BuildingScene& building);

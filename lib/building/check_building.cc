@@ -46,6 +46,24 @@ bool isWay(const Environment& room, Point2 from, Point2 to) {
 /// Direction of an angle in the building.
 Vec2 along(Angle heading) { return Pose2{{}, heading} * Vec2{1, 0}; }
 
+}  // namespace
+
+bool hasWayOn(const BuildingScene& building, std::size_t storey, Point2 end,
+              std::optional<Vec2> back) {
+    constexpr int kDirections = 8;
+    constexpr double kAhead = 0.3;  // cosine
+    const Storey& own = building.document.storeys[storey];
+    const Environment& room = building.scenes[storey]->environment;
+    for (int k = 0; k < kDirections; ++k) {
+        const Vec2 way = along(Angle::degrees(360.0 * k / kDirections));
+        if (back && dot(way, *back) > kAhead) continue;
+        if (isWay(room, inStorey(own, end), inStorey(own, end + kLanding * way))) return true;
+    }
+    return false;
+}
+
+namespace {
+
 class BuildingCheck {
   public:
     explicit BuildingCheck(const BuildingScene& building) : building_(building) {}
@@ -87,14 +105,8 @@ class BuildingCheck {
     /// empty: unknown
     void checkEnd(const StoreyPassage& passage, const char* key, const std::string& verb,
                   std::size_t i, Point2 end, std::optional<Vec2> back) {
-        constexpr int kDirections = 8;
-        constexpr double kAhead = 0.3;  // cosine
+        if (hasWayOn(building_, i, end, back)) return;
         const Point2 from = inStorey(storey(i), end);
-        for (int k = 0; k < kDirections; ++k) {
-            const Vec2 way = along(Angle::degrees(360.0 * k / kDirections));
-            if (back && dot(way, *back) > kAhead) continue;
-            if (isWay(room(i), from, inStorey(storey(i), end + kLanding * way))) return;
-        }
         const bool is_out = room(i).indoor().locate(from) == Side::Outside;
         report(passage, key,
                verb + (is_out ? " outside of the rooms of " : " in a wall or object of ") +

@@ -15,7 +15,7 @@ namespace ispace {
 
 namespace {
 
-/// Metres within which walls touch the end of a flight, and by which walls along a landing may
+/// Metres within which depths and ends of flights are equal, and by which walls along a landing may
 /// reach into its width.
 constexpr double kAtSteps = 0.02, kBesideLanding = 0.05;
 
@@ -38,7 +38,7 @@ MoverSize widestClimber(const BuildingScene& building) {
 }
 
 /// Returns the distance from a pose to the nearest wall or object ahead within half a width beside
-/// its axis, at most `most`.
+/// its axis, at most `most`; 0 for one that a mover at the pose stands in.
 double freeAhead(const Environment& room, const Pose2& from, double half, double most) {
     double depth = most;
     room.level(kScanHeight)->slice().forEachLine([&](const Segment2& line) {
@@ -46,11 +46,11 @@ double freeAhead(const Environment& room, const Pose2& from, double half, double
         Point2 b = seenFrom(from, {line.b, Angle()}).position;
         if (a.y > b.y) std::swap(a, b);
         if (b.y < -half || a.y > half) return;
-        const auto at = [&](double y) {
-            return a.y < b.y ? a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x) : std::min(a.x, b.x);
-        };
-        const double x = std::min(at(std::max(a.y, -half)), at(std::min(b.y, half)));
-        if (x > kAtSteps) depth = std::min(depth, x);
+        const auto at = [&](double y) { return a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x); };
+        const bool is_along = a.y == b.y;
+        const double p = is_along ? a.x : at(std::max(a.y, -half));
+        const double q = is_along ? b.x : at(std::min(b.y, half));
+        if (std::max(p, q) > -half) depth = std::min(depth, std::max(0.0, std::min(p, q)));
     });
     return depth;
 }
@@ -70,18 +70,16 @@ double depthOf(const Environment& room, const Pose2& end, double width, double r
 }
 
 /// Returns the finding of a landing, or "".
-std::string findingAt(const BuildingScene& building, const StoreyWays& ways,
-                      const StoreyLink& stairs, const Landing& landing, double radius) {
-    constexpr double kThin = 0.01;
+std::string findingAt(const BuildingScene& building, const StoreyLink& stairs,
+                      const Landing& landing, double radius) {
     const double deep = StoreyWays::widthToWalk(radius);
     const Storey& storey = building.document.storeys[landing.storey];
     const bool is_top = landing.stop + 1 == stairs.storeys.size();
     const Angle turn = Angle::degrees(is_top ? 0 : 180);
-    const Pose2 end =
-        seenFrom(storey.building_from_storey,
-                 {is_top ? stairs.top : stairs.frame.position, stairs.frame.heading + turn});
+    const Pose2 ahead{is_top ? stairs.top : stairs.frame.position, stairs.frame.heading + turn};
+    const Pose2 end = seenFrom(storey.building_from_storey, ahead);
     // Stairs that end in a wall have a finding of that.
-    if (ways.obstacles(landing.storey).overlap(end.position, kThin)) return "";
+    if (!hasWayOn(building, landing.storey, ahead.position, ahead * Vec2{-1, 0})) return "";
     // Where stairs turn, the direction at their top is unknown.
     if (!is_top || distance(stairs.top, stairs.frame * Point2{stairs.length, 0}) < kAtSteps) {
         const Environment& room = building.scenes[landing.storey]->environment;
@@ -109,7 +107,7 @@ std::vector<Diagnostic> landingFindings(const BuildingScene& building) {
     for (const Landing& landing : ways.landings()) {
         const StoreyLink& stairs = passages[landing.passage];
         if (stairs.is_lift) continue;
-        const std::string text = findingAt(building, ways, stairs, landing, size.radius);
+        const std::string text = findingAt(building, stairs, landing, size.radius);
         if (text.empty()) continue;
         const auto& all = building.document.passages;
         const auto passage = std::find_if(

@@ -48,6 +48,24 @@ TEST(LandingCheck, FindsLandingsTooShallowToWalk) {
     EXPECT_EQ(hall("at: [2, 1], size: [1.2, 13.5], top: [4, 14.5]"), Messages()) << "it turns";
 }
 
+TEST(LandingCheck, FindsWallsAcrossTheEndOfAFlight) {
+    // The wall is on the upper storey; the flight ends at y = 4.
+    const auto across = [](double y, double from, double to) {
+        const std::string room = "fence: {path: [[0, 0], [8, 0], [8, 9], [0, 9]], closed: yes}";
+        const std::string text =
+            "- storey: {id: ground, height: 3, records: [{" + room +
+            "}]}\n- storey: {id: upper, z: 3, height: 2.5, records: [{" + room +
+            "}, {wall: {from: [" + std::to_string(from) + ", " + std::to_string(y) + "], to: [" +
+            std::to_string(to) + ", " + std::to_string(y) + "]}}]}\n" +
+            "- stairs: {id: s, storeys: 'ground,upper', heading: 90, at: [4, 1], size: [1.2, 3]}\n";
+        return landingFindings(makeBuildingScene(readBuilding(text, "house.yaml", {}), {}, {}));
+    };
+    for (const double y : {3.9, 4.0, 4.01, 4.1}) EXPECT_EQ(across(y, 2, 6).size(), 1U) << y;
+    EXPECT_TRUE(across(2, 2, 6).empty()) << "over the steps, where one walks below it";
+    EXPECT_TRUE(across(4, 4.6, 6).empty()) << "beside the steps";
+    EXPECT_TRUE(across(5, 2, 6).empty()) << "a metre ahead";
+}
+
 TEST(LandingCheck, FindsCorridorsTooNarrowToPassThoseThatWait) {
     const auto corridor = [](const std::string& left, const std::string& right, double foot) {
         return landings("[-4, -6], [6, -6], [6, 0], [" + right + ", 0], [" + right + ", 12], [" +
