@@ -50,7 +50,11 @@ double freeAhead(const Environment& room, const Pose2& from, double half, double
         const bool is_along = a.y == b.y;
         const double p = is_along ? a.x : at(std::max(a.y, -half));
         const double q = is_along ? b.x : at(std::min(b.y, half));
-        if (std::max(p, q) > -half) depth = std::min(depth, std::max(0.0, std::min(p, q)));
+        // Walls that lead past the end of the steps, from behind it, are beside the way.
+        if (std::min(p, q) > kAtSteps)
+            depth = std::min({depth, p, q});
+        else if (std::max(p, q) <= kAtSteps && std::max(p, q) > -half)
+            depth = 0;
     });
     return depth;
 }
@@ -80,9 +84,12 @@ std::string findingAt(const BuildingScene& building, const StoreyLink& stairs,
     const Pose2 end = seenFrom(storey.building_from_storey, ahead);
     // Stairs that end in a wall have a finding of that.
     if (!hasWayOn(building, landing.storey, ahead.position, ahead * Vec2{-1, 0})) return "";
+    // Steps that are a body of the room come from a box around them, as of buildings in IFC, and
+    // need not lead straight on.
+    const Environment& room = building.scenes[landing.storey]->environment;
+    if (room.level(kScanHeight)->isInsideSolid(end * Point2{-2 * kAtSteps, 0})) return "";
     // Where stairs turn, the direction at their top is unknown.
     if (!is_top || distance(stairs.top, stairs.frame * Point2{stairs.length, 0}) < kAtSteps) {
-        const Environment& room = building.scenes[landing.storey]->environment;
         const double depth = depthOf(room, end, stairs.width, radius, deep);
         if (depth < deep - kAtSteps)
             return " has a landing too narrow on " + storey.id + ": " + lengthText(depth) +

@@ -64,6 +64,11 @@ TEST(LandingCheck, FindsWallsAcrossTheEndOfAFlight) {
     EXPECT_TRUE(across(2, 2, 6).empty()) << "over the steps, where one walks below it";
     EXPECT_TRUE(across(4, 4.6, 6).empty()) << "beside the steps";
     EXPECT_TRUE(across(5, 2, 6).empty()) << "a metre ahead";
+    // The steps as a body of the lower storey.
+    EXPECT_EQ(landings("[0, 0], [8, 0], [8, 6], [0, 6]], closed: yes}}, {cube: {at: [2, 2.5], "
+                       "size: [1.2, 3, 3]}}, {fence: {path: [[7, 5], [7.5, 5], [7.5, 5.5]",
+                       "at: [2, 1], size: [1.2, 3]"),
+              Messages());
 }
 
 TEST(LandingCheck, FindsCorridorsTooNarrowToPassThoseThatWait) {
