@@ -36,13 +36,6 @@ std::string unknownRule(const std::string& zone, bool is_of_doors, const Buildin
                          : "; the " + kind + "s of the building: " + list);
 }
 
-/// Splits `GLOB/ZONE`; without a slash all storeys are meant.
-std::pair<std::string, std::string> splitStorey(const std::string& zone) {
-    const std::size_t slash = zone.find('/');
-    if (slash == std::string::npos) return {"*", zone};
-    return {zone.substr(0, slash), zone.substr(slash + 1)};
-}
-
 bool hasZone(const Environment& room, const std::string& zone) {
     if (zone.starts_with(kDoorPrefix)) {
         const Glob doors(zone.substr(kDoorPrefix.size(), zone.rfind(',') - kDoorPrefix.size()));
@@ -63,14 +56,11 @@ std::vector<CameraRules> measureBuildingFacing(const BuildingScene& building,
                                                std::span<const FacingRule> rules) {
     std::vector<CameraRules> measured(building.scenes.size());
     for (const FacingRule& rule : rules) {
-        const auto [storeys, zone] = splitStorey(rule.zone);
-        const Glob named(storeys);
+        const auto [storeys, zone] = splitStoreys(building.document, "--facing", rule.zone);
         bool is_met = false;
-        for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        for (const std::size_t i : storeys) {
             const Scene& floor = *coverage.floors[i];
-            if (!named.matches(building.document.storeys[i].id) ||
-                !hasZone(floor.environment, zone))
-                continue;
+            if (!hasZone(floor.environment, zone)) continue;
             is_met = true;
             FacingRule own = rule;
             own.zone = zone;

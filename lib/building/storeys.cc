@@ -10,6 +10,7 @@
 #include "base/budget.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/glob.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
@@ -379,6 +380,24 @@ StoreyedDocument readBuilding(std::string_view bytes, const std::string& operand
     building.history = std::move(head.history);
     building.sources = std::move(sources);
     return building;
+}
+
+StoreyText splitStoreys(const StoreyedDocument& building, std::string_view option,
+                        const std::string& text) {
+    StoreyText split{{}, text};
+    const std::size_t slash = text.find('/');
+    const Glob named(slash == std::string::npos ? "*" : text.substr(0, slash));
+    if (slash != std::string::npos) split.text = text.substr(slash + 1);
+    for (std::size_t i = 0; i < building.storeys.size(); ++i)
+        if (named.matches(building.storeys[i].id)) split.storeys.push_back(i);
+    if (!split.storeys.empty()) return split;
+    try {
+        const Storey& one = building.storey(text.substr(0, slash));
+        split.storeys = {static_cast<std::size_t>(&one - building.storeys.data())};
+    } catch (const UsageError& error) {
+        throw UsageError(std::string(option) + ": " + error.what());
+    }
+    return split;
 }
 
 }  // namespace ispace

@@ -60,6 +60,17 @@ struct StoreyedDocument {
     [[nodiscard]] const Storey& storey(const std::string& called) const;
 };
 
+/// The storeys that a text is about, and the rest of it.
+struct StoreyText {
+    std::vector<std::size_t> storeys;
+    std::string text;
+};
+/// Splits `STOREY/TEXT`, where STOREY is the id or name of a storey, or a glob of ids; a text
+/// without a slash is about all storeys. \param option for messages \throws UsageError for a storey
+/// that does not exist
+StoreyText splitStoreys(const StoreyedDocument& building, std::string_view option,
+                        const std::string& text);
+
 /// Returns true for a building: records or YAML with a storey, a compiled building, or a site of
 /// Open-RMF. O(bytes), without reading files
 bool isBuilding(std::string_view bytes);

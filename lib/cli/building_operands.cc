@@ -291,42 +291,33 @@ std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
 
 namespace {
 
-/// Returns the storeys whose ids match a glob before a slash, and which have the doors behind it.
-/// \throws UsageError with the doors of all storeys if there are none
-std::vector<std::size_t> storeysWithDoors(const std::string& text, std::size_t slash,
+/// Returns those of these storeys which have the doors of a text. \throws UsageError with the doors
+/// of all storeys if there are none
+std::vector<std::size_t> storeysWithDoors(const std::string& text, const StoreyText& split,
                                           const BuildingScene& building) {
-    const StoreyedDocument& document = building.document;
-    const Glob named(text.substr(0, slash));
-    const std::string doors = text.substr(slash + 1);
+    const std::string& doors = split.text;
     const std::size_t comma = doors.rfind(',');
     // Without a distance it is no zone, as its reader says.
-    const std::string glob = comma == std::string::npos
-                                 ? "*"
-                                 : doors.substr(kDoorPrefix.size(), comma - kDoorPrefix.size());
-    const Glob wanted(glob);
+    const Glob wanted(comma == std::string::npos
+                          ? "*"
+                          : doors.substr(kDoorPrefix.size(), comma - kDoorPrefix.size()));
     std::vector<std::size_t> storeys;
-    std::string list;
-    bool is_named = false;
-    for (std::size_t i = 0; i < document.storeys.size(); ++i) {
-        const Environment& room = building.scenes[i]->environment;
-        const std::string& id = document.storeys[i].id;
-        if (const std::string its = doorList(room, id + '/'); !its.empty())
-            list += (list.empty() ? "" : ", ") + its;
-        if (!named.matches(id)) continue;
-        is_named = true;
-        const std::vector<Doorway> all = doorwaysOf(room);
+    for (const std::size_t storey : split.storeys) {
+        const std::vector<Doorway> all = doorwaysOf(building.scenes[storey]->environment);
         if (std::any_of(all.begin(), all.end(),
                         [&](const Doorway& door) { return wanted.matches(door.id); }))
-            storeys.push_back(i);
+            storeys.push_back(storey);
     }
-    if (!is_named)
-        static_cast<void>(
-            ofOption("--zone", [&] { return &document.storey(text.substr(0, slash)); }));
-    if (storeys.empty())
-        throw UsageError(
-            "--zone: " + excerpt(text) + " meets no door" +
-            (list.empty() ? ": the building has none" : "; the doors of the building: " + list));
-    return storeys;
+    if (!storeys.empty()) return storeys;
+    std::string list;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i)
+        if (const std::string its =
+                doorList(building.scenes[i]->environment, building.document.storeys[i].id + '/');
+            !its.empty())
+            list += (list.empty() ? "" : ", ") + its;
+    throw UsageError(
+        "--zone: " + excerpt(text) + " meets no door" +
+        (list.empty() ? ": the building has none" : "; the doors of the building: " + list));
 }
 
 }  // namespace
@@ -339,15 +330,11 @@ void addZones(std::span<const std::string> zones, BuildingScene& building) {
         if (slash == std::string::npos)
             throw UsageError("--zone: " + excerpt(text) + " names no storey, as in " +
                              document.storeys.front().id + "/rect:0,0,1,1");
-        if (text.substr(slash + 1).starts_with(kDoorPrefix)) {
-            for (const std::size_t storey : storeysWithDoors(text, slash, building))
-                by_storey[storey].push_back(text.substr(slash + 1));
-            continue;
-        }
-        const Storey* const storey =
-            ofOption("--zone", [&] { return &document.storey(text.substr(0, slash)); });
-        by_storey[static_cast<std::size_t>(storey - document.storeys.data())].push_back(
-            text.substr(slash + 1));
+        const StoreyText split = splitStoreys(document, "--zone", text);
+        for (const std::size_t storey : split.text.starts_with(kDoorPrefix)
+                                            ? storeysWithDoors(text, split, building)
+                                            : split.storeys)
+            by_storey[storey].push_back(split.text);
     }
     for (const auto& [storey, texts] : by_storey) {
         const Scene& scene = *building.scenes[storey];

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/glob.h"
 #include "base/message.h"
 #include "building/coupling.h"
 #include "cli/common_options.h"
@@ -92,47 +91,16 @@ void mustBeOneRoom(const SiteInput& input, const std::string& option) {
                          input.building->document.storeyList() + ')');
 }
 
-namespace {
-
-/// The rooms that a text is about.
-struct RoomsNamed {
-    std::vector<std::size_t> rooms;
-    std::string text;
-};
-
-RoomsNamed roomsNamed(const SiteInput& input, std::string_view option, const std::string& text) {
-    RoomsNamed named{{}, text};
-    const std::size_t slash = text.find('/');
-    if (slash == std::string::npos) {
-        if (text.starts_with("rect:") || text.starts_with("poly:"))
-            throw UsageError(std::string(option) + ": " + excerpt(text) +
-                             " names no storey, as in " + input.ids.front() + '/' + text);
-        for (std::size_t i = 0; i < input.rooms.size(); ++i) named.rooms.push_back(i);
-        return named;
-    }
-    const std::string storey = text.substr(0, slash);
-    named.text = text.substr(slash + 1);
-    const Glob glob(storey);
-    for (std::size_t i = 0; i < input.ids.size(); ++i)
-        if (glob.matches(input.ids[i])) named.rooms.push_back(i);
-    if (named.rooms.empty()) {
-        const StoreyedDocument& document = input.building->document;
-        const Storey* const one =
-            ofOption(std::string(option), [&] { return &document.storey(storey); });
-        named.rooms = {static_cast<std::size_t>(one - document.storeys.data())};
-    }
-    return named;
-}
-
-}  // namespace
-
 void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,
                    const std::function<void(std::size_t room, const std::string& text)>& read) {
     if (input.isOneRoom()) return read(0, text);
-    const RoomsNamed named = roomsNamed(input, option, text);
+    if (text.starts_with("rect:") || text.starts_with("poly:"))
+        throw UsageError(std::string(option) + ": " + excerpt(text) + " names no storey, as in " +
+                         input.ids.front() + '/' + text);
+    const StoreyText named = splitStoreys(input.building->document, option, text);
     std::string first;
     bool is_read = false;
-    for (const std::size_t room : named.rooms) {
+    for (const std::size_t room : named.storeys) {
         try {
             read(room, named.text);
             is_read = true;
@@ -143,7 +111,7 @@ void forEachRoomOf(const SiteInput& input, std::string_view option, const std::s
     }
     if (!is_read)
         throw UsageError(std::string(option) + ": " + first +
-                         (named.rooms.size() > 1 ? "; neither does it fit another storey" : ""));
+                         (named.storeys.size() > 1 ? "; neither does it fit another storey" : ""));
 }
 
 }  // namespace ispace
