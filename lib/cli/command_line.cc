@@ -345,6 +345,20 @@ void CommandLine::manyOperandsWith(const bool& flag) { data_->many = &flag; }
 
 bool CommandLine::given(const std::string& name) const { return data_->app.count(name) > 0; }
 
+std::vector<std::string> CommandLine::valuesOf(const std::string& name) const {
+    return given(name) ? data_->app.get_option(name)->results() : std::vector<std::string>{};
+}
+
+std::vector<std::string> CommandLine::names() const {
+    std::vector<std::string> names;
+    for (const Data::Entry& entry : data_->entries) {
+        const CLI::Option& option = *entry.option;
+        names.push_back(option.get_lnames().empty() ? '-' + option.get_snames().front()
+                                                    : "--" + option.get_lnames().front());
+    }
+    return names;
+}
+
 namespace {
 
 /// Converts -MD, -MF FILE and -MFFILE to names that CLI11 can parse.

@@ -103,6 +103,11 @@ class CommandLine {
 
     /// Returns true if the option ("--output") stood in the command line. \pre it is declared
     [[nodiscard]] bool given(const std::string& name) const;
+    /// Returns the values of an option as they were given; empty without it. \pre it is declared
+    [[nodiscard]] std::vector<std::string> valuesOf(const std::string& name) const;
+    /// Returns a name of each declared option, in their order: the first long one ("--output"),
+    /// else the short one.
+    [[nodiscard]] std::vector<std::string> names() const;
     /// Returns "arrange room.glb --sensor urg-04lx:1 --strategy wall" for the options given.
     [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const;
     /// Returns the words of a command line with the same result: the tool, the options that enter

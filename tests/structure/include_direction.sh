@@ -25,7 +25,7 @@ violations() {
         layer("io", "drawing"); layer("trace", "scene"); layer("sense", "trace drawing")
         layer("coverage", "sense"); layer("arrange", "coverage"); layer("report", "arrange io")
         layer("building", "report"); layer("sim", "sense"); layer("server", "sim"); layer("client", "")
-        layer("passage", "building sim"); layer("cli", "server passage")
+        layer("passage", "building sim"); layer("cli", "server passage"); layer("extensions", "cli")
         heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
         quiet = "(^|[^A-Za-z0-9_])(std::(cout|cerr|clog|cin)|(printf|fprintf|puts|fputs|putchar|" \
                 "perror|exit|_exit|quick_exit|abort|terminate|getenv|secure_getenv|setenv)[ ]*[(]|" \
@@ -134,6 +134,8 @@ expect lib/building/a.cc '#include "passage/lift.h"' yes
 expect lib/sim/a.cc '#include "passage/lift.h"' yes
 expect lib/server/a.cc '#include "passage/lift.h"' yes
 expect lib/passage/a.cc '#include "sim/world.h"' no
+expect lib/extensions/reality/a.cc '#include "cli/extension.h"' no
+expect lib/cli/a.cc '#include "extensions/reality/a.h"' yes
 expect lib/sim/a.h $'//\n// Private to lib/sim: parts\n#include "sim/a.h"' no
 expect lib/passage/a.h $'//\n// Private to lib/sim: parts\n#include "passage/a.h"' yes
 expect lib/nowhere/a.cc '#include <vector>' yes

@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
+#include "extensions.h"
 
 namespace ispace {
 
@@ -278,11 +279,15 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "draw the sites that arrange --trace wrote to this file on the map, coloured by "
               "their best value",
               Enters::Nothing);
+    ToolExtensions extensions(toolExtensions(), "coverage");
+    extensions.declare(line);
     addSceneRules(line, o.rules);
     addStoreyOption(line, o.rules, "default: all storeys");
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
     line.parse(argc, argv);
 
+    o.task = extensions.task(line, {o.common, o.rules, o.operands});
+    if (o.task) return o;
     o.history_line = line.historyLine(o.operands);
     if (const auto cells = words.cells.choice()) o.measure.cells = *cells;
     o.measure.max_work = o.rules.max_work;

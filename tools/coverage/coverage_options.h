@@ -7,6 +7,7 @@
 
 #include "cli/batch.h"
 #include "cli/common_options.h"
+#include "cli/extension.h"
 #include "cli/presence_ways.h"
 #include "cli/report_options.h"
 #include "coverage/camera_rules.h"
@@ -55,7 +56,8 @@ struct CoverageToolOptions {
     std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor seen by 0, 1, ... sensors
     SceneRules rules;
     std::string history_line;
-    ReportWords page;  ///< of --report and --material
+    ReportWords page;    ///< of --report and --material
+    ExtensionTask task;  ///< instead of a report; empty: none
 };
 
 /// Opens no file. \throws UsageError, TextRequested

@@ -188,7 +188,10 @@ void coverage(const CoverageToolOptions& options) {
 int main(int argc, char** argv) {
     return ispace::runTool("coverage", argc, argv, [](int count, char** words) {
         const auto options = ispace::parseCoverageOptions(count, words);
-        if (options.batch.list.empty())
+        if (options.task) {
+            limitThreads(options.common.threads);
+            options.task();
+        } else if (options.batch.list.empty())
             coverage(options);
         else
             ispace::measureList(options);

@@ -14,6 +14,7 @@
 #include "cli/common_options.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
+#include "extensions.h"
 #include "io/exporters.h"
 
 namespace ispace {
@@ -317,10 +318,14 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     addRoomOptions(line, options);
     line.group("Imports");
     addImportOptions(line, options.import);
+    ToolExtensions extensions(toolExtensions(), "envc");
+    extensions.declare(line);
     addSceneRules(line, options.rules);
     addCommonOptions(line, options.common, "write the product there (default: stdout)");
     line.parse(argc, argv);
 
+    options.task = extensions.task(line, {options.common, options.rules, options.inputs});
+    if (options.task) return options;
     if (options.inputs.empty()) options.inputs.emplace_back("-");
     if (options.import.units == "in") options.import.units = "inch";
     if (options.import.units == "ft") options.import.units = "foot";

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/common_options.h"
+#include "cli/extension.h"
 #include "io/exporters.h"
 #include "io/importers.h"
 #include "record/edit.h"
@@ -32,6 +33,7 @@ struct EnvcOptions {
     std::string rooms;        ///< "" or a word of --rooms
     std::vector<Edit> edits;  ///< in their order
     std::string history_line;
+    ExtensionTask task;  ///< instead of a product; empty: none
 };
 
 /// Opens no file. \throws UsageError, TextRequested

@@ -232,6 +232,7 @@ void envc(const EnvcOptions& options) {
     if (format != nullptr && !format->binary.empty())
         refuseTerminal(options.common.output, std::string(format->binary));
     limitThreads(options.common.threads);
+    if (options.task) return options.task();
     claimOutputs(options.common);
     if (format != nullptr) claimOutput(besideOf(options), std::string(format->beside_role));
     claimOutput(options.report, "--report");

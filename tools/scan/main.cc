@@ -132,6 +132,10 @@ void scanJob(const ScanCommand& command, const BatchJob& job, const CommonOption
 
 void scan(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
+    if (options.task) {
+        limitThreads(options.common.threads);
+        return options.task();
+    }
     if (!options.batch.list.empty())
         return runBatch(
             {"scan", options.common, options.batch, command.historyLine({}), "",

@@ -9,6 +9,7 @@
 #include "base/number.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
+#include "extensions.h"
 #include "sense/formats/reading_format.h"
 
 namespace ispace {
@@ -42,9 +43,12 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
           "scan", "[ENV] [LAYOUT]",
           "Simulate the readings of sensors: lasers, 3-D rangers, cameras, ultrasonic receivers. "
           "Without LAYOUT read it from stdin unless ENV holds sensors with a pose.") {
-    declare();
+    ToolExtensions extensions(toolExtensions(), "scan");
+    declare(extensions);
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;
+    o.task = extensions.task(line_, {o.common, o.rules, o.operands});
+    if (o.task) return;
     constexpr const char* kSingle[] = {"--view", "--run", "--list-models"};
     checkBatchOptions(line_, o.batch, o.common, o.operands, kSingle);
     if (!o.batch.list.empty() && o.poses == "-")
@@ -75,7 +79,7 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     check();
 }
 
-void ScanCommand::declare() {
+void ScanCommand::declare(ToolExtensions& extensions) {
     ScanToolOptions& o = options_;
     line_.example("scan room.env layout.3dm --noise -o readings.jsonl",
                   "a reading of each sensor, with the noise of its device");
@@ -140,6 +144,7 @@ void ScanCommand::declare() {
     declarePictures();
     line_.group("Views instead of readings");
     addViewOptions(line_, o.view);
+    extensions.declare(line_);
     line_.group("Jobs");
     addBatchOptions(line_, o.batch, "of its readings");
     line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",

@@ -8,6 +8,7 @@
 #include "cli/batch.h"
 #include "cli/command_line.h"
 #include "cli/common_options.h"
+#include "cli/extension.h"
 #include "scan/scan_views.h"
 #include "sense/formats/mcap_writer.h"
 #include "sense/formats/point_cloud.h"
@@ -40,6 +41,7 @@ struct ScanToolOptions {
     BatchOptions batch;
     bool list_models = false;
     SceneRules rules;
+    ExtensionTask task;  ///< instead of readings; empty: none
 };
 
 class ScanCommand : public ToolCommand<ScanToolOptions> {
@@ -51,7 +53,7 @@ class ScanCommand : public ToolCommand<ScanToolOptions> {
     void checkSensors(const std::vector<Sensor>& read) const;
 
   private:
-    void declare();
+    void declare(ToolExtensions& extensions);
     void declarePictures();
     void check();
     void checkViews() const;

@@ -140,6 +140,7 @@ void run(const SimrunCommand& command, JunitFile& junit) {
 void simrun(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     limitThreads(options.common.threads);
+    if (options.task) return options.task();
     claimFiles(options);
     JunitFile junit("simrun", options.junit);
     junit.during(options.operands, [&] {

@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
+#include "extensions.h"
 #include "report/view/film.h"
 #include "simrun/simrun_record.h"
 
@@ -55,6 +56,8 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     declareJudgement();
     line_.group("The server");
     declareServer();
+    ToolExtensions extensions(toolExtensions(), "simrun");
+    extensions.declare(line_);
     addSceneRules(line_, options_.rules);
     addStoreyOption(line_, options_.rules, "default: all storeys");
     addCommonOptions(
@@ -62,6 +65,8 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "
         ".pdf) or a film (.y4m, .gif; a folder or a pattern with %d for pictures)");
     line_.parse(argc, argv);
+    options_.task = extensions.task(line_, {options_.common, options_.rules, options_.operands});
+    if (options_.task) return;
     takeExpectations();
     checkReplay();
     takeDrawing();

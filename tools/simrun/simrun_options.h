@@ -9,6 +9,7 @@
 
 #include "cli/command_line.h"
 #include "cli/common_options.h"
+#include "cli/extension.h"
 #include "server/device/wire_session.h"
 #include "server/server.h"
 #include "sim/expect.h"
@@ -94,6 +95,7 @@ struct SimrunOptions {
     std::string load_folder;  ///< "": that of the scene
     ServerLimits limits;
     DevicePortOptions devices;
+    ExtensionTask task;  ///< instead of a run; empty: none
 };
 
 /// Parses the value of a time option. \throws UsageError outside [least, most]

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "cli/extension.h"
+
+namespace ispace {
+
+/// Returns the extensions that this build has, of all tools.
+std::span<const ToolExtension> toolExtensions();
+
+}  // namespace ispace
