@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/batch.h"
 
-#include <tbb/global_control.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
-#include <tbb/task_group.h>
-
 #include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <system_error>
@@ -22,6 +18,7 @@
 #include "base/part_file.h"
 #include "base/run_files.h"
 #include "cli/batch_cache.h"
+#include "cli/job_loop.h"
 #include "cli/kept_rooms.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
@@ -159,35 +156,6 @@ std::vector<BatchJob> readBatchList(std::string_view bytes, const std::string& n
     }
     if (jobs.empty()) throw FormatError({name, 0, 0, "no job found, wanted lines `ENV [LAYOUT]`"});
     return jobs;
-}
-
-void runInOrder(std::size_t count, const std::function<std::function<void()>(std::size_t)>& work) {
-    std::size_t next = 0;
-    const auto number = [&](tbb::flow_control& control) -> std::size_t {
-        if (next < count) return next++;
-        control.stop();
-        return 0;
-    };
-    // A thread that waits within a job does not begin another one. An error of one job cancels the
-    // pipeline, but not the loops of jobs that still run: these would go on with half of a result.
-    const auto run = [&](std::size_t i) {
-        return tbb::this_task_arena::isolate([&] {
-            tbb::task_group_context apart(tbb::task_group_context::isolated);
-            tbb::task_group group(apart);
-            std::function<void()> result;
-            group.run_and_wait([&] { result = work(i); });
-            return result;
-        });
-    };
-    const auto deliver = [](const std::function<void()>& result) { result(); };
-    const std::size_t threads =
-        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    tbb::parallel_pipeline(
-        2 * threads,
-        tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, number) &
-            tbb::make_filter<std::size_t, std::function<void()>>(tbb::filter_mode::parallel, run) &
-            tbb::make_filter<std::function<void()>, void>(tbb::filter_mode::serial_in_order,
-                                                          deliver));
 }
 
 namespace {
@@ -356,16 +324,37 @@ class BatchWriter {
     std::size_t failed_ = 0, unmet_ = 0;
 };
 
-/// Keeps the rooms that several of these jobs name.
-void keepSharedRooms(std::span<const BatchJob> jobs) {
-    std::map<std::string_view, int> counts;
-    std::vector<std::string> shared;
-    for (const BatchJob& job : jobs)
-        for (const std::string& file : job.operands)
-            if (++counts[file] == 2 && !file.ends_with(".3dm")) shared.push_back(file);
-    if (shared.size() > kMostKeptRooms) shared.resize(kMostKeptRooms);
-    keepRooms(shared);
-}
+/// Decides for the jobs of a list which of their rooms are kept: those that a later job names as
+/// well. If they are more than can be kept, that job must be near.
+class SharedRooms {
+  public:
+    explicit SharedRooms(std::span<const BatchJob> jobs) : jobs_(jobs), next_(jobs.size()) {
+        std::map<std::string_view, std::size_t> last;
+        std::set<std::string_view> shared;
+        for (std::size_t i = jobs.size(); i-- > 0;)
+            for (const std::string& file : jobs[i].operands) {
+                const auto [found, is_new] = last.try_emplace(file, i);
+                next_[i].push_back(is_new ? kNever : found->second - i);
+                if (!is_new && !file.ends_with(".3dm")) shared.insert(file);
+                found->second = i;
+            }
+        reach_ = shared.size() > kMostKeptRooms ? kMostKeptRooms : kNever - 1;
+    }
+
+    [[nodiscard]] std::vector<std::string> of(std::size_t job) const {
+        std::vector<std::string> rooms;
+        for (std::size_t k = 0; k < next_[job].size(); ++k)
+            if (next_[job][k] <= reach_) rooms.push_back(jobs_[job].operands[k]);
+        return rooms;
+    }
+
+  private:
+    static constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
+
+    std::span<const BatchJob> jobs_;
+    std::vector<std::vector<std::size_t>> next_;  // lines to the next job with the same operand
+    std::size_t reach_ = 0;
+};
 
 /// Returns the identity of a list's results. \param list its bytes
 JobId idOf(const BatchRun& run, const std::string& list, std::size_t jobs) {
@@ -400,19 +389,31 @@ void runShare(const BatchRun& run, const JobWork& work, JunitFile& junit) {
         return cache ? cache->outcomeOf(job, compute) : compute();
     };
     BatchWriter writer(run);
-    // Jobs that were done before read no room.
-    if (!results && !cache) keepSharedRooms(own);
+    const SharedRooms shared(own);
     const auto progress = makeProgress(run.tool, run.common.progress, run.common.quiet);
     progress->begin("scenes", std::ssize(own));
-    runInOrder(own.size(), [&](std::size_t i) {
-        const std::string key = std::to_string(own[i].line);
-        const auto done = results ? results->find(key) : std::nullopt;
-        return [&, i, key, is_new = !done,
-                outcome = done ? JobOutcome::fromBytes(*done) : outcome_of(own[i])] {
-            if (results && is_new) results->store(key, outcome.bytes());
-            writer.take(own[i], outcome);
-            progress->advance(1);
-        };
+    const auto deliver = [&](const BatchJob& job, const JobOutcome& outcome) {
+        writer.take(job, outcome);
+        progress->advance(1);
+    };
+    std::size_t next = 0;
+    runJobs(LoopThreads::All, [&]() -> std::optional<LoopJob> {
+        if (next == own.size()) return std::nullopt;
+        const std::size_t number = next++;
+        const BatchJob& job = own[number];
+        const std::string key = std::to_string(job.line);
+        if (const auto done = results ? results->find(key) : std::nullopt)
+            return LoopJob{.work = [&, outcome = JobOutcome::fromBytes(*done)] {
+                return [&, outcome] { deliver(job, outcome); };
+            }};
+        // The cache may know the result; then no room is read.
+        return LoopJob{.rooms = cache ? std::vector<std::string>() : shared.of(number),
+                       .work = [&, key] {
+                           return [&, key, outcome = outcome_of(job)] {
+                               if (results) results->store(key, outcome.bytes());
+                               deliver(job, outcome);
+                           };
+                       }};
     });
     progress->end();
     writer.commit(junit);

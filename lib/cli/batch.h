@@ -63,12 +63,6 @@ struct BatchJob {
 /// O(bytes) \throws FormatError for bytes that are no text, and for a list without a job
 std::vector<BatchJob> readBatchList(std::string_view bytes, const std::string& name);
 
-/// Calls work(i) for all i below `count` on all threads, and the functions that it returns one
-/// after the other in order. Each thread holds at most two waiting results, so that memory does not
-/// grow with `count`. Parallel loops in `work` stay within it. An exception of either function ends
-/// the run and is rethrown.
-void runInOrder(std::size_t count, const std::function<std::function<void()>(std::size_t)>& work);
-
 /// Result of one job of a list.
 struct JobOutcome {
     std::string line = {};                  ///< of JSON; "": the job failed
@@ -107,8 +101,8 @@ using JobWork =
 JsonWriter jobLine(const std::string& tool, const BatchJob& job);
 
 /// Does all jobs of a list, or the share of a shard, on all threads, and writes their lines in its
-/// order: to stdout if there are products, else to the output. A room that several of them name is
-/// read once, as by the jobs of `--serve-jobs` (see cli/kept_rooms.h).
+/// order: to stdout if there are products, else to the output. The jobs of sweeps run in the same
+/// loop (cli/job_loop.h); a room that several jobs name is read once.
 /// \throws UnmetError if one missed a requirement, FormatError if one failed; both after the last
 /// job; UsageError for equal names of products and for a product that is an operand
 void runBatch(const BatchRun& run, const JobWork& work);

@@ -2,15 +2,8 @@
 #include "cli/batch.h"
 
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
-
-#include <atomic>
-#include <chrono>
-#include <stdexcept>
-#include <thread>
 
 #include "base/error.h"
-#include "cli/common_options.h"
 
 namespace ispace {
 namespace {
@@ -71,67 +64,6 @@ TEST(JobOutcome, IsReadBackFromItsBytes) {
     EXPECT_EQ(back.verdicts[1].name, "list:1 b");
     for (std::size_t size = 0; size < bytes.size(); ++size)
         EXPECT_THROW(JobOutcome::fromBytes(std::string_view(bytes).substr(0, size)), FormatError);
-}
-
-TEST(RunInOrder, DeliversInOrderAndFewAtATime) {
-    for (const int threads : {1, 2, 8}) {
-        limitThreads(threads);
-        std::atomic<int> waiting = 0, most = 0;
-        std::vector<std::size_t> order;
-        runInOrder(500, [&](std::size_t i) -> std::function<void()> {
-            const int now = ++waiting;
-            for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
-            }
-            return [&, i] {
-                --waiting;
-                order.push_back(i);
-            };
-        });
-        ASSERT_EQ(order.size(), 500U);
-        for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], i);
-        EXPECT_LE(most, 2 * threads);
-    }
-}
-
-TEST(RunInOrder, EndsWithWhatIsThrown) {
-    std::size_t delivered = 0;
-    const auto work = [&](std::size_t i) -> std::function<void()> {
-        if (i == 7) throw std::runtime_error("seven");
-        return [&] { ++delivered; };
-    };
-    EXPECT_THROW(runInOrder(1000, work), std::runtime_error);
-    EXPECT_LT(delivered, 1000U);
-    runInOrder(0, work);
-    EXPECT_THROW(runInOrder(3,
-                            [](std::size_t) -> std::function<void()> {
-                                return [] { throw std::runtime_error("full disk"); };
-                            }),
-                 std::runtime_error);
-}
-
-TEST(RunInOrder, AnErrorLeavesOtherJobsWhole) {
-    limitThreads(2);
-    std::atomic<bool> has_begun = false, has_thrown = false;
-    std::atomic<int> done = 0;
-    const auto wait_for = [](const std::atomic<bool>& event) {
-        for (int k = 0; k < 2000 && !event; ++k)
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    };
-    const auto work = [&](std::size_t i) -> std::function<void()> {
-        if (i == 0)
-            return [&] {
-                wait_for(has_begun);
-                has_thrown = true;
-                throw std::runtime_error("full disk");
-            };
-        has_begun = true;
-        wait_for(has_thrown);
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        tbb::parallel_for(0, 1000, [&](int) { ++done; });
-        return [] {};
-    };
-    EXPECT_THROW(runInOrder(2, work), std::runtime_error);
-    EXPECT_EQ(done, has_begun ? 1000 : 0);
 }
 
 }  // namespace

@@ -15,11 +15,12 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "cli/common_options.h"
-#include "cli/kept_rooms.h"
+#include "cli/job_loop.h"
 #include "cli/run_tool.h"
 
 namespace ispace {
@@ -123,17 +124,38 @@ int work(std::string tool, Job job, const std::function<void(int, char**)>& body
     return runTool(tool, [&] { body(static_cast<int>(argv.size()) - 1, argv.data()); });
 }
 
-int serve(const std::string& tool, const std::function<void(int, char**)>& body) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    std::signal(SIGCHLD, SIG_DFL);
-    static_cast<void>(shippedDevices());  // which most jobs want
-    bool is_alone = hasOneThread();
-    while (std::optional<Job> job = nextJob()) {
-        if (::chdir(job->folder.c_str()) != 0) fail(job->folder);
-        if (is_alone) {
-            keepRooms(job->words);
-            is_alone = hasOneThread();
-        }
+void answer(int status) {
+    const std::string line = std::to_string(status) + '\n';
+    if (::write(STDOUT_FILENO, line.data(), line.size()) != std::ssize(line)) fail("stdout");
+}
+
+/// The process that reads requests and forks for each; a child returns with its status.
+class JobServer {
+  public:
+    JobServer(std::string tool, const std::function<void(int, char**)>& body)
+        : tool_(std::move(tool)), body_(body) {
+        ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+        std::signal(SIGCHLD, SIG_DFL);
+        static_cast<void>(shippedDevices());  // which most jobs want
+    }
+
+    int run() {
+        runJobs(LoopThreads::One, [this]() -> std::optional<LoopJob> {
+            std::optional<Job> job = nextJob();
+            if (!job) return std::nullopt;
+            if (::chdir(job->folder.c_str()) != 0) fail(job->folder);
+            is_alone_ = hasOneThread();
+            // A copy of a process with threads begins anew, and has no room.
+            std::vector<std::string> rooms = is_alone_ ? job->words : std::vector<std::string>();
+            return LoopJob{std::move(rooms), [this, job = *std::move(job)] { return fork(job); }};
+        });
+        return status_;
+    }
+
+  private:
+    /// Does a job in a child. \return the delivery of its status; in the child, after its job, none
+    std::function<void()> fork(const Job& job) {
+        is_alone_ = is_alone_ && hasOneThread();
         const pid_t server = ::getpid();
         const pid_t child = ::fork();
         if (child < 0) fail("a job");
@@ -141,16 +163,19 @@ int serve(const std::string& tool, const std::function<void(int, char**)>& body)
             ::prctl(PR_SET_PDEATHSIG, SIGKILL);
             if (::getppid() != server) ::_exit(1);
             redirect(STDIN_FILENO, "");
-            redirect(STDOUT_FILENO, job->output);
-            redirect(STDERR_FILENO, job->errors);
-            return work(tool, *std::move(job), body, is_alone);
+            redirect(STDOUT_FILENO, job.output);
+            redirect(STDERR_FILENO, job.errors);
+            status_ = work(tool_, job, body_, is_alone_);
+            return {};
         }
-        const std::string answer = std::to_string(statusOf(child)) + '\n';
-        if (::write(STDOUT_FILENO, answer.data(), answer.size()) != std::ssize(answer))
-            fail("stdout");
+        return [status = statusOf(child)] { answer(status); };
     }
-    return 0;
-}
+
+    std::string tool_;
+    const std::function<void(int, char**)>& body_;
+    bool is_alone_ = true;
+    int status_ = 0;
+};
 
 }  // namespace
 
@@ -158,7 +183,7 @@ int runTool(const std::string& tool, int argc, char** argv,
             const std::function<void(int, char**)>& body) {
     if (argc != 2 || argv[1] != kServe) return runTool(tool, [&] { body(argc, argv); });
     int status = 0;
-    const int failed = runTool(tool, [&] { status = serve(tool, body); });
+    const int failed = runTool(tool, [&] { status = JobServer(tool, body).run(); });
     return failed != 0 ? failed : status;
 }
 

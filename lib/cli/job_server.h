@@ -8,9 +8,9 @@ namespace ispace {
 
 /// Runs a tool as runTool() does, with its command line. As `TOOL --serve-jobs` the process reads
 /// command lines from stdin instead, and works off each in a copy of itself: ispace-sweep runs
-/// thousands of short jobs so, which begin without loading a program and share the rooms that their
-/// operands name (see keepRooms()). A job has its own memory, folder and status, as if it had been
-/// started alone, and its output is the same.
+/// thousands of short jobs so, which begin without loading a program. They run in the loop of lists
+/// (cli/job_loop.h) and share the rooms that their operands name. A job has its own memory, folder
+/// and status, as if it had been started alone, and its output is the same.
 ///
 /// A request is a number and a newline, then that many bytes: the job's folder, its files for
 /// stdout and stderr ("" discards) and its words without the tool, each ended by NUL. The answer on

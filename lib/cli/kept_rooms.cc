@@ -2,10 +2,11 @@
 #include "cli/kept_rooms.h"
 
 #include <sys/stat.h>
-#include <tbb/global_control.h>
 #include <algorithm>
 #include <cstdint>
 #include <exception>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -32,10 +33,15 @@ std::optional<Stamp> stampOf(const std::string& file) {
     return Stamp(info.st_dev, info.st_ino, info.st_size, info.st_mtim.tv_sec, info.st_mtim.tv_nsec);
 }
 
+/// A room that is kept, or a file that is not to be kept.
 struct Entry {
-    std::string file;
-    std::vector<std::pair<std::string, Stamp>> stamps;
-    std::optional<KeptRoom> room;  // empty: not to be kept
+    explicit Entry(std::string name) : file(std::move(name)) {}
+
+    const std::string file;
+    std::mutex mutex = {};  // of all below
+    bool is_read = false;
+    std::vector<std::pair<std::string, Stamp>> stamps = {};
+    std::shared_ptr<const KeptRoom> room = nullptr;
 
     [[nodiscard]] bool isCurrent() const {
         return std::all_of(stamps.begin(), stamps.end(),
@@ -43,9 +49,32 @@ struct Entry {
     }
 };
 
-/// The last one used comes first.
-std::vector<Entry>& entries() {
-    static std::vector<Entry> entries;
+/// The last entries, the one used last first. Thread-safe.
+class Entries {
+  public:
+    /// \param make whether a missing entry is made; else it is null
+    std::shared_ptr<Entry> find(const std::string& file, bool make) {
+        const std::lock_guard lock(mutex_);
+        const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                        [&](const auto& entry) { return entry->file == file; });
+        if (found != entries_.end()) {
+            std::rotate(entries_.begin(), found, found + 1);
+        } else if (make) {
+            if (entries_.size() == kMostKeptRooms) entries_.pop_back();
+            entries_.insert(entries_.begin(), std::make_shared<Entry>(file));
+        } else {
+            return nullptr;
+        }
+        return entries_.front();
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<std::shared_ptr<Entry>> entries_;
+};
+
+Entries& entries() {
+    static Entries entries;
     return entries;
 }
 
@@ -67,37 +96,36 @@ std::optional<KeptRoom> roomIn(const std::string& file) {
     return KeptRoom{*std::move(document), std::move(report), std::move(scene)};
 }
 
-void keepRoom(const std::string& file) {
-    std::vector<Entry>& kept = entries();
-    const auto found = std::find_if(kept.begin(), kept.end(),
-                                    [&](const Entry& entry) { return entry.file == file; });
-    if (found != kept.end() && found->isCurrent()) {
-        std::rotate(kept.begin(), found, found + 1);
-        return;
-    }
-    if (found != kept.end()) kept.erase(found);
-    const auto stamp = stampOf(file);
+/// Reads the room of an entry. \pre its mutex is held
+void readRoom(Entry& entry) {
+    entry.room = nullptr;
+    entry.stamps.clear();
+    const auto stamp = stampOf(entry.file);
     if (!stamp) return;
-    Entry entry{file, {{file, *stamp}}, std::nullopt};
+    entry.stamps.emplace_back(entry.file, *stamp);
     try {
-        const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
         const MissedFiles missed;
-        entry.room = roomIn(file);
+        std::optional<KeptRoom> room = roomIn(entry.file);
         // One that appears later may belong to the room.
-        if (!missed.names().empty()) entry.room = std::nullopt;
-    } catch (const std::exception&) {
-        entry.room = std::nullopt;
-    }
-    if (entry.room)
-        for (const std::string& source : entry.room->document.sources) {
-            if (const auto made = stampOf(source))
-                entry.stamps.emplace_back(source, *made);
-            else
-                entry.room.reset();
-            if (!entry.room) break;
+        if (!room || !missed.names().empty()) return;
+        for (const std::string& source : room->document.sources) {
+            const auto made = stampOf(source);
+            if (!made) return;
+            entry.stamps.emplace_back(source, *made);
         }
-    if (kept.size() == kMostKeptRooms) kept.pop_back();
-    kept.insert(kept.begin(), std::move(entry));
+        entry.room = std::make_shared<const KeptRoom>(*std::move(room));
+    } catch (const std::exception&) {
+        entry.room = nullptr;  // the job reports it
+    }
+}
+
+void keepRoom(const std::string& file) {
+    if (!stampOf(file)) return;
+    const std::shared_ptr<Entry> entry = entries().find(file, true);
+    const std::lock_guard lock(entry->mutex);
+    if (entry->is_read && entry->isCurrent()) return;
+    readRoom(*entry);
+    entry->is_read = true;
 }
 
 }  // namespace
@@ -107,16 +135,15 @@ void keepRooms(std::span<const std::string> operands) {
         if (!file.empty() && file.front() != '-' && !file.ends_with(".3dm")) keepRoom(file);
 }
 
-const KeptRoom* keptRoom(const std::string& file, const SceneRules& rules) {
-    if (entries().empty() || rules.includes != IncludeFiles::InFolder || rules.max_work ||
-        !rules.storey.empty())
+std::shared_ptr<const KeptRoom> keptRoom(const std::string& file, const SceneRules& rules) {
+    if (rules.includes != IncludeFiles::InFolder || rules.max_work || !rules.storey.empty())
         return nullptr;
-    for (const Entry& entry : entries()) {
-        if (entry.file != file || !entry.room || !entry.isCurrent()) continue;
-        for (const auto& [source, stamp] : entry.stamps) noteInput(source);
-        return &*entry.room;
-    }
-    return nullptr;
+    const std::shared_ptr<Entry> entry = entries().find(file, false);
+    if (entry == nullptr) return nullptr;
+    const std::lock_guard lock(entry->mutex);
+    if (!entry->room || !entry->isCurrent()) return nullptr;
+    for (const auto& [source, stamp] : entry->stamps) noteInput(source);
+    return entry->room;
 }
 
 }  // namespace ispace

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/cli: rooms that a process reads once for many jobs, those of a list (cli/batch.h)
-// and those that it forks (cli/job_server.h).
+// Private to lib/cli: rooms that a process reads once for many jobs (see cli/job_loop.h).
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -27,13 +27,13 @@ constexpr std::size_t kMostKeptRooms = 16;
 /// Reads the rooms among operands of a command, so that keptRoom() of this process and those that
 /// it forks returns them until one of their files changes. Skips layouts, which differ from job to
 /// job, options, and files that are no room, hold a building, look for files in vain, or cannot be
-/// read: the job that reads those reports it. In one thread, and starts no other; keptRoom() must
-/// not be called meanwhile. \param operands will have the same names and current folder
+/// read: the job that reads those reports it. Thread-safe; threads that want the same room wait for
+/// one that reads it. \param operands will have the same names and current folder
 void keepRooms(std::span<const std::string> operands);
 
-/// Returns the kept room, or null; in any thread. Costs a stat() of each of its files. Like a
-/// reader, it notes them as inputs, which the job cannot overwrite. \param rules those of the
-/// reader; rooms are kept for the default ones alone
-const KeptRoom* keptRoom(const std::string& file, const SceneRules& rules);
+/// Returns the kept room, or null. Thread-safe. Costs a stat() of each of its files. Like a reader,
+/// it notes them as inputs, which the job cannot overwrite. \param rules those of the reader; rooms
+/// are kept for the default ones alone
+std::shared_ptr<const KeptRoom> keptRoom(const std::string& file, const SceneRules& rules);
 
 }  // namespace ispace

@@ -3,6 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_files.h"
@@ -30,7 +36,7 @@ TEST_F(KeptRoomsTest, KeepsRoomsUntilTheyChange) {
                       missing = folder_.file("none");
     EXPECT_EQ(keptRoom(room, {}), nullptr);
     keepRooms(std::vector<std::string>{"-q", "", missing, broken, layout, room});
-    const KeptRoom* const kept = keptRoom(room, {});
+    const auto kept = keptRoom(room, {});
     ASSERT_NE(kept, nullptr);
     EXPECT_EQ(kept->document.kind, DocumentKind::Environment);
     for (const std::string& other : {layout, broken, missing, std::string("-q")})
@@ -50,21 +56,60 @@ TEST_F(KeptRoomsTest, AreInputsOfTheJob) {
     EXPECT_THROW(claimOutput(room, "--output"), UsageError);
 }
 
-/// Of a list the rooms that two lines name are kept, and no others.
-TEST_F(KeptRoomsTest, OfAList) {
+TEST_F(KeptRoomsTest, ThreadsReadARoomOnce) {
+    const std::string room = file("room.env", kRoom);
+    std::vector<std::shared_ptr<const KeptRoom>> kept(8);
+    std::vector<std::thread> threads;
+    for (auto& found : kept)
+        threads.emplace_back([&] {
+            keepRooms({&room, 1});
+            found = keptRoom(room, {});
+        });
+    for (std::thread& thread : threads) thread.join();
+    ASSERT_NE(kept.front(), nullptr);
+    for (const auto& found : kept) EXPECT_EQ(found, kept.front());
+}
+
+class KeptRoomsOfAListTest : public KeptRoomsTest {
+  protected:
+    /// Runs a job for each line; returns for each whether its room was kept.
+    std::string keptBy(const std::string& lines) {
+        BatchRun run;
+        run.tool = run.command = "scan";
+        run.batch.list = file("list", lines);
+        run.common.quiet = true;
+        run.common.threads = 1;
+        run.common.output = folder_.file("out");
+        runBatch(run, [](const BatchJob& job, const CommonOptions&, JobOutcome& outcome) {
+            outcome.line = keptRoom(job.operands.front(), {}) ? "kept\n" : "read\n";
+        });
+        return readAll(folder_.file("out"));
+    }
+};
+
+/// The rooms that two lines name are kept, and no others.
+TEST_F(KeptRoomsOfAListTest, AreThoseOfSeveralLines) {
     const std::string twice = file("twice.env", kRoom), once = file("once.env", kRoom);
-    const std::string list =
-        file("list", twice + " a.3dm\n" + once + " a.3dm\n" + twice + " b.3dm\n");
-    BatchRun run;
-    run.tool = run.command = "scan";
-    run.batch.list = list;
-    run.common.quiet = true;
-    run.common.output = folder_.file("out");
-    runBatch(run, [&](const BatchJob& job, const CommonOptions&, JobOutcome& outcome) {
-        const bool is_kept = keptRoom(job.operands.front(), {}) != nullptr;
-        outcome.line = is_kept ? "kept\n" : "read\n";
-    });
-    EXPECT_EQ(readAll(folder_.file("out")), "kept\nread\nkept\n");
+    EXPECT_EQ(keptBy(twice + " a.3dm\n" + once + " a.3dm\n" + twice + " b.3dm\n"),
+              "kept\nread\nkept\n");
+}
+
+/// Of more rooms than can be kept, each is kept for the lines that follow one another.
+TEST_F(KeptRoomsOfAListTest, MoreThanCanBeKept) {
+    std::string near, far, all_kept, all_read;
+    for (std::size_t i = 0; i < kMostKeptRooms + 4; ++i) {
+        const std::string room = file("room" + std::to_string(i) + ".env", kRoom);
+        near += room + " a.3dm\n" + room + " b.3dm\n";
+        far += room + " a.3dm\n";
+        all_kept += "kept\nkept\n";
+        all_read += "read\nread\n";
+    }
+    EXPECT_EQ(keptBy(near), all_kept);
+    for (std::size_t i = 0; i < kMostKeptRooms + 4; ++i)  // others, none of which is kept yet
+        far.replace(far.find("/room" + std::to_string(i) + ".env"), 5, "/rome");
+    for (std::size_t i = 0; i < kMostKeptRooms + 4; ++i)
+        file("rome" + std::to_string(i) + ".env", kRoom);
+    EXPECT_EQ(keptBy(far + far), all_read);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -174,7 +175,7 @@ class OperandReader {
 
   private:
     Document readOperand(const std::string& operand) {
-        if (const KeptRoom* const kept = keptRoom(operand, request_.rules)) {
+        if (const auto kept = keptRoom(operand, request_.rules)) {
             kept_ = kept;
             report_.choices.insert(report_.choices.end(), kept->report.choices.begin(),
                                    kept->report.choices.end());
@@ -252,8 +253,8 @@ class OperandReader {
     std::string environment_operand_, layout_operand_;
     std::vector<std::string> named_;
     ImportReport report_;
-    std::optional<StoreyedDocument> building_;  // of which the environment is a storey
-    const KeptRoom* kept_ = nullptr;            // the environment, if it was read before
+    std::optional<StoreyedDocument> building_;   // of which the environment is a storey
+    std::shared_ptr<const KeptRoom> kept_ = {};  // the environment, if it was read before
 };
 
 }  // namespace
