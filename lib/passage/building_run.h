@@ -95,6 +95,7 @@ class BuildingRun final : public JoinedWorlds {
     /// A flight of stairs is at the height of the storey below it.
     [[nodiscard]] RoomFrame frameOf(std::size_t room) const override;
     [[nodiscard]] std::vector<PassageOutline> passageOutlines(std::size_t room) const override;
+    [[nodiscard]] std::vector<PlannedWay> plannedWays(std::size_t room) const override;
     TripAnswer travel(const std::string& mover, TripPlan plan) override;
     TripAnswer ride(const std::string& mover, std::string_view lift,
                     std::string_view storey) override;

@@ -51,6 +51,12 @@ enum class TripState {
     Turning   ///< to the heading of the plan, at its last point
 };
 
+/// A way over a storey after a passage of a trip.
+struct StoreySection {
+    std::size_t storey = 0;
+    std::vector<Point2> points;
+};
+
 struct BuildingTrip {
     int command = 0;
     TripPlan plan;
@@ -66,10 +72,13 @@ struct BuildingTrip {
     std::optional<Point2> spot;  ///< reserved, in the frame of the storey
     /// Once it is out of lifts and stairs, it clears the landing and ends so.
     std::optional<Outcome> ending;
-    std::optional<RoomPoint> given_up;  ///< the goal at that moment
-    std::optional<SimTime> blocked;     ///< since when others occupy its landing
-    std::optional<SimTime> asked;       ///< when it last asked them to step aside
-    SimTime queued{};                   ///< since when it waits for a passage
+    std::optional<RoomPoint> given_up;   ///< the goal at that moment
+    std::optional<SimTime> blocked;      ///< since when others occupy its landing
+    std::optional<SimTime> asked;        ///< when it last asked them to step aside
+    SimTime queued{};                    ///< since when it waits for a passage
+    std::vector<StoreySection> planned;  ///< after the passages of `planned_legs`
+    std::vector<Leg> planned_legs;
+    std::size_t planned_goal = 0;
 };
 
 /// A mover with walk=wander.
@@ -151,6 +160,9 @@ struct BuildingRun::Data {
     void arriveAtGoal(Traveller& who, BuildingTrip& trip);
     bool turnAtGoal(Traveller& who, BuildingTrip& trip);
     void goToNextGoal(Traveller& who, BuildingTrip& trip);
+    /// Returns the ways after the passages of its legs, which it computes once for each goal.
+    [[nodiscard]] const std::vector<StoreySection>& sectionsOf(const Traveller& who,
+                                                               BuildingTrip& trip) const;
     [[nodiscard]] bool isNearLanding(const Traveller& who, const BuildingTrip& trip) const;
     void climb(Traveller& who, BuildingTrip& trip);
     void leaveCabin(Traveller& who, BuildingTrip& trip);

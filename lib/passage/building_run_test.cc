@@ -52,6 +52,34 @@ TEST(BuildingRun, ARobotTakesTheLift) {
     EXPECT_NEAR(distance(poseOf(run, "ground/r1").position, Point2{9, 6}), 0, 0.02);
 }
 
+TEST(BuildingRun, ATripTellsItsWaysOnOtherStoreys) {
+    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    BuildingRun run(building, optionsOf());
+    EXPECT_TRUE(run.plannedWays(1).empty());
+    ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
+    step(run);
+    EXPECT_TRUE(run.plannedWays(0).empty());
+    EXPECT_TRUE(run.plannedWays(2).empty());
+    std::vector<PlannedWay> ways = run.plannedWays(1);
+    ASSERT_EQ(ways.size(), 1U);
+    EXPECT_EQ(ways[0].mover, "ground/r1");
+    ASSERT_GE(ways[0].points.size(), 2U);
+    EXPECT_EQ(ways[0].points.back(), (Point2{9, 6}));
+    const auto index = run.world(0).moverNamed("ground/r1").value();
+    EXPECT_FALSE(run.world(0).wayAhead(index).empty()) << "the way to the lift";
+    bool was_upstairs = false;
+    const auto end = await(run, "ground/r1", 120, [&] {
+        if (run.roomOf("ground/r1") != 1U) return;
+        ways = run.plannedWays(1);
+        was_upstairs |=
+            !run.world(1).wayAhead(run.world(1).moverNamed("ground/r1").value()).empty();
+    });
+    ASSERT_TRUE(end);
+    EXPECT_TRUE(ways.empty()) << "on its last storey";
+    EXPECT_TRUE(was_upstairs);
+    EXPECT_TRUE(run.plannedWays(1).empty());
+}
+
 TEST(BuildingRun, ATripEndsWithAHeading) {
     const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());

@@ -320,6 +320,41 @@ void BuildingRun::Data::goToNextGoal(Traveller& who, BuildingTrip& trip) {
     trip.state = TripState::Setting;
 }
 
+const std::vector<StoreySection>& BuildingRun::Data::sectionsOf(const Traveller& who,
+                                                                BuildingTrip& trip) const {
+    if (trip.planned_goal == trip.goal && trip.planned_legs == trip.legs) return trip.planned;
+    trip.planned_goal = trip.goal;
+    trip.planned_legs = trip.legs;
+    trip.planned.clear();
+    const StoreyWays& all = waysOf(who);
+    for (std::size_t i = 0; i < trip.legs.size(); ++i) {
+        const Leg& leg = trip.legs[i];
+        const Landing& from = *all.landing(leg.passage, leg.to);
+        const bool is_last = i + 1 == trip.legs.size();
+        const Point2 to =
+            is_last ? trip.plan.points[trip.goal].at
+                    : all.landing(trip.legs[i + 1].passage, trip.legs[i + 1].from)->at.position;
+        StoreySection& section = trip.planned.emplace_back();
+        section.storey = from.storey;
+        section.points = all.finder(from.storey).way(from.ways, to);
+        section.points.insert(section.points.begin(), from.at.position);
+    }
+    return trip.planned;
+}
+
+std::vector<PlannedWay> BuildingRun::plannedWays(std::size_t room) const {
+    std::vector<PlannedWay> found;
+    const std::optional<std::size_t> storey = data_->rooms[room].storey;
+    if (!storey) return found;
+    for (auto& [id, trip] : data_->trips) {
+        if (trip.ending || trip.leg >= trip.legs.size()) continue;
+        const auto& sections = data_->sectionsOf(data_->travellers.find(id)->second, trip);
+        for (std::size_t i = trip.leg; i < sections.size(); ++i)
+            if (sections[i].storey == *storey) found.push_back({id, sections[i].points});
+    }
+    return found;
+}
+
 /// After a command that came to its end.
 void BuildingRun::Data::step(Traveller& who, BuildingTrip& trip) {
     trip.attempts = 0;

@@ -57,6 +57,7 @@ struct Landing {
 /// A passage on the way.
 struct Leg {
     std::size_t passage = 0, from = 0, to = 0;  ///< stops
+    friend bool operator==(const Leg&, const Leg&) = default;
 };
 /// A way through the building.
 struct Route {

@@ -92,6 +92,12 @@ struct PassageOutline {
     Polygon outline;
 };
 
+/// A part of a trip that is still to come.
+struct PlannedWay {
+    std::string mover;
+    std::vector<Point2> points = {};  ///< in the frame of its storey
+};
+
 /// Returns its states, as those of sensors: `storey`, and `open`, 1 unless its door is closed.
 std::vector<RoomState> statesOf(const LiftState& lift);
 
@@ -110,6 +116,10 @@ class JoinedWorlds {
     [[nodiscard]] virtual RoomFrame frameOf(std::size_t room) const = 0;
     /// Returns the passages that lead from a room to others.
     [[nodiscard]] virtual std::vector<PassageOutline> passageOutlines(std::size_t room) const = 0;
+
+    /// Returns the ways over a storey, from where movers will leave stairs and lifts to the next
+    /// ones or to their goals, in the order of the movers' ids. Empty for other rooms.
+    [[nodiscard]] virtual std::vector<PlannedWay> plannedWays(std::size_t room) const = 0;
 
     /// Sends a mover by the fastest way to the points of a plan. \pre the speed is one that it can
     /// go

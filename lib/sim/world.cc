@@ -260,6 +260,11 @@ bool World::isWandering(std::size_t mover) const { return data_->pilots[mover].i
 
 int World::running(std::size_t mover) const { return data_->states[mover].running; }
 
+std::span<const Point2> World::wayAhead(std::size_t mover) const {
+    const Navigator& pilot = data_->pilots[mover];
+    return running(mover) != 0 && pilot.isOn() ? pilot.ahead() : std::span<const Point2>();
+}
+
 void World::steer(std::size_t robot, const WheelOrder& order) {
     Data& data = *data_;
     MoverState& state = data.states[robot];

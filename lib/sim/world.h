@@ -206,6 +206,8 @@ class World {
     [[nodiscard]] std::vector<WayFinder::Spot> standingBeside(std::size_t mover) const;
     /// Returns the id of the command under way that comes to an end, 0 without one.
     [[nodiscard]] int running(std::size_t mover) const;
+    /// Returns the points ahead on the way of a Path or a Goto under way, as last planned.
+    [[nodiscard]] std::span<const Point2> wayAhead(std::size_t mover) const;
     /// Starts a mover on a plan like that of its record, until a command ends it. A running command
     /// ends as Replaced.
     void follow(std::size_t mover, const MotionPlan& plan);

@@ -50,7 +50,7 @@ class Page:
         rows = self.browser.execute_script(
             "return [...document.querySelectorAll('#facts > *')].map(e => e.textContent)")
         return {name: float(value.split()[0].rstrip("°/s"))
-                for name, value in zip(rows[::2], rows[1::2]) if name != "in"}
+                for name, value in zip(rows[::2], rows[1::2]) if name != "in" and value != "none"}
 
     def colors(self):
         """How many pixels of the map have which colour, "#rrggbb"."""

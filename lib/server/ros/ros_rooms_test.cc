@@ -65,6 +65,9 @@ class ThreeRooms final : public JoinedWorlds {
     [[nodiscard]] std::vector<PassageOutline> passageOutlines(std::size_t /*room*/) const override {
         return {};
     }
+    [[nodiscard]] std::vector<PlannedWay> plannedWays(std::size_t /*room*/) const override {
+        return {};
+    }
     TripAnswer travel(const std::string& /*mover*/, TripPlan /*plan*/) override { return {}; }
     TripAnswer ride(const std::string& /*mover*/, std::string_view /*lift*/,
                     std::string_view /*storey*/) override {

@@ -8,6 +8,7 @@ export class Building {
   /** changed(): somebody has come to another room */
   constructor(changed) {
     this.changed = changed;
+    this.kinds = new Map();  // of each mover: robot or person
     this.where = new Map();  // of each mover, the id of its room; empty where the run has one world
   }
 
@@ -31,6 +32,7 @@ export class Building {
     const {poses = '', people = '', rooms = ''} = keysOf(await link.ask('POSES'));
     if (link !== this.link || link.isClosed) return;
     const ids = [...poses.split(';'), ...people.split(';')].filter(Boolean).map(row => row.split(',')[0]);
+    this.kinds = new Map(ids.map((id, i) => [id, i < poses.split(';').filter(Boolean).length ? 'robot' : 'person']));
     const where = new Map(ids.map((id, i) => [id, rooms.split(',')[i]]));
     const moved = where.size !== this.where.size || [...where].some(([id, room]) => this.where.get(id) !== room);
     this.where = where;

@@ -7,6 +7,13 @@ export function timeText(t, dt) {
   return `${t.toFixed(decimals)} s`;
 }
 
+let is_lived = false;
+/** Whether the hour matters, so that moments are times of day. */
+export function showHours(on) { is_lived = on; }
+
+/** A moment of the run, in seconds with so many decimals, or as a time of day. */
+export function momentText(t, decimals = 1) { return is_lived ? dayText(t) : `${t.toFixed(decimals)} s`; }
+
 /** Day and time of day, for runs that people live in. */
 export function dayText(t) {
   const seconds = Math.floor(t + 1e-6), two = number => String(number).padStart(2, '0');

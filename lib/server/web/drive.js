@@ -44,26 +44,22 @@ export class Driver {
     tell(line.startsWith('DONE') ? 'done' : reason);
   }
 
-  /** A command that comes to an end: how it ended; null if it did not begin. began(answer) */
-  async run(request, began) {
+  /** A command that comes to an end: how it ended; null if it did not begin. */
+  async run(request) {
     const answer = await this.ask(request);
     if (!answer) return null;
-    began(answer);
     return new Promise(tell => { this.command = {id: keysOf(answer).id, tell}; });
   }
 
   /** Goes to a point, round walls and things where the run finds ways, else straight; turns to a heading there. */
   async goTo(x, y, heading) {
-    const goal = this.goal = {x, y, heading}, {mover} = this;
+    const goal = this.goal = {x, y, heading, room: Link.room}, {mover} = this;
     this.refused = null;
     this.changed();
     this.help ??= await this.ask('HELP') ?? '';
     const place = `${x.toFixed(3)},${y.toFixed(3)}`, turn = heading === undefined ? '' : `,${heading.toFixed(1)}`;
     const order = /\bGOTO\b/.test(this.help) ? `GOTO ${Link.whole(place)}${turn}` : `PATH ${place}`;
-    const end = await this.run(order, answer => {
-      goal.way = keysOf(answer).way?.split(';').map(point => point.split(',').map(Number));
-      this.changed();
-    });
+    const end = await this.run(order);
     if (this.goal !== goal) return;  // a newer one
     this.goal = null;
     if (end !== 'done') this.showRefused(goal, end ?? this.why ?? 'not possible');
@@ -77,14 +73,6 @@ export class Driver {
       if (this.refused === refused) this.refused = null;
       this.changed();
     }, kShown);
-  }
-
-  /** The points ahead on its way to its goal, as planned at its beginning. */
-  get way() {
-    const {goal, mover} = this, kPassed = 0.2;
-    const way = goal?.way ?? (goal ? [[goal.x, goal.y]] : []);
-    while (way.length > 1 && Math.hypot(way[0][0] - mover.x, way[0][1] - mover.y) < kPassed) way.shift();
-    return way;
   }
 
   /** Keeps to the speeds of the keys that are down. */

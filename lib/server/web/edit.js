@@ -44,6 +44,7 @@ export class Editor {
     this.title = title;
     if (this.part('edit-kinds').children.length !== additions.length)
       this.part('edit-kinds').replaceChildren(...additions.map(text => new Option(text, text)));
+    await link.listed;  // the rooms, one of which RECORDS wants
     const answer = await link.ask(`RECORDS ${Link.room}`.trim()), [head, ...lines] = answer.split('\n');
     if (link !== this.link) return;
     if (!head.startsWith('OK')) return this.tellPeople(complaint(head), true);
@@ -145,15 +146,16 @@ export class Editor {
     const keyword = kind.split(' ')[0];
     let id = /(?:^| )id=(\S+)/.exec(keys)?.[1], n = 1;
     while (!id || (this.records.has(id) && !/(?:^| )id=/.test(keys))) id = `${keyword}${n++}`;
-    this.adding = {kind, id, keys: keys.replace(/(?:^| )id=\S+/, '').trim()};
+    const z = /(?:^| )z=(\S+)/.exec(keys)?.[1];
+    this.adding = {kind, id, z, keys: keys.replace(/(?:^| )(?:id|z)=\S+/g, '').trim()};
     if (/(?:^| )(?:at|on|path|from|wall)=/.test(keys)) return this.add();
     this.take();
     this.say(this.hint);
   }
 
   async add(at, heading) {
-    const {kind, id, keys} = this.adding, [keyword, ...more] = kind.split(' ');
-    const place = at ? [`at=${rounded(at[0])},${rounded(at[1])}`, ...heading === undefined ? [] : [`heading=${rounded(heading, 0)}`]] : [];
+    const {kind, id, z, keys} = this.adding, [keyword, ...more] = kind.split(' ');
+    const place = at ? [`at=${[...at.map(part => rounded(part)), ...z ? [z] : []].join()}`, ...heading === undefined ? [] : [`heading=${rounded(heading, 0)}`]] : [];
     const request = ['ADD', keyword, `id=${Link.whole(id)}`, ...more, ...place, keys].filter(Boolean).join(' ');
     this.adding = null;
     this.say(this.hint);
@@ -175,6 +177,7 @@ export class Editor {
   async set(text) {
     const {record} = this, [, key, value] = /^(\w+)\s*=\s*(.*)$/.exec(text) ?? [];
     if (!key) return this.tellPeople(`wanted key=value, like size=1.2,0.6, not ${text}`, true);
+    if (key === 'z' && this.isMovable) return this.set(`at=${[...record.keys.at.split(',').slice(0, 2), value].join()}`);
     const old = record.keys[key] ?? '', name = Link.whole(record.id);
     if (await this.ask(`SET ${name}.${key}=${value}`, `SET ${name}.${key}=${old}`)) this.part('edit-value').value = '';
   }

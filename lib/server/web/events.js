@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What happens in the world, for people.
+import {momentText} from './clock.js';
 import {keysOf} from './link.js';
 
 const kTexts = {
@@ -21,7 +22,7 @@ const kTexts = {
 /** {said, bad} of a mark of a record: {t, kind, id, other, text}. */
 export function markText({t, kind, id, other, text}) {
   const said = kTexts[kind]({id, into: other, to: other, text, what: text});
-  return {said: `${t.toFixed(1)} s  ${said}`, bad: kind === 'collision' || kind === 'unreached'};
+  return {said: `${momentText(t)}  ${said}`, bad: kind === 'collision' || kind === 'unreached'};
 }
 
 /** {text, bad} of a line that comes by itself; no text for what is not worth one. */
@@ -31,5 +32,5 @@ export function eventText(line) {
   const keys = keysOf(line);
   if (keys.room && keys.id && !keys.id.includes('/')) keys.id = `${keys.room}/${keys.id}`;
   for (const rest of ['text', 'what']) if (rest in keys) keys[rest] = line.split(` ${rest}=`)[1];  // of the line
-  return {text: `${Number(keys.t).toFixed(1)} s  ${kTexts[kind](keys)}`, bad: kind === 'collision' || kind === 'unreached'};
+  return {text: `${momentText(Number(keys.t))}  ${kTexts[kind](keys)}`, bad: kind === 'collision' || kind === 'unreached'};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The course of states over time, kept while the page is open, and a plot of one of them.
+import {momentText} from './clock.js';
 
 const kMost = 4000;  // values of a state
 
@@ -11,13 +12,13 @@ export class History {
     new ResizeObserver(() => this.draw()).observe(part('plot'));
   }
 
-  /** A state has a value from t on; texts are kept out. */
-  add(name, t, value) {
+  /** A state has a value from t on; texts are kept out, and values less than `apart` seconds after the last one. */
+  add(name, t, value, apart = 0) {
     const number = Number(value);
     if (value === '' || Number.isNaN(number)) return;
     const series = this.series.get(name) ?? this.series.set(name, []).get(name);
     if (series.length > 0 && series.at(-1)[0] > t) series.length = 0;  // the world went back
-    if (series.at(-1)?.[1] === number) return;
+    if (series.at(-1)?.[1] === number || t - series.at(-1)?.[0] < apart) return;
     series.push([t, number]);
     if (series.length > kMost) series.shift();
   }
@@ -63,8 +64,8 @@ export class History {
     context.fillStyle = style.color;
     context.textAlign = 'left';
     context.fillText(`${+high.toPrecision(4)}`, 2, 10);
-    context.fillText(`${low === high ? '' : +low.toPrecision(4)}  from ${begin.toFixed(0)} s`, 2, height - 3);
+    context.fillText(`${low === high ? '' : +low.toPrecision(4)}  from ${momentText(begin, 0)}`, 2, height - 3);
     context.textAlign = 'right';
-    context.fillText(`${end.toFixed(0)} s: ${+values.at(-1).toPrecision(6)}`, width - 2, height - 3);
+    context.fillText(`${momentText(end, 0)}: ${+values.at(-1).toPrecision(6)}`, width - 2, height - 3);
   }
 }

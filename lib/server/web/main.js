@@ -17,7 +17,7 @@ import {Layers} from './layers.js';
 import {Space} from './space.js';
 import {MarkStrip} from './marks.js';
 import {Ruler, SendTool, drawArrow} from './tools.js';
-import {dayText, timeText} from './clock.js';
+import {dayText, showHours, timeText} from './clock.js';
 
 const part = id => document.getElementById(id);
 const canvas = part('map'), context = canvas.getContext('2d');
@@ -42,6 +42,8 @@ let link, dt = 0, dirty = false, asked = false, ended = false;
 // What the server says.
 
 function connect() {
+  let listed;
+  const are_listed = new Promise(done => { listed = done; });
   link = new Link({
     open: () => {
       if (ended) return location.reload();  // another run, perhaps of another version
@@ -55,6 +57,7 @@ function connect() {
         link.ask('EVENTS');
         link.ask('LIST').then(list => {
           if (begun === link && building.open(link, list)) listRooms();
+          listed();
         });
         states.open(link);
         seekBar.open(link).then(() => marks.draw());
@@ -78,6 +81,7 @@ function connect() {
       if (part('token').hidden) setTimeout(connect, 2000);
     },
   });
+  link.listed = are_listed;
 }
 
 // Where the run wants a token that the address does not give, or refuses the one that it gives: a form.
@@ -169,6 +173,7 @@ function takeFrame(next) {
   showClock(next);
   frame = next;
   movers.take(next);
+  if (selected) for (const [name, , value] of factsOf(selected)) history.add(`${selected.id} ${name}`, next.t, value, 0.1);
   showDetails();
   redraw();
 }
@@ -228,32 +233,40 @@ function drawMap(shown) {
   plan.draw(context, view, shown('names'));
   if (frame) {
     movers.draw(context, view, {
-      scans: shown('scans'), trails: shown('trails'), names: shown('names'), selected,
+      scans: shown('scans'), trails: shown('trails'), ways: shown('ways'), names: shown('names'), chosen, selected,
       isOn: id => states.isOn(id), lookOf: kind => layers.of(kind),
     });
     for (const driver of drivers.values()) {
-      if (driver.goal) drawGoal(driver.mover, driver.goal, driver.way, '#0072b2');
-      if (driver.refused) drawRefused(driver.refused);
+      if (driver.goal?.room === Link.room) drawGoal(driver.mover, driver.goal, '#0072b2');
+      if (driver.refused?.room === Link.room) drawRefused(driver.refused);
     }
-    if (drag?.x !== undefined && drag.moved) drawGoal(drag.mover, drag, [[drag.x, drag.y]], '#d55e00');
+    if (drag?.x !== undefined && drag.moved) drawAim(drag);
   }
   tool?.draw(context, view);
 }
 
-/** A goal, its heading if it has one, and the way there. */
-function drawGoal(mover, goal, way, color) {
+/** A goal that is dragged from a mover. */
+function drawAim({mover, x, y}) {
   view.inPixels(context);
-  const [x, y] = view.toPage(goal.x, goal.y);
-  context.strokeStyle = color;
+  context.strokeStyle = '#d55e00';
   context.lineWidth = 2;
   context.setLineDash([6, 5]);
   context.beginPath();
   context.moveTo(...view.toPage(mover.x, mover.y));
-  for (const point of way) context.lineTo(...view.toPage(...point));
+  context.lineTo(...view.toPage(x, y));
   context.stroke();
   context.setLineDash([]);
+  drawGoal(mover, {x, y}, '#d55e00');
+}
+
+/** A goal, and its heading if it has one; see Movers for ways. */
+function drawGoal({radius = 0}, goal, color) {
+  view.inPixels(context);
+  const [x, y] = view.toPage(goal.x, goal.y);
+  context.strokeStyle = color;
+  context.lineWidth = 2;
   context.beginPath();
-  context.arc(x, y, Math.max(6, mover.radius * view.scale), 0, 2 * Math.PI);
+  context.arc(x, y, Math.max(6, radius * view.scale), 0, 2 * Math.PI);
   context.stroke();
   if (goal.heading === undefined) return;
   const angle = goal.heading * Math.PI / 180, length = 28 / view.scale;
@@ -285,6 +298,7 @@ function drawRefused({x, y, why}) {
 function lived(next) { return next.days || seekBar.end >= 86400; }
 
 function showClock(next) {
+  showHours(lived(next));
   part('time').textContent = lived(next) ? dayText(next.t) : timeText(next.t, dt);
   part('time').title = lived(next) ? timeText(next.t, dt) : '';
   seekBar.show(next.t);
@@ -322,10 +336,11 @@ part('rate').addEventListener('change', () => {
 function showHelp(is_replay) {
   part('pad').hidden = !selected || is_replay;
   part('pad').classList.toggle('sidles', selected?.side > 0);
-  part('send').disabled = !selected || is_replay;
+  part('send').disabled = !sendable() || is_replay;
   if (part('send').disabled && tool === tools.send) choose(null);
   part('hint').textContent = is_replay ?
     'This is a record: pause it, take single steps, go to a time by the slider or to the next mark (n), follow who is in it.' :
+    !selected && sendable() ? `${chosen} is in ${building.where.get(chosen)}. Send it (g) to a point of this storey.` :
     !selected ? 'Select a robot here or on the map. Drag it to where it is to go, or drive it with the arrow keys.' :
     `Arrow keys drive${selected.side > 0 ? ', Q and E go sideways' : ''}, Escape stops. Drag ${selected.id} to where it is to go, or Send it (g).`;
 }
@@ -371,11 +386,24 @@ function showNotes() {
   }
 }
 
-function factsOf({x, y, heading, speed, rotspeed}) {
+/** Names, texts and values of what is known of a mover: its motion, and how near its range finders see something. */
+function factsOf(mover) {
+  const {x, y, heading, speed, rotspeed} = mover;
+  const near = movers.scannersOf(mover).map(id => [id, movers.nearest.get(id)]);
   return [
-    ['x', `${x.toFixed(3)} m`], ['y', `${y.toFixed(3)} m`], ['heading', `${heading.toFixed(1)}°`],
-    ['speed', `${speed.toFixed(2)} m/s`], ['turn', `${rotspeed.toFixed(0)}°/s`],
+    ['x', `${x.toFixed(3)} m`, x], ['y', `${y.toFixed(3)} m`, y], ['heading', `${heading.toFixed(1)}°`, heading],
+    ['speed', `${speed.toFixed(2)} m/s`, speed], ['turn', `${rotspeed.toFixed(0)}°/s`, rotspeed],
+    ...near.map(([id, range]) => [`${id} nearest`, range < Infinity ? `${range.toFixed(2)} m` : 'none', range]),
   ];
+}
+
+/** A row of facts, with a button for the course of its value. */
+function addFact(list) {
+  const value = document.createElement('dd'), text = document.createElement('span'), course = document.createElement('button');
+  course.className = 'course';
+  course.onclick = () => history.show(course.dataset.name);
+  value.append(text, course);
+  list.append(document.createElement('dt'), value);
 }
 
 function showDetails() {
@@ -386,9 +414,13 @@ function showDetails() {
   const list = part('facts');
   while (list.children.length > 2 * facts.length) list.lastChild.remove();
   facts.forEach(([name, value], i) => {
-    if (!list.children[2 * i]) list.append(document.createElement('dt'), document.createElement('dd'));
+    if (!list.children[2 * i]) addFact(list);
+    const [text, course] = list.children[2 * i + 1].children;
     list.children[2 * i].textContent = name;
-    list.children[2 * i + 1].textContent = value;
+    text.textContent = value;
+    course.dataset.name = `${chosen} ${name}`;
+    course.title = course.ariaLabel = `course of ${chosen} ${name}`;
+    course.hidden = !history.has(course.dataset.name);
   });
 }
 
@@ -427,11 +459,16 @@ function driverOf(mover) {
   return driver;
 }
 
+/** The one that Send sends: the selected one, in a building also if it is on another storey. */
+function sendable() {
+  return selected ?? (building.where.has(chosen) ? {id: chosen, kind: building.kinds.get(chosen)} : undefined);
+}
+
 // Tools of the map.
 
 let tool = null;
 const tools = {
-  send: new SendTool(() => selected, (mover, x, y, heading) => driverOf(mover).goTo(x, y, heading)),
+  send: new SendTool(sendable, (mover, x, y, heading) => driverOf(mover).goTo(x, y, heading)),
   measure: new Ruler(text => say(text)),
   edit: null,
 };
@@ -519,7 +556,7 @@ function panned(dx, dy) {
 }
 
 for (const [id, act] of Object.entries(actions)) part(id).onclick = () => plan && act();
-for (const id of ['scans', 'trails', 'names']) part(id).onchange = redraw;
+for (const id of ['scans', 'trails', 'ways', 'names']) part(id).onchange = redraw;
 
 const shortcuts = {' ': 'run', '.': 'step', f: 'follow', g: 'send', m: 'measure', v: 'solid', 0: 'fit', '+': 'closer', '=': 'closer', '-': 'farther'};
 /** Of keys that seek in a record, how many seconds. */

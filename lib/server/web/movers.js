@@ -13,6 +13,11 @@ function stateOf([x, y, heading, speed, rotspeed, stall, phase]) {
   };
 }
 
+/** Pairs of metres from numbers in millimetres. */
+function pointsOf(numbers) {
+  return Array.from({length: numbers.length / 2}, (_, i) => [numbers[2 * i] / 1000, numbers[2 * i + 1] / 1000]);
+}
+
 export class Movers {
   /** before: the movers of the scene that this one replaces; one that is in both stays where it is, with its trail */
   constructor(scene, before) {
@@ -23,6 +28,8 @@ export class Movers {
     const seers = scene.sensors.filter(sensor => sensor.view);
     this.colorOf = new Map(seers.map(({id}, i) => [id, scene.colors.series[i % scene.colors.series.length]]));
     this.scans = new Map();
+    this.nearest = new Map();  // of each scan: the shortest range in metres
+    this.ways = new Map();  // by id: the points ahead, and ways that begin behind stairs and lifts
     this.floor = new Map();  // PIR sensors, mats and gates
     this.byId = new Map(this.all.map(mover => [mover.id, mover]));
     for (const mover of this.all) {
@@ -43,9 +50,19 @@ export class Movers {
       mover.trail.push([mover.x, mover.y]);
       if (mover.trail.length > kTrail) mover.trail.shift();
     });
-    if (frame.all) this.scans.clear();
+    if (frame.all) {
+      this.scans.clear();
+      this.ways.clear();
+    }
+    for (const {id, way, later = []} of frame.ways ?? []) {
+      if (way.length + later.length > 0) this.ways.set(id, {way: pointsOf(way), later: later.map(pointsOf)});
+      else this.ways.delete(id);
+    }
     for (const reading of frame.readings) {
-      if (reading.r) this.scans.set(reading.id, this.pathsOf(reading));
+      if (reading.r) {
+        this.scans.set(reading.id, this.pathsOf(reading));
+        this.nearest.set(reading.id, reading.r.reduce((least, range) => range < 0 ? least : Math.min(least, range / 1000), Infinity));
+      }
       else if (reading.points)
         this.scans.set(reading.id, {area: new Path2D(), hits: reading.points.map(part => part / 1000), size: 7});
       else this.floor.set(reading.id, reading);
@@ -74,6 +91,12 @@ export class Movers {
     return {area, hits};
   }
 
+  /** The ids of range finders on a mover. */
+  scannersOf(mover) {
+    const carrier = this.all.indexOf(mover);
+    return this.sensors.filter(({id, on}) => on === carrier && this.nearest.has(id)).map(({id}) => id);
+  }
+
   /** The colour of a kind of sensors, of the first one of it. */
   colorOfKind(kind) {
     const {id} = this.sensors.find(sensor => sensor.kind === kind);
@@ -81,12 +104,13 @@ export class Movers {
   }
 
   /** isOn(id): whether something is switched on; lookOf(kind): of sensors, see Layers */
-  draw(context, view, {scans, trails, names, selected, isOn, lookOf}) {
+  draw(context, view, {scans, trails, ways, names, chosen, selected, isOn, lookOf}) {
     this.lookOf = lookOf;
     this.drawFloorSensors(context, view);
     this.drawActuators(context, view, isOn);
     if (scans) this.drawScans(context, view, selected);
     if (trails) this.drawTrails(context, view, selected);
+    if (ways) this.drawWays(context, view, chosen);
     this.drawSensors(context, view);
     for (const mover of this.all) {
       if (mover.x === undefined) continue;
@@ -131,6 +155,26 @@ export class Movers {
       context.lineTo(mover.x, mover.y);
       context.stroke();
     }
+    context.globalAlpha = 1;
+  }
+
+  /** Planned ways, to a point or to stairs and lifts; that of the chosen one is strong. */
+  drawWays(context, view, chosen) {
+    view.inMetres(context);
+    context.strokeStyle = '#0072b2';
+    context.setLineDash([6 / view.scale, 5 / view.scale]);
+    for (const [id, {way, later}] of this.ways) {
+      const {x, y} = this.byId.get(id) ?? {};
+      const lines = way.length > 0 && x !== undefined ? [[[x, y], ...way], ...later] : later;
+      context.globalAlpha = id === chosen ? 1 : 0.45;
+      context.lineWidth = (id === chosen ? 2 : 1.3) / view.scale;
+      for (const line of lines) {
+        context.beginPath();
+        for (const point of line) context.lineTo(...point);
+        context.stroke();
+      }
+    }
+    context.setLineDash([]);
     context.globalAlpha = 1;
   }
 

@@ -239,17 +239,89 @@ std::size_t appendReading(std::string& out, const Sensor& sensor, const SensorRe
 
 }  // namespace
 
+namespace {
+
+/// Maximum points of a way in a frame: the next ones.
+constexpr std::size_t kMaxWay = 100;
+
+void appendWay(std::string& out, std::span<const Point2> way) {
+    char separator = '[';
+    for (const Point2 point : way.first(std::min(way.size(), kMaxWay))) {
+        out += std::exchange(separator, ',');
+        append(out, fixed(point.x));
+        out += ',';
+        append(out, fixed(point.y));
+    }
+    out += separator == '[' ? "[]" : "]";
+}
+
+/// The ways of a mover.
+struct MoverWays {
+    std::span<const Point2> now;                 ///< from where it is; empty if it is elsewhere
+    std::vector<std::span<const Point2>> later;  ///< after passages
+};
+
+std::string wayText(const std::string& mover, const MoverWays& ways) {
+    std::string out = "{\"id\":";
+    appendText(out, mover);
+    out += ",\"way\":";
+    appendWay(out, ways.now);
+    if (!ways.later.empty()) {
+        char separator = '[';
+        out += ",\"later\":";
+        for (const std::span<const Point2> way : ways.later) {
+            out += std::exchange(separator, ',');
+            appendWay(out, way);
+        }
+        out += ']';
+    }
+    return out += '}';
+}
+
+/// Appends elements of a list.
+void appendElement(std::string& list, const std::string& element) {
+    if (!list.empty()) list += ',';
+    list += element;
+}
+
+}  // namespace
+
+std::string WebFrames::newWays() {
+    const World& world = simulation_->world();
+    std::map<std::string, MoverWays> ways;
+    for (std::size_t i = 0; i < world.movers().size(); ++i)
+        if (const auto ahead = world.wayAhead(i); !ahead.empty())
+            ways[world.movers()[i].id].now = ahead;
+    const std::vector<PlannedWay> planned =
+        facts_.planned ? facts_.planned() : std::vector<PlannedWay>();
+    for (const PlannedWay& way : planned) ways[way.mover].later.emplace_back(way.points);
+    std::map<std::string, std::string> texts;
+    std::string changed;
+    for (const auto& [mover, its] : ways) {
+        std::string text = wayText(mover, its);
+        const auto before = ways_.find(mover);
+        if (before == ways_.end() || before->second != text) appendElement(changed, text);
+        texts.emplace(mover, std::move(text));
+    }
+    for (const auto& [mover, text] : ways_)
+        if (!texts.contains(mover)) appendElement(changed, wayText(mover, {}));
+    ways_ = std::move(texts);
+    return changed;
+}
+
 void WebFrames::look(WallTime now) {
     if (now < next_look_) return;
     const auto start = steady_clock::now();
     const World& world = simulation_->world();
     const bool stepped = world.steps() != steps_ || world.changes() != version_;
     std::string state = stateText();
-    if (stepped || state != state_) {
+    std::string ways = newWays();
+    if (stepped || state != state_ || !ways.empty()) {
         steps_ = world.steps();
         if (std::exchange(version_, world.changes()) != world.changes())
             sent_.assign(world.sensors().size(), -1);
         state_ = std::move(state);
+        changed_ways_ = std::move(ways);
         ++number_;
         changes_.reset();
         whole_.reset();
@@ -331,7 +403,13 @@ std::string WebFrames::withReadings(bool all) {
     const World& world = simulation_->world();
     std::string out = "{\"schema\":\"ispace-web-frame/1\",\"frame\":";
     append(out, number_);
-    out.append(state_).append(",\"all\":").append(all ? "true" : "false").append(",\"readings\":[");
+    out.append(state_).append(",\"ways\":[");
+    if (all)
+        for (std::string_view separator; const auto& [mover, text] : ways_)
+            out.append(std::exchange(separator, ",")).append(text);
+    else
+        out += changed_ways_;
+    out.append("],\"all\":").append(all ? "true" : "false").append(",\"readings\":[");
     std::size_t numbers = 0;
     // If the scene has changed since, the next frame describes it.
     const std::size_t count = version_ == world.changes() ? sent_.size() : 0, first = turn_;

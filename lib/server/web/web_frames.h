@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct WebSceneFacts {
     std::vector<std::string> additions = {};
     /// Writes the mesh of a room as GLB; may be null.
     std::function<std::string(const Scene& scene)> mesh = {};
+    /// Returns the ways of trips that will lead through the room; may be null.
+    std::function<std::vector<PlannedWay>()> planned = {};
 };
 
 /// Writes the static data of a scene for browsers, see share/schemas/web-scene.json: the plan (see
@@ -33,9 +36,10 @@ std::string webScene(const Scene& scene, std::int64_t version, const WebSceneFac
 /// The state of the world for browsers, formatted once for all of them.
 ///
 /// A frame is a JSON object, see share/schemas/web-frame.json: poses of movers, in millimetres and
-/// hundredths of degrees, and sensor readings. Frames count from 1. A client with the previous
-/// frame receives the readings since then (or slightly earlier); other clients receive the newest
-/// reading of each sensor. If readings are very many, each frame holds some of them, in turn.
+/// hundredths of degrees, their ways, and sensor readings. Frames count from 1. A client with the
+/// previous frame receives the readings since then (or slightly earlier) and the ways that have
+/// changed; other clients receive the newest reading of each sensor and all ways. If readings are
+/// very many, each frame holds some of them, in turn.
 class WebFrames {
   public:
     using Text = std::shared_ptr<const std::string>;
@@ -75,17 +79,21 @@ class WebFrames {
     };
     [[nodiscard]] std::string stateText() const;
     [[nodiscard]] std::string withReadings(bool all);
+    /// Updates ways_. \returns those that have changed
+    std::string newWays();
     [[nodiscard]] bool isNew(std::size_t sensor) const;
 
     const Simulation *simulation_, *leader_;
     WebSceneFacts facts_;
     WallTime next_look_{};
     std::int64_t number_ = 0;
-    std::int64_t steps_ = -1, version_ = -1;  // of the world at the newest frame
-    std::string state_;                       // the newest frame without number and readings
-    std::vector<std::int64_t> sent_;          // for each sensor, the reading in the newest frame
-    std::size_t turn_ = 0;                    // first sensor of the next frame
-    Text changes_, whole_;                    // text of the newest frame, built on request
+    std::int64_t steps_ = -1, version_ = -1;   // of the world at the newest frame
+    std::string state_;                        // the newest frame without number and readings
+    std::vector<std::int64_t> sent_;           // for each sensor, the reading in the newest frame
+    std::map<std::string, std::string> ways_;  // of movers, in the newest frame
+    std::string changed_ways_;                 // those that the frame before had otherwise
+    std::size_t turn_ = 0;                     // first sensor of the next frame
+    Text changes_, whole_;                     // text of the newest frame, built on request
     Text scene_;
     std::int64_t scene_version_ = -1;
     std::shared_ptr<Mesh> mesh_ = std::make_shared<Mesh>();  // shared with jobs in the background

@@ -71,6 +71,37 @@ TEST(WebFrames, HaveMatsAndGates) {
     EXPECT_TRUE(has(world.next(), "{\"id\":\"m1\",\"on\":1},{\"id\":\"g1\",\"in\":0,\"out\":0}"));
 }
 
+TEST(WebFrames, HaveWaysUntilTheyEnd) {
+    Watched world;
+    EXPECT_TRUE(has(world.next(), "\"ways\":[],"));
+    Command command = {Verb::Goto, 0, {.path = {{1, 0}}}};
+    ASSERT_EQ(world.world.findWay(0, command), "");
+    world.world.command(0, command);
+    const std::string way = "\"ways\":[{\"id\":\"r1\",\"way\":[1000,0]}],";
+    EXPECT_TRUE(has(world.next(), way)) << "before the next step";
+    world.step();
+    const std::string next = world.next();
+    EXPECT_TRUE(has(next, "\"ways\":[],")) << next;
+    EXPECT_TRUE(has(*world.frames.frame(0), way)) << "for a client that is new";
+    world.world.command(0, {Verb::Stop, 0});
+    const std::string ended = world.next();
+    EXPECT_TRUE(has(ended, "\"ways\":[{\"id\":\"r1\",\"way\":[]}],")) << ended;
+    EXPECT_TRUE(has(*world.frames.frame(0), "\"ways\":[],"));
+}
+
+TEST(WebFrames, HaveTheWaysOfTripsThatComeLater) {
+    TestWorld world({Clock::Kind::Step, 1});
+    std::vector<PlannedWay> planned = {{"r9", {{1, 2}, {3, 4}}}};
+    WebFrames frames(world.simulation, world.simulation,
+                     {.title = "upper", .planned = [&] { return planned; }});
+    frames.look(WallTime{} + std::chrono::hours(1));
+    EXPECT_TRUE(has(*frames.frame(0),
+                    "\"ways\":[{\"id\":\"r9\",\"way\":[],\"later\":[[1000,2000,3000,4000]]}],"));
+    planned.clear();
+    frames.look(WallTime{} + std::chrono::hours(2));
+    EXPECT_TRUE(has(*frames.frame(1), "\"ways\":[{\"id\":\"r9\",\"way\":[]}],"));
+}
+
 TEST(WebFrames, AreMadeWhenThereIsSomethingNew) {
     Watched world;
     world.next();

@@ -188,6 +188,7 @@ WebPage::WebPage(ServerState& state, const std::string& title, const WebPageOpti
         ServerState& one = *rooms->states[i];
         facts.title = title + ", " + rooms->worlds->rooms()[i].id;
         facts.passages = rooms->worlds->passageOutlines(i);
+        facts.planned = [worlds = rooms->worlds, i] { return worlds->plannedWays(i); };
         rooms_.push_back({&one, WebFrames(one.simulation(), state.simulation(), facts)});
     }
 }
