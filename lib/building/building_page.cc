@@ -92,14 +92,21 @@ PageSection facingSection(const BuildingPageInput& input) {
                         judgedInBuilding(input.building, input.coverage.rules))}};
 }
 
-/// Adds the installation of a storey, its pictures, and with a cover a sheet for each camera.
+/// Adds the installation of a storey, the floor and the pictures of its sensors, and with a cover a
+/// sheet for each camera.
 void addSensorsOf(const BuildingPageInput& input, const CabledRoom& room, std::size_t storey,
                   ReportPage& page, std::vector<PageSection>& sheets) {
     const Storey& own = input.building.document.storeys[storey];
     const Coverage& coverage = input.coverage.storeys[storey];
     const std::vector<Installation> installations = installationsOf(room.scene);
-    if (installations.empty()) return;
+    if (coverage.sensors.empty()) return;
     const std::string id = "storey" + std::to_string(storey + 1);
+    PageSection pictures{id + "-sensors", "Storey " + own.id + ": sensors", {}};
+    pictures.blocks.push_back(sensorsTable(*input.coverage.floors[storey], coverage));
+    if (installations.empty()) {
+        page.sections.push_back(std::move(pictures));
+        return;
+    }
     const PageTable table = installationTable(room.scene, coverage, installations, room.cables);
     PageSection section{id + "-installation", "Storey " + own.id + ": installation", {}};
     section.blocks.push_back(table);
@@ -112,8 +119,9 @@ void addSensorsOf(const BuildingPageInput& input, const CabledRoom& room, std::s
             sheet.title += " of storey " + own.id;
             sheets.push_back(std::move(sheet));
         }
-    for (PageFigure& figure : figures) section.blocks.push_back(std::move(figure));
     page.sections.push_back(std::move(section));
+    for (PageFigure& figure : figures) pictures.blocks.push_back(std::move(figure));
+    page.sections.push_back(std::move(pictures));
 }
 
 PageSection recordsOf(const BuildingPageInput& input) {

@@ -76,7 +76,7 @@ TextRow rowOf(const RunCoverage& run, const RunCoverageMetrics& metrics, bool is
     TextRow row = {who, is_way ? formatFixed(metrics.length, 2) + " m" : seconds(metrics.duration)};
     const std::size_t columns = columnsOf(run);
     for (std::size_t k = 0; k < columns; ++k)
-        row.push_back(shares.empty() ? "-" : percentText(shareOf(shares, k, k + 1 == columns), 1));
+        row.push_back(shares.empty() ? "-" : percentText(shareOf(shares, k, k + 1 == columns)));
     if (is_way) return row;
     row.push_back(std::to_string(metrics.losses));
     const auto& gap = metrics.longest_gap;
@@ -238,12 +238,12 @@ void drawRun(Picture& picture, const MapPicture& map) {
 
 LegendBlock runBlock(const RunCoverage& run) {
     using Sign = LegendItem::Sign;
-    LegendBlock block{"Ways in the run, seen by", {}, {"time", "way"}};
+    LegendBlock block{"Ways seen by", {}, {"time", "way"}};
     const auto share = [](const std::vector<double>& shares, std::size_t k) {
         double sum = 0;
         for (std::size_t i = k; i < shares.size(); ++i)
             if (classOf(i) == k) sum += shares[i];
-        return shares.empty() ? std::string("–") : formatFixed(100 * sum, 1) + "%";
+        return shares.empty() ? std::string("–") : percentText(sum);
     };
     for (std::size_t k = 0; k < kRunColors.size(); ++k) {
         if (k > 1 && k >= run.all.time_shares.size()) break;
@@ -261,7 +261,7 @@ LegendBlock runBlock(const RunCoverage& run) {
             {Sign::Ring, {}, {}, "sight was lost", std::to_string(run.losses.size()) + " ×"});
     if (const auto& gap = run.all.longest_gap)
         block.items.push_back(
-            {Sign::None, {}, {}, "longest unseen", formatFixed(gap->end - gap->begin, 1) + " s"});
+            {Sign::None, {}, {}, "longest unseen", seconds(gap->end - gap->begin)});
     return block;
 }
 

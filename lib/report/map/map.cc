@@ -57,7 +57,7 @@ void fitPlan(Page& page, const Box2& limits, double left, double top, double wid
 /// page is wide
 Page layOut(const MapPicture& map, double width, double max_height) {
     // Widths of the legend, in text sizes.
-    constexpr double kPanel = 18, kNarrowPanel = 17, kGap = 2;
+    constexpr double kPanel = 20, kNarrowPanel = 19, kGap = 2;
     Page page;
     page.width = width;
     page.em = map.em;

@@ -13,13 +13,9 @@ namespace {
 
 using Sign = LegendItem::Sign;
 
-std::string percent(double share) { return percentText(share, 1); }
-
-std::string area(double value) {
-    if (value >= 1e6) return formatFixed(value / 1e6, 2) + " km²";
-    const int decimals = value < 0.1 ? 3 : value < 10 ? 2 : value < 100 ? 1 : 0;
-    return formatFixed(value, value == 0 ? 1 : decimals) + " m²";
-}
+// Decimals are those of coverageText() and of pages, so that a figure reads alike everywhere.
+std::string percent(double share) { return percentText(share); }
+std::string area(double value) { return formatFixed(value, 2) + " m²"; }
 
 using Format = std::string (*)(double);
 
@@ -246,13 +242,11 @@ LegendBlock sensorsBlock(const MapPicture& map) {
 LegendBlock spotsBlock(const MapPicture& map) {
     const CoverageReport& report = map.coverage.report;
     LegendBlock block{"Largest unseen spots", {}};
-    const double extent = std::max(report.limits.width(), report.limits.depth());
-    const int decimals = extent < 2 ? 2 : extent < 200 ? 1 : 0;
     for (std::size_t i = 0; i < markedSpots(map); ++i) {
         const UncoveredSpot& spot = report.unseen[i];
         LegendItem item{Sign::LineColumn, {}, {}, area(spot.area), "at "};
-        item.value.append(formatFixed(spot.place.x, decimals)).append(", ");
-        item.value.append(formatFixed(spot.place.y, decimals));
+        item.value.append(formatFixed(spot.place.x, 2)).append(", ");
+        item.value.append(formatFixed(spot.place.y, 2));
         item.number = std::to_string(i + 1);
         block.items.push_back(std::move(item));
     }

@@ -13,7 +13,7 @@ TEST(MapLegend, NamesWhatThePictureShows) {
     const std::vector<LegendBlock> blocks = legendBlocks({scene, coverage, options});
     ASSERT_EQ(blocks.size(), 6U);
     EXPECT_EQ(blocks[0].items[2].text, "Indoor area");
-    EXPECT_EQ(blocks[0].items[2].value, "44.0 m²");
+    EXPECT_EQ(blocks[0].items[2].value, "44.00 m²");
     std::vector<std::string> plan;
     for (const LegendItem& item : blocks[5].items) plan.push_back(item.text);
     EXPECT_EQ(plan, (std::vector<std::string>{"wall", "object at 0.15 m", "object above or below",
@@ -31,7 +31,7 @@ TEST(MapLegend, SharesOfTheClassesAreThoseOfTheReport) {
     coverage.report.redundancy = {0.25, 0.5, 0.25, 0};
     const std::vector<LegendItem> few = legendBlocks({scene, coverage, options})[1].items;
     ASSERT_EQ(few.size(), 3U);
-    EXPECT_EQ(few[0].value, "25.0%");
+    EXPECT_EQ(few[0].value, "25.00%");
     EXPECT_EQ(few[1].text, "1 sensor");
     EXPECT_EQ(few[2].text, "2 sensors");
     coverage.report.redundancy.assign(21, 0.0);
@@ -41,9 +41,9 @@ TEST(MapLegend, SharesOfTheClassesAreThoseOfTheReport) {
     const std::vector<LegendItem> many = legendBlocks({scene, coverage, options})[1].items;
     ASSERT_EQ(many.size(), 6U);  // width 4: 1-4 ... 17-20
     EXPECT_EQ(many[1].text, "1–4 sensors");
-    EXPECT_EQ(many[1].value, "25.0%");
+    EXPECT_EQ(many[1].value, "25.00%");
     EXPECT_EQ(many[5].text, "17–20 sensors");
-    EXPECT_EQ(many[5].value, "75.0%");
+    EXPECT_EQ(many[5].value, "75.00%");
 }
 
 TEST(MapLegend, ExactMetricsStandBesideThoseByCells) {
@@ -55,18 +55,18 @@ TEST(MapLegend, ExactMetricsStandBesideThoseByCells) {
     coverage.report.redundancy_exact = {0.41, 0.59};
     std::vector<LegendBlock> blocks = legendBlocks({scene, coverage, options});
     EXPECT_EQ(blocks[0].columns, (std::array<std::string, 2>{"exact", "cells"}));
-    EXPECT_EQ(blocks[0].items[0].value, "57.8%");
-    EXPECT_EQ(blocks[0].items[0].second, "57.7%");
-    EXPECT_EQ(blocks[1].items[0].value, "41.0%");
-    EXPECT_EQ(blocks[1].items[0].second, "40.0%");
-    EXPECT_EQ(mainMetrics({scene, coverage, options})[0], "Coverage 57.8% (cells 57.7%)");
+    EXPECT_EQ(blocks[0].items[0].value, "57.80%");
+    EXPECT_EQ(blocks[0].items[0].second, "57.70%");
+    EXPECT_EQ(blocks[1].items[0].value, "41.00%");
+    EXPECT_EQ(blocks[1].items[0].second, "40.00%");
+    EXPECT_EQ(mainMetrics({scene, coverage, options})[0], "Coverage 57.80% (cells 57.70%)");
 
     coverage.report.coverage.exact.reset();
     blocks = legendBlocks({scene, coverage, options});
     EXPECT_EQ(blocks[0].title, "Figures by cells");
     EXPECT_EQ(blocks[0].columns[0], "");
-    EXPECT_EQ(blocks[0].items[0].value, "57.7%");
-    EXPECT_EQ(mainMetrics({scene, coverage, options})[0], "Coverage 57.7% by cells");
+    EXPECT_EQ(blocks[0].items[0].value, "57.70%");
+    EXPECT_EQ(mainMetrics({scene, coverage, options})[0], "Coverage 57.70% by cells");
 }
 
 TEST(MapLegend, NamesTheKindsOfSensors) {
@@ -106,8 +106,8 @@ TEST(MapLegend, ListsTheSpotsThatAreMarked) {
     ASSERT_EQ(titles()[3], "Largest unseen spots");
     const LegendBlock block = legendBlocks(map)[3];
     ASSERT_EQ(block.items.size(), 2U);
-    EXPECT_EQ(block.items[0].text, "12.3 m²");
-    EXPECT_EQ(block.items[0].value, "at 1.2, -4.6");
+    EXPECT_EQ(block.items[0].text, "12.34 m²");
+    EXPECT_EQ(block.items[0].value, "at 1.23, -4.56");
     EXPECT_EQ(block.items[0].number, "1");
     coverage.report.unseen.assign(9, {{0, 0}, 5});
     EXPECT_EQ(markedSpots(map), 5U);
@@ -126,8 +126,8 @@ TEST(MapLegend, ListsZonesWithTheirCoverage) {
     LegendBlock block = legendBlocks({scene, coverage, options})[3];
     EXPECT_EQ(block.title, "Zones");
     EXPECT_EQ(block.items[0].text, "z");
-    EXPECT_EQ(block.items[0].value, "50.0%");
-    EXPECT_EQ(block.items[0].second, "25.0%");
+    EXPECT_EQ(block.items[0].value, "50.00%");
+    EXPECT_EQ(block.items[0].second, "25.00%");
     coverage.report.zones.assign(50, {"z", 0.5, {0.25, 0.5}});
     block = legendBlocks({scene, coverage, options})[3];
     ASSERT_EQ(block.items.size(), 7U);
@@ -149,17 +149,17 @@ TEST(MapLegend, ComparisonsAddUp) {
     const MapPicture map{scene, coverage, options, &other};
     const std::vector<LegendItem> items = legendBlocks(map)[1].items;
     ASSERT_EQ(items.size(), 4U);
-    EXPECT_EQ(items[0].value, "12.0 m²");
-    EXPECT_EQ(items[1].value, "20.0 m²");
+    EXPECT_EQ(items[0].value, "12.00 m²");
+    EXPECT_EQ(items[1].value, "20.00 m²");
     EXPECT_EQ(items[2].value, "4.00 m²");
-    EXPECT_EQ(items[3].value, "28.0 m²");
+    EXPECT_EQ(items[3].value, "28.00 m²");
     const std::vector<LegendItem> sensors = legendBlocks(map)[2].items;
     EXPECT_EQ(sensors.back().text, "old.3dm");
     EXPECT_EQ(sensors.back().value, "1 laser");
     EXPECT_TRUE(sensors.back().mark.hollow);
     EXPECT_EQ(mainMetrics(map),
-              (std::vector<std::string>{"Coverage 50.0% (cells 50.0%)", "gained 20.0 m²",
-                                        "lost 4.00 m²", "old.3dm 25.0%"}));
+              (std::vector<std::string>{"Coverage 50.00% (cells 50.00%)", "gained 20.00 m²",
+                                        "lost 4.00 m²", "old.3dm 25.00%"}));
 }
 
 TEST(MapLegend, NarrowPagesShowWhatMattersMost) {

@@ -109,8 +109,8 @@ TEST(Map, SvgHoldsTitleIdsAndMetricsAsText) {
         mapOf("ispace size=8,8\nlaser id=left-one at=0,0 heading=45 fov=90 range=20\n",
               {PictureFormat::Svg, 1200, "a <b> & \"c\""});
     for (const std::string text :
-         {"a &lt;b&gt; &amp; &quot;c&quot;", "left-one", "1 laser", "no sensor", "75.0%", "2 m",
-          "Coverage 25.0% (cells 25.0%) · 16.0 m² of 64.0 m² · 1 laser"})
+         {"a &lt;b&gt; &amp; &quot;c&quot;", "left-one", "1 laser", "no sensor", "75.00%", "2 m",
+          "Coverage 25.00% (cells 25.00%) · 16.00 m² of 64.00 m² · 1 laser"})
         EXPECT_NE(svg.find(">" + text + "</text>"), std::string::npos) << text;
 }
 

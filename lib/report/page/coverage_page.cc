@@ -222,7 +222,9 @@ void addRequirements(const CoveragePageInput& input, ReportPage& page) {
     page.sections.push_back(std::move(section));
 }
 
-PageTable sensorsOfReport(const Scene& scene, const Coverage& coverage) {
+}  // namespace
+
+PageTable sensorsTable(const Scene& scene, const Coverage& coverage) {
     PageTable table{
         "indoor floor in square metres: seen, seen by no other sensor, shared with others",
         "llr",
@@ -240,6 +242,8 @@ PageTable sensorsOfReport(const Scene& scene, const Coverage& coverage) {
     return table;
 }
 
+namespace {
+
 void addInstallation(const CoveragePageInput& input, ReportPage& page) {
     if (input.scene.sensors.empty()) return;
     const std::vector<Installation> installations = installationsOf(input.scene);
@@ -254,7 +258,7 @@ void addInstallation(const CoveragePageInput& input, ReportPage& page) {
     std::vector<PageSection> sheets;
     if (input.cover.isGiven()) sheets = cameraSheets(input.scene, table, figures);
     PageSection pictures{"sensors", "Sensors", {}};
-    pictures.blocks.push_back(sensorsOfReport(input.scene, input.coverage));
+    pictures.blocks.push_back(sensorsTable(input.scene, input.coverage));
     for (PageFigure& figure : figures) pictures.blocks.push_back(std::move(figure));
     page.sections.push_back(std::move(pictures));
     PageTable material = materialTable(materialOf(input.scene, cables, input.prices));

@@ -47,6 +47,9 @@ std::vector<PageText> incidentsOf(const RunCoverage& run);
 PageText sightInRun(const RunCoverage& run, const std::string& movers);
 /// Builds the tables of zones and of the densities of cameras; empty without either.
 std::vector<PageBlock> zoneTables(const CoverageReport& report);
+/// Builds the table of the floor that each sensor sees, sees alone, and shares with others.
+/// \param scene whose floor is measured
+PageTable sensorsTable(const Scene& scene, const Coverage& coverage);
 /// Builds the section on methods and their limits.
 PageSection methodsSection(const CoverageReport& report);
 /// Returns the records of placed sensors, robots and people as text.
