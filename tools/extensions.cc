@@ -4,8 +4,19 @@
 // `--help`.
 #include "extensions.h"
 
+#ifdef ISPACE_HAS_JUDGE
+#include "extensions/judge/judge.h"
+#endif
+
 namespace ispace {
 
-std::span<const ToolExtension> toolExtensions() { return {}; }
+std::span<const ToolExtension> toolExtensions() {
+    static const std::vector<ToolExtension> extensions = {
+#ifdef ISPACE_HAS_JUDGE
+        {"judge", "coverage", makeTrackJudge},
+#endif
+    };
+    return extensions;
+}
 
 }  // namespace ispace

@@ -28,7 +28,7 @@ struct RobustChoice {
         Rooms,     ///< the scene, and the same with other furniture or doors
         Failures,  ///< of any K sensors of the layout
         Mounting,  ///< random errors of mounting, the same for all candidates of a site
-        Crowd,     ///< people at random positions; a sensor inside of one sees nothing
+        Crowd,     ///< people at random positions; a sensor inside of one is blind
     };
     Of of = Of::Nothing;
     bool is_worst = true;

@@ -34,7 +34,7 @@ struct RoomGoals {
     std::vector<FacingRule> facing = {};
     std::vector<Pose3> forbidden = {};  ///< candidates that are left out
 
-    /// Returns true if nothing is asked but its floor.
+    /// Returns true if only its floor is asked for.
     [[nodiscard]] bool isPlain() const;
 };
 

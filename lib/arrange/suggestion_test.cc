@@ -146,7 +146,7 @@ TEST(Suggestions, MendFacesByOneCameraAhead) {
     ASSERT_EQ(first.edits.size(), 1U) << first.text;
     EXPECT_EQ(first.edits[0].kind, Edit::Kind::Add);
     EXPECT_NEAR(first.required, 0.7 * 4, 1e-6) << "no face is seen before";
-    // Without the share nothing is required.
+    // Without the share there is no requirement.
     const SuggestOptions told{.facing = {parseFacing("door,90deg,0")}};
     for (const Suggestion& one : adviseOn(kZones, eyeAt("w", "-2.5,0"), told).suggestions)
         EXPECT_EQ(one.required, 0) << one.text;

@@ -82,8 +82,8 @@ std::optional<std::string> digestOf(const std::string& name, bool is_input,
     return sha256(bytes);
 }
 
-/// Returns what is found by the name of a file that was looked for in vain: "" if nothing is there,
-/// the digest of a file, "/" for a folder or another entry. \param before as for digestOf()
+/// Returns what is found by the name of a file that was looked for in vain: "" if there is no such
+/// file, the digest of a file, "/" for a folder or another entry. \param before as for digestOf()
 std::optional<std::string> foundAt(const std::string& name, const timespec* before = nullptr) {
     struct stat info {};
     if (::stat(name.c_str(), &info) != 0) return "";

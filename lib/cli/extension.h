@@ -41,7 +41,8 @@ using ExtensionTask = std::function<void()>;
 class OptionGroup {
   public:
     virtual ~OptionGroup() = default;
-    /// Declares the options, bound to members. The group begins with line.group(HEADING).
+    /// Declares the options, bound to members. The group begins with line.group(HEADING), letters
+    /// and blanks.
     virtual void declare(CommandLine& line) = 0;
     /// Returns true if the parsed options ask for the task of the group.
     [[nodiscard]] virtual bool isAsked() const = 0;

@@ -142,7 +142,7 @@ TEST(Parity, equalsTheExactTestThroughVerticesAndAlongWalls) {
 
 TEST(Parity, errsBehindAFreeStandingWallWhereTheExactTestDoesNot) {
     auto walls = test::edgesOf(test::box(0, 0, 8, 6));
-    walls.push_back({{4, 2}, {4, 4}});  // bounds nothing
+    walls.push_back({{4, 2}, {4, 4}});  // bounds no face
     const Point2 known{2, 3}, behind{6, 3};
     EXPECT_FALSE(insideByParity(behind, known, walls));
 

@@ -244,7 +244,7 @@ TEST_F(SdfIncludes, WhatIsMissingIsNamedOnceWithItsPlace) {
     EXPECT_EQ(
         errorOf(include("model://table")).find("table/model.sdf:4:1: error: `model://leg` is "),
         0U);
-    // Nothing outside is read, whatever leads there.
+    // No file outside is read, whatever leads there.
     for (const char* uri : {"../../../../../../etc/passwd", "/etc/passwd", "file:///etc/passwd",
                             "model://../../etc/passwd", "https://example.org/models/../../etc"})
         EXPECT_NE(errorOf(include(uri)).find(" is not in the world's folder, "), std::string::npos)

@@ -137,7 +137,7 @@ TEST(WebSocket, SendsTheSceneOnceAndFramesThatAreNew) {
         "{\"schema\":\"ispace-web-frame/1\",\"frame\":1,\"scene\":0,\"t\":0.000,\"steps\":0,"))
         << first;
     EXPECT_TRUE(has(first, "\"all\":true")) << first;
-    watcher.send("FRAME");  // nothing is new before the world takes a step
+    watcher.send("FRAME");  // no frame is new before the world takes a step
     world.take("WORLD");
     EXPECT_EQ(world.ask("STEP"), "OK STEP n=1 t=0.100\n");
     const std::string second = watcher.receive();

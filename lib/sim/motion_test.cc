@@ -234,7 +234,7 @@ TEST(Motion, FrictionTakesItsShare) {
     const Motion slow = after(commanded(moving(1.2), Verb::Speed, 1.2), 5, 0.005, 0.5);
     EXPECT_EQ(slow.drive.speed, 0.8);
     EXPECT_EQ(after(slow, 5).drive.speed, 1.2);
-    // Where nothing moves.
+    // Where all movers stand.
     const Advance stuck = advance(moving(1, 50), limitsOf(kModel, 1), 0.5);
     EXPECT_EQ(stuck.motion.pose, Pose2());
     EXPECT_EQ(stuck.motion.drive.speed, 0);

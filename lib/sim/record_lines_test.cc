@@ -161,7 +161,7 @@ TEST_F(RecordLines, FramesAreRecordedAtTheirRate) {
     run("all", 100);
     EXPECT_EQ(filesIn("all/pictures"), 21U);
     EXPECT_EQ(filesIn("all/depths"), 9U);
-    // The same folder again: nothing of the run before is left.
+    // The same folder again: no file of the run before is left.
     run("all", 0);
     EXPECT_EQ(filesIn("all/pictures"), 0U);
     EXPECT_EQ(filesIn("all/depths"), 0U);

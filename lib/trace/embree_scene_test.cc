@@ -42,7 +42,7 @@ void addGlobe(TriangleSoup& soup, Point3 middle, int rings, int sectors, std::mt
     }
 }
 
-/// A room 8 m by 6 m with boxes, globes and round bodies that touch nothing.
+/// A room 8 m by 6 m with boxes, globes and round bodies that touch no other.
 TriangleSoup furnished() {
     std::mt19937_64 random(30);
     TriangleSoup soup;

@@ -73,7 +73,7 @@ ispace-sweep status sweep.yaml ran.jsonl --json >ran.json
 exec 2>&3
 
 python3 "$validate" "$schemas" ./*.json ./*.jsonl ./*.geojson run/scans.jsonl \
-    "$source_dir"/tests/*/*.out >log || fail "$(head -n 40 log)"
+    "$source_dir"/tests/*/*.out "$source_dir"/lib/extensions/*/golden/*.out >log || fail "$(head -n 40 log)"
 # The schemas restrict the values.
 [ "$(ls ./*.json ./*.jsonl ./*.geojson | wc -l)" -gt 30 ] || fail "few outputs: $(ls)"
 

@@ -64,7 +64,7 @@ void CommonSight::follow(std::size_t face, std::size_t edge, std::vector<Wedge> 
             // Nothing lies between: what both sides bound would be behind the corner.
             if (cross(wedge.right - wedge.corner, wedge.left - wedge.corner) < 0) return;
         }
-        // An edge that begins or ends in the corner bounds nothing beyond it.
+        // An edge that begins or ends in the corner bounds no point beyond it.
         wedge.is_open = std::min(length(to_right), length(to_left)) <= kAtCorner;
         if (wedge.is_open) continue;
         keepInside(piece, {wedge.corner, -perpendicular(wedge.right - wedge.corner)});

@@ -34,7 +34,7 @@ struct BoxCore {
 /// to its far side. Beyond an edge it passes to the right of all left ends of edges, and to the
 /// left of all right ends. So a point beyond lies to the right of the line from some point of the
 /// box, and of those from all right ends on the near side, through each left end; and so mirrored.
-/// Parts of the box on the far side of an edge see nothing through it.
+/// Parts of the box on the far side of an edge are hidden by it.
 class BoxViews {
   public:
     /// Parts of a cell; two of them add up within 16 bits.

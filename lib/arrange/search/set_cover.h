@@ -26,7 +26,7 @@ struct SetCoverResult {
     std::vector<std::uint32_t> chosen;  ///< ascending
     std::uint64_t cost = 0;
     std::uint64_t bound = 0;    ///< no cover costs less
-    bool is_coverable = false;  ///< false: some row is in no column, and nothing is chosen
+    bool is_coverable = false;  ///< false: some row is in no column, and no column is chosen
 };
 
 /// Finds a minimum-cost cover. Removes dominated rows and columns, and solves each component by

@@ -12,7 +12,7 @@
 template <class T>
 class ArFunctorC : public sim_aria::Call0 {
   public:
-    /// Does nothing.
+    /// Has no effect.
     ArFunctorC() : sim_aria::Call0([] {}) {}
     ArFunctorC(T* object, void (T::*function)())
         : sim_aria::Call0([=]() { (object->*function)(); }) {}

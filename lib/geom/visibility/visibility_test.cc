@@ -190,7 +190,7 @@ TEST(Visibility, ASlitLetsSightThrough) {
     std::vector<Segment2> closed = lines;
     closed.push_back({{-5e-7, 1}, {5e-7, 1}});
     EXPECT_NEAR(behind - areaSeen(closed, {0, 0}, 10), (100 - 1) * 1e-6 / 2, 1e-9);
-    // Closed at a point: nothing gets through.
+    // Closed at a point: no ray gets through.
     const std::vector<Segment2> touching{{{-50, 1}, {0, 1}}, {{0, 1}, {50, 1}}};
     EXPECT_NEAR(areaSeen(touching, {0, 0}, 10), areaSeen(closed, {0, 0}, 10), 1e-9);
 }

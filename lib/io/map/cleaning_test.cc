@@ -125,7 +125,7 @@ TEST(CleanRoom, SlitsOfUnknownCloseAndThinWallsStay) {
     EXPECT_TRUE(room.floor.contains(9, 1));
     EXPECT_TRUE(room.floor.contains(18, 8));
     EXPECT_TRUE(room.floor.contains(18, 3));
-    // … occupied cells did not, and nothing at the room's edge.
+    // … occupied cells did not, and no cell at the room's edge.
     EXPECT_FALSE(room.floor.contains(18, 2));
     EXPECT_FALSE(room.floor.contains(24, 8));
     EXPECT_FALSE(room.floor.contains(9, 0));

@@ -14,10 +14,10 @@ namespace ispace {
 /// drawing's code page, Windows-1252 by default. `\U+00E4` is a character by its code point.
 class DxfText {
   public:
-    /// \param name $DWGCODEPAGE: ANSI_1252, DOS850, GB2312; an unknown one changes nothing
+    /// \param name $DWGCODEPAGE: ANSI_1252, DOS850, GB2312; an unknown one has no effect
     void setCodePage(std::string_view name);
 
-    /// \param name $ACADVER: AC1015; an unknown one changes nothing
+    /// \param name $ACADVER: AC1015; an unknown one has no effect
     void setVersion(std::string_view name);
 
     /// Takes a name into account for the decision on the encoding, before the first decoded().

@@ -50,7 +50,7 @@ TEST(PlanRegion, DoorsJoinRooms) {
     ASSERT_EQ(region.rooms.size(), 2U);
     EXPECT_DOUBLE_EQ(region.rooms[0].area(), 16);
     EXPECT_EQ(region.rooms[0].locate(region.inside), Side::Inside);
-    // A door to the outside joins nothing.
+    // A door to the outside joins no rooms.
     const Lines outside{{{0, 1}, {0, 2}}};
     EXPECT_DOUBLE_EQ(PlanFaces(flat(), ampleWork(), outside).groups().front().area, 25);
 }
