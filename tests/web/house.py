@@ -74,6 +74,8 @@ def follows(run, page):
         client.sendall(b"PERSON ground/h1\nGOTO upper/9,3\n")
         eventually("the storey above", lambda: rooms.first_selected_option.text == "upper")
         eventually("h1 arrives", lambda: page.facts().get("x", 0) > 8.9)
+    eventually("its way is told", lambda: "ground/h1 comes to s1" in page.log() and "ground/h1 comes to upper" in page.log())
+    check("DELETE" not in page.log(), f"the log is {page.log()}")
     check(page.part("follow").get_attribute("aria-pressed") == "true", "it follows no more")
     check(page.text("name") == "ground/h1", f"{page.text('name')} is selected")
     # Another one in another room.

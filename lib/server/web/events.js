@@ -16,6 +16,7 @@ const kTexts = {
   seen: ({id, by}) => `${id} is in sight of ${by}`,
   lost: ({id}) => `${id} is out of sight`,
   mark: ({text}) => text,
+  passage: ({id, to}) => `${id} comes to ${to}`,
   change: ({what}) => `changed: ${what}`,
 };
 

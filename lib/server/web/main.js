@@ -69,8 +69,10 @@ function connect() {
     json: object => object.plan ? takeScene(object) : takeFrame(object),
     line: line => {
       states.line(line);
-      const {text, bad} = eventText(line);
-      if (text) tell(text, bad);
+      building.tellEvent(line, one => {
+        const {text, bad} = eventText(one);
+        if (text) tell(text, bad);
+      });
     },
     close: code => {
       building.close();
