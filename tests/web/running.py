@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 
+SHARE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../share")
 PATIENCE = 60  # seconds; far more than anything here takes
 
 
@@ -61,13 +62,17 @@ human id=h1 at=3.2,3.9 heading=200
 class Run:
     """A simrun that serves a page; it ends with the block that uses it."""
 
-    def __init__(self, *arguments, environment=ENVIRONMENT, layout=LAYOUT, web="127.0.0.1:0"):
+    def __init__(self, *arguments, environment=ENVIRONMENT, layout=LAYOUT, shipped=(), web="127.0.0.1:0"):
+        """shipped: files of share instead of these two, by their paths below it; the first two are the operands"""
         self.folder = tempfile.mkdtemp()
-        for name, text in (("office.env", environment), ("office.3dm", layout)):
+        operands = [os.path.basename(path) for path in shipped[:2]] or ["office.env", "office.3dm"]
+        for path in shipped:
+            shutil.copy(os.path.join(SHARE, path), self.folder)
+        for name, text in () if shipped else zip(operands, (environment, layout)):
             with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
         self.process = subprocess.Popen(
-            ["simrun", "office.env", "office.3dm", "-q", "--web", web, *arguments],
+            ["simrun", *operands, "-q", "--web", web, *arguments],
             cwd=self.folder, stdout=subprocess.PIPE, text=True)
         self.announced = json.loads(self.process.stdout.readline())
         self.url = self.announced["web"]
