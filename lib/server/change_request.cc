@@ -97,13 +97,14 @@ std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_v
     }
 }
 
-/// A pending change request.
+/// Pending requests for one change of the world: several are all ADD.
 class Changing {
   public:
-    Changing(ServerState& state, const std::string& line, const std::string& verb,
+    /// \pre at least one line
+    Changing(ServerState& state, std::vector<std::string> lines, const std::string& verb,
              const std::string& prefix)
-        : state_(&state), line_(line), verb_(verb), prefix_(prefix) {
-        for (const Piece& piece : wordsOf(line_)) words_.push_back(piece.text);
+        : state_(&state), lines_(std::move(lines)), verb_(verb), prefix_(prefix) {
+        words_ = wordsIn(lines_.front());
     }
     Changing(const Changing&) = delete;
     Changing& operator=(const Changing&) = delete;
@@ -117,11 +118,19 @@ class Changing {
     [[nodiscard]] const World& world() const { return state_->simulation().world(); }
     [[nodiscard]] bool is(std::string_view verb) const { return words_[0] == verb; }
     [[nodiscard]] WorldChange change() const;
+    [[nodiscard]] std::vector<Edit> edits() const;
     [[nodiscard]] std::string done() const;
+    [[nodiscard]] std::string done(const std::string& line, const std::string& added) const;
+    static std::vector<std::string_view> wordsIn(std::string_view line) {
+        std::vector<std::string_view> words;
+        for (const Piece& piece : wordsOf(line)) words.push_back(piece.text);
+        return words;
+    }
 
     ServerState* state_;
-    std::string line_, verb_, prefix_;
-    std::vector<std::string_view> words_;  // of it
+    std::vector<std::string> lines_;
+    std::string verb_, prefix_;
+    std::vector<std::string_view> words_;  // of the first line
     std::shared_ptr<const ChangeNews> news_;
 };
 
@@ -140,15 +149,42 @@ WorldChange Changing::change() const {
                 throw Refusal{400, "the name of a file holds no control characters"};
         return editor.load(std::string(words_[1]), words_.size() > 2 ? std::string(words_[2]) : "");
     }
-    if (words_.size() < 2) throw Refusal{400, "names no record"};
-    const auto rest = static_cast<std::size_t>(words_[1].data() - line_.data());
-    return editor.edit(editsOf(words_, std::string_view(line_).substr(rest)));
+    return editor.edit(edits());
+}
+
+/// \throws Refusal, also for joined requests that name files: the record of each such change
+/// refers to a scene of its own
+std::vector<Edit> Changing::edits() const {
+    std::vector<Edit> edits;
+    for (const std::string& line : lines_) {
+        const std::vector<std::string_view> words = wordsIn(line);
+        if (words.size() < 2) throw Refusal{400, "names no record"};
+        const auto rest = static_cast<std::size_t>(words[1].data() - line.data());
+        for (Edit& edit : editsOf(words, std::string_view(line).substr(rest)))
+            edits.push_back(std::move(edit));
+    }
+    if (lines_.size() == 1) return edits;
+    try {
+        for (const Record& record : addedRecords(edits, sceneSchemas()))
+            if (fileKeyOf(record) != nullptr) throw Refusal{400, "names a file"};
+    } catch (const FormatError& error) {
+        throw Refusal{400, messageOf(error, words_[0])};
+    }
+    return edits;
 }
 
 std::string Changing::done() const {
-    const std::string added =
-        is("ADD") && !world().scene().ids.empty() ? world().scene().ids.back() : "";
-    state_->simulation().tellChange(printable(line_), news_->scene_text);
+    if (!is("ADD") || world().scene().ids.empty()) return done(lines_.front(), "");
+    std::string out;
+    const std::vector<std::string>& ids = world().scene().ids;
+    for (std::size_t i = 0; i < lines_.size(); ++i)
+        out += done(lines_[i], ids[ids.size() - lines_.size() + i]);
+    return out;
+}
+
+/// Tells all sessions of the change. \returns the answer to the request of this line
+std::string Changing::done(const std::string& line, const std::string& added) const {
+    state_->simulation().tellChange(printable(line), news_->scene_text);
     std::string out = "OK ";
     out += verb_.empty() ? words_[0] : verb_;
     if (!added.empty()) out.append(" id=").append(prefix_).append(added);
@@ -216,10 +252,18 @@ void changeRooms(const ServedRooms& rooms, const std::function<void()>& change) 
 std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
                                                       const std::string& verb,
                                                       const std::string& prefix) {
-    const auto changing = std::make_shared<Changing>(state, line, verb, prefix);
+    return changeWorld(state, std::vector<std::string>{line}, verb, prefix);
+}
+
+std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state,
+                                                      std::vector<std::string> lines,
+                                                      const std::string& verb,
+                                                      const std::string& prefix) {
+    const auto changing = std::make_shared<Changing>(state, std::move(lines), verb, prefix);
     const auto asked = std::make_shared<ServerState::Asked>();
     const auto end = [changing, asked](const std::exception_ptr& failure) {
         asked->bytes = std::make_shared<const std::string>(changing->end(failure));
+        asked->is_error = asked->bytes->starts_with("ERR");
     };
     const WallTime began = std::chrono::steady_clock::now();
     try {

@@ -18,6 +18,13 @@ std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const 
                                                       const std::string& verb = "",
                                                       const std::string& prefix = "");
 
+/// Carries out several requests ADD by one change of the world, which is built once. \returns the
+/// answers to all of them; if one fails none is carried out, and `is_error` is set. \pre as above
+std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state,
+                                                      std::vector<std::string> lines,
+                                                      const std::string& verb = "",
+                                                      const std::string& prefix = "");
+
 /// Changes the rooms of a building together, between two steps. \pre all states mayChangeNow()
 void changeRooms(const ServedRooms& rooms, const std::function<void()>& change);
 

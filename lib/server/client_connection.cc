@@ -33,8 +33,12 @@ bool LineBuffer::tooLong() const {
     return withoutReturn(std::string_view(bytes_).substr(begin_, end - begin_)).size() > limit_;
 }
 
+std::string_view LineBuffer::front() const {
+    return withoutReturn(std::string_view(bytes_).substr(begin_, end_ - begin_));
+}
+
 std::string_view LineBuffer::take() {
-    const auto line = withoutReturn(std::string_view(bytes_).substr(begin_, end_ - begin_));
+    const std::string_view line = front();
     begin_ = end_ + 1;
     end_ = bytes_.find('\n', begin_);
     return line;
@@ -143,13 +147,23 @@ void ClientConnection::answer() {
         if (lines_.tooLong())
             session_->tooLong(limits_.line);
         else if (lines_.ready())
-            session_->request(lines_.take());
+            answerNext();
         else
             return;
         const std::string reply = session_->take();
         if (!reply.empty()) heard_ = steady_clock::now();
         out_.append(reply);
     }
+}
+
+void ClientConnection::answerNext() {
+    const std::string_view line = lines_.take();
+    std::size_t more = session_->mayJoin(line);
+    while (more > 0 && lines_.ready() && !lines_.tooLong() && lines_.front().starts_with("ADD ")) {
+        session_->join(lines_.take());
+        --more;
+    }
+    session_->request(line);
 }
 
 void ClientConnection::stepped(bool has_time) {

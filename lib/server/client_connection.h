@@ -43,6 +43,8 @@ class LineBuffer {
     [[nodiscard]] bool tooLong() const;
     [[nodiscard]] std::size_t memory() const { return bytes_.capacity(); }
     /// Returns the next line without its end; valid until append(). \pre ready()
+    [[nodiscard]] std::string_view front() const;
+    /// Likewise, and goes on to the line after it.
     std::string_view take();
 
   private:
@@ -151,6 +153,7 @@ class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
     void pump();
     void pumpLater();
     void answer();
+    void answerNext();
     void flush();
     std::string_view nextPiece();
     void listen();

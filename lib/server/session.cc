@@ -201,9 +201,29 @@ void Session::hold(Words words, Condition until) {
 }
 
 void Session::goOn() {
-    if (held_.empty() || !(this->*may_go_on_)()) return;
+    if (!held_.empty()) {
+        if (!(this->*may_go_on_)()) return;
+        may_go_on_ = nullptr;
+        request(std::exchange(held_, {}));
+    }
+    while (!backlog_.empty() && held_.empty() && !wanted_) {
+        const std::string next = std::move(backlog_.front());
+        backlog_.pop_front();
+        request(next);
+    }
+}
+
+/// Answers with an error the requests that the end of the run leaves open.
+void Session::abandonRequests() {
+    std::size_t open = backlog_.size();
+    if (wanted_ || seek_ || !held_.empty()) open += std::max<std::size_t>(1, joined_.size());
+    for (std::size_t i = 0; i < open; ++i) error(405, {"the run has ended"});
+    wanted_.reset();
+    seek_.reset();
+    held_.clear();
+    backlog_.clear();
+    joined_.clear();
     may_go_on_ = nullptr;
-    request(std::exchange(held_, {}));
 }
 
 void Session::silent() {
@@ -217,13 +237,7 @@ void Session::silent() {
 void Session::finish() {
     sync();
     if (!running_.empty()) world().command(subject_, {Verb::Stop, 0});
-    if (role_ == Role::World && (wanted_ || seek_ || !held_.empty())) {
-        wanted_.reset();
-        seek_.reset();
-        held_.clear();
-        may_go_on_ = nullptr;
-        error(405, {"the run has ended"});
-    }
+    if (role_ == Role::World) abandonRequests();
     // Now it may wait: for frames due before the request, and for the requested one.
     while (wanted_ || coming_) {
         if (!state_->await()) {
@@ -358,6 +372,8 @@ void Session::leave() {
     events_.clear();
     seek_.reset();
     held_.clear();
+    backlog_.clear();
+    joined_.clear();
     may_go_on_ = nullptr;
     role_ = Role::None;
     running_.clear();

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <initializer_list>
 #include <memory>
@@ -69,6 +70,11 @@ class Session {
     /// not a request, the client speaks another protocol and the session ends.
     /// \pre !waiting() and !closing()
     void request(std::string_view line);
+    /// Returns how many requests ADD that follow this one at once can share its change of the
+    /// world: pass them to join() before request().
+    [[nodiscard]] std::size_t mayJoin(std::string_view line) const;
+    /// Adds a request to the next one. It is answered after it, by itself if they fail together.
+    void join(std::string_view line) { backlog_.emplace_back(line); }
     /// Answers a request that exceeds the permitted length, and closes.
     void tooLong(std::size_t limit);
     /// Writes this client's events and scans, and the awaited answer. Call after each step or
@@ -85,7 +91,8 @@ class Session {
     /// True while a STEP, a SEEK, a change of the world or a picture is under way; later requests
     /// wait for its answer.
     [[nodiscard]] bool waiting() const {
-        return steps_ != nullptr || seek_ || !held_.empty() || wanted_ || coming_;
+        return steps_ != nullptr || seek_ || !held_.empty() || !backlog_.empty() || wanted_ ||
+               coming_;
     }
     [[nodiscard]] bool hasRole() const { return role_ != Role::None; }
     /// True if the pending request is a change of the world that awaits its turn.
@@ -151,6 +158,7 @@ class Session {
     void hold(Words words, Condition until);
     void goOn();
     [[nodiscard]] bool mayChange() const;
+    [[nodiscard]] std::vector<std::string> withJoined(Words words);
     void changeRoom(Words words);
     bool placeMover(Words words);
     [[nodiscard]] bool maySeek() const { return state_->areAllAtRest(); }
@@ -158,6 +166,8 @@ class Session {
     [[nodiscard]] bool sendsPendingScan(Words words);
     void sendReading(std::size_t sensor, const ReplyForm& form);
     void receiveAsked();
+    void receiveChange(const ServerState::Asked& change);
+    void abandonRequests();
 
     void token(Words words);
     void acquireRobot(Words words);
@@ -224,6 +234,11 @@ class Session {
     // A deferred request, answered once this condition holds.
     std::string held_;
     Condition may_go_on_ = nullptr;
+    // Requests ADD that follow the pending one, those of one change under way (if more than one),
+    // and how many the next change may carry out.
+    std::deque<std::string> backlog_;
+    std::vector<std::string> joined_;
+    std::size_t joins_ = 1;
     EventKinds events_;                      // subscribed events
     std::vector<std::int64_t> next_events_;  // in each world
     std::string peer_;

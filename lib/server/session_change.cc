@@ -20,6 +20,9 @@ namespace {
 /// Bytes of an event's quoted text, which goes to all subscribed clients.
 constexpr std::size_t kMaxText = 256;
 
+constexpr std::string_view kAdd = "ADD ";
+constexpr std::size_t kMostJoined = 256;
+
 }  // namespace
 
 void Session::token(Words words) {
@@ -48,8 +51,41 @@ void Session::change(Words words) {
     if (rooms() != nullptr) return changeRoom(words);
     if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
     if (!mayChange()) return hold(words, &Session::mayChange);
-    wanted_ = changeWorld(*state_, std::string(textOf(words)));
+    wanted_ = changeWorld(*state_, withJoined(words));
     receiveAsked();
+}
+
+std::size_t Session::mayJoin(std::string_view line) const {
+    if (!line.starts_with(kAdd) || role_ != Role::World || rooms() != nullptr) return 0;
+    // Their events come between the answers.
+    if (!events_.empty()) return 0;
+    // A part of the world at a time: its load is judged between changes.
+    return std::min(joins_, 1 + world().scene().records.size() / 4) - 1;
+}
+
+/// Returns the requests that one change carries out, this one first.
+std::vector<std::string> Session::withJoined(Words words) {
+    std::vector<std::string> lines = {std::string(textOf(words))};
+    while (!backlog_.empty() && lines.size() < joins_) {
+        std::vector<std::string_view> next;
+        for (const Piece& piece : wordsOf(backlog_.front())) next.push_back(piece.text);
+        if (next.size() < 2) break;
+        lines.emplace_back(textOf(next));
+        backlog_.pop_front();
+    }
+    joined_ = lines.size() > 1 ? lines : std::vector<std::string>();
+    return lines;
+}
+
+/// Takes the answers. Requests whose common change fails are carried out one after another, then
+/// more at a time again.
+void Session::receiveChange(const ServerState::Asked& change) {
+    const std::vector<std::string> joined = std::exchange(joined_, {});
+    joins_ = change.is_error ? 1 : std::min(2 * joins_, kMostJoined);
+    if (joined.empty() || !change.is_error)
+        out_ += *change.bytes;
+    else
+        backlog_.insert(backlog_.begin(), joined.begin(), joined.end());
 }
 
 /// Sets the state of an actuator: a change of its record.

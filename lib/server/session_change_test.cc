@@ -55,6 +55,58 @@ TEST(SessionChange, AddSetDelete) {
               "OK LIST robots=r1,r2 lasers=l1,l2 people= sensors=l1,l2\n");
 }
 
+/// Sends these requests as a client does that does not wait for answers; returns the answers.
+std::string together(Changing& talk, Session& client, std::vector<std::string> lines) {
+    std::string text;
+    while (!lines.empty()) {
+        std::size_t joined = std::min(client.mayJoin(lines[0]), lines.size() - 1);
+        for (std::size_t i = 1; i <= joined; ++i) client.join(lines[i]);
+        text += talk.answer(client, lines[0]);
+        lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(joined) + 1);
+    }
+    return text;
+}
+
+TEST(SessionChange, RequestsThatFollowAtOnceShareAChange) {
+    std::vector<std::string> lines;
+    std::string answers;
+    for (int i = 0; i < 200; ++i) {
+        lines.push_back("ADD mote at=" + std::to_string(i % 3) + ",1,1");
+        answers += "OK ADD id=mote" + std::to_string(i + 1) + " t=0.000\n";
+    }
+    Changing talk;
+    Session& world = talk.client("WORLD");
+    EXPECT_EQ(together(talk, world, lines), answers);
+    EXPECT_LT(talk.room.world.changes(), 40) << "changes for 200 requests";
+    EXPECT_EQ(talk.room.world.scene().records.back().keyword(), "mote");
+    EXPECT_EQ(talk.answer(world, "DELETE mote*"), "OK DELETE t=0.000\n");
+}
+
+TEST(SessionChange, ARefusalAmongThemIsAloneInItsTurn) {
+    std::vector<std::string> lines;
+    for (int i = 0; i < 40; ++i) lines.push_back("ADD cube at=" + std::to_string(i - 20) + ",5");
+    lines[20] = "ADD cube at=1";
+    lines[25] = "ADD cub at=1,1";
+    lines[30] = "ADD cube";
+    lines[35] = "ADD cube id=cube3 at=1,1";
+    lines.insert(lines.begin() + 38, "TIME");
+    Changing joined, single;
+    Session& client = single.client("WORLD");
+    std::string wanted;
+    for (const std::string& line : lines) wanted += single.answer(client, line);
+    EXPECT_EQ(together(joined, joined.client("WORLD"), lines), wanted);
+    EXPECT_EQ(std::count(wanted.begin(), wanted.end(), '\n'), 41);
+    EXPECT_LT(joined.room.world.changes(), single.room.world.changes());
+}
+
+TEST(SessionChange, EventsOfEachChangeFollowItsAnswer) {
+    Changing talk;
+    Session& world = talk.client("WORLD");
+    talk.answer(world, "EVENTS change");
+    for (int i = 0; i < 4; ++i) talk.answer(world, "ADD cube at=1,1");
+    EXPECT_EQ(world.mayJoin("ADD cube at=1,1"), 0U);
+}
+
 TEST(SessionChange, ActsSetStates) {
     Changing talk;
     Session& world = talk.client("WORLD");

@@ -85,7 +85,7 @@ void Session::sendReading(std::size_t sensor, const ReplyForm& form) {
 }
 
 void Session::receiveAsked() {
-    if (wanted_ && wanted_->bytes) out_ += *std::exchange(wanted_, nullptr)->bytes;
+    if (wanted_ && wanted_->bytes) receiveChange(*std::exchange(wanted_, nullptr));
     if (!coming_ || !coming_->bytes) return;
     const auto come = std::exchange(coming_, nullptr);
     // Streamed readings are unsolicited: skip the error, the next one may succeed.

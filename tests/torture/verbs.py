@@ -94,9 +94,6 @@ ROWS = {
     "lights": (each("lux at={x},{y},1", "ADD lamp at={x},{y}"), RESULT),
 }
 FAMILIES = {f"verb_{row}": row for row in ROWS}
-# Rows that grow faster, with bounds of their exponents, which may only fall: a change builds its scene, so that as many
-# changes as records are squares in the end.
-KNOWN = {"verb_add_lasers": 1.6, "verb_add_motes": 1.8}
 
 
 def files(family, size):
@@ -111,7 +108,8 @@ def files(family, size):
 
 
 def steepest(family):
-    return KNOWN.get(family, STEEPEST)
+    del family
+    return STEEPEST
 
 
 def is_refused(family):
