@@ -33,6 +33,20 @@ def light(page, scheme):
     page.settle()
 
 
+def brightness(page):
+    """The mean of the map as people see it, from 0 to 255."""
+    return page.browser.execute_async_script("""
+        const [png, done] = arguments, bytes = Uint8Array.from(atob(png), c => c.charCodeAt(0));
+        createImageBitmap(new Blob([bytes], {type: 'image/png'})).then(image => {
+            const canvas = document.createElement('canvas'), draw = canvas.getContext('2d');
+            const box = document.getElementById('map').getBoundingClientRect();
+            [canvas.width, canvas.height] = [box.width, box.height];
+            draw.drawImage(image, -box.left, -box.top);
+            const {data} = draw.getImageData(0, 0, canvas.width, canvas.height);
+            done(data.reduce((sum, part, i) => sum + (i % 4 < 3 ? part : 0), 0) / (0.75 * data.length));
+        });""", page.browser.get_screenshot_as_base64())
+
+
 def uses(page):
     """All parts at once: one selected, a plot, a picture, an edit, a complaint."""
     page.select("r1")
@@ -79,6 +93,9 @@ def main():
                 for scheme in ("light", "dark"):
                     light(page, scheme)
                     page.screenshot(f"axe_{width}_{scheme}.png")
+                    mean = brightness(page)
+                    check((mean > 160) == (scheme == "light") and (mean < 100) == (scheme == "dark"),
+                          f"at {width} pixels, {scheme}: the map has a brightness of {mean:.0f}")
                     found = faults(page, axe)
                     check(not found, f"at {width} pixels, {scheme}: {found}")
                 scroll = page.browser.execute_script("return document.documentElement.scrollWidth")

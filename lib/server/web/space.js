@@ -237,7 +237,8 @@ export class Space {
     const toEye = product([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -this.distance, 1],
                           product(turn, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -this.at[0], -this.at[1], 0, 1]));
     gl.viewport(0, 0, width, height);
-    gl.clearColor(0.925, 0.91, 0.875, 1);
+    const is_dark = matchMedia('(prefers-color-scheme: dark)').matches;
+    gl.clearColor(...is_dark ? [0.2, 0.19, 0.17] : [0.925, 0.91, 0.875], 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.uniformMatrix4fv(this.places.clip, false, product(perspective(0.9, width / height, near, far), toEye));
     if (this.room) this.put(this.room, kIdentity, kOfVertices);
