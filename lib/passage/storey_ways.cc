@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "building/building_sight.h"
 #include "env/walls.h"
@@ -21,6 +23,9 @@ constexpr double kMaxLanding = 1.5, kLandingStep = 0.05;
 /// Waiting movers stand at most this far from the landing, on a grid of this step.
 constexpr double kMaxSpot = 4, kSpotStep = 0.5;
 constexpr std::size_t kMaxSpots = 8;
+/// Landings of a storey to which the ways from one are kept free, the nearest: with more of them,
+/// ways to farther ones pass these.
+constexpr std::size_t kMaxWaysOut = 32;
 /// The floor before a door that waiting movers leave free, metres ahead.
 constexpr double kLeftFree = 2.5;
 
@@ -174,7 +179,8 @@ const Landing* StoreyWays::landing(std::size_t passage, std::size_t stop) const 
     return nullptr;
 }
 
-/// Returns the ways from a landing to the others of its storey and to the point farthest away.
+/// Returns the ways from a landing to the nearest others of its storey and to the point farthest
+/// away.
 std::vector<Segment2> StoreyWays::waysOut(const Landing& landing) const {
     const WayFinder& finder = finders_[landing.storey];
     std::vector<Segment2> out;
@@ -185,9 +191,17 @@ std::vector<Segment2> StoreyWays::waysOut(const Landing& landing) const {
             from = to;
         }
     };
+    std::vector<std::pair<double, Point2>> others;
     for (const Landing& other : landings_)
         if (&other != &landing && other.storey == landing.storey)
-            add(finder.way(landing.ways, other.at.position));
+            others.emplace_back(distance(other.at.position, landing.at.position),
+                                other.at.position);
+    const auto end =
+        others.begin() + static_cast<std::ptrdiff_t>(std::min(others.size(), kMaxWaysOut));
+    std::partial_sort(others.begin(), end, others.end(),
+                      [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::for_each(others.begin(), end,
+                  [&](const auto& other) { add(finder.way(landing.ways, other.second)); });
     if (const auto farthest = finder.farthestReached(landing.ways))
         add(finder.way(landing.ways, *farthest));
     return out;
@@ -196,6 +210,27 @@ std::vector<Segment2> StoreyWays::waysOut(const Landing& landing) const {
 double StoreyWays::widthToWalk(double radius) { return 2 * (radius + WayFinder::kMargin + kRoom); }
 
 double StoreyWays::widthToPass(double radius) { return widthToWalk(radius) + 4 * radius; }
+
+/// Returns the length of the way over a passage from the landing to its far end, and its width.
+Vec2 StoreyWays::sizeOf(const Landing& landing) const {
+    const StoreyLink& passage = (*passages_)[landing.passage];
+    return {landing.lane + (passage.is_lift ? passage.cabin.length : passage.length),
+            passage.is_lift ? passage.cabin.width : passage.width};
+}
+
+/// Returns the landings of its storey, itself among them, whose passages, and the floor that is
+/// left free before them, may have points at most this far from the landing.
+std::vector<const Landing*> StoreyWays::landingsNear(const Landing& landing, double far) const {
+    const double free = kLeftFree + 2 * (2 * size_.radius + kRoom);
+    std::vector<const Landing*> near;
+    for (const Landing& other : landings_) {
+        if (other.storey != landing.storey) continue;
+        const Vec2 size = sizeOf(other);
+        const double reach = std::max(free, size.x + size.y + 2 * size_.radius);
+        if (distance(other.at.position, landing.at.position) <= far + reach) near.push_back(&other);
+    }
+    return near;
+}
 
 /// Finds points near a landing that leave the way to the passages free.
 void StoreyWays::addSpots(Landing& landing) const {
@@ -206,24 +241,19 @@ void StoreyWays::addSpots(Landing& landing) const {
         (*passages_)[landing.passage].is_lift ? std::vector<Segment2>() : waysOut(landing);
     std::vector<std::tuple<double, double, double>> found, in_ways;
     const int reach = static_cast<int>(kMaxSpot / kSpotStep);
+    const std::vector<const Landing*> near = landingsNear(landing, std::numbers::sqrt2 * kMaxSpot);
     for (int i = -reach; i <= reach; ++i)
         for (int k = -reach; k <= reach; ++k) {
             const Point2 p = landing.at.position + Vec2{i * kSpotStep, k * kSpotStep};
-            const bool is_in_way =
-                std::any_of(landings_.begin(), landings_.end(), [&](const Landing& other) {
-                    if (other.storey != landing.storey) return false;
-                    const Point2 local = seenFrom(other.at, {p, Angle()}).position;
-                    const bool is_before = local.x < 0 && local.x > -kLeftFree - wide &&
-                                           std::abs(local.y) < wide + kRoom;
-                    const StoreyLink& passage = (*passages_)[other.passage];
-                    const double deep =
-                        other.lane + (passage.is_lift ? passage.cabin.length : passage.length);
-                    const double half = (passage.is_lift ? passage.cabin.width : passage.width) / 2;
-                    const bool is_within = local.x >= 0 && local.x < deep + size_.radius &&
-                                           std::abs(local.y) < half + size_.radius;
-                    return is_before || is_within ||
-                           distance(p, other.at.position) < wide + 4 * kRoom;
-                });
+            const bool is_in_way = std::any_of(near.begin(), near.end(), [&](const Landing* other) {
+                const Point2 local = seenFrom(other->at, {p, Angle()}).position;
+                const bool is_before =
+                    local.x < 0 && local.x > -kLeftFree - wide && std::abs(local.y) < wide + kRoom;
+                const Vec2 size = sizeOf(*other);
+                const bool is_within = local.x >= 0 && local.x < size.x + size_.radius &&
+                                       std::abs(local.y) < size.y / 2 + size_.radius;
+                return is_before || is_within || distance(p, other->at.position) < wide + 4 * kRoom;
+            });
             if (is_in_way || !finder.isFree(p)) continue;
             const auto way = finder.length(landing.ways, p);
             if (!way || *way > 2 * kMaxSpot) continue;

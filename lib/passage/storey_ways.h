@@ -107,6 +107,9 @@ class StoreyWays {
     void addStairs(const BuildingScene& building, std::size_t index);
     void addSpots(Landing& landing) const;
     [[nodiscard]] std::vector<Segment2> waysOut(const Landing& landing) const;
+    [[nodiscard]] Vec2 sizeOf(const Landing& landing) const;
+    [[nodiscard]] std::vector<const Landing*> landingsNear(const Landing& landing,
+                                                           double far) const;
     [[nodiscard]] std::optional<Point2> freeBefore(std::size_t storey, const Pose2& end) const;
 
     const std::vector<StoreyLink>* passages_;

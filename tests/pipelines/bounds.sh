@@ -111,6 +111,12 @@ with open("uwb.3dm", "w", encoding="ascii") as file:
 with open("lasers.3dm", "w", encoding="ascii") as file:
     file.write("#3dm 1\n")
     file.writelines(f"laser at={-19.5 + 0.6 * (i % 66):.1f},{-14.5 + i // 66:.1f} range=3\n" for i in range(1500))
+with open("far.3dm", "w", encoding="ascii") as file:
+    file.write("#3dm 1\n")
+    file.writelines(f"laser at={-19 + 2 * (i % 20)},{-14 + 2 * (i // 20)} heading={i} range=8\n" for i in range(300))
+with open("flights.env", "w", encoding="ascii") as file:
+    file.write("#env 1\nstorey id=s0 file=hall.env height=3\nstorey id=s1 file=hall.env z=3 height=3\n")
+    file.writelines(f"stairs storeys=s0,s1 at={-19 + 2 * (i % 19)},{-14 + 2 * (i // 19)} size=0.2,0.4\n" for i in range(266))
 END
 printf '#env 1\nispace size=40,30\n' >hall.env
 (ulimit -t "$(grep -q 'ISPACE_SANITIZE:[A-Z]*=OFF' "$binary_dir/CMakeCache.txt" && echo 6 || echo 120)"
@@ -118,4 +124,8 @@ printf '#env 1\nispace size=40,30\n' >hall.env
  has 'no exact figures of all together: outlines .* more than [0-9]* [a-z]* (`--max-work [0-9]*` allows more)' <out ||
      fail "$(head -n 20 out)"
  expect_status 0 coverage hall.env lasers.3dm --report page.html
- ! has "no exact figures" <out || fail "$(head -n 20 out)")
+ ! has "no exact figures" <out || fail "$(head -n 20 out)"
+ # Changes that are tried take the time of the views that they change; flights are looked at with those near them.
+ expect_status 0 coverage hall.env far.3dm --suggest 3 --time-limit 2s
+ has 'suggest' <out || fail "$(tail -n 5 out)"
+ expect_status 1 envc --check flights.env)
