@@ -7,6 +7,9 @@
 #ifdef ISPACE_HAS_JUDGE
 #include "extensions/judge/judge.h"
 #endif
+#ifdef ISPACE_HAS_REALITY
+#include "extensions/reality/reality.h"
+#endif
 
 namespace ispace {
 
@@ -14,6 +17,9 @@ std::span<const ToolExtension> toolExtensions() {
     static const std::vector<ToolExtension> extensions = {
 #ifdef ISPACE_HAS_JUDGE
         {"judge", "coverage", makeTrackJudge},
+#endif
+#ifdef ISPACE_HAS_REALITY
+        {"reality", "scan", makeRealityOptions},
 #endif
     };
     return extensions;

@@ -34,6 +34,7 @@ struct LogScan {
     std::string sensor;  ///< its id, the topic, or FLASER, ROBOTLASER1, ...
     double time = 0;     ///< seconds; some logs have one time for all scans: the order holds
     Angle first, step;
+    double beam_time = 0;                 ///< seconds from beam to beam, if the log has it
     double min_range = 0, max_range = 0;  ///< metres
     std::vector<float> ranges;            ///< metres; +infinity is no return
     LogPoses poses;
@@ -45,7 +46,7 @@ struct LogCloud {
     double time = 0;
     std::vector<std::array<float, 3>> rays;  ///< unit vectors
     std::vector<float> ranges;               ///< along them, metres; +infinity is no return
-    double max_range = 0;                    ///< metres; +infinity if the log has none
+    double max_range = 0;                    ///< metres; +infinity if unknown
     LogPoses poses;
 };
 

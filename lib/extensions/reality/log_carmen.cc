@@ -79,7 +79,8 @@ struct CarmenBeams {
     Angle first, step;
 };
 
-/// Returns the bearings of FLASER, which has none, as CARMEN guesses them by the number of beams.
+/// Returns the bearings of FLASER, which does not state them, as CARMEN guesses them by the number
+/// of beams.
 CarmenBeams guessedBeams(std::size_t count) {
     constexpr std::size_t kFine = 401;  // a hundred degrees at a quarter
     if (count == kFine) return {Angle::degrees(-50), Angle::degrees(0.25)};

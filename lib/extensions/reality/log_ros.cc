@@ -157,7 +157,7 @@ struct RosLogBuilder::Data {
         const auto first = in.number<float>();
         static_cast<void>(in.number<float>());
         const auto step = in.number<float>();
-        static_cast<void>(in.number<float>());
+        const auto beam_time = in.number<float>();
         static_cast<void>(in.number<float>());
         const auto near = in.number<float>(), far = in.number<float>();
         constexpr float kMostRadians = 7;
@@ -167,6 +167,8 @@ struct RosLogBuilder::Data {
             refuseMessage("the range limits of the scan are not valid");
         scan.first = Angle::radians(double{first});
         scan.step = Angle::radians(double{step});
+        constexpr float kMostSeconds = 1;
+        if (std::abs(beam_time) <= kMostSeconds) scan.beam_time = double{beam_time};
         scan.min_range = double{near};
         scan.max_range = double{far};
         const std::size_t count = in.number<std::uint32_t>();

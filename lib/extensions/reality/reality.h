@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "cli/extension.h"
+
+namespace ispace {
+
+/// The options --against, --align, --json, --require, --report and --fit of scan.
+std::unique_ptr<OptionGroup> makeRealityOptions();
+
+}  // namespace ispace
