@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The first minutes of three people on the page: who drives a robot, who lives in a flat, who plans cameras in a house.
+"""The first minutes of three people on the page: driving a robot, living in a flat, planning cameras in a house.
 Their screenshots are those of docs/page.md."""
 
 import os

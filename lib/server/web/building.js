@@ -27,7 +27,7 @@ function withPassages(lines) {
 }
 
 export class Building {
-  /** changed(): somebody has come to another room */
+  /** changed(): a mover has come to another room */
   constructor(changed) {
     this.changed = changed;
     this.changes = [];  // lines that are told together

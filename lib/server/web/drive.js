@@ -100,7 +100,7 @@ export class Driver {
     this.ask('STOP');
   }
 
-  /** True if it would leave somebody standing to let go now. */
+  /** True while letting go would stop it on its way. */
   get busy() { return Boolean(this.goal) || this.speeds !== kStill; }
 
   /** Lets go: others may drive it. */

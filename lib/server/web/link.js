@@ -18,7 +18,7 @@ export class Link {
   /** on: {open, close(code), line(text), json(object), bytes(line, bytes)}, all optional */
   constructor(on = {}) {
     this.on = on;
-    this.waiting = [];  // of each request without an answer, who wants it
+    this.waiting = [];  // of each request without an answer, its receiver
     const room = Link.rooms.indexOf(Link.room);
     this.socket = new WebSocket(`ws://${location.host}/ws${room > 0 ? `/${room}` : ''}`);
     this.socket.binaryType = 'arraybuffer';

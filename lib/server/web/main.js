@@ -134,7 +134,7 @@ part('rooms').addEventListener('change', () => {
   showRoom(part('rooms').value);
 });
 
-/** Somebody has come to another room: the list says so, and the map goes along with the one that it follows. */
+/** A mover has come to another room: the list says so, and the map goes along with the one that it follows. */
 function moved() {
   listMovers();
   if (following && building.where.has(chosen)) showRoom(building.where.get(chosen));
@@ -334,7 +334,7 @@ part('rate').addEventListener('change', () => {
   request(`RATE ${part('rate').value}`);
 });
 
-/** Who is in a record goes where it went. */
+/** Movers of a record go where they went. */
 function showHelp(is_replay) {
   part('pad').hidden = !selected || is_replay;
   part('pad').classList.toggle('sidles', selected?.side > 0);
@@ -449,7 +449,7 @@ function follow(on) {
   redraw();
 }
 
-/** Who drives the selected one; made when it is first needed. */
+/** The driver of a mover; made when it is first needed. */
 function driverOf(mover) {
   const known = drivers.get(mover.id);
   if (known && !known.gone) {

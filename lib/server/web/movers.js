@@ -366,7 +366,7 @@ export class Movers {
     });
   }
 
-  /** Who is at a pixel; a finger's width counts. */
+  /** The mover at a pixel; a finger's width counts. */
   at(view, px, py) {
     let best, least = Infinity;
     for (const mover of this.all) {
