@@ -21,8 +21,8 @@ double normalDensity(double x, double mean, double sigma) {
 
 /// The components of the density of a return, weighted.
 struct Components {
-    double hit = 0, short_ = 0, random = 0, mixed = 0;
-    [[nodiscard]] double sum() const { return hit + short_ + random + mixed; }
+    double hit = 0, nearer = 0, random = 0, mixed = 0;
+    [[nodiscard]] double sum() const { return hit + nearer + random + mixed; }
 };
 
 Components componentsOf(const BeamModel& model, const BeamSample& sample) {
@@ -30,16 +30,16 @@ Components componentsOf(const BeamModel& model, const BeamSample& sample) {
     const double z = sample.measured, expected = sample.expected;
     const double sigma = std::max(model.sigmaAt(expected), kLeastSigma);
     parts.hit = model.hit * normalDensity(z, expected + model.bias, sigma);
-    if (z < expected && model.short_ > 0) {
+    if (z < expected && model.nearer > 0) {
         const double whole = -std::expm1(-model.lambda * expected);
-        parts.short_ = model.short_ * model.lambda * std::exp(-model.lambda * z) /
+        parts.nearer = model.nearer * model.lambda * std::exp(-model.lambda * z) /
                        std::max(whole, kLeastDensity);
     }
     if (sample.limit > 0 && z <= sample.limit) parts.random = model.random / sample.limit;
     if (sample.isAtEdge() && model.mixed > 0) {
         const double rest = 1 - model.mixed;
         parts.hit *= rest;
-        parts.short_ *= rest;
+        parts.nearer *= rest;
         parts.random *= rest;
         if (z >= sample.edge_near && z <= sample.edge_far)
             parts.mixed = model.mixed / (sample.edge_far - sample.edge_near);
@@ -123,7 +123,7 @@ double improve(std::span<const BeamSample> samples, int terms, HitSums& hits, Be
             random += 1;
             continue;
         }
-        const double h = parts.hit / whole, s = parts.short_ / whole;
+        const double h = parts.hit / whole, s = parts.nearer / whole;
         hit += h;
         short_sum += s;
         random += parts.random / whole;
@@ -146,7 +146,7 @@ double improve(std::span<const BeamSample> samples, int terms, HitSums& hits, Be
     model.mixed = edges > 0 ? mixed / edges : 0;
     if (all <= 0) return log_sum / static_cast<double>(samples.size());
     model.hit = hit / all;
-    model.short_ = short_sum / all;
+    model.nearer = short_sum / all;
     model.max = max / all;
     model.random = random / all;
     // E[z] = 1/λ - z*/(e^(λz*) - 1): table 6.2 leaves out the second term.
@@ -171,9 +171,9 @@ BeamModel startOf(std::span<const BeamSample> samples) {
     model.sigma[0] = std::max(spread.sigma, 10 * kLeastSigma);
     model.max = static_cast<double>(none) / static_cast<double>(samples.size());
     constexpr double kShort = 0.05, kRandom = 0.05, kMixed = 0.1;
-    model.short_ = kShort * (1 - model.max);
+    model.nearer = kShort * (1 - model.max);
     model.random = kRandom * (1 - model.max);
-    model.hit = 1 - model.max - model.short_ - model.random;
+    model.hit = 1 - model.max - model.nearer - model.random;
     model.mixed = kMixed;
     return model;
 }
@@ -184,13 +184,13 @@ constexpr std::size_t kFirstSigma = 6;
 using BeamParameters = std::array<double, kFirstSigma + 3>;
 
 BeamParameters parametersOf(const BeamModel& model) {
-    return {model.short_, model.max,      model.random,   model.lambda,  model.bias,
+    return {model.nearer, model.max,      model.random,   model.lambda,  model.bias,
             model.mixed,  model.sigma[0], model.sigma[1], model.sigma[2]};
 }
 
 BeamModel modelOf(const BeamParameters& p) {
     BeamModel model;
-    model.short_ = p[0];
+    model.nearer = p[0];
     model.max = p[1];
     model.random = p[2];
     model.hit = 1 - p[0] - p[1] - p[2];
@@ -249,7 +249,7 @@ BeamFit::Errors errorsOf(std::span<const BeamSample> samples, const BeamModel& m
             if (i < 3 && active[static_cast<std::size_t>(l)] < 3) hit_variance += covariance(k, l);
     }
     return {.hit = std::sqrt(std::max(hit_variance, 0.0)),
-            .short_ = errors[0],
+            .nearer = errors[0],
             .max = errors[1],
             .random = errors[2],
             .lambda = errors[3],

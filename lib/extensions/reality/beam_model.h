@@ -34,9 +34,9 @@ struct BeamSample {
 /// for a return, where η normalises to [0, z*], and `max` for a lost one. At edges a share `mixed`
 /// of this is uniform between the two surfaces instead. hit + short + max + random = 1.
 struct BeamModel {
-    double hit = 0, short_ = 0, max = 0, random = 0;
-    double lambda = 1;  ///< per metre
-    double bias = 0;    ///< metres
+    double hit = 0, nearer = 0, max = 0, random = 0;  ///< nearer: short
+    double lambda = 1;                                ///< per metre
+    double bias = 0;                                  ///< metres
     std::array<double, 3> sigma{};
     double mixed = 0;
 
@@ -60,7 +60,7 @@ struct BeamFit {
     /// Standard errors, by the outer product of the gradients (Berndt, Hall, Hall and Hausman,
     /// 1974); 0 for a share at 0 or 1, which has no interval.
     struct Errors {
-        double hit = 0, short_ = 0, max = 0, random = 0, lambda = 0, bias = 0, mixed = 0;
+        double hit = 0, nearer = 0, max = 0, random = 0, lambda = 0, bias = 0, mixed = 0;
         std::array<double, 3> sigma{};
     } errors;
 };

@@ -221,6 +221,7 @@ class SliceCells {
 }  // namespace
 
 struct SurfaceFinder::Slices {
+    explicit Slices(const Environment& of) : environment(of) {}
     const Environment& environment;
     std::map<double, SliceCells> cells = {};
 };

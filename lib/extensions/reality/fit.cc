@@ -258,7 +258,7 @@ std::string commentOf(const BeamFit& fit) {
         text += ", " + withError(m.sigma[1], e.sigma[1]) + " m/m";
     if (fit.terms == SpreadTerms::Square)
         text += ", " + withError(m.sigma[2], e.sigma[2]) + " m/m2";
-    text += "\n#   hit " + withError(m.hit, e.hit) + ", short " + withError(m.short_, e.short_) +
+    text += "\n#   hit " + withError(m.hit, e.hit) + ", short " + withError(m.nearer, e.nearer) +
             " (lambda " + withError(m.lambda, e.lambda) + " per metre), max " +
             withError(m.max, e.max) + ", random " + withError(m.random, e.random) +
             ", mixed at edges " + withError(m.mixed, e.mixed) + "\n";
@@ -297,7 +297,10 @@ std::string wordOf(const std::string& sensor) {
 void setBeams(Record& record, const LoggedRun& run, std::size_t sensor) {
     for (const MeasuredScan& scan : run.scans) {
         if (scan.sensor != sensor || scan.scan == nullptr) continue;
-        record.set("range", Tuple{run.sensors[sensor].min_range, run.sensors[sensor].max_range});
+        // Ranges of logs are float32.
+        constexpr int kDigits = 6;
+        record.set("range", Tuple{roundSignificant(run.sensors[sensor].min_range, kDigits),
+                                  roundSignificant(run.sensors[sensor].max_range, kDigits)});
         record.set("first", nineDecimals(scan.scan->first.degrees()));
         record.set("step", nineDecimals(scan.scan->step.degrees()));
         record.set("beams", static_cast<double>(scan.ranges().size()));

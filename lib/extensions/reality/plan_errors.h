@@ -45,8 +45,8 @@ struct PlanErrors {
     std::vector<SurfaceOffset> offsets;  ///< largest sum of |offset| over beams first
 };
 
-/// Finds regions of at least three scans, in which more beams disagree than agree. People who walk
-/// through are no error: later beams pass the cells they were in.
+/// Finds regions of at least three scans, in which more beams disagree than agree. Walking
+/// people are no error: later beams pass the cells they were in.
 PlanErrors findPlanErrors(const LoggedRun& run, double sigma, double cell = 0.1);
 
 /// Returns a record of a box for each new region, as text to paste in `.env`; and for each element

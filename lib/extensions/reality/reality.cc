@@ -108,7 +108,7 @@ class RealityOptions final : public OptionGroup {
 
   private:
     [[nodiscard]] std::string pageFormat() const {
-        const std::string suffix = suffixOf(page_);
+        std::string suffix = suffixOf(page_);
         if (suffix == "html" || suffix == "pdf") return suffix;
         throw UsageError("--report: `" + page_ + "` is neither .html nor .pdf");
     }
@@ -116,7 +116,7 @@ class RealityOptions final : public OptionGroup {
     /// Returns the format of -o; "" without it.
     static std::string mapFormat(const std::string& output) {
         if (isStdout(output)) return "";
-        const std::string suffix = suffixOf(output);
+        std::string suffix = suffixOf(output);
         if (suffix == "png" || suffix == "svg" || suffix == "pdf") return suffix;
         throw UsageError("-o: with --against it is the map of the residuals: .png, .svg or .pdf");
     }

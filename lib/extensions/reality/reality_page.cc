@@ -149,7 +149,7 @@ ReportPage realityPage(const RealityReport& report, const LoggedRun& run,
                     {"sigma (robust)", cm(report.sigma)},
                     {"bias (median)", cm(report.bias)},
                     {"hit", percentText(model.hit, 1)},
-                    {"short", percentText(model.short_, 1)},
+                    {"short", percentText(model.nearer, 1)},
                     {"max", percentText(model.max, 1)},
                     {"random", percentText(model.random, 1)},
                     {"sigma of hits", cm(model.sigma[0])}};

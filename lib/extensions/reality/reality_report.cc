@@ -16,8 +16,9 @@ namespace ispace {
 
 namespace {
 
-constexpr std::size_t kWorst = 10;  // rows of long tables in text
-constexpr double kHistogramHalf = 0.5, kHistogramStep = 0.01;
+constexpr std::size_t kWorst = 10;      // rows of long tables in text
+constexpr double kHistogramHalf = 0.5;  // metres
+constexpr std::size_t kHistogramBins = 100;
 
 std::string centimetres(double metres) { return formatFixed(100 * metres, 1) + " cm"; }
 
@@ -263,14 +264,13 @@ RealityReport measureReality(const Log& log, const LoggedRun& run, const Environ
                          .histogram = {}};
     report.alignment = std::move(alignment);
     ResidualGroup all;
-    constexpr auto kSteps = static_cast<std::size_t>(2 * kHistogramHalf / kHistogramStep + 0.5);
-    report.histogram.resize(kSteps);
+    constexpr auto kBins = static_cast<double>(kHistogramBins);
+    report.histogram.resize(kHistogramBins);
     for (const MeasuredBeam& beam : run.beams) {
         all.add(beam);
         if (!beam.hasBoth()) continue;
-        const double place = (beam.residual() + kHistogramHalf) / kHistogramStep;
-        if (place >= 0 && place < static_cast<double>(kSteps))
-            ++report.histogram[static_cast<std::size_t>(place)];
+        const double place = (beam.residual() / kHistogramHalf + 1) * (kBins / 2);
+        if (place >= 0 && place < kBins) ++report.histogram[static_cast<std::size_t>(place)];
     }
     const ResidualRow row = all.row("");
     report.returns = row.beams;
@@ -301,7 +301,7 @@ std::string realityText(const RealityReport& report, const Environment& environm
                      {"hit", percentText(model.hit, 1),
                       "of the beams, with a sigma of " + centimetres(model.sigma[0]) +
                           " and a bias of " + centimetres(model.bias)},
-                     {"short", percentText(model.short_, 1),
+                     {"short", percentText(model.nearer, 1),
                       "something nearer than the plan, lambda " + formatFixed(model.lambda, 2) +
                           " per metre"},
                      {"max", percentText(model.max, 1), "no return"},
@@ -321,7 +321,7 @@ std::string realityJson(const RealityReport& report, const Environment& environm
     json.key("beams").value(report.beams).key("returns").value(report.returns);
     json.key("inliers").value(report.inliers).key("sigma").value(report.sigma);
     json.key("bias").value(report.bias).key("hit").value(model.hit);
-    json.key("short").value(model.short_).key("max").value(model.max);
+    json.key("short").value(model.nearer).key("max").value(model.max);
     json.key("random").value(model.random).key("lambda").value(model.lambda);
     json.key("hit_sigma").value(model.sigma[0]).key("hit_bias").value(model.bias);
     json.key("mixed").value(model.mixed).key("log_likelihood").value(report.fit.log_likelihood);

@@ -256,10 +256,10 @@ std::vector<BeamSample> drawn(const BeamModel& model, std::size_t count, unsigne
             sample.measured = z + 2 * uniform(random);
         } else if (u < model.hit) {
             sample.measured = z + model.bias + model.sigmaAt(z) * normal(random);
-        } else if (u < model.hit + model.short_) {
+        } else if (u < model.hit + model.nearer) {
             const double whole = -std::expm1(-model.lambda * z);
             sample.measured = -std::log1p(-uniform(random) * whole) / model.lambda;
-        } else if (u < model.hit + model.short_ + model.random) {
+        } else if (u < model.hit + model.nearer + model.random) {
             sample.measured = kLimit * uniform(random);
         } else {
             sample.measured = std::numeric_limits<double>::infinity();
@@ -272,7 +272,7 @@ std::vector<BeamSample> drawn(const BeamModel& model, std::size_t count, unsigne
 TEST(BeamFit, EveryParameterLiesInItsIntervalForAHundredSeeds) {
     BeamModel truth;
     truth.hit = 0.75;
-    truth.short_ = 0.1;
+    truth.nearer = 0.1;
     truth.max = 0.05;
     truth.random = 0.1;
     truth.lambda = 0.8;
@@ -289,7 +289,7 @@ TEST(BeamFit, EveryParameterLiesInItsIntervalForAHundredSeeds) {
         };
         const BeamModel& m = fit.model;
         check("hit", m.hit, fit.errors.hit, truth.hit);
-        check("short", m.short_, fit.errors.short_, truth.short_);
+        check("short", m.nearer, fit.errors.nearer, truth.nearer);
         check("max", m.max, fit.errors.max, truth.max);
         check("random", m.random, fit.errors.random, truth.random);
         check("lambda", m.lambda, fit.errors.lambda, truth.lambda);
