@@ -223,6 +223,18 @@ bool isHouseExpo(const Source& source) {
     return isJson(source.bytes) && source.bytes.find("\"verts\"") != std::string_view::npos;
 }
 
+std::vector<Importer>& addedImporters() {
+    static std::vector<Importer> importers;
+    return importers;
+}
+
+/// Returns the importer of an extension that reads the source; null without one.
+const Importer* addedImporter(const Source& source) {
+    for (const Importer& importer : addedImporters())
+        if (importer.recognises(source.bytes)) return &importer;
+    return nullptr;
+}
+
 /// Formats recognised by their first bytes.
 constexpr InputFormat kFormatsByMagic[] = {
     {true, isCutMesh, kReadWalls, true},
@@ -239,6 +251,11 @@ constexpr InputFormat kFormatsByMagic[] = {
     {true, holdsBytes<isPicture>, importPlan<readBarePicture>},
     {true, holdsBytes<isPointCloud>, importPlan<readPointCloud>},
     {false, holdsBytes<isMeshFile>, kReadMesh, true},
+    {true, [](const Source& source) { return addedImporter(source) != nullptr; },
+     [](const Source& source) {
+         return addedImporter(source)->read(source.bytes, source.operand, source.options,
+                                            source.schemas);
+     }},
 };
 
 /// Formats recognised within plain text; the last accepts any text.
@@ -291,6 +308,10 @@ const InputFormat* formatOf(const Source& source, Refuse refuse) {
 }
 
 }  // namespace
+
+void addImporters(std::span<const Importer> importers) {
+    addedImporters().insert(addedImporters().end(), importers.begin(), importers.end());
+}
 
 bool isPlan(std::string_view bytes, const std::string& operand, const ImportOptions& options,
             const Schemas& schemas) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -86,6 +87,16 @@ struct ImportOptions {
 /// unknown format, with a hint), std::system_error
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
+
+/// A format that an extension reads: a plan, recognised by its bytes after the magic words of the
+/// formats of this folder.
+struct Importer {
+    bool (*recognises)(std::string_view bytes) = nullptr;
+    Document (*read)(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                     const Schemas& schemas) = nullptr;
+};
+/// Adds formats to those of all functions here; the program does so before it reads a file.
+void addImporters(std::span<const Importer> importers);
 
 /// Returns true if the bytes are a plan, map or drawing. Its importer chooses rooms, so it requires
 /// the walls and inside points of other inputs and edits beforehand (ImportOptions).
