@@ -297,6 +297,9 @@ Log readLogFolder(const std::string& folder) {
                        "robots.csv)"});
 }
 
+constexpr std::string_view kMcap = "\x89MCAP";
+constexpr std::string_view kSqlite{"SQLite format 3\0", 16};
+
 /// Returns true if one of the first lines is a message of CARMEN.
 bool isCarmen(std::string_view bytes) {
     constexpr std::size_t kLines = 1000;
@@ -365,33 +368,41 @@ Log readMcapLog(std::string_view bytes, const std::string& name) {
     return builder.finish();
 }
 
+bool isLog(std::string_view bytes) {
+    constexpr std::size_t kHeader = 200;
+    return bytes.starts_with(kMcap) || isCarmen(bytes) ||
+           (bytes.starts_with('{') &&
+            bytes.substr(0, kHeader).find("\"ispace-scan/") != std::string_view::npos);
+}
+
+Log parseLog(std::string_view bytes, const std::string& name) {
+    Log log;
+    if (bytes.starts_with(kMcap)) {
+        log = readMcapLog(bytes, name);
+    } else if (bytes.starts_with(kSqlite)) {
+        throw FormatError({displayName(name), 0, 0, "a bag of SQLite: its name must end in .db3"});
+    } else if (bytes.starts_with('{')) {
+        log = readScanLines(bytes, name);
+    } else if (isCarmen(bytes)) {
+        log = readCarmenLog(bytes, name);
+    } else {
+        throw FormatError({displayName(name), 0, 0,
+                           "no log that is read: CARMEN, MCAP, a folder of rosbag2, JSON lines of "
+                           "scan, a record of simrun"});
+    }
+    log.files = {name};
+    return log;
+}
+
 Log readLog(const std::string& operand) {
     std::error_code ignored;
     if (operand != "-" && std::filesystem::is_directory(operand, ignored))
         return readLogFolder(operand);
-    constexpr std::string_view kSqlite{"SQLite format 3\0", 16};
     if (operand.ends_with(".db3")) {
         Log log = readBagFolder(operand, {operand});
         return log;
     }
-    const std::string bytes = operand == "-" ? readStdin() : readAll(operand);
-    Log log;
-    if (bytes.starts_with("\x89MCAP")) {
-        log = readMcapLog(bytes, operand);
-    } else if (bytes.starts_with(kSqlite)) {
-        throw FormatError(
-            {displayName(operand), 0, 0, "a bag of SQLite: its name must end in .db3"});
-    } else if (bytes.starts_with('{')) {
-        log = readScanLines(bytes, operand);
-    } else if (isCarmen(bytes)) {
-        log = readCarmenLog(bytes, operand);
-    } else {
-        throw FormatError({displayName(operand), 0, 0,
-                           "no log that is read: CARMEN, MCAP, a folder of rosbag2, JSON lines of "
-                           "scan, a record of simrun"});
-    }
-    log.files = {operand};
-    return log;
+    return parseLog(operand == "-" ? readStdin() : readAll(operand), operand);
 }
 
 }  // namespace ispace

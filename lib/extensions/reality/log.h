@@ -89,6 +89,11 @@ constexpr std::size_t kMaxLogValues = 200'000'000;
 /// binary file, for anything malformed, and for a log without measurements; std::system_error
 Log readLog(const std::string& operand);
 
+/// Returns true for a log of one file: CARMEN, MCAP, JSON lines of scan. O(1)
+bool isLog(std::string_view bytes);
+/// Reads a log of one file from memory. \param name of the file, for messages \throws as readLog()
+Log parseLog(std::string_view bytes, const std::string& name);
+
 // The formats, from memory. `name` is that of the file, for messages. \throws FormatError
 
 /// CARMEN: FLASER (bearings from -90 degrees on, by the number of beams as CARMEN guesses them),
