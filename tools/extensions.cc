@@ -4,6 +4,13 @@
 // `--help`.
 #include "extensions.h"
 
+#include <vector>
+
+#include "io/importers.h"
+
+#ifdef ISPACE_HAS_CALIBRATION
+#include "extensions/calibration/calibrate.h"
+#endif
 #ifdef ISPACE_HAS_JUDGE
 #include "extensions/judge/judge.h"
 #endif
@@ -13,8 +20,24 @@
 
 namespace ispace {
 
+namespace {
+
+/// Adds the formats that extensions read. Returns true.
+bool addFormats() {
+#ifdef ISPACE_HAS_CALIBRATION
+    addImporters(calibrationImporters());
+#endif
+    return true;
+}
+
+}  // namespace
+
 std::span<const ToolExtension> toolExtensions() {
+    [[maybe_unused]] static const bool formats = addFormats();
     static const std::vector<ToolExtension> extensions = {
+#ifdef ISPACE_HAS_CALIBRATION
+        {"calibration", "envc", makeCalibration},
+#endif
 #ifdef ISPACE_HAS_JUDGE
         {"judge", "coverage", makeTrackJudge},
 #endif

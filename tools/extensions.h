@@ -8,7 +8,8 @@
 
 namespace ispace {
 
-/// Returns the extensions that this build has, of all tools.
+/// Returns the extensions that this build has, of all tools. From the first call on their formats
+/// are read, see addImporters().
 std::span<const ToolExtension> toolExtensions();
 
 }  // namespace ispace

@@ -1,0 +1,663 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "extensions/calibration/body_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <unsupported/Eigen/NonLinearOptimization>
+#include <utility>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "scene/bodies.h"
+#include "sense/scan.h"
+
+namespace ispace {
+
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+/// Height of the people before the fit.
+constexpr double kUsualHeight = 1.75;
+
+[[noreturn]] void refuseBodies(std::string message) {
+    throw FormatError(Diagnostic{"", 0, 0, std::move(message)});
+}
+
+/// The leg of humanParts() at a height of 1 m.
+struct LegShape {
+    double radius = 0, hip = 0;
+};
+LegShape legShape() {
+    for (const BodyPart& part : humanParts(1))
+        if (part.bottom == 0 && part.radius > 0) return {part.radius, part.top};
+    return {};
+}
+
+/// A leg, or the middle of both, in a scan: a normal likelihood of its centre, in the laser's
+/// frame.
+struct LegView {
+    std::size_t laser = 0;
+    double time = 0;
+    Vector2d centre = Vector2d::Zero();
+    Vector2d away = Vector2d::Zero();  ///< unit vector from the laser
+    Matrix2d covariance = Matrix2d::Zero();
+    Vector2d velocity = Vector2d::Zero();
+};
+
+/// The legs in one scan.
+struct LegScan {
+    std::size_t laser = 0;
+    double time = 0;
+    std::vector<LegView> legs;
+};
+
+/// Ranges below which a beam is on a person.
+std::vector<double> foregroundOf(const WatchingLaser& laser) {
+    const auto& model = laser.sensor.as<Laser>();
+    std::vector<double> limits(static_cast<std::size_t>(model.beams));
+    std::vector<double> values;
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+        values.clear();
+        for (const std::vector<float>& scan : laser.scans)
+            values.push_back(std::isfinite(scan[k]) ? static_cast<double>(scan[k]) : 1e6);
+        std::sort(values.begin(), values.end());
+        const std::size_t half = values.size() / 2;
+        std::size_t best = 0;
+        for (std::size_t i = 0; i + half < values.size(); ++i)
+            if (values[i + half] - values[i] < values[best + half] - values[best]) best = i;
+        const double scatter = (values[best + half] - values[best]) / 1.349;
+        constexpr double kLeast = 0.05;
+        limits[k] = values[best] - std::max(6 * scatter, kLeast);
+    }
+    return limits;
+}
+
+/// Fits the centre of a disc of known radius to points on its outline, each with the error `sigma`
+/// along its beam. Empty if it is no disc.
+std::optional<LegView> fittedDisc(std::span<const Vector2d> points, double radius, double sigma) {
+    Vector2d middle = Vector2d::Zero();
+    for (const Vector2d& point : points) middle += point;
+    middle /= static_cast<double>(points.size());
+    Vector2d centre = middle + 0.8 * radius * middle.normalized();
+    Matrix2d information = Matrix2d::Identity();
+    double squares = 0;
+    for (int round = 0; round < 8; ++round) {
+        information.setZero();
+        Vector2d gradient = Vector2d::Zero();
+        squares = 0;
+        for (const Vector2d& point : points) {
+            const Vector2d off = point - centre;
+            const double length = off.norm();
+            if (length < 1e-6) return std::nullopt;
+            const Vector2d normal = off / length;
+            constexpr double kGrazing = 0.25;
+            const double cosine = std::max(std::abs(normal.dot(point.normalized())), kGrazing);
+            const double weight = 1 / (sigma * sigma * cosine * cosine);
+            const double residual = length - radius;
+            information += weight * normal * normal.transpose();
+            gradient += weight * residual * normal;
+            squares += weight * residual * residual;
+        }
+        const Vector2d step = information.ldlt().solve(gradient);
+        if (!step.allFinite() || step.norm() > 1) return std::nullopt;
+        centre += step;
+        if (step.norm() < 1e-6) break;
+    }
+    // The disc lies behind the points.
+    if (centre.norm() < middle.norm() || (centre - middle).norm() > radius) return std::nullopt;
+    constexpr double kWorst = 4;
+    if (squares > kWorst * static_cast<double>(points.size())) return std::nullopt;
+    LegView leg;
+    leg.centre = centre;
+    leg.away = centre.normalized();
+    // Millimetres that no model of a body gets right.
+    constexpr double kModel = 0.002;
+    leg.covariance = information.inverse() + kModel * kModel * Matrix2d::Identity();
+    return leg;
+}
+
+/// Finds the legs in the scans of a laser.
+class LegFinder {
+  public:
+    LegFinder(const WatchingLaser& laser, std::size_t index)
+        : laser_(laser), index_(index), limits_(foregroundOf(laser)), shape_(legShape()) {
+        const auto& model = laser.sensor.as<Laser>();
+        for (int k = 0; k < model.beams; ++k) {
+            const Vec2 way = unitVector(model.bearing(k));
+            ways_.emplace_back(way.x, way.y);
+        }
+    }
+
+    [[nodiscard]] std::vector<LegScan> all() const {
+        std::vector<LegScan> scans;
+        for (std::size_t i = 0; i < laser_.scans.size(); ++i)
+            scans.push_back({index_, laser_.times[i], legsOf(i)});
+        addVelocities(scans);
+        return scans;
+    }
+
+  private:
+    [[nodiscard]] std::vector<LegView> legsOf(std::size_t scan) const {
+        const std::vector<float>& ranges = laser_.scans[scan];
+        std::vector<LegView> legs;
+        for (std::size_t begin = 0; begin < ranges.size();) {
+            if (!isOnPerson(ranges, begin)) {
+                ++begin;
+                continue;
+            }
+            std::size_t end = begin + 1;
+            constexpr double kJump = 0.08;  // from one leg to the other
+            while (end < ranges.size() && isOnPerson(ranges, end) &&
+                   std::abs(ranges[end] - ranges[end - 1]) < kJump)
+                ++end;
+            addLeg(scan, begin, end, legs);
+            begin = end;
+        }
+        return legs;
+    }
+    [[nodiscard]] bool isOnPerson(const std::vector<float>& ranges, std::size_t k) const {
+        return ranges[k] > 0 && ranges[k] < limits_[k];
+    }
+
+    void addLeg(std::size_t scan, std::size_t begin, std::size_t end,
+                std::vector<LegView>& legs) const {
+        constexpr std::size_t kFewest = 4;
+        if (end - begin < kFewest) return;
+        const auto& model = laser_.sensor.as<Laser>();
+        std::vector<Vector2d> points;
+        for (std::size_t k = begin; k < end; ++k)
+            points.emplace_back((laser_.scans[scan][k] - model.noise.bias) * ways_[k]);
+        const double radius = shape_.radius * kUsualHeight;
+        if ((points.front() - points.back()).norm() > 2.4 * radius) return;
+        const double range = points[points.size() / 2].norm();
+        const auto& [s0, s1, s2] = model.noise.sigma;
+        constexpr double kLeastSigma = 0.002;
+        const double sigma = std::max(kLeastSigma, s0 + range * (s1 + range * s2));
+        auto leg = fittedDisc(points, radius, sigma);
+        if (!leg) return;
+        leg->laser = index_;
+        leg->time = laser_.times[scan];
+        if (model.spin != 0) leg->time += model.timeOf(static_cast<int>((begin + end) / 2));
+        legs.push_back(*leg);
+    }
+
+    /// Takes the speed of each leg from its nearest neighbours in the scans before and after.
+    static void addVelocities(std::vector<LegScan>& scans) {
+        const auto nearest = [](const LegScan& scan, const LegView& leg) -> const LegView* {
+            const LegView* found = nullptr;
+            double least = 0.15;
+            for (const LegView& other : scan.legs)
+                if (const double off = (other.centre - leg.centre).norm(); off < least) {
+                    least = off;
+                    found = &other;
+                }
+            return found;
+        };
+        for (std::size_t i = 1; i + 1 < scans.size(); ++i)
+            for (LegView& leg : scans[i].legs) {
+                const LegView* const before = nearest(scans[i - 1], leg);
+                const LegView* const after = nearest(scans[i + 1], leg);
+                if (before != nullptr && after != nullptr && after->time > before->time)
+                    leg.velocity = (after->centre - before->centre) / (after->time - before->time);
+            }
+    }
+
+    const WatchingLaser& laser_;
+    std::size_t index_;
+    std::vector<double> limits_;
+    LegShape shape_;
+    std::vector<Vector2d> ways_;
+};
+
+/// Replaces two legs of a scan by their middle; scans with another number of legs are emptied.
+void joinLegs(std::vector<LegScan>& scans) {
+    for (LegScan& scan : scans) {
+        constexpr double kStride = 0.6;
+        if (scan.legs.size() != 2 || (scan.legs[0].centre - scan.legs[1].centre).norm() > kStride) {
+            scan.legs.clear();
+            continue;
+        }
+        LegView& both = scan.legs[0];
+        const LegView& other = scan.legs[1];
+        both.time = 0.5 * (both.time + other.time);
+        both.centre = 0.5 * (both.centre + other.centre);
+        both.away = 0.5 * (both.away + other.away);
+        both.covariance = 0.25 * (both.covariance + other.covariance);
+        both.velocity = 0.5 * (both.velocity + other.velocity);
+        scan.legs.pop_back();
+    }
+}
+
+/// Scans of several lasers at about one time, each laser at most once.
+using LegMoment = std::vector<const LegScan*>;
+
+std::vector<LegMoment> momentsOf(const std::vector<std::vector<LegScan>>& scans) {
+    std::vector<const LegScan*> all;
+    std::vector<double> steps;
+    for (const std::vector<LegScan>& one : scans)
+        for (std::size_t i = 0; i < one.size(); ++i) {
+            if (i > 0) steps.push_back(one[i].time - one[i - 1].time);
+            if (!one[i].legs.empty()) all.push_back(&one[i]);
+        }
+    if (steps.empty()) return {};
+    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
+                     steps.end());
+    constexpr double kLongest = 0.05;  // a foot moves by 0.15 m
+    const double within = std::min(0.5 * steps[steps.size() / 2], kLongest);
+    std::stable_sort(all.begin(), all.end(),
+                     [](const LegScan* a, const LegScan* b) { return a->time < b->time; });
+    std::vector<LegMoment> moments;
+    LegMoment moment;
+    const auto finish = [&] {
+        if (moment.size() > 1) moments.push_back(moment);
+        moment.clear();
+    };
+    for (const LegScan* scan : all) {
+        const bool is_later = !moment.empty() && scan->time - moment.front()->time > within;
+        const bool is_again = std::any_of(moment.begin(), moment.end(), [&](const LegScan* one) {
+            return one->laser == scan->laser;
+        });
+        if (is_later || is_again) finish();
+        moment.push_back(scan);
+    }
+    finish();
+    return moments;
+}
+
+/// A rigid motion of the plane: x, y, angle.
+using Motion = Vector3d;
+
+Vector2d moved(const Motion& motion, const Vector2d& point) {
+    return Eigen::Rotation2Dd(motion[2]) * point + motion.head<2>();
+}
+
+/// Returns the rigid motion that maps the first points nearest to the second ones (Procrustes).
+Motion rigidMotion(std::span<const std::pair<Vector2d, Vector2d>> pairs) {
+    Vector2d from = Vector2d::Zero(), to = Vector2d::Zero();
+    for (const auto& [a, b] : pairs) {
+        from += a;
+        to += b;
+    }
+    from /= static_cast<double>(pairs.size());
+    to /= static_cast<double>(pairs.size());
+    double cosine = 0, sine = 0;
+    for (const auto& [a, b] : pairs) {
+        const Vector2d p = a - from, q = b - to;
+        cosine += p.dot(q);
+        sine += p[0] * q[1] - p[1] * q[0];
+    }
+    const double angle = std::atan2(sine, cosine);
+    const Vector2d shift = to - Eigen::Rotation2Dd(angle) * from;
+    return {shift[0], shift[1], angle};
+}
+
+/// Pairs of positions of one person in the frames of two lasers.
+using PlacePairs = std::vector<std::pair<Vector2d, Vector2d>>;
+
+/// Returns the motion on which most of the pairs agree, and their number.
+std::pair<Motion, std::size_t> agreedMotion(const PlacePairs& pairs) {
+    constexpr double kNear = 0.25, kApart = 0.7;
+    constexpr int kTries = 400;
+    std::mt19937 random(1);
+    Motion best = Motion::Zero();
+    std::size_t most = 0;
+    const auto near = [&](const Motion& motion) {
+        PlacePairs found;
+        for (const auto& pair : pairs)
+            if ((moved(motion, pair.first) - pair.second).norm() < kNear) found.push_back(pair);
+        return found;
+    };
+    for (int i = 0; i < kTries && pairs.size() > 1; ++i) {
+        const auto& a = pairs[random() % pairs.size()];
+        const auto& b = pairs[random() % pairs.size()];
+        if ((a.first - b.first).norm() < kApart) continue;
+        const std::array<std::pair<Vector2d, Vector2d>, 2> two{a, b};
+        const Motion motion = rigidMotion(two);
+        const std::size_t count = near(motion).size();
+        if (count > most) {
+            most = count;
+            best = motion;
+        }
+    }
+    for (int i = 0; i < 3 && most > 1; ++i) best = rigidMotion(near(best));
+    return {best, most};
+}
+
+/// Returns the middle of the legs of a scan that sees one person alone.
+std::optional<Vector2d> onePlace(const LegScan& scan) {
+    Vector2d middle = Vector2d::Zero();
+    for (const LegView& leg : scan.legs) middle += leg.centre;
+    middle /= static_cast<double>(scan.legs.size());
+    constexpr double kHalfStride = 0.35;
+    for (const LegView& leg : scan.legs)
+        if ((leg.centre - middle).norm() > kHalfStride) return std::nullopt;
+    return middle;
+}
+
+/// Legs of different lasers that are one.
+struct LegGroup {
+    std::vector<const LegView*> views;
+    double time = 0;
+    double weight = 1;  ///< robust
+};
+
+/// The likelihood of poses, as Eigen's Levenberg and Marquardt takes it. Parameters: x, y, angle of
+/// each laser but the first one, and the difference of the leg's radius to the usual one.
+struct BodyFunctor {
+    using Scalar = double;
+    enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+    using InputType = VectorXd;
+    using ValueType = VectorXd;
+    using JacobianType = MatrixXd;
+
+    std::span<const LegGroup> groups;
+    int lasers = 0, rows = 0;
+
+    [[nodiscard]] int inputs() const { return 3 * (lasers - 1) + 1; }
+    [[nodiscard]] int values() const { return rows; }
+    static Motion motionOf(const VectorXd& x, std::size_t laser) {
+        return laser == 0 ? Motion::Zero().eval()
+                          : Motion(x.segment<3>(3 * (static_cast<Eigen::Index>(laser) - 1)));
+    }
+    /// Residuals of a group, by their standard deviations, about its most likely position.
+    void residualsOf(const LegGroup& group, const VectorXd& x, double* values) const {
+        constexpr std::size_t kMost = 64;
+        std::array<Vector2d, kMost> places;
+        std::array<Matrix2d, kMost> weights;
+        Matrix2d sum = Matrix2d::Zero();
+        Vector2d weighted = Vector2d::Zero();
+        const std::size_t count = std::min(group.views.size(), kMost);
+        const double wider = x[x.size() - 1];
+        for (std::size_t i = 0; i < count; ++i) {
+            const LegView& view = *group.views[i];
+            const Motion motion = motionOf(x, view.laser);
+            const Matrix2d turn = Eigen::Rotation2Dd(motion[2]).toRotationMatrix();
+            places[i] = turn * (view.centre + wider * view.away +
+                                (group.time - view.time) * view.velocity) +
+                        motion.head<2>();
+            weights[i] = (turn * view.covariance * turn.transpose()).inverse();
+            sum += weights[i];
+            weighted += weights[i] * places[i];
+        }
+        const Vector2d place = sum.ldlt().solve(weighted);
+        const double root = std::sqrt(group.weight);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vector2d off = Eigen::LLT<Matrix2d>(weights[i]).matrixU() * (places[i] - place);
+            values[2 * i] = root * off[0];
+            values[2 * i + 1] = root * off[1];
+        }
+    }
+    int operator()(const VectorXd& x, VectorXd& values) const {
+        Eigen::Index row = 0;
+        for (const LegGroup& group : groups) {
+            residualsOf(group, x, &values[row]);
+            row += 2 * static_cast<Eigen::Index>(group.views.size());
+        }
+        return 0;
+    }
+    int df(const VectorXd& x, MatrixXd& slopes) const {
+        constexpr double kStep = 1e-5;
+        VectorXd up(rows), down(rows);
+        for (Eigen::Index i = 0; i < x.size(); ++i) {
+            VectorXd at = x;
+            at[i] = x[i] + kStep;
+            (*this)(at, up);
+            at[i] = x[i] - kStep;
+            (*this)(at, down);
+            slopes.col(i) = (up - down) / (2 * kStep);
+        }
+        return 0;
+    }
+};
+
+/// Fits the poses of lasers to each other.
+class BodyFitter {
+  public:
+    explicit BodyFitter(std::span<const WatchingLaser> lasers) : lasers_(lasers) {
+        for (std::size_t i = 0; i < lasers.size(); ++i)
+            scans_.push_back(LegFinder(lasers[i], i).all());
+        const auto height = [&](std::size_t i) { return lasers[i].sensor.pose.position.z; };
+        constexpr double kLevel = 0.01;
+        for (std::size_t i = 1; i < lasers.size(); ++i)
+            if (std::abs(height(i) - height(0)) > kLevel) joins_ = true;
+        if (joins_)
+            for (std::vector<LegScan>& one : scans_) joinLegs(one);
+        moments_ = momentsOf(scans_);
+    }
+
+    BodyFit fit() {
+        VectorXd x = start();
+        std::vector<LegGroup> groups;
+        constexpr int kRounds = 10;
+        for (int round = 0; round < kRounds; ++round) {
+            groups = grouped(x, round < 3 ? 0.15 : 0.08);
+            weigh(groups, x);
+            BodyFunctor functor = functorOf(groups);
+            if (functor.values() < functor.inputs()) refuseBodies(undetermined(1));
+            Eigen::LevenbergMarquardt<BodyFunctor> search(functor);
+            search.parameters.maxfev = 20;
+            const VectorXd before = x;
+            search.minimize(x);
+            if (round > 4 && (x - before).norm() < 1e-6) break;
+        }
+        return described(x, groups);
+    }
+
+  private:
+    [[nodiscard]] BodyFunctor functorOf(std::span<const LegGroup> groups) const {
+        std::size_t rows = 0;
+        for (const LegGroup& group : groups) rows += 2 * group.views.size();
+        return {groups, static_cast<int>(lasers_.size()), static_cast<int>(rows)};
+    }
+
+    [[nodiscard]] std::string undetermined(std::size_t laser) const {
+        return "the ways of the people do not determine how " + lasers_[laser].sensor.id +
+               " stands to " + lasers_[0].sensor.id;
+    }
+
+    /// Joins laser after laser to the first one, each by the pair with the most agreeing positions.
+    [[nodiscard]] VectorXd start() const {
+        const std::size_t count = lasers_.size();
+        std::vector<std::vector<PlacePairs>> pairs(count, std::vector<PlacePairs>(count));
+        for (const LegMoment& moment : moments_)
+            for (const LegScan* a : moment)
+                for (const LegScan* b : moment) {
+                    if (a == b) continue;
+                    const auto from = onePlace(*a), to = onePlace(*b);
+                    if (from && to) pairs[a->laser][b->laser].emplace_back(*from, *to);
+                }
+        std::vector<std::optional<Motion>> known(count);
+        known[0] = Motion::Zero();
+        for (std::size_t joined = 1; joined < count; ++joined) {
+            std::size_t most = 0, next = 0;
+            Motion best = Motion::Zero();
+            for (std::size_t a = 0; a < count; ++a)
+                for (std::size_t b = 0; b < count; ++b) {
+                    if (known[a] || !known[b]) continue;
+                    const auto [motion, agree] = agreedMotion(pairs[a][b]);
+                    if (agree <= most) continue;
+                    most = agree;
+                    next = a;
+                    const Vector2d place = moved(*known[b], motion.head<2>());
+                    best = {place[0], place[1], (*known[b])[2] + motion[2]};
+                }
+            constexpr std::size_t kFewest = 10;
+            if (most < kFewest) refuseBodies(apart(known));
+            known[next] = best;
+        }
+        VectorXd x = VectorXd::Zero(3 * static_cast<Eigen::Index>(count - 1) + 1);
+        for (std::size_t i = 1; i < count; ++i)
+            x.segment<3>(3 * static_cast<Eigen::Index>(i - 1)) = *known[i];
+        return x;
+    }
+
+    [[nodiscard]] std::string apart(const std::vector<std::optional<Motion>>& known) const {
+        for (std::size_t i = 0; i < known.size(); ++i)
+            if (!known[i])
+                return "people walk too little in sight of " + lasers_[i].sensor.id +
+                       " and another laser at one time";
+        return "";
+    }
+
+    /// Joins legs of different lasers within `gate` metres.
+    [[nodiscard]] std::vector<LegGroup> grouped(const VectorXd& x, double gate) const {
+        std::vector<LegGroup> groups;
+        std::vector<std::pair<LegGroup, Vector2d>> open;
+        for (const LegMoment& moment : moments_) {
+            open.clear();
+            for (const LegScan* scan : moment)
+                for (const LegView& leg : scan->legs) {
+                    const Vector2d place = moved(BodyFunctor::motionOf(x, leg.laser), leg.centre);
+                    std::pair<LegGroup, Vector2d>* nearest = nullptr;
+                    double least = gate;
+                    for (auto& group : open) {
+                        const bool has = std::any_of(
+                            group.first.views.begin(), group.first.views.end(),
+                            [&](const LegView* view) { return view->laser == leg.laser; });
+                        const double off = (group.second - place).norm();
+                        if (has || off >= least) continue;
+                        least = off;
+                        nearest = &group;
+                    }
+                    if (nearest == nullptr) {
+                        open.push_back({{{&leg}, 0, 1}, place});
+                    } else {
+                        nearest->first.views.push_back(&leg);
+                    }
+                }
+            for (auto& [group, place] : open) {
+                if (group.views.size() < 2) continue;
+                for (const LegView* view : group.views) group.time += view->time;
+                group.time /= static_cast<double>(group.views.size());
+                groups.push_back(std::move(group));
+            }
+        }
+        return groups;
+    }
+
+    /// Sets robust weights (Cauchy) by the residuals.
+    void weigh(std::span<LegGroup> groups, const VectorXd& x) const {
+        const BodyFunctor functor = functorOf(groups);
+        std::vector<double> sizes;
+        VectorXd values(functor.values());
+        functor(x, values);
+        Eigen::Index row = 0;
+        for (const LegGroup& group : groups) {
+            const auto count = 2 * static_cast<Eigen::Index>(group.views.size());
+            sizes.push_back(values.segment(row, count).squaredNorm() /
+                            static_cast<double>(count - 2));
+            row += count;
+        }
+        if (sizes.empty()) return;
+        std::vector<double> sorted = sizes;
+        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+        std::nth_element(sorted.begin(), middle, sorted.end());
+        // Half of a squared normal variable, of two degrees, lies below 0.69.
+        const double scale = std::max(*middle / 0.69, 1e-6);
+        constexpr double kCauchy = 2.385;
+        for (std::size_t i = 0; i < groups.size(); ++i)
+            groups[i].weight = 1 / (1 + sizes[i] / (scale * kCauchy * kCauchy));
+    }
+
+    [[nodiscard]] BodyFit described(const VectorXd& x, std::span<const LegGroup> groups) const {
+        const BodyFunctor functor = functorOf(groups);
+        MatrixXd slopes(functor.values(), functor.inputs());
+        VectorXd values(functor.values());
+        functor(x, values);
+        functor.df(x, slopes);
+        double used = 0;
+        for (const LegGroup& group : groups)
+            used += group.weight * static_cast<double>(2 * group.views.size() - 2);
+        const double free = std::max(1.0, used - static_cast<double>(functor.inputs()));
+        const double variance = values.squaredNorm() / free;
+        const MatrixXd information = slopes.transpose() * slopes / std::max(variance, 1e-6);
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(information);
+        constexpr double kUnknown = 0.5;  // metres or radians: half the room
+        if (!(solver.eigenvalues()[0] * kUnknown * kUnknown > 1)) {
+            Eigen::Index worst = 0;
+            solver.eigenvectors().col(0).cwiseAbs().maxCoeff(&worst);
+            refuseBodies(undetermined(std::min<std::size_t>(static_cast<std::size_t>(worst) / 3 + 1,
+                                                            lasers_.size() - 1)));
+        }
+        const MatrixXd covariance = information.inverse();
+        BodyFit fit;
+        fit.scatter = std::sqrt(variance);
+        fit.moments = moments_.size();
+        fit.legs.assign(lasers_.size(), 0);
+        for (const LegGroup& group : groups)
+            for (const LegView* view : group.views) ++fit.legs[view->laser];
+        const double radius = legShape().radius;
+        fit.height = kUsualHeight + x[x.size() - 1] / radius;
+        fit.height_sigma =
+            std::sqrt(covariance(covariance.rows() - 1, covariance.cols() - 1)) / radius;
+        addPoses(x, covariance, fit);
+        return fit;
+    }
+
+    /// Puts the motions before the pose of the first laser.
+    void addPoses(const VectorXd& x, const MatrixXd& covariance, BodyFit& fit) const {
+        const Pose3& first = lasers_[0].sensor.pose;
+        const Pose2 frame{first.position.onFloor(), first.heading};
+        const double turn = first.heading.radians();
+        Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+        axes.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(turn).toRotationMatrix();
+        for (std::size_t i = 0; i < lasers_.size(); ++i) {
+            const Motion motion = BodyFunctor::motionOf(x, i);
+            Pose3 pose = lasers_[i].sensor.pose;
+            const Point2 place = frame * Point2{motion[0], motion[1]};
+            pose.position.x = place.x;
+            pose.position.y = place.y;
+            pose.heading = wrapped(first.heading + Angle::radians(motion[2]));
+            fit.poses.push_back(i == 0 ? first : pose);
+            PlanCovariance plain = {};
+            if (i > 0) {
+                const auto at = 3 * static_cast<Eigen::Index>(i - 1);
+                const Eigen::Matrix3d own =
+                    axes * covariance.block<3, 3>(at, at) * axes.transpose();
+                for (int r = 0; r < 3; ++r)
+                    for (int c = 0; c < 3; ++c)
+                        plain[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = own(r, c);
+            }
+            fit.covariances.push_back(plain);
+        }
+    }
+
+    std::span<const WatchingLaser> lasers_;
+    std::vector<std::vector<LegScan>> scans_;
+    std::vector<LegMoment> moments_;
+    bool joins_ = false;
+};
+
+}  // namespace
+
+BodyFit fitToBodies(std::span<const WatchingLaser> lasers) {
+    if (lasers.size() < 2) refuseBodies("wanted two lasers or more that see the same people");
+    constexpr std::size_t kMostLasers = 64;
+    if (lasers.size() > kMostLasers) refuseBodies("wanted at most 64 lasers");
+    const double hips = legShape().hip * kUsualHeight;
+    for (const WatchingLaser& laser : lasers) {
+        if (!scansSlice(laser.sensor)) refuseBodies(laser.sensor.id + " is not level");
+        // Hands hang there, too.
+        constexpr double kBelow = 0.8;
+        if (laser.sensor.pose.position.z > kBelow * hips)
+            refuseBodies(laser.sensor.id + " scans at " +
+                         formatFixed(laser.sensor.pose.position.z, 2) + " m: wanted legs, below " +
+                         formatFixed(kBelow * hips, 2) + " m");
+        for (const std::vector<float>& scan : laser.scans)
+            if (scan.size() != static_cast<std::size_t>(laser.sensor.as<Laser>().beams))
+                refuseBodies("scans of " + laser.sensor.id + " have different beams");
+    }
+    return BodyFitter(lasers).fit();
+}
+
+}  // namespace ispace

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "extensions/calibration/body_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "base/error.h"
+#include "scene/bodies.h"
+#include "sense/scan.h"
+#include "sense/selection.h"
+#include "support/test_layout.h"
+
+namespace ispace {
+namespace {
+
+Sensor laserAt(const std::string& id, double x, double y, double heading, double z = 0.3) {
+    Laser laser;
+    laser.min_range = 0.1;
+    laser.max_range = 30;
+    laser.first = Angle::degrees(-135);
+    laser.step = Angle::degrees(0.25);
+    laser.beams = 1081;
+    laser.noise.sigma = {0.01, 0.0005, 0};
+    laser.noise.resolution = 0.001;
+    return {id, laser, {{x, y, z}, Angle::degrees(heading), {}, {}}};
+}
+
+/// A walk through the room, at about 1 m/s.
+struct Step {
+    Pose2 pose;
+    Angle swing;
+};
+Step walk(double t, double wide) {
+    const double a = 0.29 * t, b = 0.43 * t + 0.4;
+    const Point2 place{4 + 2.6 * std::sin(a), 3 + wide * std::sin(b)};
+    const Vec2 speed{2.6 * 0.29 * std::cos(a), wide * 0.43 * std::cos(b)};
+    return {{place, directionOf(speed.x, speed.y)},
+            Angle::degrees(kMaxSwingDegrees * std::sin(2 * std::numbers::pi * t / 1.1))};
+}
+
+struct WalkOptions {
+    double seconds = 300, rate = 10, height = 1.8, wide = 1.8;
+    bool is_still = false;
+};
+
+/// Records the scans of lasers while a person walks.
+std::vector<WatchingLaser> recorded(const std::vector<Sensor>& sensors, const WalkOptions& how) {
+    const Scene scene =
+        testing::scene("ispace at=4,3 size=8,6,2.5\ncube at=7.4,0.5 size=0.8,0.6,0.7\n");
+    Worlds worlds(scene.environment);
+    std::vector<WatchingLaser> lasers;
+    for (const Sensor& sensor : sensors) {
+        worlds.prepare(sensor.pose);
+        lasers.push_back({sensor, {}, {}});
+    }
+    const int count = static_cast<int>(how.seconds * how.rate);
+    for (int i = 0; i < count; ++i) {
+        const double t = i / how.rate;
+        const Step step = walk(how.is_still ? 0 : t, how.wide);
+        const MovingBodies bodies(i < count / 50 && how.is_still
+                                      ? std::vector<MovingBody>()
+                                      : humanBodies(how.height, step.pose, 0, step.swing));
+        for (WatchingLaser& laser : lasers) {
+            Scan scan;
+            scan.frame = i;
+            scan.pose = laser.sensor.pose;
+            LaserCaster(worlds, bodies, laser.sensor, false, {.noise_seed = 3}).cast(scan);
+            laser.times.push_back(t);
+            laser.scans.push_back(scan.ranges);
+        }
+    }
+    return lasers;
+}
+
+std::vector<Sensor> three() {
+    return {laserAt("l1", 0.2, 0.3, 40), laserAt("l2", 7.8, 5.6, -140),
+            laserAt("l3", 0.3, 5.7, -50)};
+}
+
+/// Errors of the poses relative to that of the first laser.
+void expectPoses(const BodyFit& fit, const std::vector<Sensor>& truth, double metres,
+                 double degrees) {
+    for (std::size_t i = 1; i < truth.size(); ++i) {
+        const Pose3 &found = fit.poses[i], &real = truth[i].pose;
+        const double off = distance(found.position.onFloor(), real.position.onFloor());
+        const double turn = std::abs(wrapped(found.heading - real.heading).degrees());
+        EXPECT_LT(off, metres) << truth[i].id;
+        EXPECT_LT(turn, degrees) << truth[i].id;
+    }
+}
+
+TEST(BodyFit, FiveMinutesOfOnePersonJoinThreeLasers) {
+    std::vector<WatchingLaser> lasers = recorded(three(), {});
+    // Poses of the layout do not matter, but that of the first laser.
+    lasers[1].sensor.pose = {{0, 0, 0.3}, {}, {}, {}};
+    lasers[2].sensor.pose = {{3, 3, 0.3}, Angle::degrees(123), {}, {}};
+    const BodyFit fit = fitToBodies(lasers);
+    // Asked for are 5 mm and 0.1 degrees; the middle of the points ends at 36 mm or more.
+    expectPoses(fit, three(), 0.002, 0.02);
+    EXPECT_NEAR(fit.height, 1.8, 0.05);
+    EXPECT_NEAR(fit.scatter, 1, 0.2);
+}
+
+TEST(BodyFit, LasersAtDifferentHeightsCompareTheMiddleOfBothLegs) {
+    std::vector<Sensor> sensors = three();
+    sensors[1].pose.position.z = 0.15;
+    sensors[2].pose.position.z = 0.5;
+    expectPoses(fitToBodies(recorded(sensors, {})), sensors, 0.003, 0.03);
+}
+
+std::string refusalOf(const std::vector<WatchingLaser>& lasers) {
+    try {
+        static_cast<void>(fitToBodies(lasers));
+    } catch (const FormatError& error) {
+        return error.diagnostics().front().message;
+    }
+    return "";
+}
+
+TEST(BodyFit, RefusesWhatDeterminesNoPose) {
+    const std::vector<Sensor> sensors = three();
+    EXPECT_EQ(refusalOf({}), "wanted two lasers or more that see the same people");
+    EXPECT_EQ(refusalOf(recorded({sensors[0], sensors[1]}, {.seconds = 10, .is_still = true})),
+              "people walk too little in sight of l2 and another laser at one time");
+    std::vector<Sensor> high = sensors;
+    high[1].pose.position.z = 1.2;
+    EXPECT_EQ(refusalOf(recorded({high[0], high[1]}, {.seconds = 1})),
+              "l2 scans at 1.20 m: wanted legs, below 0.67 m");
+}
+
+}  // namespace
+}  // namespace ispace

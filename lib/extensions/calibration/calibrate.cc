@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "extensions/calibration/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/json_writer.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "base/run_files.h"
+#include "cli/operands.h"
+#include "cli/outputs.h"
+#include "extensions/calibration/body_fit.h"
+#include "extensions/calibration/drive_fit.h"
+#include "extensions/calibration/occupancy.h"
+#include "extensions/calibration/plan_fit.h"
+#include "extensions/reality/log.h"
+#include "record/text.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// A fixed laser and its scans in the log.
+struct CalibratedLaser {
+    WatchingLaser seen;  ///< with the beams of the log
+    Record record;
+    PlanFit fit = {};
+};
+
+/// Returns true if a source of a log is the sensor: by its id, or by a topic with it, "/l1/scan".
+bool isSource(const std::string& source, const std::string& id) {
+    return source == id || ('/' + source + '/').find('/' + id + '/') != std::string::npos;
+}
+
+/// Returns the scans of each source.
+std::map<std::string, std::vector<LogScan*>> scansBySource(Log& log) {
+    std::map<std::string, std::vector<LogScan*>> sources;
+    for (LogScan& scan : log.scans) sources[scan.sensor].push_back(&scan);
+    return sources;
+}
+
+/// Takes over the beams that the log states, and the scans. \throws FormatError
+void takeScans(const std::string& log, std::span<LogScan* const> scans, CalibratedLaser& laser) {
+    const LogScan& first = *scans.front();
+    const std::size_t beams = first.ranges.size();
+    auto& model = laser.seen.sensor.as<Laser>();
+    model.first = first.first;
+    model.step = first.step;
+    model.beams = static_cast<int>(beams);
+    if (std::isfinite(first.max_range) && first.max_range > 0) model.max_range = first.max_range;
+    for (LogScan* scan : scans) {
+        if (scan->poses.corrected || scan->poses.odometry)
+            throw FormatError(Diagnostic{
+                displayName(log), 0, 0,
+                "the sensor " + scan->sensor + " moves: --calibrate is about fixed lasers"});
+        if (scan->ranges.size() != beams || scan->first != first.first)
+            throw FormatError(Diagnostic{displayName(log), 0, 0,
+                                         "scans of " + scan->sensor + " have different beams"});
+        laser.seen.times.push_back(scan->time);
+        laser.seen.scans.push_back(std::move(scan->ranges));
+    }
+}
+
+/// Returns the fixed lasers of a scene that do not sweep.
+std::vector<CalibratedLaser> fixedLasers(const Scene& scene) {
+    std::vector<CalibratedLaser> lasers;
+    for (const PlacedRecord& placed : scene.placed) {
+        const Record& record = scene.records[placed.record];
+        if (record.keyword() != "laser" || placed.mount) continue;
+        const Sensor& sensor = scene.sensors[placed.index];
+        if (!sensor.mount && !sensor.person && sensor.as<Laser>().sweep == SweepAxis::None)
+            lasers.push_back({{sensor, {}, {}}, record});
+    }
+    return lasers;
+}
+
+/// Returns those of a layout alone, without its room.
+std::vector<CalibratedLaser> fixedLasers(const Document& layout) {
+    std::vector<CalibratedLaser> lasers;
+    const std::vector<std::string> ids = assignIds(layout.records);
+    const DeviceCatalogue& devices = devicesFor({&layout});
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const Record& record = layout.records[i];
+        if (record.keyword() != "laser" || record.has("on")) continue;
+        Sensor sensor{ids[i], sensorModelOf(record, devices), poseOf(record)};
+        if (sensor.as<Laser>().sweep == SweepAxis::None)
+            lasers.push_back({{std::move(sensor), {}, {}}, record});
+    }
+    return lasers;
+}
+
+/// Pairs fixed lasers with the sources of a log.
+class LaserPairs {
+  public:
+    LaserPairs(const TaskInput& task, Log& log) : task_(task), log_(log) {}
+
+    /// Returns those of the lasers that the log has scans of.
+    std::vector<CalibratedLaser> of(std::vector<CalibratedLaser> lasers) {
+        auto sources = scansBySource(log_);
+        const std::size_t all = lasers.size();
+        for (CalibratedLaser& laser : lasers) {
+            const auto found = std::find_if(sources.begin(), sources.end(), [&](const auto& one) {
+                // One laser and one source need no common name.
+                return isSource(one.first, laser.seen.sensor.id) ||
+                       (all == 1 && sources.size() == 1);
+            });
+            if (found == sources.end()) continue;
+            takeScans(log_.name, found->second, laser);
+            sources.erase(found);
+        }
+        if (std::all_of(lasers.begin(), lasers.end(),
+                        [](const CalibratedLaser& laser) { return laser.seen.scans.empty(); }))
+            refuse(lasers, sources);
+        for (const CalibratedLaser& laser : lasers)
+            if (laser.seen.scans.empty())
+                warn(task_.common, "envc",
+                     "the log has no scans of " + laser.seen.sensor.id + ": its pose stays");
+        for (const auto& [source, scans] : sources)
+            warn(task_.common, "envc",
+                 "scans of " + printable(source) + " are of no fixed laser of the layout");
+        std::erase_if(lasers,
+                      [](const CalibratedLaser& laser) { return laser.seen.scans.empty(); });
+        return lasers;
+    }
+
+  private:
+    [[noreturn]] void refuse(const std::vector<CalibratedLaser>& lasers,
+                             const std::map<std::string, std::vector<LogScan*>>& sources) const {
+        std::vector<std::string> ids, names;
+        for (const CalibratedLaser& laser : lasers) ids.push_back(laser.seen.sensor.id);
+        for (const auto& [source, scans] : sources) names.push_back(printable(source));
+        throw FormatError(Diagnostic{
+            displayName(log_.name), 0, 0,
+            ids.empty() ? "the layout has no fixed laser"
+            : names.empty()
+                ? "the log has no scans of lasers"
+                : "no scans of " + listOf(ids) + "; the log has those of " + listOf(names)});
+    }
+
+    const TaskInput& task_;
+    Log& log_;
+};
+
+double sigmaOf(const PlanCovariance& covariance, std::size_t axis) {
+    return std::sqrt(covariance[axis][axis]);
+}
+
+std::string sigmaText(double sigma, int decimals, double factor, const char* unit) {
+    return std::isinf(sigma) ? "unknown" : formatFixed(factor * sigma, decimals) + unit;
+}
+
+/// "x 0.03 mm, y unknown, heading 0.0004 deg".
+std::string sigmasText(const PlanFit& fit) {
+    return "x " + sigmaText(sigmaOf(fit.covariance, 0), 3, 1e3, " mm") + ", y " +
+           sigmaText(sigmaOf(fit.covariance, 1), 3, 1e3, " mm") + ", heading " +
+           sigmaText(sigmaOf(fit.covariance, 2), 4, kDegrees, " deg");
+}
+
+std::string poseText(const Pose3& pose) {
+    return placeText(pose.position.onFloor()) + " heading " +
+           formatFixed(pose.heading.degrees(), 1) + " deg";
+}
+
+/// "l1: moved by 0.361 m and -5.00 deg".
+std::string movedText(const CalibratedLaser& laser) {
+    const Pose3 &before = laser.seen.sensor.pose, &after = laser.fit.pose;
+    const double moved = distance(before.position.onFloor(), after.position.onFloor());
+    const double turned = wrapped(after.heading - before.heading).degrees();
+    return laser.seen.sensor.id + ": moved by " + formatFixed(moved, 3) + " m and " +
+           formatFixed(turned, 2) + " deg";
+}
+
+/// Reports a laser on stderr.
+void report(const TaskInput& task, const CalibratedLaser& laser) {
+    const PlanFit& fit = laser.fit;
+    tell(task.common, "envc",
+         movedText(laser) + " by " + countText(fit.scans, "scan") + "; standard deviations " +
+             sigmasText(fit) + "; " + formatFixed(100 * fit.inliers, 0) + " % of " +
+             std::to_string(fit.beams) + " beams within " + formatFixed(kPlanInlier, 1) +
+             " m of the plan");
+    for (const FreeMotion& motion : fit.unknown)
+        warn(task.common, "envc",
+             laser.seen.sensor.id + ": the scans are equal for all poses " + motion.text(fit.pose) +
+                 "; that of the layout is kept in this respect");
+    constexpr std::size_t kMost = 3;
+    for (std::size_t i = 0; i < std::min(kMost, fit.equals.size()); ++i)
+        warn(task.common, "envc",
+             laser.seen.sensor.id + ": the pose " + poseText(fit.equals[i]) +
+                 " is as likely; the one next to that of the layout is taken" +
+                 (i + 1 == kMost && fit.equals.size() > kMost
+                      ? ", and so are " + std::to_string(fit.equals.size() - kMost) + " more"
+                      : ""));
+}
+
+/// Upper triangle of a covariance, row by row.
+std::vector<double> upperTriangle(const PlanCovariance& covariance) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = i; j < 3; ++j) values.push_back(covariance[i][j]);
+    return values;
+}
+
+/// The line of the layout's history about a laser.
+std::string historyOf(const CalibratedLaser& laser) {
+    const PlanFit& fit = laser.fit;
+    std::string line = "calibrated " + laser.seen.sensor.id + " by " +
+                       countText(fit.scans, "scan") +
+                       ": covariance of x, y (m), heading (rad), upper triangle:";
+    for (const double value : upperTriangle(fit.covariance))
+        line += std::isinf(value) ? " inf" : ' ' + formatDouble(roundSignificant(value, 4));
+    for (const FreeMotion& motion : fit.unknown)
+        line += "; not determined " + motion.text(fit.pose);
+    if (!fit.equals.empty()) line += "; other poses are as likely";
+    return line;
+}
+
+void addPose(JsonWriter& json, const Pose3& pose) {
+    json.key("at").beginArray();
+    json.value(pose.position.x).value(pose.position.y).value(pose.position.z).endArray();
+    json.key("heading").value(wrapped(pose.heading).degrees());
+}
+
+void addCovariance(JsonWriter& json, const PlanCovariance& covariance) {
+    json.key("covariance").beginArray();
+    for (const auto& row : covariance) {
+        json.beginArray();
+        for (const double value : row) json.value(value);
+        json.endArray();
+    }
+    json.endArray();
+}
+
+std::string calibrationJson(std::span<const CalibratedLaser> lasers) {
+    JsonWriter json;
+    beginReport(json, "ispace-calibration/1", "envc").key("sensors").beginArray();
+    for (const CalibratedLaser& laser : lasers) {
+        const PlanFit& fit = laser.fit;
+        json.beginObject().key("id").value(laser.seen.sensor.id);
+        addPose(json, fit.pose);
+        addCovariance(json, fit.covariance);
+        json.key("scans").value(fit.scans).key("beams").value(fit.beams);
+        json.key("inliers").value(fit.inliers).key("sigma").value(fit.sigma);
+        json.key("unknown").beginArray();
+        for (const FreeMotion& motion : fit.unknown)
+            json.value(std::vector<double>{motion.x, motion.y, motion.turn});
+        json.endArray().key("equals").beginArray();
+        for (const Pose3& pose : fit.equals) {
+            json.beginObject();
+            addPose(json, pose);
+            json.endObject();
+        }
+        json.endArray().endObject();
+    }
+    return json.endArray().endObject().take() + '\n';
+}
+
+/// Writes the pose of a laser into its record in the layout, or adds the record of ENV there.
+void setPose(const CalibratedLaser& laser, Document& layout) {
+    const Record& source = laser.record;
+    auto found =
+        std::find_if(layout.records.begin(), layout.records.end(), [&source](const Record& record) {
+            return record == source && record.place().line == source.place().line &&
+                   record.place().column == source.place().column;
+        });
+    if (found == layout.records.end()) {
+        found = layout.records.insert(found, source);
+        if (found->writtenId().empty()) found->set("id", laser.seen.sensor.id);
+    }
+    const Pose3& pose = laser.fit.pose;
+    Tuple at{nineDecimals(pose.position.x), nineDecimals(pose.position.y)};
+    if (found->has("at") && found->tuple("at").size() == 3) at.push_back(found->tuple("at")[2]);
+    found->set("at", at);
+    found->set("heading", nineDecimals(wrapped(pose.heading).degrees()));
+}
+
+/// The same of lasers by people.
+std::string peopleJson(std::span<const CalibratedLaser> lasers, const BodyFit& fit) {
+    JsonWriter json;
+    beginReport(json, "ispace-calibration/1", "envc").key("sensors").beginArray();
+    for (std::size_t i = 0; i < lasers.size(); ++i) {
+        json.beginObject().key("id").value(lasers[i].seen.sensor.id);
+        addPose(json, fit.poses[i]);
+        addCovariance(json, fit.covariances[i]);
+        json.key("scans").value(lasers[i].seen.scans.size());
+        json.key("legs").value(fit.legs[i]).endObject();
+    }
+    json.endArray().key("people").beginObject().key("height").value(fit.height);
+    json.key("height_sigma").value(fit.height_sigma).key("moments").value(fit.moments);
+    return json.key("scatter").value(fit.scatter).endObject().endObject().take() + '\n';
+}
+
+/// Reports the lasers on stderr, and adds them to the layout.
+void takePeople(const TaskInput& task, const BodyFit& fit, std::vector<CalibratedLaser>& lasers,
+                Document& layout) {
+    tell(task.common, "envc",
+         "people of " + formatFixed(fit.height, 2) + " m (+- " + formatFixed(fit.height_sigma, 2) +
+             " m by the size of their legs) at " + std::to_string(fit.moments) +
+             " moments; the pose of " + lasers[0].seen.sensor.id +
+             " is that of the layout, the others stand to it");
+    for (std::size_t i = 1; i < lasers.size(); ++i) {
+        CalibratedLaser& laser = lasers[i];
+        laser.fit.pose = fit.poses[i];
+        laser.fit.covariance = fit.covariances[i];
+        laser.fit.scans = laser.seen.scans.size();
+        tell(task.common, "envc",
+             movedText(laser) + " by " + countText(fit.legs[i], "leg") + "; standard deviations " +
+                 sigmasText(laser.fit));
+        setPose(laser, layout);
+        layout.history.push_back(historyOf(laser));
+    }
+}
+
+std::string folderOf(const std::string& file) {
+    return isStream(file) ? "" : std::filesystem::path(file).parent_path().string();
+}
+
+class Calibration final : public OptionGroup {
+  public:
+    void declare(CommandLine& line) override {
+        line.group("Calibration");
+        line.file("--calibrate", "LOG", log_,
+                  "correct the poses of the fixed lasers of ENV LAYOUT by their scans in a log; of "
+                  "the drive of a robot: its wheels and laser, without operands",
+                  Enters::BaseName);
+        line.flag("--by-people", by_people_,
+                  "without a room: how the lasers of LAYOUT stand to the first one, by the people "
+                  "that they see",
+                  Enters::History);
+    }
+    [[nodiscard]] bool isAsked() const override { return !log_.empty(); }
+    [[nodiscard]] std::span<const std::string_view> honours() const override {
+        static constexpr std::string_view kOptions[] = {"--json"};
+        return kOptions;
+    }
+    void take(const CommandLine& line) override { is_json_ = line.given("--json"); }
+
+    void run(const TaskInput& task) override {
+        std::error_code ignored;
+        if (!isStream(log_) && !std::filesystem::is_directory(log_, ignored))
+            if (const std::string bytes = readAll(log_); isDrive(bytes))
+                return writeDrive(task, bytes);
+        std::vector<std::string> named = task.operands;
+        named.push_back(log_);
+        mustReadStdinOnce(named);
+        if (by_people_)
+            calibrateByPeople(task);
+        else
+            calibrateByPlan(task);
+    }
+
+  private:
+    [[nodiscard]] std::string formatFor(const TaskInput& task, const std::string& usual) const {
+        const std::string format = outputFormat({}, task.common.output, {usual, "json"});
+        return is_json_ ? "json" : format;
+    }
+
+    void writeDrive(const TaskInput& task, const std::string& bytes) const {
+        if (!task.operands.empty() || by_people_)
+            throw UsageError("--calibrate with the drive of a robot takes no operand" +
+                             std::string(by_people_ ? " and no --by-people" : ""));
+        const std::string format = formatFor(task, "txt");
+        claimOutputs(task.common);
+        const DriveFit fit = fitDrive(readDrive(bytes, log_), log_);
+        writeAll(task.common.output, format == "json" ? driveJson(fit) : driveText(fit));
+        writeDependencies(task.common, std::vector<std::string>{log_});
+    }
+
+    /// Returns the layout as the product begins.
+    [[nodiscard]] static Document productOf(const TaskInput& task, Document layout,
+                                            const std::string& operand) {
+        rebaseFiles(layout.records, folderOf(operand), folderOf(task.common.output));
+        std::erase_if(layout.records,
+                      [](const Record& record) { return record.keyword() == "result"; });
+        layout.history.push_back(task.history_line);
+        return layout;
+    }
+
+    void calibrateByPlan(const TaskInput& task) const {
+        if (task.operands.empty() || task.operands.size() > 2)
+            throw UsageError("--calibrate wants ENV LAYOUT, or a LAYOUT that names its ENV");
+        const std::string format = formatFor(task, "3dm");
+        claimOutputs(task.common);
+        SceneRequest request{task.operands, task.rules};
+        request.layout_from_stdin = false;
+        const SceneInput input = readScene(request);
+        warnOfImport(task.common, "envc", input);
+        if (!input.layout) throw UsageError("--calibrate corrects a LAYOUT, and no operand is one");
+        Log log = readLog(log_);
+        std::vector<CalibratedLaser> lasers = LaserPairs(task, log).of(fixedLasers(input.scene));
+        Document layout = productOf(task, *input.layout, input.layout_operand);
+        Diagnostics findings;
+        for (CalibratedLaser& laser : lasers) {
+            try {
+                laser.fit = fitToPlan(input.scene.environment, laser.seen.sensor, laser.seen.scans);
+            } catch (const FormatError& error) {
+                for (Diagnostic one : error.diagnostics()) {
+                    if (one.file.empty()) one.file = displayName(log_);
+                    findings.add(std::move(one));
+                }
+                continue;
+            }
+            report(task, laser);
+            setPose(laser, layout);
+            layout.history.push_back(historyOf(laser));
+        }
+        findings.throwIfAny();
+        writeAll(task.common.output,
+                 format == "json" ? calibrationJson(lasers) : writeRecordText(layout));
+        std::vector<std::string> files = filesOf(input);
+        files.insert(files.end(), log.files.begin(), log.files.end());
+        writeDependencies(task.common, files);
+    }
+
+    void calibrateByPeople(const TaskInput& task) const {
+        if (task.operands.size() != 1)
+            throw UsageError("--by-people wants one operand, a LAYOUT: it needs no room");
+        const std::string format = formatFor(task, "3dm");
+        claimOutputs(task.common);
+        ImportOptions import;
+        import.load_files = false;
+        const Document read = readDocument(task.operands[0], import, sceneSchemas());
+        if (read.kind != DocumentKind::Layout)
+            throw UsageError("--by-people wants a LAYOUT, and " + displayName(task.operands[0]) +
+                             " is none");
+        Log log = readLog(log_);
+        std::vector<CalibratedLaser> lasers = LaserPairs(task, log).of(fixedLasers(read));
+        std::vector<WatchingLaser> seen;
+        seen.reserve(lasers.size());
+        for (const CalibratedLaser& laser : lasers) seen.push_back(laser.seen);
+        Document layout = productOf(task, read, task.operands[0]);
+        const BodyFit fit = [&] {
+            try {
+                return fitToBodies(seen);
+            } catch (const FormatError& error) {
+                throw FormatError(
+                    Diagnostic{displayName(log_), 0, 0, error.diagnostics().front().message});
+            }
+        }();
+        takePeople(task, fit, lasers, layout);
+        writeAll(task.common.output,
+                 format == "json" ? peopleJson(lasers, fit) : writeRecordText(layout));
+        std::vector<std::string> files{task.operands[0]};
+        files.insert(files.end(), log.files.begin(), log.files.end());
+        writeDependencies(task.common, files);
+    }
+
+    std::string log_;
+    bool is_json_ = false, by_people_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<OptionGroup> makeCalibration() { return std::make_unique<Calibration>(); }
+
+std::span<const Importer> calibrationImporters() {
+    static constexpr Importer kRows[] = {{isLog, readLogRoom}};
+    return kRows;
+}
+
+}  // namespace ispace
