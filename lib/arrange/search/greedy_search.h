@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "arrange/search/cover_sets.h"
@@ -43,6 +44,7 @@ class CoverageState {
 
     [[nodiscard]] const Problem& problem() const { return *problem_; }
     [[nodiscard]] const std::vector<Choice>& chosen() const { return chosen_; }
+    /// O(1)
     [[nodiscard]] bool holds(const Choice& choice) const;
     /// Returns valueOf(problem, chosen()).
     [[nodiscard]] std::uint64_t value() const { return value_; }
@@ -74,6 +76,7 @@ class CoverageState {
     std::vector<std::uint32_t> multiplicities_;  // per kind, at most required_
     std::vector<std::uint32_t> loads_;  // achieved by each cell, at first at most required_
     std::vector<Choice> chosen_;
+    std::vector<std::unordered_map<std::size_t, int>> times_;  // of each, by kind and candidate
     std::vector<int> counts_;
     std::uint64_t value_ = 0, partial_value_ = 0;
 };

@@ -73,6 +73,7 @@ CoverageState::CoverageState(const Problem& problem, const std::vector<std::uint
 
 void CoverageState::clear() {
     chosen_.clear();
+    times_.assign(problem_->kinds.size(), {});
     counts_.assign(problem_->kinds.size(), 0);
     loads_.assign(problem_->cells(), 0);
     value_ = partial_value_ = 0;
@@ -122,7 +123,7 @@ void CoverageState::change(const Choice& choice) {
 }
 
 void CoverageState::insert(std::size_t position, const Choice& choice) {
-    if (!holds(choice)) change<true>(choice);
+    if (++times_[choice.kind][choice.candidate] == 1) change<true>(choice);
     ++counts_[choice.kind];
     chosen_.insert(chosen_.begin() + static_cast<std::ptrdiff_t>(position), choice);
 }
@@ -131,11 +132,14 @@ void CoverageState::removeAt(std::size_t position) {
     const Choice choice = chosen_[position];
     chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(position));
     --counts_[choice.kind];
-    if (!holds(choice)) change<false>(choice);
+    const auto times = times_[choice.kind].find(choice.candidate);
+    if (--times->second > 0) return;
+    times_[choice.kind].erase(times);
+    change<false>(choice);
 }
 
 bool CoverageState::holds(const Choice& choice) const {
-    return std::find(chosen_.begin(), chosen_.end(), choice) != chosen_.end();
+    return times_[choice.kind].contains(choice.candidate);
 }
 
 double CoverageState::cost() const { return costOf(*problem_, chosen_); }
