@@ -95,16 +95,21 @@ class Adviser {
     std::optional<Suggestion> together(const MeasuredState& now, std::vector<Suggestion> first);
 
   private:
-    /// Applies the edits and measures the scene.
-    [[nodiscard]] MeasuredState after(const Scene& scene, std::span<const Edit> edits) {
-        Scene changed = makeScene(edited(scene.records, edits, sceneSchemas()), scene, devices_);
+    /// Applies the edits and measures the scene. Exact figures only if those of `now` are known:
+    /// crowds of views have figures of cells.
+    [[nodiscard]] MeasuredState after(const MeasuredState& now, std::span<const Edit> edits) {
+        Scene changed =
+            makeScene(edited(now.scene.records, edits, sceneSchemas()), now.scene, devices_);
         Worlds worlds(changed.environment);
+        CoverageOptions options = options_.measure;
+        options.exact = options.exact && now.coverage.report.exact_missing.empty();
         const bool is_by_density =
             std::any_of(options_.requirements.begin(), options_.requirements.end(),
                         [](const Requirement& one) { return one.density.has_value(); });
-        auto shares = is_by_density ? std::nullopt : exactShares(changed, worlds, options_.measure);
+        auto shares = is_by_density ? std::nullopt : exactShares(changed, worlds, options);
         Coverage coverage =
-            shares ? *std::move(shares) : measureCoverage(changed, worlds, options_.measure);
+            shares ? *std::move(shares)
+                   : measureChanged(changed, worlds, options, {&now.scene, &now.coverage});
         const double missing =
             missingFloor(changed, coverage, options_, privateFloorOf(changed.environment));
         return {std::move(changed), std::move(coverage), missing};
@@ -112,7 +117,7 @@ class Adviser {
     /// Completes a suggestion by measuring it.
     Suggestion measured(const MeasuredState& now, Suggestion::Kind kind, std::string text,
                         std::vector<Edit> edits) {
-        const MeasuredState then = after(now.scene, edits);
+        const MeasuredState then = after(now, edits);
         const double share = coveredShare(then.coverage);
         // Furniture changes no indoor area.
         const double gained =

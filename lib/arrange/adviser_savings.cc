@@ -79,7 +79,7 @@ double Adviser::mostWithout(const MeasuredState& now, const std::string& id) {
     if (now.missing > 0 || !options_.privacy.empty() || !options_.facing.empty()) return kUnknown;
     try {
         const std::vector<Edit> edits = {parseEdit(Edit::Kind::Delete, id)};
-        const MeasuredState then = after(now.scene, edits);
+        const MeasuredState then = after(now, edits);
         if (then.coverage.report.indoor_area != now.coverage.report.indoor_area) return kUnknown;
         return (coveredShare(then.coverage) - coveredShare(now.coverage)) *
                    now.coverage.report.indoor_area +

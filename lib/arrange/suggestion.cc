@@ -278,7 +278,7 @@ void Adviser::leaveOutNeedless(const MeasuredState& now, std::vector<Suggestion>
         fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
         bool is_enough = false;
         try {
-            is_enough = after(now.scene, editsOf(fewer)).missing == 0;
+            is_enough = after(now, editsOf(fewer)).missing == 0;
         } catch (const UsageError&) {  // a later change is of the sensor that this one adds
         }
         if (is_enough)
@@ -301,7 +301,7 @@ std::optional<Suggestion> Adviser::together(const MeasuredState& now,
             [](const Suggestion& a, const Suggestion& b) { return a.required < b.required; });
         if (best == choices.end() || best->required <= 0) return std::nullopt;
         steps.push_back(*best);
-        state = after(state.scene, best->edits);
+        state = after(state, best->edits);
         if (state.missing > 0) choices = moves(state);
     }
     leaveOutNeedless(now, steps);

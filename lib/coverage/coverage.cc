@@ -9,6 +9,8 @@
 #include <atomic>
 #include <cassert>
 #include <map>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "base/error.h"
@@ -161,15 +163,25 @@ class Viewer {
   public:
     /// \param only_regions computes neither cells, beams nor classes of density
     /// \param known of an equal environment, see exactShares()
+    /// \param before a scene with views to take over, see measureChanged()
     Viewer(const Scene& scene, Worlds& worlds, const Grid& grid, const CoverageOptions& options,
-           std::size_t most_edges, bool only_regions = false, const VisibleArea* known = nullptr)
+           std::size_t most_edges, bool only_regions = false, const VisibleArea* known = nullptr,
+           const MeasuredScene& before = {})
         : scene_(scene),
           worlds_(worlds),
           grid_(grid),
           options_(options),
           most_(most_edges),
           only_regions_(only_regions),
-          known_(known) {}
+          known_(known) {
+        const bool is_same_room =
+            before.scene != nullptr &&
+            &before.scene->environment.elements() == &scene.environment.elements();
+        if (!is_same_room) return;
+        for (const SensorView& view : before.coverage->sensors)
+            if (view.index < before.scene->sensors.size() && view.cells.size() == grid.size())
+                before_.emplace(view.id, KnownView{&before.scene->sensors[view.index], &view});
+    }
 
     std::vector<SensorView> run() {
         makeViews();
@@ -198,7 +210,7 @@ class Viewer {
             }
         tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t i) {
             const Sensor& sensor = sensorOf(views_[i]);
-            if (sensor.is<Camera>() && !only_regions_)
+            if (sensor.is<Camera>() && !only_regions_ && views_[i].classes.empty())
                 tbb::this_task_arena::isolate([&] { addClasses(views_[i], sensor); });
         });
         return std::move(views_);
@@ -247,8 +259,22 @@ class Viewer {
         return sight_.levelAt(place.z)->isInsideSolid(place.onFloor());
     }
 
+    /// Returns the view of an equal sensor before; null without one.
+    [[nodiscard]] const SensorView* viewBefore(const Sensor& sensor) const {
+        const auto known = before_.find(sensor.id);
+        if (known == before_.end()) return nullptr;
+        return seeAlike(*known->second.sensor, sensor) ? known->second.view : nullptr;
+    }
+
     void look(SensorView& view) {
         Sensor sensor = sensorOf(view);
+        if (const SensorView* const same = viewBefore(sensor)) {
+            const std::size_t index = view.index;
+            view = *same;
+            view.index = index;
+            countEdges(view);
+            return;
+        }
         if (auto* camera = std::get_if<Camera>(&sensor.model)) {
             *camera = withDensity(*camera, options_.density);
             view.max_range = camera->max_range;
@@ -271,6 +297,10 @@ class Viewer {
     void addRegion(SensorView& view, const Sensor& sensor) {
         if (hasTooManyEdges()) return;
         setRegion(regionOf(sensor), scene_.environment.limits(), view);
+        countEdges(view);
+    }
+
+    void countEdges(const SensorView& view) {
         if (!view.region) return;
         for (const Curve& curve : *view.region) edges_ += curve.size();
         for (const Curve& curve : view.beyond) edges_ += curve.size();
@@ -316,6 +346,11 @@ class Viewer {
     std::size_t most_;
     bool only_regions_;
     const VisibleArea* known_;
+    struct KnownView {
+        const Sensor* sensor;
+        const SensorView* view;
+    };
+    std::unordered_map<std::string_view, KnownView> before_;  // by ids
     std::atomic<std::size_t> edges_ = 0;  // of all regions, or of enough of them to be too many
     VisibleArea sight_{scene_.environment, options_.plane, &worlds_, reachOfScans(scene_)};
     std::vector<SensorView> views_;
@@ -481,7 +516,8 @@ void addOutside(std::span<const std::shared_ptr<const OutsideView>> outside, std
 /// \param scene with the sensors outside after its own
 Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
                  const CoverageOptions& options,
-                 std::span<const std::shared_ptr<const OutsideView>> outside) {
+                 std::span<const std::shared_ptr<const OutsideView>> outside,
+                 const MeasuredScene& before = {}) {
     const Environment& environment = scene.environment;
     Coverage coverage;
     const Grid grid = gridOver(environment.limits(), options.cells);
@@ -493,7 +529,7 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
     runBoth(
         [&] {
             const std::size_t most_edges = mostEdges(most_crossings);
-            Viewer viewer(own, worlds, grid, options, most_edges);
+            Viewer viewer(own, worlds, grid, options, most_edges, false, nullptr, before);
             coverage.sensors = viewer.run();
             if (viewer.hasTooManyEdges())
                 report.exact_missing = "outlines of views have more than " +
@@ -535,6 +571,11 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
 
 Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options) {
     return measure(scene, scene, worlds, options, {});
+}
+
+Coverage measureChanged(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+                        const MeasuredScene& before) {
+    return measure(scene, scene, worlds, options, {}, before);
 }
 
 std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,

@@ -12,6 +12,8 @@
 
 #include "base/number.h"
 #include "coverage/coverage.h"
+#include "coverage/exact_shares.h"
+#include "scene/placement_schemas.h"
 #include "support/test_scenes.h"
 
 namespace ispace {
@@ -439,6 +441,65 @@ TEST(CoverageExact, CrowdsOfViewsHaveTheFiguresOfCells) {
               "outlines of views have more than 2500 edges (`--max-work 20000` allows more)");
     EXPECT_FALSE(without_regions.report.sensors.front().area.exact);
     EXPECT_EQ(without_regions.report.coverage.grid, whole.report.coverage.grid);
+}
+
+/// A scene after these edits, which shares the data of its room.
+Scene changedBy(const Scene& scene, const std::vector<Edit>& edits) {
+    return makeScene(edited(scene.records, edits, sceneSchemas()), scene, DeviceCatalogue());
+}
+
+TEST(MeasureChanged, HasTheFiguresOfAMeasureOfTheWhole) {
+    const Scene before = sceneOf(randomScene(3, 4, {}) +
+                                 "uwb id=u1 at=1,1,2\nuwb id=u2 at=7,1,2\ncamera id=c at=2,2,2 "
+                                 "tilt=-40\nzone id=z at=2,2 size=1,1\n");
+    const CoverageOptions options;
+    Worlds worlds(before.environment);
+    const Coverage known = measureCoverage(before, worlds, options);
+    const std::vector<std::vector<Edit>> changes = {
+        {parseEdit(Edit::Kind::Add, "uwb id=u3 at=4,1,2")},
+        {parseEdit(Edit::Kind::Rotate, "laser2:30"), parseEdit(Edit::Kind::Delete, "laser1")},
+        {parseEdit(Edit::Kind::Set, "c.tilt=-60"), parseEdit(Edit::Kind::Add, "cube at=4,2")}};
+    for (const std::vector<Edit>& edits : changes) {
+        const Scene after = changedBy(before, edits);
+        Worlds own(after.environment), others(after.environment);
+        const Coverage changed = measureChanged(after, own, options, {&before, &known});
+        const Coverage whole = measureCoverage(after, others, options);
+        EXPECT_EQ(changed.report.coverage.exact, whole.report.coverage.exact);
+        EXPECT_EQ(changed.report.coverage.grid, whole.report.coverage.grid);
+        EXPECT_EQ(changed.report.zones[0].coverage.exact, whole.report.zones[0].coverage.exact);
+        ASSERT_EQ(changed.sensors.size(), whole.sensors.size());
+        for (std::size_t i = 0; i < whole.sensors.size(); ++i) {
+            EXPECT_EQ(changed.sensors[i].id, whole.sensors[i].id);
+            EXPECT_EQ(changed.sensors[i].index, whole.sensors[i].index);
+            EXPECT_EQ(changed.sensors[i].cells, whole.sensors[i].cells);
+            EXPECT_EQ(changed.sensors[i].classes.size(), whole.sensors[i].classes.size());
+        }
+    }
+}
+
+TEST(MeasureChanged, TakesTheViewsOfSensorsThatStay) {
+    const Scene before =
+        sceneOf("ispace size=8,6\nuwb id=u1 at=-3,0,2 range=4\nlaser id=l1 at=3,0 range=2\n");
+    const CoverageOptions options;
+    Worlds worlds(before.environment);
+    Coverage known = measureCoverage(before, worlds, options);
+    for (const SensorView& view : known.sensors) EXPECT_GT(view.cells.count(), 0U) << view.id;
+    for (SensorView& view : known.sensors) view.cells = CellSet(view.cells.size());  // a mark
+    const auto cells_of = [&](const std::string& edit, Edit::Kind kind, const std::string& id) {
+        const Scene after = changedBy(before, {parseEdit(kind, edit)});
+        Worlds own(after.environment);
+        const Coverage changed = measureChanged(after, own, options, {&before, &known});
+        for (const SensorView& view : changed.sensors)
+            if (view.id == id) return view.cells.count();
+        return std::size_t{0};
+    };
+    // Another anchor is in the list of the first.
+    EXPECT_EQ(cells_of("uwb id=u2 at=0,2,2 range=4", Edit::Kind::Add, "u1"), 0U);
+    EXPECT_EQ(cells_of("uwb id=u2 at=0,2,2 range=4", Edit::Kind::Add, "l1"), 0U);
+    EXPECT_GT(cells_of("uwb id=u2 at=0,2,2 range=4", Edit::Kind::Add, "u2"), 0U);
+    EXPECT_GT(cells_of("l1.range=1", Edit::Kind::Set, "l1"), 0U);
+    EXPECT_EQ(cells_of("l1.range=1", Edit::Kind::Set, "u1"), 0U);
+    EXPECT_GT(cells_of("cube at=0,0", Edit::Kind::Add, "l1"), 0U) << "another room";
 }
 
 }  // namespace

@@ -16,4 +16,15 @@ std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
                                     const CoverageOptions& options,
                                     const VisibleArea* sight = nullptr);
 
+/// A scene that was measured, with the same options.
+struct MeasuredScene {
+    const Scene* scene = nullptr;
+    const Coverage* coverage = nullptr;
+};
+
+/// Returns the same as measureCoverage(). Takes the views of sensors that the scene has in common
+/// with `before`, if their rooms share their data: those of changed sensors alone are computed.
+Coverage measureChanged(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+                        const MeasuredScene& before);
+
 }  // namespace ispace

@@ -50,7 +50,31 @@ CellSet cellsOfScan(const Grid& grid, const LevelViews& level, const Sensor& sen
     return cells;
 }
 
+/// Removes the things of the room that a model lists.
+SensorModel withoutLists(SensorModel model) {
+    if (auto* const uwb = std::get_if<Uwb>(&model)) {
+        uwb->tags = {};
+        uwb->anchors = {};
+    } else if (auto* const rfid = std::get_if<Rfid>(&model)) {
+        rfid->tags = {};
+    } else if (auto* const mote = std::get_if<Mote>(&model)) {
+        mote->motes = {};
+        mote->grid = {};
+    } else if (auto* const lux = std::get_if<Lux>(&model)) {
+        lux->lights = {};
+        lux->beams = {};
+    } else if (auto* const microphone = std::get_if<Microphone>(&model)) {
+        microphone->sources = {};
+    }
+    return model;
+}
+
 }  // namespace
+
+bool seeAlike(const Sensor& a, const Sensor& b) {
+    return a.pose == b.pose && a.model.index() == b.model.index() &&
+           (a.model == b.model || withoutLists(a.model) == withoutLists(b.model));
+}
 
 /// Regions by model and pose.
 class VisibleArea::KnownRegions {
@@ -61,23 +85,20 @@ class VisibleArea::KnownRegions {
     std::shared_ptr<const Region> find(const Sensor& sensor) {
         const std::lock_guard lock(mutex_);
         const auto [first, last] = regions_.equal_range(keyOf(sensor.pose));
-        const auto known = std::find_if(first, last, [&](const auto& one) {
-            return one.second.pose == sensor.pose && one.second.model == sensor.model;
-        });
+        const auto known = std::find_if(
+            first, last, [&](const auto& one) { return seeAlike(one.second.sensor, sensor); });
         return known == last ? nullptr : known->second.region;
     }
     void store(const Sensor& sensor, std::shared_ptr<const Region> region) {
         constexpr std::size_t kMost = 20'000;
         const std::lock_guard lock(mutex_);
         if (regions_.size() < kMost)
-            regions_.emplace(keyOf(sensor.pose),
-                             Known{sensor.model, sensor.pose, std::move(region)});
+            regions_.emplace(keyOf(sensor.pose), Known{sensor, std::move(region)});
     }
 
   private:
     struct Known {
-        SensorModel model;
-        Pose3 pose;
+        Sensor sensor;
         std::shared_ptr<const Region> region;
     };
     using Key = std::tuple<double, double, double>;

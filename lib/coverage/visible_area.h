@@ -67,4 +67,8 @@ class VisibleArea {
     std::shared_ptr<KnownRegions> known_;  // null: none are kept
 };
 
+/// Returns true if two sensors see the same in one room: their models are equal but for the lists
+/// of other things, such as the anchors of a `uwb` or its tags, and so are their poses.
+bool seeAlike(const Sensor& a, const Sensor& b);
+
 }  // namespace ispace
