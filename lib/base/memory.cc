@@ -30,4 +30,10 @@ void keepFreedMemory(const std::vector<std::string>& inputs) {
     if (bytes >= kLarge) keepFreedMemory();
 }
 
+void returnFreedMemory() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
 }  // namespace ispace

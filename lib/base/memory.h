@@ -12,4 +12,8 @@ void keepFreedMemory();
 /// Does so if these input files are so large that reading them takes such memory.
 void keepFreedMemory(const std::vector<std::string>& inputs);
 
+/// Returns freed memory to the system, for a program that is about to allocate as much in larger
+/// pieces.
+void returnFreedMemory();
+
 }  // namespace ispace

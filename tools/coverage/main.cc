@@ -85,9 +85,19 @@ std::string reportText(const CoverageToolOptions& options, const CoverageReport&
            (parts.advice == nullptr ? "" : suggestionsText(*parts.advice));
 }
 
-/// Returns the bytes of --report.
+/// Frees all but the report, and the target.
+void forgetViews(Coverage& coverage) {
+    coverage.sensors = {};
+    coverage.sets = {};
+    coverage.overlay.reset();
+    coverage.density_overlays = {};
+    returnFreedMemory();
+}
+
+/// Returns the bytes of --report. The text of a page is as large as the views that its pictures
+/// show: these are freed before it is written, see forgetViews().
 std::string reportFile(const CoverageToolOptions& options, const SceneInput& input,
-                       const Coverage& coverage, const ReportParts& parts) {
+                       Coverage& coverage, const ReportParts& parts) {
     const std::string suffix = suffixOf(options.report);
     if (suffix == "json") return coverageJson(coverage.report, parts);
     CoveragePageInput page{input.scene, coverage, "", options.history_line};
@@ -107,6 +117,7 @@ std::string reportFile(const CoverageToolOptions& options, const SceneInput& inp
     page.paper = paperOf(options.page);
     page.prices = pricesOf(options.page);
     const ReportPage pages = coveragePage(page);
+    forgetViews(coverage);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }
 
@@ -126,8 +137,8 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     }
     if (!options.report.empty()) mustBeWritable(options.report);
     if (!options.page.material.empty()) mustBeWritable(options.page.material);
-    const Measured& measured =
-        leftToExit(measureScene(options, input, other ? &other->scene : nullptr));
+    Measured& measured = *leftToExit(
+        std::make_unique<Measured>(measureScene(options, input, other ? &other->scene : nullptr)));
     const CoverageReport& report = measured.coverage.report;
     const std::optional<RunCoverage> run = measureRecordedRun(options, input.scene);
     if (run) options.map.run = &*run;
@@ -154,6 +165,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
                             rules ? &*rules : nullptr,
                             presence ? &*presence : nullptr,
                             options.map.objectives};
+    const std::vector<JunitCase> verdicts = judgeAll(options, measured.coverage, parts.presence);
     if (!options.report.empty())
         writeAll(options.report, reportFile(options, input, measured.coverage, parts));
     writeMaterial(options.page, input.scene);
@@ -164,8 +176,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     logInfo(options.common, "coverage",
             std::to_string(report.sensors.size()) + " sensors measured on " +
                 std::to_string(measured.coverage.target.grid.size()) + " cells");
-    checkRequired(options, input, judgeAll(options, measured.coverage, parts.presence), parts.rules,
-                  junit);
+    checkRequired(options, input, verdicts, parts.rules, junit);
 }
 
 void coverage(const CoverageToolOptions& options) {
