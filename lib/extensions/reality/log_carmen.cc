@@ -192,6 +192,7 @@ class CarmenReader {
         read.begins =
             read.time == 0 && !scans_.empty() && areNear(read.pose, scans_.back().laser, kSame);
         if (read.begins) read.time = scans_.back().scan.time;
+        budget_.take(1);
         log_.odometry.push_back(std::move(read));
     }
 
