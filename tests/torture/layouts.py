@@ -84,6 +84,42 @@ def lifts(count):
             "laser id=s0/a at=0,0,0.2 range=8\nlaser id=s1/a at=1,1,0.2 range=8\n", [])
 
 
+def stairs(count):
+    """Flights of two storeys."""
+    return ("storey id=s0 file=floor.env height=3\nstorey id=s1 file=floor.env z=3 height=3\n" +
+            records("stairs storeys=s0,s1 at={x},{y} heading=0 size=0.2,0.4", count),
+            "laser id=s0/a at=0,0,0.2 range=8\nlaser id=s1/a at=1,1,0.2 range=8\n", [])
+
+
+def shafts(count):
+    """Openings between two storeys."""
+    return ("storey id=s0 file=floor.env height=3\nstorey id=s1 file=floor.env z=3 height=3\n" +
+            records("shaft storeys=s0,s1 path={x},{y};{right},{y};{right},{above}", count),
+            "laser id=s0/a at=0,0,0.2 range=8\nlaser id=s1/a at=1,1,0.2 range=8\n", [])
+
+
+def of_one_wall(text):
+    """Openings in one long wall."""
+    return lambda count: ("wall id=w from=-19,0 to=19,0\n" + "".join(
+        text.format(offset=round(0.3 + 37.4 * (i + 0.5) / count, 3), size=round(10 / count, 4)) + "\n" for i in range(count)),
+                          LASERS, [])
+
+
+def path(count):
+    """A person with a long way."""
+    return "", LASERS + "human id=h at=-19,-14 path=" + ";".join(f"{x},{y}" for x, y in spread(count)) + "\n", []
+
+
+def mounted(count):
+    """Sensors on one robot."""
+    return "", LASERS + "robot id=r at=5,5\n" + "laser on=r at=0,0,0.2 range=3\n" * count, []
+
+
+def pending(count):
+    """Sensors that are to be placed."""
+    return "", "laser model=urg-04lx\n" * count, []
+
+
 ROWS = {
     "walls": of_room("wall from={x},{y} to={x},{above}"),
     "star": star,
@@ -110,15 +146,30 @@ ROWS = {
     "robots": each("robot at={x},{y} radius=0.05"),
     "storeys": storeys,
     "lifts": lifts,
+    "stairs": stairs,
+    "shafts": shafts,
+    "wall_doors": of_one_wall("door wall=w offset={offset} size={size}"),
+    "wall_windows": of_one_wall("window wall=w offset={offset} size={size}"),
+    "pillars": of_room("pillar at={x},{y} size=0.2,0.2"),
+    "cylinders": of_room("cylinder at={x},{y} size=0.2,0.2,1"),
+    "mats": each("mat at={x},{y} size=0.2,0.2"),
+    "gates": each("gate at={x},{y} width=0.2"),
+    "tags": each("tag at={x},{y},1"),
+    "path": path,
+    "walkers": each("human at={x},{y} height=0.6 walk=wander"),
+    "mounted": mounted,
+    "sweeping": each("laser at={x},{y},1 range=3 sweep=tilt sweep_span=40 sweep_step=10"),
+    "pir_people": heard("pir at={x},{y},2.2", "human at={x},{y} height=0.6"),
+    "pending": pending,
     "requirements": of_options("--require", "zone:z{i}=1%"),
     "privacy": of_options("--privacy", "z{i}"),
     "rules": of_options("--keep-out", "z{i}"),
     "weights": of_options("--weight", "z{i}=2"),
 }
-BUILDINGS = ("storeys", "lifts")
+BUILDINGS = ("storeys", "lifts", "stairs", "shafts")
 # Rows of options go to the command that has them.
 ONLY = {"requirements": ("coverage", "suggest"), "privacy": ("coverage", "arrange"), "rules": ("arrange",),
-        "weights": ("arrange",), "star_crowds": ("arrange",)}
+        "weights": ("arrange",), "star_crowds": ("arrange",), "pending": ("place",)}
 
 # Words of the command; {room} and {layout} are the files, {out} is a file to write.
 COMMANDS = {
@@ -127,13 +178,15 @@ COMMANDS = {
     "report": ["coverage", "{room}", "{layout}", "--report", "{out}.html"],
     "arrange": ["arrange", "{room}", "--sensor", "laser,range=8:1", "--strategy", "grid", "--optimize", "greedy", "-o",
                 "{out}.3dm"],
+    "place": ["arrange", "{room}", "{layout}", "--strategy", "grid", "--optimize", "greedy", "-o", "{out}.3dm"],
     "scan": ["scan", "{room}", "{layout}", "-o", "{out}.jsonl"],
     "simrun": ["simrun", "{room}", "{layout}", "--clock", "fast", "--until", "1"],
     "check": ["envc", "--check", "{room}", "{layout}"],
 }
-NOT_SCANNED = ("people", "robots")  # without a sensor there is nothing to scan
+NOT_SCANNED = ("people", "robots", "walkers", "mats", "gates", "tags")  # without a sensor there is nothing to scan
+EVERYWHERE = [way for way in COMMANDS if way != "place"]
 FAMILIES = {f"{way}_of_{row}": (row, way) for row in ROWS for way in COMMANDS
-            if way in ONLY.get(row, COMMANDS) and not (way == "scan" and row in NOT_SCANNED)}
+            if way in ONLY.get(row, EVERYWHERE) and not (way == "scan" and row in NOT_SCANNED)}
 
 
 # Rows that grow faster, with bounds of their exponents, which may only fall: each change that is tried, up to the limit of
