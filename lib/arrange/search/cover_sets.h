@@ -74,6 +74,12 @@ class CandidateSet {
     /// Calls visit(const CellRun&) for the disjoint runs of a candidate, in arbitrary order.
     template <typename Visit>
     void forEachRun(std::size_t candidate, Visit visit) const;
+    /// The same for all candidates of a site; a cell may be in several runs.
+    template <typename Visit>
+    void forEachRunOfSite(std::size_t site, Visit visit) const {
+        const std::uint32_t* const runs = runsOf(sites_[site]);
+        for (std::uint32_t i = 0; i < sites_[site].runs; ++i) visit(unpacked(runs[i]));
+    }
     [[nodiscard]] CellSet cellsOf(std::size_t candidate) const;
     /// Adds the candidate's cells.
     void addTo(CellSet& cells, std::size_t candidate) const;

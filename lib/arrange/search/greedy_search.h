@@ -11,6 +11,7 @@
 
 #include "arrange/search/cover_sets.h"
 #include "arrange/search/problem.h"
+#include "arrange/search/site_blocks.h"
 #include "base/error.h"
 
 namespace ispace {
@@ -144,6 +145,10 @@ struct SearchBasis {
     /// Per kind and site, an upper bound of the full gain of its candidates at any time. Equals
     /// site_partial if 1 is required.
     std::vector<std::vector<std::uint32_t>> site_full;
+    std::vector<SiteBlocks> site_blocks = {};  ///< by kind, of a local search; see addBlocks()
+
+    /// Computes site_blocks.
+    void addBlocks();
 };
 
 /// Greedily adds all remaining sensors by partial gain (per unit of cost with `per_cost`), in the

@@ -95,23 +95,30 @@ LocalSearch::Slot& LocalSearch::slotAt(std::size_t position) {
     return slots_[index];
 }
 
-void LocalSearch::renew(SiteBounds& known, std::size_t kind) const {
-    if (known.gains.empty()) {
-        known.gains = gains_;
-        return;
+void LocalSearch::renew(SiteBounds& known, std::size_t kind) {
+    const SiteBlocks& blocks = basis_.site_blocks[kind];
+    most_.resize(known.bounds.size());
+    if (!known.gains.empty()) {
+        // A candidate's gain rises by at most the sum over the cells that it sees.
+        rises_.resize(gains_.size());
+        bool rises = false;
+        for (std::size_t i = 0; i < gains_.size(); ++i) {
+            rises_[i] = gains_[i] > known.gains[i] ? gains_[i] - known.gains[i] : 0U;
+            rises = rises || rises_[i] > 0;
+        }
+        if (rises) {
+            blocks.bound(rises_, most_);
+            const std::vector<std::uint32_t>& full = basis_.site_full[kind];
+            for (std::size_t site = 0; site < full.size(); ++site) {
+                const std::uint32_t left = full[site] - std::min(full[site], known.bounds[site]);
+                known.bounds[site] = full[site] - (left > most_[site] ? left - most_[site] : 0U);
+            }
+        }
     }
-    // A candidate's gain rises by at most the sum over all cells.
-    std::uint64_t more = 0;
-    for (std::size_t i = 0; i < gains_.size(); ++i)
-        more += gains_[i] > known.gains[i] ? gains_[i] - known.gains[i] : 0U;
     known.gains = gains_;
-    if (more == 0) return;
-    const std::vector<std::uint32_t>& most = basis_.site_full[kind];
-    const auto more32 = static_cast<std::uint32_t>(more);  // below the sum of all weights
-    for (std::size_t site = 0; site < most.size(); ++site) {
-        const std::uint32_t left = most[site] - std::min(most[site], known.bounds[site]);
-        known.bounds[site] = most[site] - (left > more32 ? left - more32 : 0U);
-    }
+    blocks.bound(gains_, most_);
+    for (std::size_t site = 0; site < most_.size(); ++site)
+        known.bounds[site] = std::min(known.bounds[site], most_[site]);
 }
 
 BestCandidate LocalSearch::bestOf(const CoverageState& others, std::size_t kind, SiteBounds& bounds,
@@ -399,7 +406,8 @@ Solution iteratedLocalSearch(const Problem& problem, const Solution& start,
                              const KickOptions& options, Progress& progress) {
     if (start.chosen.size() < kMinOut || start.value >= options.enough) return start;
     progress.begin("improving", 0);
-    const SearchBasis basis(problem);
+    SearchBasis basis(problem);
+    basis.addBlocks();
     ResponseCache cache;
     std::vector<std::unique_ptr<Chain>> chains;
     chains.reserve(kChains);

@@ -73,7 +73,7 @@ class LocalSearch {
     Response respond(const CoverageState& others, Slot& slot, const std::optional<Response>& known);
     BestCandidate bestOf(const CoverageState& others, std::size_t kind, SiteBounds& bounds,
                          const BestCandidate& known);
-    void renew(SiteBounds& known, std::size_t kind) const;
+    void renew(SiteBounds& known, std::size_t kind);
     Slot& slotAt(std::size_t position);
     bool move(CoverageState& state, std::size_t position);
     bool add(CoverageState& state);
@@ -95,6 +95,7 @@ class LocalSearch {
     CandidateFinder finder_;
     std::vector<Slot> slots_;                        // by position, the last for all beyond
     std::vector<std::uint32_t> gains_, more_gains_;  // of the search under way
+    std::vector<std::uint32_t> rises_, most_;        // by cell; by site
     WeightSums sums_, more_sums_;
 };
 

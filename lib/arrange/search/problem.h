@@ -46,6 +46,9 @@ struct Problem {
     /// node, which sees `standing`; the node is absent if no cell of that has positive weight.
     bool is_connected = false;
     CellSet standing = CellSet();
+    /// A hint for bounds: the block of each cell, from 0 on. Cells of one block lie together, so
+    /// that a sensor sees all of most blocks or none. Empty: blocks are of consecutive cells.
+    std::vector<std::uint32_t> blocks = {};
 
     [[nodiscard]] std::size_t cells() const { return weights.size(); }
     [[nodiscard]] std::uint64_t totalWeight() const;

@@ -247,6 +247,11 @@ BestCandidate CandidateFinder::find(const CandidateGains& gains, std::span<std::
     return best;
 }
 
+void SearchBasis::addBlocks() {
+    for (const SensorType& kind : problem.kinds)
+        site_blocks.emplace_back(problem, *kind.candidates);
+}
+
 SearchBasis::SearchBasis(const Problem& of)
     : problem(of), partial_weights(partialWeights(of)), limits(limitsOf(of)) {
     const CoverageState state = emptyState();

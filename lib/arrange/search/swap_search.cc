@@ -162,7 +162,9 @@ class SwapSearch {
           enough_(options.enough),
           share_(options.share),
           progress_(progress),
-          reporter_(problem, progress) {}
+          reporter_(problem, progress) {
+        basis_.addBlocks();
+    }
 
     /// Searches from the given solution (start 0); if cells require several sensors, from a greedy
     /// solution by partial gains (start 1); and from random sensors. The results up to the first
