@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -77,6 +78,8 @@ class Adviser {
         : options_(options), devices_(devices), progress_(progress) {}
 
     [[nodiscard]] bool isStopped() const { return progress_.stopped(); }
+    /// Returns the number of steps that moves() reports.
+    [[nodiscard]] std::int64_t stepsOfMoves(const Scene& scene) const;
 
     /// Returns the additions, turns and shifts with the largest gain of each kind, as they apply to
     /// this state.
@@ -122,7 +125,6 @@ class Adviser {
         // Furniture changes no indoor area.
         const double gained =
             (share - coveredShare(now.coverage)) * now.coverage.report.indoor_area;
-        progress_.advance(1);
         return {.kind = kind,
                 .text = std::move(text),
                 .edits = std::move(edits),
@@ -140,7 +142,12 @@ class Adviser {
 
     /// Returns the sight in the first environment that keeps regions; null in others.
     const VisibleArea* sightIn(const Environment& environment);
-    double mostWithout(const MeasuredState& now, const std::string& id);
+    /// A displacement of a piece of furniture.
+    struct Move {
+        std::string id;
+        Vec2 by;
+    };
+    void keepPromising(const MeasuredState& now, std::vector<Move>& moves);
     std::vector<Suggestion> turnAndShift(const MeasuredState& now);
     void leaveOutNeedless(const MeasuredState& now, std::vector<Suggestion>& steps);
     std::vector<Suggestion> additions(const MeasuredState& now);
@@ -160,9 +167,15 @@ class Adviser {
     [[nodiscard]] std::vector<ArrangeOptions> goalsOf(const MeasuredState& now,
                                                       ArrangeOptions options) const;
 
+    /// Reports steps of moves(), unless Together repeats them.
+    void advance(std::size_t steps) {
+        if (!is_repeating_) progress_.advance(static_cast<std::int64_t>(steps));
+    }
+
     const SuggestOptions& options_;
     const DeviceCatalogue& devices_;
     Progress& progress_;
+    bool is_repeating_ = false;
     /// Of the first environment.
     struct FirstSight {
         Environment environment;  // shares its data

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arrange/adviser.h"
+#include "arrange/coarse_sight.h"
 #include "arrange/placement_rules.h"
 #include "base/number.h"
 #include "env/element_schemas.h"
@@ -52,40 +53,53 @@ std::optional<Suggestion> Adviser::furniture(const MeasuredState& now) {
     std::stable_sort(pieces.begin(), pieces.end(),
                      [](const Piece& a, const Piece& b) { return a.hidden > b.hidden; });
     if (pieces.size() > kMaxPieces) pieces.resize(kMaxPieces);
-    const FindingFilter filter{.checks = {"objects", "outside", "buried", "collisions"}};
-    const std::size_t accepted = checkScene(now.scene, filter).size();
+    std::vector<Move> moves;
+    for (const Piece& piece : pieces)
+        for (const Vec2 by : displacements(kPieceShifts)) moves.push_back({piece.id, by});
+    keepPromising(now, moves);
+    progress_.begin("best moves of furniture", static_cast<std::int64_t>(moves.size()));
     std::optional<Suggestion> best;
-    for (const Piece& piece : pieces) {
-        if (best && mostWithout(now, piece.id) <= best->gained) continue;
-        for (const Vec2 by : displacements(kPieceShifts)) {
-            if (isStopped()) return best;
-            std::vector<Edit> edits = {moveOf(piece.id, by)};
-            Scene moved =
-                makeScene(edited(now.scene.records, edits, sceneSchemas()), now.scene, devices_);
-            if (checkScene(moved, filter).size() > accepted) continue;
-            offer(best, measured(now, Suggestion::Kind::Furniture,
-                                 "move " + piece.id + " by (" + formatFixed(by.x, 2) + ", " +
-                                     formatFixed(by.y, 2) + ") m",
-                                 std::move(edits)));
-        }
+    for (const Move& move : moves) {
+        if (isStopped()) break;
+        progress_.advance(1);
+        offer(best, measured(now, Suggestion::Kind::Furniture,
+                             "move " + move.id + " by (" + formatFixed(move.by.x, 2) + ", " +
+                                 formatFixed(move.by.y, 2) + ") m",
+                             {moveOf(move.id, move.by)}));
     }
     return best;
 }
 
-/// Bounds the floor gained by moving a piece by that gained without it; infinite where less
-/// furniture may be worse, or is not known to help.
-double Adviser::mostWithout(const MeasuredState& now, const std::string& id) {
-    constexpr double kUnknown = std::numeric_limits<double>::infinity(), kRounding = 1e-6;
-    if (now.missing > 0 || !options_.privacy.empty() || !options_.facing.empty()) return kUnknown;
-    try {
-        const std::vector<Edit> edits = {parseEdit(Edit::Kind::Delete, id)};
-        const MeasuredState then = after(now, edits);
-        if (then.coverage.report.indoor_area != now.coverage.report.indoor_area) return kUnknown;
-        return (coveredShare(then.coverage) - coveredShare(now.coverage)) *
-                   now.coverage.report.indoor_area +
-               kRounding;
-    } catch (const UsageError&) {  // something stands on it
-        return kUnknown;
+/// Leaves out moves that add findings, and those that by estimates of cells cannot be the best.
+void Adviser::keepPromising(const MeasuredState& now, std::vector<Move>& moves) {
+    const FindingFilter filter{.checks = {"objects", "outside", "buried", "collisions"}};
+    const std::size_t accepted = checkScene(now.scene, filter).size();
+    const bool estimates = CoarseSight::estimates(now.scene, options_);
+    std::vector<Move> kept;
+    std::vector<FloorGain> gains;
+    double error = 0;
+    progress_.begin("moves of furniture", static_cast<std::int64_t>(moves.size()));
+    for (const Move& move : moves) {
+        if (isStopped()) break;
+        progress_.advance(1);
+        const std::vector<Edit> edits = {moveOf(move.id, move.by)};
+        const Scene moved =
+            makeScene(edited(now.scene.records, edits, sceneSchemas()), now.scene, devices_);
+        if (checkScene(moved, filter).size() > accepted) continue;
+        kept.push_back(move);
+        if (!estimates) continue;
+        CoarseSight coarse(moved.environment, options_);
+        gains.push_back(coarse.whole(moved.sensors));
+        error = coarse.error();
+    }
+    moves.clear();
+    const FloorGain most =
+        gains.empty() ? FloorGain() : *std::max_element(gains.begin(), gains.end());
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        const bool may_be_best =
+            !estimates || (gains[i].required + error >= most.required &&
+                           (gains[i].gained + error >= most.gained || !options_.privacy.empty()));
+        if (may_be_best) moves.push_back(kept[i]);
     }
 }
 

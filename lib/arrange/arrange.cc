@@ -20,6 +20,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/packed.h"
+#include "base/stops_with.h"
 #include "coverage/coverage.h"
 #include "scene/placement_schemas.h"
 
@@ -252,6 +253,9 @@ std::vector<SearchResult> searchByNumber(const SearchResult& found, const Covera
     for (SensorType& kind : fewer.kinds) kind.cost = 1;
     std::vector<SearchResult> results;
     results.reserve(last);
+    // One phase for all searches.
+    progress.begin("curve", static_cast<std::int64_t>(last));
+    StopsWith stops(progress);
     for (std::size_t n = 1; n <= last; ++n) {
         fewer.budget = static_cast<double>(n);
         SearchResult result;
@@ -259,10 +263,12 @@ std::vector<SearchResult> searchByNumber(const SearchResult& found, const Covera
         if (n == last && isByNumber(model))
             result = found;
         else if (n <= quick || !progress.stopped())
-            result = search(fewer, model.searchOptions(), progress);
+            result = search(fewer, model.searchOptions(), stops);
         result.best.value = std::max(result.best.value, part[n]);
         results.push_back(std::move(result));
+        progress.advance(1);
     }
+    progress.end();
     return results;
 }
 

@@ -9,6 +9,7 @@
 
 #include "arrange/adviser.h"
 #include "arrange/arrange.h"
+#include "arrange/coarse_sight.h"
 #include "arrange/placement_rules.h"
 #include "arrange/refine.h"
 #include "base/number.h"
@@ -33,7 +34,8 @@ constexpr double kMaxLooks = 4e7;
 constexpr double kSearchedCells = 40'000, kLeastCells = 2'500;
 constexpr double kShifts[] = {0.1, 0.25, 0.5, 1};
 constexpr int kDirections = 8;
-constexpr int kTurnStep = 15;  ///< degrees; then single degrees about the best
+constexpr int kTurnStep = 15;             ///< degrees; then single degrees about the best
+constexpr std::size_t kTrialsAtOnce = 4;  ///< that are measured side by side, if cells bound them
 
 }  // namespace
 
@@ -78,8 +80,9 @@ struct Trial {
     std::size_t sensor;
     int turn = 0;  ///< degrees
     Vec2 by = {};
-    /// Over the present pose: m2 by the rules of cameras, then m2 by weight.
-    std::pair<double, double> gain = {0, 0};
+    FloorGain gain = {};  ///< over the present pose
+    FloorGain most = {};  ///< a bound of it
+    std::size_t number = 0;
 };
 
 Pose3 poseAfter(Pose3 pose, const Trial& trial) {
@@ -89,11 +92,30 @@ Pose3 poseAfter(Pose3 pose, const Trial& trial) {
     return pose;
 }
 
+/// Lowers the bounds of trials of a sensor to the estimates of cells, with their error.
+/// \param present floor that it covers, and private floor that it sees, below 0
+void boundByCells(std::vector<Trial>& trials, const Sensor& sensor, const FloorGain& present,
+                  CoarseSight& coarse) {
+    std::vector<Pose3> poses;
+    poses.reserve(trials.size());
+    for (const Trial& trial : trials) poses.push_back(poseAfter(sensor.pose, trial));
+    const std::vector<FloorGain> estimates = coarse.at(sensor, poses);
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        FloorGain& most = trials[i].most;
+        most.required =
+            std::min(most.required, estimates[i].required - present.required + coarse.error());
+        most.gained = std::min(most.gained, estimates[i].gained - present.gained + coarse.error());
+    }
+}
+
 }  // namespace
 
 std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     const std::vector<Sensor> sensors = standingSensors(now.scene);
-    if (sensors.empty() || !now.coverage.report.exact_missing.empty()) return {};
+    if (sensors.empty() || !now.coverage.report.exact_missing.empty()) {
+        advance(sensors.size());
+        return {};
+    }
     Scene others = now.scene;
     std::erase_if(others.sensors, [](const Sensor& sensor) {
         return !sensor.mount && !sensor.person && kindOf(sensor.model).is_arranged;
@@ -103,29 +125,57 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     ExactGain gain(others, known != nullptr ? *known : own, sensors, weightsFor(now), 1);
     gain.prepareAll();
     RuleTrials rules_of_cameras(now, options_, privateFloorOf(now.scene.environment));
+    std::optional<CoarseSight> coarse;
+    if (CoarseSight::estimates(now.scene, options_))
+        coarse.emplace(now.scene.environment, options_);
     std::optional<Trial> turn, shift;
+    // Measures trials, the most promising ones first, until no other can be the best. The first of
+    // several with the same gain is taken.
     const auto attempt = [&](std::vector<Trial> trials, std::optional<Trial>& best) {
         const Sensor& sensor = sensors[trials.front().sensor];
         const double most = rules_of_cameras.mostGain(sensor);
-        const std::pair<double, double> known = best ? best->gain : std::pair(0.0, 0.0);
-        std::erase_if(trials, [&](const Trial& trial) {
-            return std::pair(most, gain.mostMore(poseAfter(sensor.pose, trial))) <= known;
+        const auto least = [&best] { return best ? best->gain : FloorGain(); };
+        std::erase_if(trials, [&](Trial& trial) {
+            trial.most = {most, gain.mostMore(poseAfter(sensor.pose, trial))};
+            return trial.most <= least();
         });
         if (trials.empty()) return;
-        std::vector<Pose3> poses = {sensor.pose};
-        for (const Trial& trial : trials) poses.push_back(poseAfter(poses.front(), trial));
-        const std::vector<double> gains = gain.gains(poses);
-        for (std::size_t i = 0; i < trials.size(); ++i) {
-            Trial& trial = trials[i];
-            const std::pair<double, double> least = best ? best->gain : std::pair(0.0, 0.0);
-            trial.gain = {0, gains[i + 1] - gains[0]};
-            if (std::pair(most, trial.gain.second) <= least) continue;
-            trial.gain.first = rules_of_cameras.gain(sensor, poses[i + 1]);
-            if (trial.gain > least) best = trial;
+        for (std::size_t i = 0; i < trials.size(); ++i) trials[i].number = i;
+        // Without cells all gains are computed at once: then they are comparable in any case.
+        double present = 0;
+        if (coarse) {
+            present = gain.gains({&sensor.pose, 1}).front();
+            boundByCells(trials, sensor, {-most, present}, *coarse);
+        }
+        std::stable_sort(trials.begin(), trials.end(),
+                         [](const Trial& a, const Trial& b) { return a.most > b.most; });
+        const std::size_t at_once = coarse ? kTrialsAtOnce : trials.size();
+        bool is_found = false;
+        for (std::size_t first = 0; first < trials.size() && !isStopped(); first += at_once) {
+            if (trials[first].most < least()) break;
+            const std::size_t end = std::min(first + at_once, trials.size());
+            std::vector<Pose3> poses;
+            for (std::size_t i = first; i < end; ++i)
+                poses.push_back(poseAfter(sensor.pose, trials[i]));
+            if (!coarse) poses.push_back(sensor.pose);
+            const std::vector<double> gains = gain.gains(poses);
+            if (!coarse) present = gains.back();
+            for (std::size_t i = first; i < end; ++i) {
+                Trial& trial = trials[i];
+                trial.gain = {0, gains[i - first] - present};
+                if (FloorGain{most, trial.gain.gained} < least()) continue;
+                trial.gain.required = rules_of_cameras.gain(sensor, poses[i - first]);
+                const bool is_before =
+                    is_found && trial.gain == best->gain && trial.number < best->number;
+                if (!(trial.gain > least() || is_before)) continue;
+                best = trial;
+                is_found = true;
+            }
         }
     };
     for (std::size_t i = 0; i < sensors.size() && !isStopped(); ++i) {
         gain.take(i);
+        if (coarse) coarse->count(now.scene.sensors, sensors[i]);
         std::vector<Trial> trials;
         if (gain.turns(i)) {
             for (int degrees = kTurnStep; degrees < 360; degrees += kTurnStep)
@@ -147,6 +197,7 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
             if (validity.isValid(sensors[i].pose.position.onFloor() + by))
                 trials.push_back({i, 0, by});
         if (!trials.empty()) attempt(trials, shift);
+        advance(1);
     }
     std::vector<Suggestion> found;
     if (turn) {
@@ -231,16 +282,36 @@ std::optional<Suggestion> Adviser::addition(const MeasuredState& now,
                     {parseEdit(Edit::Kind::Add, formatRecord(added))});
 }
 
+namespace {
+
+/// A sensor, another one of which may be added.
+struct Example {
+    const Scene* home;
+    Sensor sensor;
+};
+
+std::vector<Example> examplesIn(const Scene& scene, const SuggestOptions& options) {
+    std::vector<Example> examples;
+    for (Sensor& sensor : standingSensors(scene)) examples.push_back({&scene, std::move(sensor)});
+    for (const Scene* const other : options.others)
+        for (Sensor& sensor : standingSensors(*other))
+            examples.push_back({other, std::move(sensor)});
+    return examples;
+}
+
+}  // namespace
+
+std::int64_t Adviser::stepsOfMoves(const Scene& scene) const {
+    return static_cast<std::int64_t>(standingSensors(scene).size() +
+                                     examplesIn(scene, options_).size());
+}
+
 std::vector<Suggestion> Adviser::additions(const MeasuredState& now) {
     std::vector<SensorModel> types;
     std::optional<Suggestion> best;
-    std::vector<std::pair<const Scene*, Sensor>> examples;
-    for (const Sensor& sensor : standingSensors(now.scene))
-        examples.emplace_back(&now.scene, sensor);
-    for (const Scene* const other : options_.others)
-        for (const Sensor& sensor : standingSensors(*other)) examples.emplace_back(other, sensor);
-    for (const auto& [home, sensor] : examples) {
-        if (types.size() == kMaxTypes || isStopped()) break;
+    for (const auto& [home, sensor] : examplesIn(now.scene, options_)) {
+        advance(1);
+        if (types.size() == kMaxTypes || isStopped()) continue;
         if (isPartial(sensor.model) ||
             std::find(types.begin(), types.end(), sensor.model) != types.end())
             continue;
@@ -292,6 +363,10 @@ std::optional<Suggestion> Adviser::together(const MeasuredState& now,
                                             std::vector<Suggestion> first) {
     MeasuredState state = now;
     std::vector<Suggestion> steps, choices = std::move(first);
+    // One change for each camera that sees private zones, at least.
+    progress_.begin("changes for all requirements",
+                    static_cast<std::int64_t>(std::clamp<std::size_t>(
+                        intruders(now.scene), std::size_t{1}, kMaxChanges)));
     while (state.missing > 0) {
         // A change mends one of the cameras that see private zones.
         const std::size_t left = kMaxChanges - steps.size();
@@ -302,7 +377,10 @@ std::optional<Suggestion> Adviser::together(const MeasuredState& now,
         if (best == choices.end() || best->required <= 0) return std::nullopt;
         steps.push_back(*best);
         state = after(state, best->edits);
+        progress_.advance(1);
+        is_repeating_ = true;
         if (state.missing > 0) choices = moves(state);
+        is_repeating_ = false;
     }
     leaveOutNeedless(now, steps);
     std::string text;
@@ -323,7 +401,7 @@ std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& cover
     const MeasuredState now{
         scene, coverage,
         missingFloor(scene, coverage, options, adviser.privateFloorOf(scene.environment))};
-    progress.begin("suggestions", 0);
+    progress.begin("poses of sensors", adviser.stepsOfMoves(scene));
     std::vector<Suggestion> gains = adviser.moves(now);
     std::optional<Suggestion> whole;
     if (now.missing > 0 && !progress.stopped()) whole = adviser.together(now, gains);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/stops_with.h"
 #include "coverage/camera_rules.h"
 #include "coverage/coverage.h"
 #include "coverage/requirement.h"
@@ -41,20 +42,6 @@ struct Suggestion {
 /// Returns the word of reports: "add".
 std::string_view nameOf(Suggestion::Kind kind);
 
-/// Shows no progress, and says stop when another one does: of searches within a search.
-class StopsWith final : public Progress {
-  public:
-    /// Stores the reference.
-    explicit StopsWith(const Progress& whole) : whole_(whole) {}
-    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
-    void advance(std::int64_t /*count*/) override {}
-    void end() override {}
-    [[nodiscard]] bool stopped() const override { return whole_.stopped(); }
-
-  private:
-    const Progress& whole_;
-};
-
 struct SuggestOptions {
     std::size_t most = 5;          ///< number of suggestions
     CoverageOptions measure = {};  ///< as the scene was measured
@@ -78,7 +65,9 @@ double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestO
 /// Every gain is that of measureCoverage() on the edited scene: exact where exact metrics are
 /// known, else by cells. Turns and shifts are found by exact gains (ExactGain) and skipped if a
 /// sensor has no exact region; sensors on robots and people stay. Furniture: the pieces nearest to
-/// sensors, by the floor that they can hide, moved to positions without new findings. Together
+/// sensors, by the floor that they can hide, moved to positions without new findings. Without
+/// requirements and rules of facing, coarse cells bound the gains of poses and moves (CoarseSight),
+/// and only those that may be the best are measured. Together
 /// repeats the best change, so it is short, not proven shortest. It may also remove cameras that
 /// see private zones. No change raises missingFloor(). Deterministic. Measures the scene up
 /// to some hundreds of times: some dozens of poses of each sensor by its view alone, up to 150

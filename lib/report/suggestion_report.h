@@ -15,7 +15,7 @@ struct Advice {
     std::vector<Suggestion> suggestions;
     std::string command;
     bool is_short = false;  ///< requirements fail, and no suggestion meets all of them
-    bool is_cut = false;    ///< the time limit ended the search: others may help more
+    bool is_cut = false;    ///< time or a signal ended the search: others may help more
 };
 
 /// Told with Advice::is_short.
@@ -23,8 +23,7 @@ constexpr const char* kShortAdvice =
     "no short list of changes was found that meets all requirements";
 
 /// Told with Advice::is_cut.
-constexpr const char* kCutAdvice =
-    "cut short by --time-limit: other changes were not tried, and may help more";
+constexpr const char* kCutAdvice = "cut short: other changes were not tried, and may help more";
 
 /// Returns a command of envc with further edits, which writes the changed scene: "envc room.env
 /// layout.3dm --rotate l1:35 -o changed.env".

@@ -39,6 +39,11 @@ for signal in INT TERM; do
     is_whole best.3dm
 done
 
+# The curve is written, too: without bounds for the numbers that were not searched.
+interrupt INT 3 arrange "${long[@]}" --curve curve.csv -o best.3dm
+is_whole best.3dm
+[ "$(wc -l <curve.csv)" -eq 10 ] || fail "the curve has not nine points: $(cat curve.csv)"
+
 # At once: writes the layout so far, or no file.
 for delay in 0.02 0.1 0.2; do
     echo old >best.3dm

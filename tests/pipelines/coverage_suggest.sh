@@ -114,10 +114,28 @@ expect_error 2 coverage --batch list --suggest
 
 # A limit ends the search, and the report says so.
 coverage -q barriers.env barriers.3dm --suggest --time-limit 0s >told
-has 'cut short by --time-limit' <told || fail "a cut is not told: $(cat told)"
+has 'cut short: other changes' <told || fail "a cut is not told: $(cat told)"
 ! has 'no change' <told || fail "changes that were not tried do not help"
 coverage -q barriers.env barriers.3dm --suggest --time-limit 0s --json | has '"suggestions_complete":false' ||
     fail "a cut is not told in JSON"
 coverage -q barriers.env barriers.3dm --suggest --time-limit 1h >told
 ! has 'cut short' <told || fail "a whole search counts as cut"
 expect_error 2 coverage barriers.env barriers.3dm --time-limit 1s
+
+# Progress has shares and the time left; a signal ends the search, and the report has the suggestions so far.
+arrange -q "$scenes/open-office.env" --sensor dome-2.8-1080p:6 --candidates 1,1,8 --optimize greedy -o domes.3dm
+status=0
+set -m  # a background job ignores INT unless it has job control
+coverage "$scenes/open-office.env" domes.3dm --privacy meeting,recognise --suggest --report cut.html --progress \
+    >told 2>said &
+job=$!
+set +m
+until grep -q 'poses of sensors .* %' said; do
+    kill -0 "$job" || fail "the search is over too soon: $(cat said)"
+    sleep 0.02
+done
+kill -INT "$job"
+wait "$job" || status=$?
+[ "$status" -eq 130 ] || fail "status $status after SIGINT: $(cat said)"
+has 'cut short: other changes' <told || fail "a signal is not told: $(cat told)"
+grep -qi 'cut short: other changes' cut.html || fail "a signal is not told on the page"

@@ -156,15 +156,16 @@ void writeFiles(const CoverageToolOptions& options, const BuildingInput& input,
 }
 
 std::optional<Advice> adviceFor(const CoverageToolOptions& options, const BuildingInput& input,
-                                const BuildingCoverage& coverage) {
+                                const BuildingCoverage& coverage, int& signal) {
     if (!options.suggestions) return std::nullopt;
     const SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
                                 .measure = options.measure};
     SearchWatch watch(makeProgress("coverage", options.common.progress, options.common.quiet),
-                      options.time_limit, false);
+                      options.time_limit);
     Advice advice{suggestForBuilding(input.building, coverage, wanted, watch),
                   editCommand(input.named, options.rules)};
     advice.is_cut = watch.stopped();
+    signal = watch.signal();
     return advice;
 }
 
@@ -237,7 +238,8 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
         writeDependencies(options.common, input.files);
     }
     const BuildingRunCoverage* const of_run = run ? &*run : nullptr;
-    const std::optional<Advice> advice = adviceFor(options, input, coverage);
+    int signal = 0;
+    const std::optional<Advice> advice = adviceFor(options, input, coverage, signal);
     const Advice* const of_advice = advice ? &*advice : nullptr;
     if (!options.report.empty())
         writeAll(options.report, buildingReport(options, input, coverage, of_run, of_advice));
@@ -245,6 +247,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
                                : buildingCoverageText(input.building, coverage, of_run) +
                                      (advice ? suggestionsText(*advice) : ""));
     writeBuildingMaterial(options, input.building);
+    if (signal != 0) endBySignal(signal);
     for (const JunitCase& verdict : verdicts)
         if (verdict.outcome == JunitCase::Outcome::Met)
             logInfo(options.common, "coverage", verdict.message);

@@ -94,7 +94,7 @@ std::optional<Presence> presenceOf(const CoverageToolOptions& options, const Sce
 }
 
 std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInput& input,
-                              const Coverage& coverage) {
+                              const Coverage& coverage, int& signal) {
     if (!options.suggestions) return std::nullopt;
     SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
                           .measure = options.measure,
@@ -103,10 +103,11 @@ std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInp
                           .privacy = options.privacy};
     std::erase_if(wanted.facing, [](const FacingRule& rule) { return !rule.required; });
     SearchWatch watch(makeProgress("coverage", options.common.progress, options.common.quiet),
-                      options.time_limit, false);
+                      options.time_limit);
     Advice advice{suggestChanges(input.scene, coverage, wanted, shippedDevices(), watch),
                   editCommand(input.named, options.rules)};
     advice.is_cut = watch.stopped();
+    signal = watch.signal();
     advice.is_short = missingFloor(input.scene, coverage, wanted) > 0 &&
                       (advice.suggestions.empty() ||
                        advice.suggestions.front().kind != Suggestion::Kind::Together);

@@ -41,8 +41,10 @@ std::optional<RunCoverage> measureRecordedRun(const CoverageToolOptions& options
 std::optional<Presence> presenceOf(const CoverageToolOptions& options, const Scene& scene);
 
 /// Finds the changes of --suggest; nullopt without it. \param coverage of the scene
+/// \param signal receives the signal that ended the search early; afterwards TERM and INT are
+/// ignored: write what is there, and endBySignal()
 std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInput& input,
-                              const Coverage& coverage);
+                              const Coverage& coverage, int& signal);
 
 /// Computes the results of --perturb, --failures and --crowd; nullopt without all. \param coverage
 /// of the scene \throws UsageError as worstFailures() UnmetError as CrowdFloor

@@ -12,6 +12,7 @@
 #include "cli/job_server.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
+#include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "coverage/coverage_building.h"
 #include "coverage/coverage_options.h"
@@ -154,11 +155,13 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
         writeProduct(options, input, measured);
         writeDependencies(options.common, files);
     }
-    const std::optional<Advice> advice = suggest(options, input, measured.coverage);
     const std::optional<Robustness> robustness =
         robustnessOf(options, input.scene, measured.coverage);
     const std::optional<CameraRules> rules = cameraRulesOf(options, input.scene, measured.coverage);
     const std::optional<Presence> presence = presenceOf(options, input.scene);
+    // Last: once a signal has ended it, only the results are written.
+    int signal = 0;
+    const std::optional<Advice> advice = suggest(options, input, measured.coverage, signal);
     const ReportParts parts{options.map.run,
                             advice ? &*advice : nullptr,
                             robustness ? &*robustness : nullptr,
@@ -173,6 +176,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     if (const std::string text = priceWarning(options.page, {&room, 1}); !text.empty())
         warn(options.common, "coverage", text);
     writeAll("-", reportText(options, report, parts));
+    if (signal != 0) endBySignal(signal);
     logInfo(options.common, "coverage",
             std::to_string(report.sensors.size()) + " sensors measured on " +
                 std::to_string(measured.coverage.target.grid.size()) + " cells");

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrange/coarse_sight.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "arrange/refine.h"
+#include "support/test_arrange.h"
+
+namespace ispace {
+namespace {
+
+constexpr const char* kRoom =
+    "#env 1\nispace id=hall size=10,8,2.8\n"
+    "desk id=d1 at=-2,1 size=1.6,0.8,0.75 heading=30\ncube id=c1 at=2,-1 size=1.2,0.5,1.9\n"
+    "zone id=corner path=2,1;5,1;5,4;2,4\n";
+
+Scene roomWith(const std::string& sensors) {
+    const Document placed = layoutFrom(sensors);
+    return roomScene(kRoom, &placed);
+}
+
+std::vector<Pose3> posesAround(const Pose3& pose) {
+    std::vector<Pose3> poses;
+    for (int degrees = 0; degrees < 360; degrees += 15)
+        for (const double shift : {0.0, 0.5, 1.0}) {
+            Pose3& next = poses.emplace_back(pose);
+            next.heading = Angle::degrees(degrees);
+            next.position.x += shift;
+        }
+    return poses;
+}
+
+TEST(CoarseSight, ViewsCoverHardlyMoreThanTheirCells) {
+    for (const char* const sensors :
+         {"camera id=c at=-3,-2,2.5 fov=80 tilt=-35\ncamera id=o at=4.5,3.5,2.6 fov=90 tilt=-30 "
+          "heading=-140\n",
+          "laser id=c at=-3,-2 fov=180 range=6\nlaser id=o at=3,3 fov=270 range=4\n"}) {
+        const Scene scene = roomWith(sensors);
+        const SuggestOptions options;
+        ASSERT_TRUE(CoarseSight::estimates(scene, options));
+        const Sensor& moving = scene.sensors.front();
+        const std::vector<Pose3> poses = posesAround(moving.pose);
+        CoarseSight coarse(scene.environment, options);
+        coarse.count(scene.sensors, moving);
+        const std::vector<FloorGain> estimates = coarse.at(moving, poses);
+        Scene others = scene;
+        others.sensors.erase(others.sensors.begin());
+        const VisibleArea sight(scene.environment, options.measure.plane);
+        ExactGain exact(others, sight, {&moving, 1}, {}, 1);
+        exact.take(0);
+        const std::vector<double> gains = exact.gains(poses);
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            EXPECT_LE(gains[i], estimates[i].gained + coarse.error()) << i;
+            EXPECT_NEAR(gains[i], estimates[i].gained, 0.05 * gains[i] + 4 * coarse.error()) << i;
+        }
+    }
+}
+
+TEST(CoarseSight, CountsPrivateFloorAgainstACamera) {
+    const Scene scene = roomWith("camera id=c at=-4,-3,2.5 fov=80 tilt=-35 heading=45\n");
+    SuggestOptions options;
+    options.privacy = {parsePrivacy("corner,1")};
+    CoarseSight coarse(scene.environment, options);
+    const Sensor& camera = scene.sensors.front();
+    coarse.count(scene.sensors, camera);
+    Pose3 away = camera.pose;
+    away.heading = Angle::degrees(-135);
+    const FloorGain whole = coarse.whole(scene.sensors);
+    EXPECT_LT(whole.required, -4) << "most of 9 m2";
+    const std::vector<FloorGain> gains = coarse.at(camera, {&away, 1});
+    EXPECT_EQ(gains[0].required, 0);
+    EXPECT_LT(gains[0].gained, 1) << "it faces the corner";
+}
+
+TEST(CoarseSight, EstimatesNoRequirements) {
+    const Scene scene = roomWith("camera id=c at=0,0,2.5\n");
+    EXPECT_TRUE(CoarseSight::estimates(scene, {}));
+    SuggestOptions options;
+    options.facing = {parseFacing("corner,45deg,0=50%")};
+    EXPECT_FALSE(CoarseSight::estimates(scene, options));
+    EXPECT_FALSE(CoarseSight::estimates(roomWith("ultrasound id=r at=0,0,2.5\n"), {}));
+}
+
+}  // namespace
+}  // namespace ispace

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace ispace {
+
+/// Shows no progress, and says stop when another one does: of searches within a search.
+class StopsWith final : public Progress {
+  public:
+    /// Stores the reference.
+    explicit StopsWith(const Progress& whole) : whole_(whole) {}
+    void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
+    void advance(std::int64_t /*count*/) override {}
+    void end() override {}
+    [[nodiscard]] bool stopped() const override { return whole_.stopped(); }
+
+  private:
+    const Progress& whole_;
+};
+
+}  // namespace ispace
