@@ -15,27 +15,6 @@ namespace ispace {
 
 namespace {
 
-/// Lists the doors of all storeys, or the zones, for a rule that no storey has.
-std::string unknownRule(const std::string& zone, bool is_of_doors, const BuildingScene& building) {
-    std::string list;
-    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
-        const Storey& storey = building.document.storeys[i];
-        const Environment& room = building.scenes[i]->environment;
-        if (is_of_doors) {
-            if (const std::string doors = doorList(room, storey.id + '/'); !doors.empty())
-                list += (list.empty() ? "" : ", ") + doors;
-            continue;
-        }
-        for (const Element& element : room.elements())
-            if (element.record.keyword() == "zone")
-                list += (list.empty() ? "" : ", ") + wholeId(storey, element.id);
-    }
-    const std::string kind = is_of_doors ? "door" : "zone";
-    return "--facing: " + excerpt(zone) + " meets no " + kind +
-           (list.empty() ? ": the building has none"
-                         : "; the " + kind + "s of the building: " + list);
-}
-
 bool hasZone(const Environment& room, const std::string& zone) {
     if (zone.starts_with(kDoorPrefix)) {
         const Glob doors(zone.substr(kDoorPrefix.size(), zone.rfind(',') - kDoorPrefix.size()));
@@ -47,6 +26,33 @@ bool hasZone(const Environment& room, const std::string& zone) {
     for (const Element& element : room.elements())
         if (element.record.keyword() == "zone" && zones.matches(element.id)) return true;
     return false;
+}
+
+/// Lists the doors of all storeys, or the zones, for a rule that no storey has.
+/// \param own the rule's zone without its storeys
+std::string unknownRule(const std::string& zone, const std::string& own,
+                        const BuildingScene& building) {
+    const bool is_of_doors = own.starts_with(kDoorPrefix);
+    std::string list, doors_named;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Storey& storey = building.document.storeys[i];
+        const Environment& room = building.scenes[i]->environment;
+        if (is_of_doors) {
+            if (const std::string doors = doorList(room, storey.id + '/'); !doors.empty())
+                list += (list.empty() ? "" : ", ") + doors;
+            continue;
+        }
+        if (hasZone(room, std::string(kDoorPrefix) + own + ",1"))
+            doors_named = "; doors have this name: " + zone.substr(0, zone.size() - own.size()) +
+                          std::string(kDoorPrefix) + own;
+        for (const Element& element : room.elements())
+            if (element.record.keyword() == "zone")
+                list += (list.empty() ? "" : ", ") + wholeId(storey, element.id);
+    }
+    const std::string kind = is_of_doors ? "door" : "zone";
+    return "--facing: " + excerpt(zone) + " meets no " + kind + doors_named +
+           (list.empty() ? ": the building has none"
+                         : "; the " + kind + "s of the building: " + list);
 }
 
 }  // namespace
@@ -70,8 +76,7 @@ std::vector<CameraRules> measureBuildingFacing(const BuildingScene& building,
                                       std::make_move_iterator(results.begin()),
                                       std::make_move_iterator(results.end()));
         }
-        if (!is_met)
-            throw UsageError(unknownRule(rule.zone, zone.starts_with(kDoorPrefix), building));
+        if (!is_met) throw UsageError(unknownRule(rule.zone, zone, building));
     }
     return measured;
 }

@@ -151,6 +151,10 @@ TEST(CameraRules, UnknownDoorsAndZonesAreListed) {
     };
     EXPECT_EQ(refusal("door:Front*"), "the room has no door `Front*`; its doors: north (1.00 m)");
     EXPECT_EQ(refusal("lobby,45deg"), "the room has no zone `lobby`; its zones: hall");
+    EXPECT_EQ(refusal("nor*,45deg"),
+              "the room has no zone `nor*`; its doors of this name: door:nor*; its zones: hall");
+    EXPECT_EQ(refusal("north,45deg"),
+              "the room has no zone `north`; its doors of this name: door:north; its zones: hall");
 }
 
 TEST(CameraRules, FacesAreSeenFromAhead) {

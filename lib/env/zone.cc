@@ -115,6 +115,14 @@ std::string listed(const std::vector<std::string>& things) {
     return list;
 }
 
+/// Returns true if the id of a door matches.
+bool namesDoors(std::string_view glob, const Environment& environment) {
+    const Glob wanted(glob);
+    const std::vector<Doorway> doors = doorwaysOf(environment);
+    return std::any_of(doors.begin(), doors.end(),
+                       [&wanted](const Doorway& door) { return wanted.matches(door.id); });
+}
+
 }  // namespace
 
 std::string unknownZoneText(std::string_view text, const Environment& environment) {
@@ -122,6 +130,9 @@ std::string unknownZoneText(std::string_view text, const Environment& environmen
     for (const Element& element : environment.elements())
         if (element.record.keyword() == "zone") known.push_back(element.id);
     return "the room has no zone " + excerpt(text) + didYouMean(text, known) +
+           (namesDoors(text, environment)
+                ? "; its doors of this name: " + std::string(kDoorPrefix) + printable(text)
+                : "") +
            (known.empty() ? "" : "; its zones: " + listed(known));
 }
 

@@ -56,11 +56,16 @@ bool contains(Kinds kinds, std::string_view keyword) {
     return std::find(kinds.begin(), kinds.end(), keyword) != kinds.end();
 }
 
-/// Returns the words of a model or a name, in small letters: "URG-04LX" has "urg" and "04lx".
+/// Returns the words of a model or a name, in small letters; a number begins a word: "URG-04LX" and
+/// "urg04lx" have "urg" and "04lx".
 std::vector<std::string> wordsOfName(const std::string& text) {
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     std::vector<std::string> words(1);
     for (const char c : text) {
-        const bool is_letter = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.';
+        const bool is_letter = (c >= 'a' && c <= 'z') || is_digit(c) || c == '.';
+        if (is_digit(c) && !words.back().empty() && words.back().back() >= 'a' &&
+            words.back().back() <= 'z')
+            words.emplace_back();
         if (is_letter)
             words.back() += c;
         else if (c >= 'A' && c <= 'Z')

@@ -62,6 +62,10 @@ TEST(SensorSpec, ErrorsNameWhatIsWrong) {
     EXPECT_EQ(
         errorOf("Slamtec"),
         "`Slamtec` is no sensor by itself, name one of these: rplidar-a1, rplidar-a2, rplidar-a3");
+    EXPECT_EQ(
+        errorOf("urg04lx").find("`urg04lx` is no sensor by itself, name one of these: urg-04lx"),
+        0U)
+        << errorOf("urg04lx");
     EXPECT_EQ(errorOf("urg:4").find("`urg` is no sensor by itself, name one of these: urg-04lx"),
               0U)
         << errorOf("urg:4");

@@ -117,5 +117,10 @@ arrange "$scenes/open-office.env" --sensor urg:4 >out 2>err && fail "urg is a se
 grep -q 'urg-04lx' err || fail "$(cat err)"
 arrange "$scenes/open-office.env" --sensor 'dome 1080p:4' >out 2>err && fail "a sensor of two words"
 grep -q 'dome-2.8-1080p' err || fail "$(cat err)"
+arrange "$scenes/open-office.env" --sensor dome4k:4 >out 2>err && fail "a sensor whose words stand together"
+grep -q 'dome-2.8-4k' err || fail "$(cat err)"
+printf '#env 1\nispace id=h size=6,4\ndoor id=front_door wall=h at=0,-2 size=1 height=2\ncamera id=c at=0,0,2\n' >door.env
+coverage door.env --facing 'front*,45deg' >out 2>err && fail "a door without door:"
+grep -q 'its doors of this name: door:front\*' err || fail "$(cat err)"
 coverage "$scenes/open-office.env" -o r.html >out 2>err && fail "a map as HTML"
 grep -q -- '--report r.html' err || fail "$(cat err)"
