@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "raster/module/decoded_picture.h"
 #include "raster/picture.h"
@@ -104,6 +107,16 @@ class Sheets {
     [[nodiscard]] double y() const { return y_; }
     [[nodiscard]] double maxHeight() const { return end() - kMargin; }
     Picture& sheet() { return sheets_.back(); }
+    /// Returns the index of the last sheet.
+    [[nodiscard]] std::size_t index() const { return sheets_.size() - 1; }
+    /// Returns the share of the last sheet's height that is filled.
+    [[nodiscard]] double filled() const { return (y_ - kMargin) / maxHeight(); }
+    /// Returns the same of all sheets.
+    [[nodiscard]] std::vector<double> allFilled() const {
+        std::vector<double> all = filled_;
+        all.push_back(filled());
+        return all;
+    }
 
     void text(std::string_view text, const TextStyle& style) {
         for (const std::string& line : brokenLines(text, kColumn, style)) {
@@ -125,6 +138,7 @@ class Sheets {
 
   private:
     void begin() {
+        if (!sheets_.empty()) filled_.push_back(filled());
         sheets_.emplace_back(size_.width, size_.height, PageUnit::Millimetre);
         y_ = kMargin;
     }
@@ -132,6 +146,7 @@ class Sheets {
     std::string title_;
     PaperSize size_;
     std::vector<Picture> sheets_;
+    std::vector<double> filled_;  // of all but the last
     double y_ = 0;
 };
 
@@ -259,7 +274,28 @@ bool isRight(const std::vector<std::vector<Word>>& lines, std::size_t line, cons
 
 class PdfWriter {
   public:
-    explicit PdfWriter(const ReportPage& page) : sheets_(page.title, page.paper), page_(page) {}
+    /// \param begins_sheet by section: whether it begins a sheet, besides those that always do
+    PdfWriter(const ReportPage& page, std::vector<bool> begins_sheet)
+        : sheets_(page.title, page.paper), page_(page), begins_sheet_(std::move(begins_sheet)) {}
+
+    /// A sheet that is filled less looks as if something were missing.
+    static constexpr double kLeastFilled = 0.3;
+
+    /// Returns the number of sheets that are filled less. \pre sheets() was called
+    [[nodiscard]] std::size_t sparseSheets() const {
+        return static_cast<std::size_t>(std::count_if(
+            filled_.begin(), filled_.end(), [](double filled) { return filled < kLeastFilled; }));
+    }
+    /// Returns the section that would fill a sparse sheet if it began it, and would leave enough on
+    /// the sheet before; empty if there is none. \pre sheets() was called
+    [[nodiscard]] std::optional<std::size_t> sectionToMove() const {
+        for (std::size_t sheet = 1; sheet < filled_.size(); ++sheet) {
+            if (filled_[sheet] >= kLeastFilled) continue;
+            for (std::size_t i = begins_.size(); i-- > 0;)
+                if (begins_[i].sheet + 1 == sheet && begins_[i].above >= kLeastFilled) return i;
+        }
+        return std::nullopt;
+    }
 
     std::vector<Picture> sheets() {
         addLogo();
@@ -270,16 +306,18 @@ class PdfWriter {
             line.append(": ").append(text);
             sheets_.text(line, {kBody, false, Align::Left, palette::kInk, {}});
         }
-        for (const PageSection& section : page_.sections) {
+        for (std::size_t i = 0; i < page_.sections.size(); ++i) {
+            const PageSection& section = page_.sections[i];
             // A heading stays with the block below it.
             constexpr double kAbove = 1 + kLine + 0.3;
-            if (section.begins_sheet) sheets_.next();
+            if (section.begins_sheet || begins_sheet_[i]) sheets_.next();
             sheets_.need(
                 kAbove * kHeading +
                 (section.blocks.empty()
                      ? 0
                      : std::visit([this](const auto& one) { return this->leastHeight(one); },
                                   section.blocks.front())));
+            begins_.push_back({sheets_.index(), sheets_.filled()});
             sheets_.skip(kHeading);
             sheets_.text(section.title, {kHeading, true, Align::Left, palette::kInk, {}});
             sheets_.skip(0.3 * kHeading);
@@ -292,6 +330,7 @@ class PdfWriter {
                     block);
             endRow();
         }
+        filled_ = sheets_.allFilled();
         return sheets_.finish();
     }
 
@@ -342,7 +381,7 @@ class PdfWriter {
     static bool canShrink(const PageFigure& figure) {
         return figure.width == 1 && figure.picture.unit() != PageUnit::Millimetre;
     }
-    static constexpr double kMinShare = 0.9;
+    static constexpr double kMinShare = 0.75;
 
     void add(const PageText& text) {
         const bool is_small = text.tone == Tone::Small;
@@ -485,14 +524,38 @@ class PdfWriter {
         double right = 0, height = 0;
     };
 
+    /// Where a section begins.
+    struct Begin {
+        std::size_t sheet = 0;
+        double above = 0;  ///< share of the sheet that is filled above it
+    };
+
     Sheets sheets_;
     const ReportPage& page_;
+    std::vector<bool> begins_sheet_;
     Row row_;
+    std::vector<Begin> begins_;   // by section
+    std::vector<double> filled_;  // by sheet
 };
 
 }  // namespace
 
-std::vector<Picture> sheetsOf(const ReportPage& page) { return PdfWriter(page).sheets(); }
+std::vector<Picture> sheetsOf(const ReportPage& page) {
+    std::vector<bool> begins_sheet(page.sections.size());
+    auto writer = std::make_unique<PdfWriter>(page, begins_sheet);
+    std::vector<Picture> sheets = writer->sheets();
+    while (const auto moved = writer->sectionToMove()) {
+        std::vector<bool> more = begins_sheet;
+        more[*moved] = true;
+        auto next = std::make_unique<PdfWriter>(page, more);
+        std::vector<Picture> others = next->sheets();
+        if (next->sparseSheets() >= writer->sparseSheets()) break;
+        begins_sheet = more;
+        sheets = std::move(others);
+        writer = std::move(next);
+    }
+    return sheets;
+}
 
 std::string pdfOf(const ReportPage& page) { return writePdf(sheetsOf(page)); }
 

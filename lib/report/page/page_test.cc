@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 namespace ispace {
@@ -73,6 +74,35 @@ TEST(Page, HasACoverAndItsPaper) {
     page.sections[1].begins_sheet = true;
     EXPECT_EQ(sheetsOf(page).size(), 2U);
     EXPECT_TRUE(holds(htmlOf(page), "<section class=\"sheet-top\" id=\"sheet\""));
+}
+
+/// Returns the share of a sheet down to its last line above the margin.
+double filledOf(const Picture& sheet) {
+    double last = 0;
+    for (const auto& text : sheet.list().texts)
+        if (text.anchor.y < sheet.height() - 15) last = std::max(last, text.anchor.y);
+    return last / sheet.height();
+}
+
+TEST(Page, SheetsArePulledTogether) {
+    const std::string line = "A sentence that takes a line of a sheet, from its left to its right.";
+    ReportPage page{"report", "", {}};
+    const auto add = [&](int lines, bool begins_sheet) {
+        PageSection& section = page.sections.emplace_back(
+            PageSection{"s" + std::to_string(page.sections.size()), "Section", {}});
+        section.begins_sheet = begins_sheet;
+        for (int i = 0; i < lines; ++i) section.blocks.push_back(PageText{line});
+    };
+    // Alone, the second section leaves some lines to a sheet before the third, and the fourth some
+    // to the last one.
+    for (const int more : {24, 28, 32, 36}) {
+        page.sections.clear();
+        add(24, false);
+        add(more, false);
+        add(24, true);
+        add(more, false);
+        for (const Picture& sheet : sheetsOf(page)) EXPECT_GT(filledOf(sheet), 0.3) << more;
+    }
 }
 
 TEST(Page, MapTellsTheScriptItsSensors) {
