@@ -259,6 +259,11 @@ void LightField::setLight(std::size_t pixel, const Rgb& direct, const Rgb& bounc
     }
 }
 
+bool LightField::hasSurface(int row, int column, int count) const {
+    const auto begin = depth_.begin() + static_cast<std::ptrdiff_t>(row) * columns_ + column;
+    return std::any_of(begin, begin + count, [](float depth) { return depth >= 0; });
+}
+
 /// Computes the mean of the pixels at `step` and two steps, the outermost at half weight, so that
 /// each point of a tile's net counts the same (Keller and Heidrich, Interleaved Sampling, 2001),
 /// and then of each tile's neighbourhood (Dammertz et al., Edge-Avoiding A-Trous Wavelet Transform,
@@ -280,8 +285,9 @@ void LightField::smoothRow(const LightPlanes& from, LightPlanes& to, int row, in
         return out;
     };
     for (int column = 0; column < columns_; column += kBlock) {
-        Sums<kPlanes> sums;
         const int count = std::min(kBlock, columns_ - column);
+        if (!hasSurface(row, column, count)) continue;  // its light is 0, as in `to`
+        Sums<kPlanes> sums;
         for (int j = -2; j <= 2; ++j) {
             const int line = row + step * j;
             if (line < 0 || line >= rows_) continue;

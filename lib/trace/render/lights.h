@@ -124,6 +124,7 @@ class LightField {
     /// Direct light of three colours, then bounced light.
     using LightPlanes = std::array<Plane, 6>;
 
+    [[nodiscard]] bool hasSurface(int row, int column, int count) const;
     template <std::size_t kFirst>
     void smoothRow(const LightPlanes& from, LightPlanes& to, int row, int step) const;
 

@@ -5,6 +5,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 
@@ -405,17 +407,73 @@ std::array<std::uint8_t, 3> toSrgb8(const Rgb& color) {
     return {srgb(color[0]), srgb(color[1]), srgb(color[2])};
 }
 
+namespace {
+
+/// Converts a radiance times exposure: straight up to the knee, then towards white.
+std::uint8_t rolledSrgb(float value) {
+    constexpr float kKnee = 0.8F;
+    return srgb(value <= kKnee ? value
+                               : 1 - (1 - kKnee) * std::exp(-(value - kKnee) / (1 - kKnee)));
+}
+
+/// Returns the same by a table of the least value of each byte; building it costs as much as some
+/// ten thousand values.
+class SrgbTable {
+  public:
+    SrgbTable() {
+        for (std::size_t byte = 1; byte < least_.size(); ++byte) {
+            // Floats above 0 are in the order of their bits.
+            std::uint32_t low = 0, high = std::bit_cast<std::uint32_t>(kWhite);
+            while (low < high) {
+                const std::uint32_t middle = low + (high - low) / 2;
+                if (rolledSrgb(std::bit_cast<float>(middle)) >= byte)
+                    high = middle;
+                else
+                    low = middle + 1;
+            }
+            least_[byte] = std::bit_cast<float>(low);
+        }
+        std::uint32_t byte = 0;
+        for (std::uint32_t i = 0; i < first_.size(); ++i) {
+            while (byte + 1 < least_.size() &&
+                   least_[byte + 1] <= std::bit_cast<float>(i << kDropped))
+                ++byte;
+            first_[i] = static_cast<std::uint8_t>(byte);
+        }
+    }
+    [[nodiscard]] std::uint8_t of(float value) const {
+        if (!(value > 0)) return 0;
+        if (value >= kWhite) return rolledSrgb(value);
+        std::size_t byte = first_[std::bit_cast<std::uint32_t>(value) >> kDropped];
+        while (byte + 1 < least_.size() && value >= least_[byte + 1]) ++byte;
+        return static_cast<std::uint8_t>(byte);
+    }
+
+  private:
+    static constexpr float kWhite = 16;
+    static constexpr unsigned kDropped = 16;  // bits of floats
+    std::array<float, 256> least_{};
+    /// By the upper bits of a value below kWhite: the byte of the least value with these.
+    std::array<std::uint8_t, (std::bit_cast<std::uint32_t>(kWhite) >> kDropped) + 1> first_{};
+};
+
+}  // namespace
+
 std::vector<std::uint8_t> toSrgb8(const Rendering& picture, double exposure) {
+    constexpr std::size_t kManyPixels = 20'000;
     std::vector<std::uint8_t> bytes;
     bytes.reserve(3 * picture.radiance.size());
-    // Straight up to the knee, then towards white.
-    const auto roll = [](float x) {
-        constexpr float kKnee = 0.8F;
-        return x <= kKnee ? x : 1 - (1 - kKnee) * std::exp(-(x - kKnee) / (1 - kKnee));
+    const auto convert = [&](auto byte_of) {
+        for (const Rgb& color : picture.radiance)
+            for (const float value : color)
+                bytes.push_back(byte_of(static_cast<float>(exposure) * value));
     };
-    for (const Rgb& color : picture.radiance)
-        for (const float value : color)
-            bytes.push_back(srgb(roll(static_cast<float>(exposure) * value)));
+    if (picture.radiance.size() < kManyPixels) {
+        convert(rolledSrgb);
+        return bytes;
+    }
+    static const SrgbTable table;
+    convert([](float value) { return table.of(value); });
     return bytes;
 }
 

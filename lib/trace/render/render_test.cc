@@ -218,5 +218,24 @@ TEST(Rendering, BecomesBytes) {
     EXPECT_GT(toSrgb8(picture, 2)[3], bytes[3]);
 }
 
+TEST(Rendering, BecomesTheSameBytesInLargePictures) {
+    constexpr int kWide = 200, kHigh = 150;
+    Rendering large{kWide, kHigh, {}, {}, {}};
+    for (int i = 0; i < kWide * kHigh; ++i) {
+        const float share = static_cast<float>(i) / (kWide * kHigh);
+        large.radiance.push_back({share, 20 * share * share, 1e-3F * share - 1e-5F});
+    }
+    const std::vector<std::uint8_t> bytes = toSrgb8(large, 1.15);
+    ASSERT_EQ(bytes.size(), 3U * kWide * kHigh);
+    for (std::size_t row = 0; row < kHigh; ++row) {
+        Rendering part{kWide, 1, {}, {}, {}};
+        const auto begin = large.radiance.begin() + static_cast<std::ptrdiff_t>(row * kWide);
+        part.radiance.assign(begin, begin + kWide);
+        const std::vector<std::uint8_t> alone = toSrgb8(part, 1.15);
+        EXPECT_TRUE(std::equal(alone.begin(), alone.end(),
+                               bytes.begin() + static_cast<std::ptrdiff_t>(3 * row * kWide)));
+    }
+}
+
 }  // namespace
 }  // namespace ispace
