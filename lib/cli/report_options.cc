@@ -99,4 +99,13 @@ std::string priceWarning(const ReportWords& words, std::span<const CabledRoom> r
     return text.empty() ? "" : words.prices + ": " + text;
 }
 
+std::string writeMaterialOf(const ReportWords& words,
+                            std::span<const std::shared_ptr<const Scene>> scenes) {
+    std::vector<CabledRoom> rooms;
+    rooms.reserve(scenes.size());
+    for (const auto& scene : scenes) rooms.push_back({*scene, cablesOf(*scene)});
+    writeMaterial(words, rooms);
+    return priceWarning(words, rooms);
+}
+
 }  // namespace ispace

@@ -2,6 +2,7 @@
 // Options of a report that is handed over: its cover, paper, prices and material.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 
@@ -36,5 +37,10 @@ void writeMaterial(const ReportWords& words, std::span<const CabledRoom> rooms);
 
 /// Returns a warning about prices that no item of the material has; "" if there are none.
 std::string priceWarning(const ReportWords& words, std::span<const CabledRoom> rooms);
+
+/// Writes the file of --material, if asked for, of all these scenes.
+/// \returns priceWarning()
+std::string writeMaterialOf(const ReportWords& words,
+                            std::span<const std::shared_ptr<const Scene>> scenes);
 
 }  // namespace ispace

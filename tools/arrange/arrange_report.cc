@@ -213,11 +213,10 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
     for (const JudgedRule& rule : judgedRules(rules))
         result.blocks.push_back(PageText{rule.rule + ": " + rule.finding});
     input.more.push_back(std::move(result));
-    ReportPage page = buildingPage(input);
-    page.cover = coverOf(options.page);
-    if (!page.cover.title.empty()) page.title = page.cover.title;
-    page.paper = paperOf(options.page);
-    return finished(options, page);
+    input.cover = coverOf(options.page);
+    input.paper = paperOf(options.page);
+    input.prices = pricesOf(options.page);
+    return finished(options, buildingPage(input));
 }
 
 }  // namespace
@@ -246,6 +245,19 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
     page.paper = paperOf(options.page);
     page.prices = pricesOf(options.page);
     return finished(options, coveragePage(page));
+}
+
+void writeMaterialOf(const ArrangeToolOptions& options, const ArrangeWork& work,
+                     const Arrangement& arrangement, const Document& layout) {
+    if (options.page.material.empty() && options.page.prices.empty()) return;
+    std::vector<std::shared_ptr<const Scene>> scenes;
+    if (work.input.building)
+        scenes = placedBuilding(work, arrangement).scenes;
+    else
+        scenes.push_back(std::make_shared<const Scene>(
+            makeScene(*work.input.environment, &layout, shippedDevices())));
+    if (const std::string text = writeMaterialOf(options.page, scenes); !text.empty())
+        warn(options.common, "arrange", text);
 }
 
 }  // namespace ispace

@@ -22,6 +22,10 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command);
 
+/// Writes --material, and warns of prices that no item of the layout has.
+void writeMaterialOf(const ArrangeToolOptions& options, const ArrangeWork& work,
+                     const Arrangement& arrangement, const Document& layout);
+
 /// Measures --objective path and localise on the written layout, exactly and on the cells of
 /// coverage(1); empty without them.
 std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,

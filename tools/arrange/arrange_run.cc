@@ -163,10 +163,9 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     work.how = options.how;
     SiteInput& input = work.input;
     warnOfImport(options.common, "arrange", input);
-    mustBeOneRoom(input, options.presence                 ? "--presence"
-                         : !options.places_file.empty()   ? "--places"
-                         : !options.page.material.empty() ? "--material"
-                                                          : needsOneRoom(options.how));
+    mustBeOneRoom(input, options.presence               ? "--presence"
+                         : !options.places_file.empty() ? "--places"
+                                                        : needsOneRoom(options.how));
     if (!options.fixed.empty()) {
         if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
         input.setLayout(withoutPlaces(*input.layout, options.fixed));

@@ -54,8 +54,7 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
     if (!options.report_file.empty())
         writeAll(options.report_file,
                  reportFile(options, work, arrangement, layout, command.historyLine(input.named)));
-    if (!options.page.material.empty())
-        writeMaterial(options.page, makeScene(*input.environment, &layout, shippedDevices()));
+    writeMaterialOf(options, work, arrangement, layout);
     if (!options.heat_file.empty()) writeHeat(options, work, arrangement);
     if (const std::string& file = options.certificate_file; !file.empty()) {
         if (const auto& bound = arrangement.poses_bound; bound && bound->certificate)
