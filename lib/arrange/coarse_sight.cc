@@ -17,9 +17,9 @@ namespace {
 constexpr double kCells = 4'000;  // about so many
 constexpr double kLeastEdge = 0.1, kMostEdge = 0.5;
 /// Errors of cells along an outline cancel out, but where an edge of a field of view runs through
-/// centres, which counts them all: measured in furnished rooms, views have at most so many more
-/// cells than were counted.
-constexpr double kCellsOfError = 16;
+/// centres, which counts them all: measured in furnished rooms, views rarely have so many more, and
+/// never twice as many more, cells than were counted.
+constexpr double kCellsOfError = 8;
 
 double edgeFor(const Box2& limits) {
     return std::clamp(std::sqrt(limits.width() * limits.depth() / kCells), kLeastEdge, kMostEdge);

@@ -22,8 +22,8 @@ struct FloorGain {
 };
 
 /// Estimates views and private floor in one environment by cells of a few decimetres, in a tenth of
-/// the time of exact regions. A view covers at most error() more floor than its cells: poses that
-/// the estimates set farther apart need no exact measure to be told apart.
+/// the time of exact regions. A view covers rarely error() more floor than its cells: poses that
+/// the estimates set farther apart are told apart without an exact measure.
 class CoarseSight {
   public:
     /// Stores the references.
