@@ -60,6 +60,8 @@ void Server::logTopics(ByteSink write, RosScenery scenery) {
 
 std::size_t Server::topicsLeftOut() const { return data_->log ? data_->log->leftOut() : 0; }
 
+McapContent Server::loggedTopics() const { return data_->log.value().content(); }
+
 std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,
                                 const Endpoint& endpoint) {
     Data& data = *data_;

@@ -29,8 +29,16 @@ struct MemoryBroker {
 class MemoryClient final : public MqttClient {
   public:
     explicit MemoryClient(MemoryBroker& broker) : broker_(&broker) {}
-    void publish(MqttMessage message) override { broker_->published.push_back(std::move(message)); }
+    void publish(MqttMessage message) override {
+        const auto& topics = broker_->subscriptions;
+        if (std::find(topics.begin(), topics.end(), message.topic) != topics.end())
+            broker_->incoming.push_back({message.topic, message.payload, false});
+        broker_->published.push_back(std::move(message));
+    }
     void subscribe(const std::string& topic) override { broker_->subscriptions.push_back(topic); }
+    void unsubscribe(const std::string& topic) override {
+        std::erase(broker_->subscriptions, topic);
+    }
     std::vector<MqttMessage> take() override { return std::exchange(broker_->incoming, {}); }
     [[nodiscard]] int connections() const override { return broker_->connections; }
     void close() override { broker_->is_closed = true; }

@@ -31,7 +31,8 @@ void claimFiles(const SimrunOptions& options) {
     claimOutput(options.port_file, "--port-file");
     claimOutput(options.junit, "--junit");
     claimOutput(options.report, "--report");
-    claimOutput(options.mcap, "--mcap");
+    claimOutput(mcapFile(options), "--mcap");
+    claimOutput(bagMetadataFile(options), "the metadata of --mcap");
     if (options.record.empty()) return;
     for (const std::string& file : Recorder::filesIn(options.record))
         claimOutput(file, "a file of --record");

@@ -341,9 +341,11 @@ void SimrunCommand::declareRos() {
     line_.countOr("--ros2", o.ros_domain, 0, 0, kLastDomain,
                   "be a node of ROS 2 in this domain, over DDS, for programs of this machine",
                   Enters::Nothing);
-    line_.file("--mcap", "FILE", o.mcap,
-               "write all topics of ROS 2 to an MCAP file, for Foxglove and ros2 bag",
-               Enters::Nothing);
+    line_.file(
+        "--mcap", "FILE", o.mcap,
+        "write all topics of ROS 2 to an MCAP file, or as a bag to a folder (DIR/), for Foxglove "
+        "and ros2 bag",
+        Enters::Nothing);
 }
 
 void SimrunCommand::declareMqtt() {

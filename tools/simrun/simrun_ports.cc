@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <csignal>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -14,9 +15,12 @@
 #include "io/exporters.h"
 #include "io/glb/glb_write.h"
 #include "sense/formats/mcap_writer.h"
+#include "sense/formats/rosbag.h"
 #include "simrun/simrun_run.h"
 
 namespace ispace {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -164,8 +168,28 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
     return out;
 }
 
+std::string mcapFile(const SimrunOptions& options) {
+    if (!options.mcap.ends_with('/')) return options.mcap;
+    fs::path folder = fs::path(options.mcap).lexically_normal().parent_path();
+    return (folder / (fs::absolute(folder).filename().string() + "_0.mcap")).string();
+}
+
+std::string bagMetadataFile(const SimrunOptions& options) {
+    return options.mcap.ends_with('/') ? options.mcap + "metadata.yaml" : "";
+}
+
+namespace {
+
+/// Makes the folder of a bag. \return the name of the file in it
+std::string preparedMcap(const SimrunOptions& options) {
+    if (options.mcap.ends_with('/')) fs::create_directories(options.mcap);
+    return mcapFile(options);
+}
+
+}  // namespace
+
 TopicLog::TopicLog(Server& server, Simulation& simulation, const SimrunOptions& options)
-    : server_(&server), options_(&options), file_(options.mcap) {
+    : server_(&server), options_(&options), name_(preparedMcap(options)), file_(name_) {
     server.logTopics(
         [this](std::string_view bytes) {
             file_.write(bytes);
@@ -181,13 +205,16 @@ TopicLog::TopicLog(Server& server, Simulation& simulation, const SimrunOptions& 
 
 void TopicLog::commit() {
     file_.commit();
+    if (const std::string metadata = bagMetadataFile(*options_); !metadata.empty())
+        writeAll(metadata,
+                 bagMetadata(server_->loggedTopics(), fs::path(name_).filename().string()));
     if (const std::size_t left_out = server_->topicsLeftOut(); left_out > 0)
         warn(options_->common, "simrun",
-             options_->mcap + ": " + std::to_string(left_out) +
+             name_ + ": " + std::to_string(left_out) +
                  " topics are left out, as an MCAP file has at most " +
                  std::to_string(McapWriter::kMaxChannels) + " channels");
     if (end_ == kMaxTime) return;
-    throw FormatError({options_->mcap, 0, 0,
+    throw FormatError({name_, 0, 0,
                        "ended at t=" + formatSimTime(end_) + ", as it has " +
                            std::to_string(bytes_) + " bytes, wanted at most " +
                            std::to_string(options_->max_recorded) + " (--record-limit)"});

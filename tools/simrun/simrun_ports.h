@@ -25,6 +25,12 @@ struct ServedAddresses {
 ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title,
                            const std::vector<std::string>& replayed);
 
+/// Returns the name of the file of --mcap: for a folder, `run/`, that of a bag in it,
+/// `run/run_0.mcap`; "" without.
+std::string mcapFile(const SimrunOptions& options);
+/// Returns that of the bag's metadata; "" without a folder.
+std::string bagMetadataFile(const SimrunOptions& options);
+
 /// The file of --mcap. It ends the run once it is larger than --record-limit.
 class TopicLog {
   public:
@@ -40,6 +46,7 @@ class TopicLog {
   private:
     const Server* server_;
     const SimrunOptions* options_;
+    std::string name_;
     OutputFile file_;
     std::uint64_t bytes_ = 0;
     SimTime end_ = kMaxTime;  // at which the file was full

@@ -8,6 +8,7 @@
 #include "sense/formats/mcap_writer.h"
 #include "sense/formats/reading_format.h"
 #include "sense/formats/ros_messages.h"
+#include "sense/formats/rosbag.h"
 
 namespace ispace {
 
@@ -154,7 +155,8 @@ class Mcap final : public FormatBase {
   public:
     Mcap(const Sensors& sensors, FormatOptions options)
         : FormatBase(sensors, std::move(options), ".mcap") {
-        channels_.push_back({static_cast<std::uint16_t>(RosType::TFMessage), "/tf"});
+        channels_.push_back(
+            bagChannel(static_cast<std::uint16_t>(RosType::TFMessage), "/tf", {.depth = 100}));
         for (const Sensor& one : sensors.read) {
             names_.push_back(takeName(rosName(one.id), one.id));
             first_.push_back(static_cast<std::uint16_t>(channels_.size()));
@@ -210,8 +212,8 @@ class Mcap final : public FormatBase {
         return name;
     }
     void addChannel(const std::string& name, const RosTopic& topic) {
-        channels_.push_back(
-            {static_cast<std::uint16_t>(topic.type), "/" + name + "/" + std::string(topic.name)});
+        channels_.push_back(bagChannel(static_cast<std::uint16_t>(topic.type),
+                                       "/" + name + "/" + std::string(topic.name), {}));
     }
     void addMember(const RunMember& one) {
         Member member{takeName(rosName(one.id), one.id), "", 0, one.alphas};

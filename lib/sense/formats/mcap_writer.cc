@@ -211,9 +211,24 @@ std::string McapWriter::channelRecord(std::size_t index) const {
     appendLittle(content, static_cast<std::uint16_t>(channels_[index].schema + 1));
     appendText(content, channels_[index].topic);
     appendText(content, encoding_);
-    appendLittle(content, std::uint32_t{0});  // metadata count
+    std::string metadata;
+    for (const auto& [key, value] : channels_[index].metadata) {
+        appendText(metadata, key);
+        appendText(metadata, value);
+    }
+    appendText(content, metadata);  // a map has its bytes before it, as a text has
     appendRecord(out, kChannel, content);
     return out;
+}
+
+McapContent McapWriter::content() const {
+    McapContent content{{}, messages_, first_, last_};
+    for (std::size_t i = 0; i < channels_.size(); ++i) {
+        const auto count = counts_.find(static_cast<std::uint16_t>(i));
+        content.channels.push_back({channels_[i], schemas_[channels_[i].schema].name,
+                                    count == counts_.end() ? 0 : count->second});
+    }
+    return content;
 }
 
 std::string McapWriter::channelRecords() const {

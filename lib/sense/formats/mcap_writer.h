@@ -21,6 +21,21 @@ struct McapSchema {
 struct McapChannel {
     std::uint16_t schema = 0;  ///< index in the schemas
     std::string topic;
+    std::map<std::string, std::string> metadata = {};
+};
+
+/// Number of a channel's messages in a file.
+struct McapCount {
+    McapChannel channel;
+    std::string type;  ///< name of its schema
+    std::uint64_t messages = 0;
+};
+
+/// The content of a file so far.
+struct McapContent {
+    std::vector<McapCount> channels;
+    std::uint64_t messages = 0;
+    std::uint64_t first = 0, last = 0;  ///< nanoseconds, of messages
 };
 
 /// Appends a message record of the channel with this index; add() takes such records.
@@ -51,6 +66,7 @@ class McapWriter {
     void add(std::string_view messages);
     /// Writes the rest of the file.
     void finish();
+    [[nodiscard]] McapContent content() const;
 
   private:
     using IndexEntry = std::pair<std::uint64_t, std::uint64_t>;

@@ -113,10 +113,10 @@ struct ColaFigures {
 /// libLMS1xx, sick_tim, sick_scan_xd or MRPT's CLMS100Eth.
 ///
 /// It measures from the start, and sends scans once LMDscandata is switched on; each telegram is
-/// answered in its dialect. Rates, angles and output ranges are those of the record: requests to
-/// set others are answered as by a device that does not support them. Remissions are 200 for a
-/// return and 0 without one, since the world has no remissions. Dates count from 1970, as on a
-/// device whose clock was never set.
+/// answered in its dialect. LMPoutputRange cuts the sector of scan telegrams to whole beams. Rates
+/// and angles are those of the record: requests to set others are answered as by a device that does
+/// not support them. Remissions are 200 for a return and 0 without one, since the world has no
+/// remissions. Dates count from 1970, as on a device whose clock was never set.
 class ColaSession : public WireSession {
   public:
     /// \pre refusalOfCola() is ""
@@ -143,6 +143,7 @@ class ColaSession : public WireSession {
     void listenTo(std::string_view name, std::string_view arguments, bool is_binary);
     void refuse(std::uint32_t code, bool is_binary);
     void takeContent(std::string_view arguments, bool is_binary);
+    bool takeSector(std::string_view arguments, bool is_binary);
     [[nodiscard]] std::uint32_t scanSettings(std::string_view arguments, bool is_binary) const;
     void state(bool is_binary);
     [[nodiscard]] std::string scan(std::string_view kind, bool is_binary);
@@ -153,7 +154,12 @@ class ColaSession : public WireSession {
     WireHost* host_;
     std::string id_;
     ColaTelegrams telegrams_;
+    /// The first and the last beam of scan telegrams, by LMPoutputRange.
+    struct Sector {
+        std::int32_t start = 0, stop = 0;
+    };
     ColaFigures figures_;
+    Sector sector_;
     std::size_t sensor_ = 0;     // index in the world, valid for:
     std::int64_t changes_ = -1;  // change count of the world
     Content content_;

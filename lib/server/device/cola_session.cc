@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <span>
+#include <utility>
 
 namespace ispace {
 
@@ -116,7 +118,11 @@ bool ColaSession::follow() {
         return false;
     }
     sensor_ = *world.sensorNamed(id_);
-    figures_ = ColaFigures::of(laser());
+    const ColaFigures before = std::exchange(figures_, ColaFigures::of(laser()));
+    // Another laser in its place begins with its whole sector.
+    if (before.start != figures_.start || before.stop != figures_.stop ||
+        before.step != figures_.step)
+        sector_ = {figures_.start, figures_.stop};
     // Periods restart with another rate and after a replay's seek.
     next_ = std::min(next_, world.period(sensor_) + content_.every);
     return true;
@@ -189,7 +195,7 @@ void ColaSession::read(std::string_view name, std::string_view echo, bool is_bin
         out.i32(figures_.start).i32(figures_.stop);
     } else if (name == "LMPoutputRange") {
         out.u16(1).u32(static_cast<std::uint32_t>(figures_.step));
-        out.i32(figures_.start).i32(figures_.stop);
+        out.i32(sector_.start).i32(sector_.stop);
     } else if (name == "LMDscandatacfg") {
         out.u8(1).u8(0).u8(content_.remission ? 1 : 0).u8(content_.wide_remission ? 1 : 0);
         out.u8(0).u8(0).u8(0).u8(0).u8(0).u8(0).u8(content_.time ? 1 : 0);
@@ -219,10 +225,32 @@ void ColaSession::appendField(ColaWriter& out) const {
 void ColaSession::set(std::string_view name, std::string_view arguments, bool is_binary) {
     if (name == "LMDscandatacfg") {
         takeContent(arguments, is_binary);
-    } else if (name != "LMPoutputRange" && name != "EIHstCola") {
+    } else if (name == "LMPoutputRange") {
+        if (!takeSector(arguments, is_binary)) return refuse(kInvalid, is_binary);
+    } else if (name != "EIHstCola") {
         return refuse(kUnknownVariable, is_binary);
     }
     send(ColaWriter("sWA " + std::string(name), is_binary).frame());
+}
+
+/// Reads LMPoutputRange: a sector, its resolution, start and stop, which are cut to beams. \returns
+/// false, and changes no sector, without a beam between them, and for another resolution
+bool ColaSession::takeSector(std::string_view arguments, bool is_binary) {
+    ColaReader in(arguments, is_binary);
+    const auto sectors = in.u16(), step = in.u32();
+    const auto start = in.i32(), stop = in.i32();
+    if (sectors != 1 || step != static_cast<std::uint32_t>(figures_.step) || !start || !stop)
+        return false;
+    const auto first = std::max<std::int64_t>(*start, figures_.start);
+    const auto last = std::min<std::int64_t>(*stop, figures_.stop);
+    if (first > last) return false;
+    // Whole beams, from the first one at or after the start to the last one at or before the stop.
+    const std::int64_t begin = (first - figures_.start + figures_.step - 1) / figures_.step;
+    const std::int64_t end = (last - figures_.start) / figures_.step;
+    if (begin > end) return false;
+    sector_ = {static_cast<std::int32_t>(figures_.start + begin * figures_.step),
+               static_cast<std::int32_t>(figures_.start + end * figures_.step)};
+    return true;
 }
 
 /// Reads LMDscandatacfg: channel (two numbers), remission, its resolution, unit, encoder (two),
@@ -344,9 +372,12 @@ void ColaSession::appendChannel(ColaWriter& out, std::string_view name, bool wid
     const std::vector<float>& ranges = host_->world().reading(sensor_).scan().ranges;
     const bool is_distance = name == "DIST1";
     out.name(name).f32(is_distance ? figures_.scale : 1).f32(0);
-    out.i32(figures_.start).u16(static_cast<std::uint32_t>(figures_.step));
-    out.u16(static_cast<std::uint32_t>(ranges.size()));
-    for (const float range : ranges) {
+    const auto first = static_cast<std::size_t>((sector_.start - figures_.start) / figures_.step);
+    const auto last = static_cast<std::size_t>((sector_.stop - figures_.start) / figures_.step);
+    const auto sent = std::span(ranges).subspan(first, std::min(last + 1, ranges.size()) - first);
+    out.i32(sector_.start).u16(static_cast<std::uint32_t>(figures_.step));
+    out.u16(static_cast<std::uint32_t>(sent.size()));
+    for (const float range : sent) {
         const std::uint32_t remission = std::isfinite(range) ? kRemission : 0;
         const std::uint32_t value = is_distance ? figures_.number(range) : remission;
         wide ? out.u16(value) : out.u8(value);

@@ -60,6 +60,14 @@ TEST(ColaSession, AnswersInText) {
         {"sWN LMDscandatacfg 01 00 1 1 0 00 00 0 0 0 1 +2", "sWA LMDscandatacfg"},
         {"sRN LMDscandatacfg", "sRA LMDscandatacfg 1 0 1 1 0 0 0 0 0 0 1 2"},
         {"sWN LMPoutputRange 1 1388 FFF92230 225510", "sWA LMPoutputRange"},
+        {"sWN LMPoutputRange 1 1388 0 DBBA0", "sWA LMPoutputRange"},
+        {"sRN LMPoutputRange", "sRA LMPoutputRange 1 1388 0 DBBA0"},
+        {"sWN LMPoutputRange 1 1388 +10 +9990", "sWA LMPoutputRange"},
+        {"sRN LMPoutputRange", "sRA LMPoutputRange 1 1388 1388 1388"},
+        {"sWN LMPoutputRange 1 1388 +10 +20", "sFA 5"},
+        {"sWN LMPoutputRange 1 9C4 0 DBBA0", "sFA 5"},
+        {"sWN LMPoutputRange 1 1388 +9000000 +9100000", "sFA 5"},
+        {"sRN LMPoutputRange", "sRA LMPoutputRange 1 1388 1388 1388"},
         {"sMN LMCstopmeas", "sAN LMCstopmeas 0"},
         {"sRN STlms", "sRA STlms 3 0 8 00:00:00 A 01.01.1970 0 0 0"},
         {"sMN LMCstartmeas", "sAN LMCstartmeas 0"},
@@ -93,6 +101,22 @@ TEST(ColaSession, AnswersInText) {
         EXPECT_EQ(askText(session, request), wanted) << request;
     EXPECT_EQ(askText(session, "sMN mSCreboot"), "sAN mSCreboot");
     EXPECT_TRUE(session.closing());
+}
+
+TEST(ColaSession, AnOutputRangeCutsScans) {
+    Room room;
+    ColaSession session(room, "l1");
+    constexpr std::size_t kRanges = 26, kFirst = 90,
+                          kCount = 181;  // of 541 beams, from 0 to 90 degrees
+    const std::vector<std::string> whole = words(askText(session, "sRN LMDscandata"));
+    EXPECT_EQ(askText(session, "sWN LMPoutputRange 1 1388 0 DBBA0"), "sWA LMPoutputRange");
+    const std::vector<std::string> cut = words(askText(session, "sRN LMDscandata"));
+    ASSERT_EQ(cut.size(), kRanges + kCount + 6);
+    EXPECT_EQ(cut[23], "0");
+    EXPECT_EQ(cut[24], "1388");
+    EXPECT_EQ(cut[25], "B5");
+    for (std::size_t i = 0; i < kCount; ++i)
+        EXPECT_EQ(cut[kRanges + i], whole[kRanges + kFirst + i]) << i;
 }
 
 TEST(ColaSession, AScanInText) {

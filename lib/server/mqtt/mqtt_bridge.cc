@@ -65,7 +65,11 @@ constexpr std::size_t kMaxPayload = 256;
 }  // namespace
 
 MqttBridge::MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, std::string prefix)
-    : state_(&state), client_(std::move(client)), prefix_(std::move(prefix)), session_(state) {
+    : state_(&state),
+      client_(std::move(client)),
+      prefix_(std::move(prefix)),
+      survey_(*client_, prefix_),
+      session_(state) {
     if (!state.limits().token.empty()) session_.request("TOKEN " + state.limits().token);
     // Of all things, also of later ones; an id of a building has its storey before it.
     for (const char* levels : {"/+/+/set", "/+/+/+/set"}) client_->subscribe(prefix_ + levels);
@@ -93,7 +97,8 @@ void MqttBridge::introduce(bool all) {
         const auto known = descriptions_.find({thing.id, thing.keyword});
         bool has_news = all || known == descriptions_.end();
         for (const MqttKey& key : thing.keys) {
-            topics.emplace(key.topic, Topic{thing.id, key.name, isActuator(thing.keyword)});
+            topics.emplace(key.topic,
+                           Topic{thing.id, key.name, isActuator(thing.keyword), key.spec});
             has_news = has_news || !topics_.contains(key.topic);
         }
         std::vector<std::string>& described = descriptions[{thing.id, thing.keyword}];
@@ -116,6 +121,9 @@ void MqttBridge::introduce(bool all) {
             if (!kept.contains(topic)) remove(topic);
     for (const auto& [topic, of] : topics_)
         if (!topics.contains(topic)) remove(topic);
+    if (connections_ == 1)
+        for (const std::string& topic : survey_.leftovers())
+            if (!topics.contains(topic) && !kept.contains(topic)) remove(topic);
     for (MqttMessage& description : news) client_->publish(std::move(description));
     topics_ = std::move(topics);
     descriptions_ = std::move(descriptions);
@@ -143,22 +151,32 @@ void MqttBridge::serve() {
     answer();
 }
 
+void MqttBridge::refuse(const MqttMessage& message, const std::string& reason) {
+    client_->publish({prefix_ + "/error", "ERR 400 " + message.topic + ": " + reason, false});
+}
+
 void MqttBridge::receive(const MqttMessage& message) {
+    if (survey_.answer(message)) return;
     constexpr std::string_view kSet = "/set";
     std::string_view topic = message.topic;
     // A retained command is of an earlier run.
-    if (!topic.ends_with(kSet) || message.retain) return;
+    if (!topic.starts_with(prefix_ + '/') || !topic.ends_with(kSet) || message.retain) return;
     topic.remove_suffix(kSet.size());
     const auto found = topics_.find(topic);
-    if (found == topics_.end() || !found->second.is_actuator) return;
+    if (found == topics_.end())
+        return refuse(message, "no thing of the room has this state, see " + prefix_ + "/+/+");
+    if (!found->second.is_actuator)
+        return refuse(message, "a sensor reports this state, and no command sets it");
+    if (const std::string wanted =
+            wantedPayload(found->second.key, found->second.spec, message.payload);
+        !wanted.empty())
+        return refuse(message, "`" + printable(message.payload.substr(0, kMaxPayload)) +
+                                   "` is given, wanted " + wanted);
     const std::string value = valueOfPayload(found->second.key, message.payload);
     const bool is_word = !value.empty() && value.size() <= kMaxPayload &&
                          value.find_first_of(" \t\r\n") == std::string::npos;
-    if (!is_word || requests_.size() >= kMaxRequests) {
-        const std::string reason = is_word ? "too many commands" : "this is no value";
-        client_->publish({prefix_ + "/error", "ERR 400 " + message.topic + ": " + reason, false});
-        return;
-    }
+    if (!is_word || requests_.size() >= kMaxRequests)
+        return refuse(message, is_word ? "too many commands" : "this is no value");
     requests_.push_back("ACT " + found->second.id + ' ' + found->second.key + '=' + value);
 }
 

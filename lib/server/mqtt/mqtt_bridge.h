@@ -13,6 +13,7 @@
 
 #include "scene/room_state.h"
 #include "server/mqtt/mqtt_client.h"
+#include "server/mqtt/mqtt_survey.h"
 #include "server/session.h"
 
 namespace ispace {
@@ -26,6 +27,7 @@ namespace ispace {
 /// discovery describe all of them.
 class MqttBridge {
   public:
+    /// \throws FormatError if another run serves the prefix
     MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, std::string prefix);
 
     /// Carries out commands that have arrived. Call it in turn with the world.
@@ -40,6 +42,7 @@ class MqttBridge {
     struct Topic {
         std::string id, key;
         bool is_actuator = false;
+        const KeySpec* spec = nullptr;  ///< of an actuator
     };
     using Topics = std::map<std::string, Topic, std::less<>>;
     /// Topics of discovery, by id and keyword of their thing.
@@ -49,6 +52,7 @@ class MqttBridge {
     void publishAll();
     void publish(const RoomState& state);
     void receive(const MqttMessage& message);
+    void refuse(const MqttMessage& message, const std::string& reason);
     void answer();
     void readLine(std::string_view line);
     [[nodiscard]] std::string topicOf(std::string_view id, std::string_view key) const;
@@ -56,6 +60,7 @@ class MqttBridge {
     ServerState* state_;
     std::unique_ptr<MqttClient> client_;
     std::string prefix_;
+    MqttSurvey survey_;
     Session session_;
     std::deque<std::string> requests_;
     Topics topics_;  // of all states

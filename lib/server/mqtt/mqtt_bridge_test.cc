@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/number.h"
+#include "server/mqtt/mqtt_survey.h"
 #include "server/mqtt/mqtt_topics.h"
 #include "support/memory_broker.h"
 #include "support/test_source.h"
@@ -164,9 +166,11 @@ TEST_F(BridgeTest, PublishesStatesAndSubscribesToCommands) {
     EXPECT_EQ(broker.last("home/s1/motion"), "OFF");
     EXPECT_EQ(broker.last("home/status"), "online");
     EXPECT_NE(broker.last("homeassistant/light/home_lp/config"), "");
-    EXPECT_EQ(broker.subscriptions, (std::vector<std::string>{"home/+/+/set", "home/+/+/+/set"}));
-    EXPECT_TRUE(std::all_of(broker.published.begin(), broker.published.end(),
-                            [](const MqttMessage& message) { return message.retain; }));
+    EXPECT_EQ(broker.subscriptions,
+              (std::vector<std::string>{"home/run", "home/+/+/set", "home/+/+/+/set"}));
+    EXPECT_TRUE(std::all_of(
+        broker.published.begin(), broker.published.end(),
+        [](const MqttMessage& message) { return message.retain || message.topic == "home/run"; }));
     bridge->end();
     EXPECT_EQ(broker.last("home/status"), "offline");
     EXPECT_TRUE(broker.is_closed);
@@ -192,10 +196,66 @@ TEST_F(BridgeTest, RefusesBadCommands) {
         EXPECT_NE(broker.last("home/error"), "") << payload;
         broker.published.clear();
     }
-    tell("home/s1/motion/set", "ON");
-    tell("home/l2/on/set", "ON");
     tell("elsewhere/lp/on/set", "ON");
     EXPECT_TRUE(broker.published.empty());
+}
+
+TEST_F(BridgeTest, SaysInWordsOfTopicsWhatIsWanted) {
+    const struct {
+        const char *topic, *payload, *reason;
+    } cases[] = {
+        {"lp/level", "101", "`101` is given, wanted a number from 0 to 100"},
+        {"lp/level", "95%", "`95%` is given, wanted a number from 0 to 100"},
+        {"lp/on", "DIM", "`DIM` is given, wanted ON or OFF"},
+        {"lp/color", "300,0,0", "`300,0,0` is given, wanted three numbers R,G,B from 0 to 255"},
+        {"lp/color", "1,2", "`1,2` is given, wanted three numbers R,G,B from 0 to 255"},
+        {"s1/motion", "ON", "a sensor reports this state, and no command sets it"},
+        {"l2/on", "ON", "no thing of the room has this state, see home/+/+"}};
+    for (const auto& [topic, payload, reason] : cases) {
+        broker.published.clear();
+        tell("home/" + std::string(topic) + "/set", payload);
+        EXPECT_EQ(broker.last("home/error"),
+                  "ERR 400 home/" + std::string(topic) + "/set: " + reason);
+    }
+}
+
+TEST(MqttTopics, SharesComeBackAsTheyWereGiven) {
+    for (int level = 0; level <= 100; ++level)
+        EXPECT_EQ(payloadOf("level", formatDouble(level / 100.0), true), std::to_string(level));
+    EXPECT_EQ(payloadOf("level", "0.3333", true), "33.33");
+}
+
+/// A broker with what an earlier run left, among it a thing that this room lacks.
+TEST(MqttSurvey, RemovesWhatAnEarlierRunLeft) {
+    MemoryBroker broker;
+    const std::string device = R"("device":{"name":"home","manufacturer":"ispace"}})";
+    broker.incoming = {
+        {"home/status", "online", true},
+        {"homeassistant/light/home_old/config",
+         R"({"state_topic":"home/old/on","brightness_state_topic":"home/old/level",)" + device,
+         true},
+        {"homeassistant/light/other/config",
+         R"({"state_topic":"their/on","device":{"name":"home","manufacturer":"them"}})", true},
+        {"homeassistant/light/cut/config", R"({"state_topic":"home/cut/on",)", true}};
+    MemoryClient client(broker);
+    const MqttSurvey survey(client, "home");
+    EXPECT_EQ(survey.leftovers(), (std::set<std::string>{"homeassistant/light/home_old/config",
+                                                         "home/old/on", "home/old/level"}));
+    EXPECT_EQ(broker.subscriptions, std::vector<std::string>{"home/run"});
+}
+
+TEST(MqttSurvey, ARunThatAnswersKeepsItsPrefix) {
+    MemoryBroker broker;
+    broker.incoming = {{"home/status", "online", true}, {"home/run", "here 7", false}};
+    MemoryClient client(broker);
+    EXPECT_THROW(MqttSurvey(client, "home"), FormatError);
+}
+
+TEST_F(BridgeTest, AnswersOtherRuns) {
+    broker.published.clear();
+    broker.incoming.push_back({"home/run", "ask another", false});
+    bridge->serve();
+    EXPECT_TRUE(broker.last("home/run").starts_with("here "));
 }
 
 TEST_F(BridgeTest, TellsAllAgainAfterAReconnection) {

@@ -30,7 +30,7 @@ constexpr auto kLastMessages = std::chrono::milliseconds(500);
 /// Messages kept for a broker that is away; then the oldest are dropped.
 constexpr std::size_t kMaxKept = 100'000;
 /// Messages that have arrived between two calls of take(), and bytes of each; further are dropped.
-constexpr std::size_t kMaxIncoming = 10'000, kMaxPayload = 1024;
+constexpr std::size_t kMaxIncoming = 10'000, kMaxPayload = 2048;
 
 [[noreturn]] void fail(const std::string& message) {
     throw FormatError(Diagnostic{"", 0, 0, message});
@@ -52,6 +52,7 @@ struct Library {
     decltype(&mosquitto_loop_stop) stop;
     decltype(&mosquitto_publish) publish;
     decltype(&mosquitto_subscribe) subscribe;
+    decltype(&mosquitto_unsubscribe) unsubscribe;
     decltype(&mosquitto_connect_callback_set) on_connect;
     decltype(&mosquitto_disconnect_callback_set) on_disconnect;
     decltype(&mosquitto_publish_callback_set) on_publish;
@@ -82,6 +83,7 @@ Library::Library() {
     find(stop, "mosquitto_loop_stop");
     find(publish, "mosquitto_publish");
     find(subscribe, "mosquitto_subscribe");
+    find(unsubscribe, "mosquitto_unsubscribe");
     find(on_connect, "mosquitto_connect_callback_set");
     find(on_disconnect, "mosquitto_disconnect_callback_set");
     find(on_publish, "mosquitto_publish_callback_set");
@@ -101,6 +103,7 @@ class MosquittoClient final : public MqttClient {
 
     void publish(MqttMessage message) override;
     void subscribe(const std::string& topic) override;
+    void unsubscribe(const std::string& topic) override;
     std::vector<MqttMessage> take() override;
     [[nodiscard]] int connections() const override;
     void close() override;
@@ -239,6 +242,16 @@ void MosquittoClient::subscribe(const std::string& topic) {
         is_connected = is_connected_;
     }
     if (is_connected) library_.subscribe(mosquitto_, nullptr, topic.c_str(), kAtLeastOnce);
+}
+
+void MosquittoClient::unsubscribe(const std::string& topic) {
+    bool is_connected = false;
+    {
+        const std::lock_guard lock(mutex_);
+        std::erase(subscriptions_, topic);
+        is_connected = is_connected_;
+    }
+    if (is_connected) library_.unsubscribe(mosquitto_, nullptr, topic.c_str());
 }
 
 void MosquittoClient::received(const mosquitto_message& message) {

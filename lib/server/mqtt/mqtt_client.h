@@ -26,7 +26,8 @@ class MqttClient {
     virtual void publish(MqttMessage message) = 0;
     /// Subscribes to a topic, at each reconnection anew.
     virtual void subscribe(const std::string& topic) = 0;
-    /// Returns and clears the messages that have arrived, in order: 10 000 at most, of 1 kB each.
+    virtual void unsubscribe(const std::string& topic) = 0;
+    /// Returns and clears the messages that have arrived, in order: 10 000 at most, of 2 kB each.
     virtual std::vector<MqttMessage> take() = 0;
     /// Returns the number of connections so far: the broker may have lost its messages since.
     [[nodiscard]] virtual int connections() const = 0;

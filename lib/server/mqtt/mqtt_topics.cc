@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/json_writer.h"
+#include "base/message.h"
 #include "base/number.h"
 
 namespace ispace {
@@ -21,6 +22,13 @@ bool isFlag(std::string_view key) {
     return key == "on" || key == "open" || key == "blind" || key == "motion";
 }
 
+/// Rounds to significant digits.
+double roundedTo(double value, int digits) {
+    if (value == 0 || !std::isfinite(value)) return value;
+    const double scale = std::pow(10, digits - std::ceil(std::log10(std::abs(value))));
+    return std::round(value * scale) / scale;
+}
+
 /// Multiplies each number of a list; "" if one is none.
 std::string scaled(std::string_view list, double factor, bool is_whole) {
     std::string out;
@@ -28,7 +36,9 @@ std::string scaled(std::string_view list, double factor, bool is_whole) {
         const std::string_view part = list.substr(0, list.find(','));
         const auto number = parseDouble(part);
         if (!number) return "";
-        const double value = *number * factor;
+        // A share of 0.55 is 55 per cent: the product of two doubles is 55.00000000000001.
+        constexpr int kDigits = 12;
+        const double value = roundedTo(*number * factor, kDigits);
         out.append(out.empty() ? "" : ",");
         out += is_whole ? std::to_string(std::llround(value)) : formatDouble(value);
         if (part.size() == list.size()) return out;
@@ -94,6 +104,36 @@ std::string payloadOf(std::string_view key, std::string_view value, bool is_actu
     return std::string(value);
 }
 
+std::string wantedPayload(std::string_view key, const KeySpec* spec, std::string_view payload) {
+    if (isColor(key)) {
+        const std::string color = scaled(payload, 1, false);
+        std::size_t numbers = 0;
+        bool is_good = !color.empty();
+        for (std::string_view rest = color; is_good && !rest.empty(); ++numbers) {
+            const std::size_t end = std::min(rest.find(','), rest.size());
+            const double number = parseDouble(rest.substr(0, end)).value_or(-1);
+            is_good = number >= 0 && number <= kFullColor;
+            rest.remove_prefix(std::min(end + 1, rest.size()));
+        }
+        constexpr std::size_t kColors = 3;
+        return is_good && numbers == kColors ? "" : "three numbers R,G,B from 0 to 255";
+    }
+    if (spec == nullptr) return "";
+    if (spec->type == KeyType::Flag) {
+        const std::string word = valueOfPayload(key, payload);
+        for (const char* known : {"on", "off", "true", "false", "yes", "no", "1", "0"})
+            if (word == known) return "";
+        return "ON or OFF";
+    }
+    if (spec->type != KeyType::Number) return "";
+    const double scale = isShare(key) ? kPerCent : 1;
+    const std::optional<double> number = parseDouble(payload);
+    if (number && *number >= scale * spec->lower && *number <= scale * spec->upper) return "";
+    if (!std::isfinite(spec->lower) || !std::isfinite(spec->upper)) return number ? "" : "a number";
+    return "a number from " + formatDouble(scale * spec->lower) + " to " +
+           formatDouble(scale * spec->upper);
+}
+
 std::string valueOfPayload(std::string_view key, std::string_view payload) {
     if (isShare(key)) return std::string(payload) + '%';
     if (isColor(key)) return scaled(payload, 1 / kFullColor, false);
@@ -121,6 +161,8 @@ class Entity {
         json_.key("availability_topic").value(statusTopic(prefix));
         json_.key("device").beginObject().key("identifiers").beginArray().value(prefix).endArray();
         json_.key("name").value(prefix).key("manufacturer").value("ispace").endObject();
+        json_.key("origin").beginObject().key("name").value("ispace");
+        json_.key("sw_version").value(version()).endObject();
         json_.endObject();
         return {.topic = "homeassistant/" + std::string(component) + '/' + id_ + "/config",
                 .payload = json_.take(),
@@ -165,7 +207,13 @@ std::vector<MqttMessage> discoveryOf(const MqttThing& thing, const std::string& 
         Entity entity(thing.id, plain);
         if (!component.device_class.empty())
             entity.json().key("device_class").value(component.device_class);
-        if (!component.unit.empty()) entity.json().key("unit_of_measurement").value(component.unit);
+        // Home Assistant keeps statistics of numbers that say so.
+        if (!component.unit.empty())
+            entity.json()
+                .key("unit_of_measurement")
+                .value(component.unit)
+                .key("state_class")
+                .value("measurement");
         entity.addTopics("", thing.keys[held++]);
         for (; component.component == "light" && held < thing.keys.size(); ++held) {
             const MqttKey& key = thing.keys[held];

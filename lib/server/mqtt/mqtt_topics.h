@@ -20,6 +20,10 @@ std::string topicId(std::string_view id);
 /// Converts a state to its payload: ON or OFF, of an actuator per cent or R,G,B to 255, or the
 /// value itself.
 std::string payloadOf(std::string_view key, std::string_view value, bool is_actuator);
+/// Returns what a command has to be, in the words of its topic, if the payload is not that: "ON or
+/// OFF", "0 to 100"; "" for a good one, and for a state whose values the records know alone.
+/// \param spec of the key
+std::string wantedPayload(std::string_view key, const KeySpec* spec, std::string_view payload);
 /// Converts a payload to a value of the record language, which may be invalid.
 std::string valueOfPayload(std::string_view key, std::string_view payload);
 

@@ -144,17 +144,70 @@ void writeTime(const Question& question, JsonWriter& out) {
 void writeParameterNames(const Question& question, JsonWriter& out) {
     out.key("names").beginArray();
     for (const RosParameter& one : rosParameters(question.simulation, question.feed.isOfOneRoom()))
-        out.value(one.name);
+        out.value(std::string(kNode) + ':' + one.name);
     out.endArray();
 }
 
-/// The value is JSON within a text, "" if there is no such parameter.
-void writeParameter(const Question& question, JsonWriter& out) {
-    const std::string name = question.argument("name");
+/// Returns a parameter as JSON; "" without.
+std::string parameterText(const Question& question) {
+    const std::string name = parameterNamed(question.argument("name"));
     JsonWriter value;
     for (const RosParameter& one : rosParameters(question.simulation, question.feed.isOfOneRoom()))
         if (one.name == name) std::visit([&](const auto& it) { value.value(it); }, one.value);
-    out.key("value").value(value.text().empty() ? question.argument("default") : value.text());
+    return value.take();
+}
+
+/// The value is JSON within a text: of a parameter that there is not, the default, else that of an
+/// empty text.
+void writeParameter(const Question& question, JsonWriter& out) {
+    std::string value = parameterText(question);
+    for (const char* name : {"default_value", "default"})
+        if (value.empty()) value = question.argument(name);
+    out.key("value").value(value.empty() ? R"("")" : value);
+}
+
+void writeHasParameter(const Question& question, JsonWriter& out) {
+    out.key("exists").value(!parameterText(question).empty());
+}
+
+/// All parameters are those of the running world.
+void writeDeletedParameter(const Question& question, JsonWriter& out) {
+    const bool is_known = !parameterText(question).empty();
+    out.key("successful")
+        .value(false)
+        .key("reason")
+        .value(is_known ? "parameters of the world cannot be deleted"
+                        : "there is no such parameter");
+}
+
+void writeActionServers(const Question& /*question*/, JsonWriter& out) {
+    out.key("action_servers").value(Texts());
+}
+
+void writeServiceNode(const Question& question, JsonWriter& out) {
+    const Texts names = serviceNames();
+    const bool is_ours =
+        std::find(names.begin(), names.end(), question.argument("service")) != names.end();
+    out.key("node").value(is_ours ? kNode : "");
+}
+
+/// The services have neither arguments nor answers.
+void writeEmptyDetails(const Question& question, JsonWriter& out, const char* part) {
+    out.key("typedefs").beginArray();
+    if (question.argument("type") == kRosEmptyService) {
+        out.beginObject().key("type").value(std::string(kRosEmptyService) + part);
+        for (const char* key :
+             {"fieldnames", "fieldtypes", "fieldarraylen", "examples", "constnames", "constvalues"})
+            out.key(key).value(Texts());
+        out.endObject();
+    }
+    out.endArray();
+}
+void writeRequestDetails(const Question& question, JsonWriter& out) {
+    writeEmptyDetails(question, out, "_Request");
+}
+void writeResponseDetails(const Question& question, JsonWriter& out) {
+    writeEmptyDetails(question, out, "_Response");
 }
 
 void writeVersion(const Question& /*question*/, JsonWriter& out) {
@@ -209,6 +262,12 @@ constexpr ApiService kServices[] = {{"topics", writeTopics},
                                     {"message_details", writeMessageDetails},
                                     {"get_param_names", writeParameterNames},
                                     {"get_param", writeParameter},
+                                    {"has_param", writeHasParameter},
+                                    {"delete_param", writeDeletedParameter},
+                                    {"action_servers", writeActionServers},
+                                    {"service_node", writeServiceNode},
+                                    {"service_request_details", writeRequestDetails},
+                                    {"service_response_details", writeResponseDetails},
                                     {"get_time", writeTime},
                                     {"get_ros_version", writeVersion}};
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "sense/formats/rosbag.h"
+
 namespace ispace {
 
 namespace {
@@ -36,8 +38,9 @@ void RosLog::sync() {
             left_out_.insert(entry.channel.topic);
             continue;
         }
-        lines_[number].channel =
-            file_.addChannel({static_cast<std::uint16_t>(entry.channel.type), entry.channel.topic});
+        lines_[number].channel = file_.addChannel(
+            bagChannel(static_cast<std::uint16_t>(entry.channel.type), entry.channel.topic,
+                       {entry.channel.quality.depth, entry.channel.quality.is_latched}));
         ++channels_;
         feed_->want(number);
     }

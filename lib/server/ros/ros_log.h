@@ -35,6 +35,7 @@ class RosLog {
     /// Returns the number of topics without a channel in the file; one that comes again counts
     /// once.
     [[nodiscard]] std::size_t leftOut() const { return left_out_.size(); }
+    [[nodiscard]] McapContent content() const { return file_.content(); }
 
   private:
     /// A topic of the feed in the file.

@@ -34,6 +34,12 @@ std::vector<RosParameter> rosParameters(const Simulation& simulation, bool with_
     return out;
 }
 
+std::string parameterNamed(const std::string& name) {
+    for (const std::string_view node : {"/simrun:", "simrun:"})
+        if (name.starts_with(node)) return name.substr(node.size());
+    return name;
+}
+
 std::optional<std::string> requestToSet(const Simulation& simulation, bool with_things,
                                         const std::string& name, const nlohmann::json& value) {
     const std::vector<RosParameter> all = rosParameters(simulation, with_things);

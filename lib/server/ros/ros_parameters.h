@@ -21,6 +21,11 @@ struct RosParameter {
 /// \param with_things else those of the clock alone
 std::vector<RosParameter> rosParameters(const Simulation& simulation, bool with_things = true);
 
+/// Returns the name of a parameter without that of its node, which rosapi puts before it: "r1.at"
+/// of
+/// "/simrun:r1.at".
+std::string parameterNamed(const std::string& name);
+
 /// Returns the request that sets a parameter: "SET r1.at=1,2", "PAUSE". Empty if there is no such
 /// parameter, it cannot be set, or the value has another type.
 std::optional<std::string> requestToSet(const Simulation& simulation, bool with_things,

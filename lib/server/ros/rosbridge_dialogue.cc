@@ -11,6 +11,7 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "server/ros/ros_api.h"
+#include "server/ros/ros_parameters.h"
 #include "server/ros/ros_text.h"
 
 namespace ispace {
@@ -73,9 +74,11 @@ std::string cborPublication(const std::string& topic) {
 
 WebMessage RosbridgeDialogue::write(std::uint32_t /*key*/, const RosFeed::Entry& topic,
                                     const RosMessage& message) {
-    const std::string& name = topic.channel.topic;
-    const auto wish = wishes_.find(name);
-    const Form form = wish == wishes_.end() ? Form::Json : wish->second.form;
+    const auto wish = wishes_.find(topic.channel.topic);
+    const bool is_known = wish != wishes_.end();
+    // Clients find their topic by the name that they asked for.
+    const std::string& name = is_known ? wish->second.name : topic.channel.topic;
+    const Form form = is_known ? wish->second.form : Form::Json;
     if (form == Form::Json) {
         JsonWriter head;
         head.beginObject().key("op").value("publish").key("topic").value(name).key("msg");
@@ -150,6 +153,7 @@ void RosbridgeDialogue::subscribeTo(const Json& request) {
     const double wait = figureOf(request, "throttle_rate", kMaxMilliseconds);
     wish.ids[id] = {std::chrono::milliseconds(std::llround(wait)),
                     static_cast<std::size_t>(figureOf(request, "queue_length", kMaxQueue))};
+    wish.name = wordOf(request, "topic");
     wish.form = form == "cbor" ? Form::Cbor : form == "cbor-raw" ? Form::Raw : Form::Json;
     apply(topic, wish);
 }
@@ -243,6 +247,7 @@ void RosbridgeDialogue::callService(const Json& request) {
     if (const auto values = rosApi(feed(), state().simulation(), std::string_view(name).substr(1),
                                    memberOf(request, "args")))
         return answer(id, service, true, *values);
+    if (name == "/rosapi/set_param") return setParameter(memberOf(request, "args"), id, service);
     const auto services = rosServices();
     const auto found = std::find_if(services.begin(), services.end(),
                                     [&](const RosService& one) { return one.name == name; });
@@ -255,6 +260,27 @@ void RosbridgeDialogue::callService(const Json& request) {
                      [this, id, service, fail](bool is_done, std::string_view text) {
                          is_done ? answer(id, service, true, "{}") : fail(text);
                      });
+}
+
+/// Sets a parameter to a value, which is JSON within a text, as of rosapi in ROS 2.
+void RosbridgeDialogue::setParameter(const Json& arguments, const std::string& id,
+                                     const std::string& service) {
+    const auto respond = [this, id, service](const std::string& reason) {
+        JsonWriter json;
+        json.beginObject().key("successful").value(reason.empty()).key("reason").value(reason);
+        answer(id, service, true, json.endObject().take());
+    };
+    const std::string name = parameterNamed(wordOf(arguments, "name"));
+    const Json value = Json::parse(wordOf(arguments, "value"), nullptr, false);
+    const auto line = requestToSet(state().simulation(), feed().isOfOneRoom(), name, value);
+    if (!line) return respond(excerpt(name) + " cannot be set to this");
+    // PAUSE and RESUME themselves do not need it.
+    if (!orders().hasToken())
+        return respond(excerpt(name) + " needs the token of this run: ?token=x");
+    if (!orders().mayRequest()) return respond("too many calls at once");
+    orders().request(*line, [respond](bool is_done, std::string_view text) {
+        respond(is_done ? "" : std::string(text));
+    });
 }
 
 /// \param values JSON; for a failure the reason as a text of JSON

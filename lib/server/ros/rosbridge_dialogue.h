@@ -32,6 +32,7 @@ class RosbridgeDialogue final : public RosDialogue {
         };
         std::map<std::string, One> ids;
         Form form = Form::Json;  ///< of the newest request
+        std::string name = {};   ///< the topic as that request calls it, perhaps without its slash
     };
     struct Op;
 
@@ -47,6 +48,7 @@ class RosbridgeDialogue final : public RosDialogue {
     void unadvertise(const Json& request);
     void publish(const Json& request);
     void callService(const Json& request);
+    void setParameter(const Json& arguments, const std::string& id, const std::string& service);
     void ignore(const Json& /*request*/) {}
     void apply(const std::string& topic, const Wish& wish);
     void answer(const std::string& id, std::string_view service, bool is_done,

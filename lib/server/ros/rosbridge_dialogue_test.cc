@@ -154,6 +154,26 @@ TEST(Rosbridge, AnswersRosapi) {
               1U);
     EXPECT_EQ(talk.call("rosapi/get_param", {{"name", "clock.paused"}})["values"]["value"], "true");
     talk.step(15);
+    EXPECT_EQ(talk.call("rosapi/get_param", {{"name", "/simrun:clock.paused"}})["values"]["value"],
+              "true");
+    EXPECT_EQ(talk.call("rosapi/get_param", {{"name", "/simrun:none"}})["values"]["value"], "\"\"");
+    EXPECT_EQ(talk.call("rosapi/get_param",
+                        {{"name", "none"}, {"default_value", "7"}})["values"]["value"],
+              "7");
+    EXPECT_EQ(talk.call("rosapi/get_param_names")["values"]["names"][0], "/simrun:clock.paused");
+    EXPECT_EQ(talk.call("rosapi/has_param", {{"name", "clock.rate"}})["values"]["exists"], true);
+    EXPECT_EQ(talk.call("rosapi/has_param", {{"name", "none"}})["values"]["exists"], false);
+    EXPECT_EQ(talk.call("rosapi/delete_param", {{"name", "clock.rate"}})["values"]["successful"],
+              false);
+    EXPECT_EQ(talk.call("rosapi/action_servers")["values"]["action_servers"], json::array());
+    const json set = talk.call("rosapi/set_param",
+                               {{"name", "/simrun:clock.paused"}, {"value", "\"x\""}})["values"];
+    EXPECT_EQ(set["successful"], false);
+    EXPECT_EQ(set["reason"], "clock.paused cannot be set to this");
+    for (const char* details :
+         {"rosapi/service_request_details", "rosapi/service_response_details"})
+        EXPECT_EQ(talk.call(details, {{"type", "std_srvs/srv/Empty"}})["values"]["typedefs"].size(),
+                  1U);
     EXPECT_EQ(talk.call("rosapi/get_time")["values"]["time"],
               json({{"sec", 1}, {"nanosec", 500'000'000}}));
     const json twist = talk.call("rosapi/message_details",
