@@ -17,7 +17,8 @@ namespace ispace {
 
 namespace {
 
-/// A sensor nearer to a face lies on it, whatever side rounding puts it on: the face hides no other.
+/// A sensor nearer to a face lies on it, whatever side rounding puts it on: the face hides no
+/// other.
 constexpr double kOnFace = 1e-3;
 /// Ends of faces this near to each other meet.
 constexpr double kJoint = 1e-6;
