@@ -50,22 +50,20 @@ CellSet cellsOfScan(const Grid& grid, const LevelViews& level, const Sensor& sen
     return cells;
 }
 
-/// Removes the things of the room that a model lists.
+/// Removes the things of the room that a model lists, which do not change what it sees.
 SensorModel withoutLists(SensorModel model) {
-    if (auto* const uwb = std::get_if<Uwb>(&model)) {
-        uwb->tags = {};
-        uwb->anchors = {};
-    } else if (auto* const rfid = std::get_if<Rfid>(&model)) {
-        rfid->tags = {};
-    } else if (auto* const mote = std::get_if<Mote>(&model)) {
-        mote->motes = {};
-        mote->grid = {};
-    } else if (auto* const lux = std::get_if<Lux>(&model)) {
-        lux->lights = {};
-        lux->beams = {};
-    } else if (auto* const microphone = std::get_if<Microphone>(&model)) {
-        microphone->sources = {};
-    }
+    const auto clear = []<typename T>(SharedList<T>& list) { list = {}; };
+    std::visit(
+        [&clear](auto& kind) {
+            if constexpr (requires { clear(kind.tags); }) clear(kind.tags);
+            if constexpr (requires { clear(kind.anchors); }) clear(kind.anchors);
+            if constexpr (requires { clear(kind.motes); }) clear(kind.motes);
+            if constexpr (requires { clear(kind.grid); }) clear(kind.grid);
+            if constexpr (requires { clear(kind.lights); }) clear(kind.lights);
+            if constexpr (requires { clear(kind.beams); }) clear(kind.beams);
+            if constexpr (requires { clear(kind.sources); }) clear(kind.sources);
+        },
+        model);
     return model;
 }
 

@@ -60,7 +60,9 @@ void Server::logTopics(ByteSink write, RosScenery scenery) {
 
 std::size_t Server::topicsLeftOut() const { return data_->log ? data_->log->leftOut() : 0; }
 
-McapContent Server::loggedTopics() const { return data_->log.value().content(); }
+std::string Server::bagMetadata(const std::string& file) const {
+    return data_->log.value().metadata(file);
+}
 
 std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,
                                 const Endpoint& endpoint) {

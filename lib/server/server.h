@@ -118,8 +118,8 @@ class Server {
     void logTopics(ByteSink write, RosScenery scenery = {});
     /// Returns the number of topics that the MCAP file has no channel for.
     [[nodiscard]] std::size_t topicsLeftOut() const;
-    /// Returns what that file holds. \pre logTopics()
-    [[nodiscard]] McapContent loggedTopics() const;
+    /// Returns the text of `metadata.yaml` for that file, by its name in a folder. \pre logTopics()
+    [[nodiscard]] std::string bagMetadata(const std::string& file) const;
     /// Serves a robot or sensor through the protocol of a real device at a separate endpoint. Call
     /// before run(). \returns "127.0.0.1:10940"
     /// \throws UsageError if the world has no such device, std::system_error naming the endpoint

@@ -15,6 +15,7 @@
 #include "base/number.h"
 #include "cli/common_options.h"
 #include "coverage/localisation.h"
+#include "extensions.h"
 #include "record/schema.h"
 
 namespace ispace {
@@ -187,11 +188,14 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     addFileOptions();
     line_.group("Jobs");
     addShareOptions();
+    ToolExtensions extensions(toolExtensions(), "arrange");
+    extensions.declare(line_);
     addSceneRules(line_, options_.rules);
     addStoreyOption(line_, options_.rules, "default: all storeys");
     addCommonOptions(line_, options_.common, "write the layout there (default: stdout)");
     line_.parse(argc, argv);
-    settle();
+    options_.task = extensions.task(line_, {options_.common, options_.rules, options_.operands});
+    if (!options_.task) settle();
 }
 
 void ArrangeCommand::addPlaceOptions() {

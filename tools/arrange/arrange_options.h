@@ -10,6 +10,7 @@
 #include "cli/batch.h"
 #include "cli/command_line.h"
 #include "cli/common_options.h"
+#include "cli/extension.h"
 #include "cli/presence_ways.h"
 #include "cli/report_options.h"
 
@@ -35,6 +36,7 @@ struct ArrangeToolOptions {
     std::vector<std::string> robust_rooms;  ///< of --robust rooms:
     std::string trace_file, curve_file, mps_file, report_file, heat_file, certificate_file;
     ReportWords page;                  ///< of --report and --material
+    ExtensionTask task;                ///< instead of a layout; empty: none
     std::string verify_file;           ///< a certificate to check instead of a search
     std::optional<double> time_limit;  ///< seconds
     BatchOptions batch;

@@ -232,6 +232,7 @@ void arrangeJob(const ArrangeCommand& command, const BatchJob& job, const Common
 
 void arrangeSensors(const ArrangeCommand& command) {
     const ArrangeToolOptions& options = command.options();
+    if (options.task) return options.task();
     if (!options.verify_file.empty()) return verifyCertificate(options);
     if (!options.batch.list.empty())
         return runBatch(

@@ -15,7 +15,6 @@
 #include "io/exporters.h"
 #include "io/glb/glb_write.h"
 #include "sense/formats/mcap_writer.h"
-#include "sense/formats/rosbag.h"
 #include "simrun/simrun_run.h"
 
 namespace ispace {
@@ -206,8 +205,7 @@ TopicLog::TopicLog(Server& server, Simulation& simulation, const SimrunOptions& 
 void TopicLog::commit() {
     file_.commit();
     if (const std::string metadata = bagMetadataFile(*options_); !metadata.empty())
-        writeAll(metadata,
-                 bagMetadata(server_->loggedTopics(), fs::path(name_).filename().string()));
+        writeAll(metadata, server_->bagMetadata(fs::path(name_).filename().string()));
     if (const std::size_t left_out = server_->topicsLeftOut(); left_out > 0)
         warn(options_->common, "simrun",
              name_ + ": " + std::to_string(left_out) +

@@ -25,6 +25,10 @@ RosLog::~RosLog() {
     for (const auto& [topic, line] : lines_) feed_->unwant(topic);
 }
 
+std::string RosLog::metadata(const std::string& file) const {
+    return bagMetadata(file_.content(), file);
+}
+
 /// Adapts to the topics of a changed world.
 void RosLog::sync() {
     feed_->sync();

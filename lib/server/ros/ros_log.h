@@ -35,7 +35,8 @@ class RosLog {
     /// Returns the number of topics without a channel in the file; one that comes again counts
     /// once.
     [[nodiscard]] std::size_t leftOut() const { return left_out_.size(); }
-    [[nodiscard]] McapContent content() const { return file_.content(); }
+    /// Returns the text of the bag's metadata, see bagMetadata(). \param file name of the MCAP file
+    [[nodiscard]] std::string metadata(const std::string& file) const;
 
   private:
     /// A topic of the feed in the file.
