@@ -356,7 +356,7 @@ DropoutFit fitDropout(std::span<const BeamSample> samples) {
     if (lost < kLeastLost) return fit;
     double best = flat + std::log(all);  // two parameters more
     constexpr int kStep = 2, kMost = 90;
-    const auto tryRamp = [&](int from, int to) {
+    const auto try_ramp = [&](int from, int to) {
         const auto [likelihood, d] = bestDropout(counts, from, to);
         if (likelihood <= best) return;
         best = likelihood;
@@ -365,12 +365,12 @@ DropoutFit fitDropout(std::span<const BeamSample> samples) {
         fit.graze = {Angle::degrees(from), Angle::degrees(to)};
     };
     for (int from = 0; from < kMost; from += kStep)
-        for (int to = from + kStep; to <= kMost; to += kStep) tryRamp(from, to);
+        for (int to = from + kStep; to <= kMost; to += kStep) try_ramp(from, to);
     if (fit.graze) {
         const int from = static_cast<int>(fit.graze->first.degrees());
         const int to = static_cast<int>(fit.graze->second.degrees());
         for (int f = std::max(0, from - 1); f <= from + 1; ++f)
-            for (int t = std::max(f, to - 1); t <= std::min(kMost, to + 1); ++t) tryRamp(f, t);
+            for (int t = std::max(f, to - 1); t <= std::min(kMost, to + 1); ++t) try_ramp(f, t);
     }
     return fit;
 }
