@@ -115,9 +115,17 @@ for option in $refused; do
     expect_error 2 coverage --batch two -o reports.jsonl "$option"
     grep -q -e "^coverage: error: ${option%%=*} is about .*--batch" err || fail "$option: $(cat err)"
 done
+# Tasks of extensions are no lists, and their options say so.
+expect_error 2 coverage --batch two -o reports.jsonl --tracks t.csv
+grep -q -- "--batch does not go with --tracks" err || fail "--tracks: $(cat err)"
+for option in --frame-rate=5 --truths=all --films=f; do
+    expect_error 2 coverage --batch two -o reports.jsonl "$option"
+    grep -q -- "${option%%=*} goes with --tracks" err || fail "$option: $(cat err)"
+done
+tasks="--tracks --frame-rate --truths --films"
 coverage --help | grep -oE '^  (-., )?--?[A-Za-z-]+' | sed 's/.* //' | sort >options
 # shellcheck disable=SC2086
-printf '%s\n' $works $refused -MF | sed 's/=.*//' | sort | diff - options || fail "an option that --batch does not know"
+printf '%s\n' $works $refused $tasks -MF | sed 's/=.*//' | sort | diff - options || fail "an option that --batch does not know"
 for option in "--cell 0.5" "--grid-of beams" "--height 1" "--plane 1" "--parallax 30" "--density 50" \
     "--include-files anywhere" "--max-work none"; do
     # shellcheck disable=SC2086
