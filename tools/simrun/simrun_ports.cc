@@ -169,8 +169,8 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
 
 std::string mcapFile(const SimrunOptions& options) {
     if (!options.mcap.ends_with('/')) return options.mcap;
-    fs::path folder = fs::path(options.mcap).lexically_normal().parent_path();
-    return (folder / (fs::absolute(folder).filename().string() + "_0.mcap")).string();
+    const fs::path folder = fs::absolute(options.mcap).lexically_normal().parent_path();
+    return (folder / (folder.filename().string() + "_0.mcap")).string();
 }
 
 std::string bagMetadataFile(const SimrunOptions& options) {

@@ -2,6 +2,7 @@
 #include "extensions/judge/judge.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -105,7 +106,7 @@ class TrackJudge : public OptionGroup {
                      judgementMap(judgement, room.scene, "tracks " + judgement.file, width_)
                          .write(*format));
         if (!report_.empty()) writeReport(judgement, room.scene, input.history_line);
-        if (!films_.empty()) writeFilms(judgement, room.scene);
+        if (!films_.empty()) writeFilms(judgement, room.scene, input.common);
         std::vector<std::string> files = filesOf(room);
         files.push_back(tracks_);
         writeDependencies(input.common, files);
@@ -137,6 +138,9 @@ class TrackJudge : public OptionGroup {
         std::vector<std::string> operands = input.operands;
         if (operands.empty()) {
             const std::string scene = sceneOfRecord(run_);
+            if (scene.empty() && fs::exists(fs::path(run_) / "building.yaml"))
+                throw UsageError("the record " + displayName(run_) +
+                                 " is of a building: give the folder of one storey in it");
             if (scene.empty())
                 throw UsageError("the record " + displayName(run_) +
                                  " holds no scene: give ENV and LAYOUT");
@@ -146,7 +150,8 @@ class TrackJudge : public OptionGroup {
     }
 
     [[nodiscard]] Judgement judge(const TaskInput& input, const Scene& scene) const {
-        const TrackFile file = readTracks(bytesOf(tracks_), displayName(tracks_));
+        TrackFile file = readTracks(bytesOf(tracks_), displayName(tracks_));
+        leaveOutKinds(file, input.common);
         const std::optional<RunInfo> info = recordedInfo(run_);
         RunReader reader(run_);
         Judgement judgement;
@@ -167,6 +172,15 @@ class TrackJudge : public OptionGroup {
                      " s long, from the run's beginning on: --frame-rate sets their rate");
         }
         judgement.judged = judgedRun(reader, file, choice, every);
+        const auto& found = judgement.judged.track_places;
+        const auto empty =
+            std::count_if(found.begin(), found.end(), [](const auto& one) { return one.empty(); });
+        if (2 * static_cast<std::size_t>(empty) > found.size())
+            warn(input.common, "coverage",
+                 std::to_string(empty) + " of " + std::to_string(found.size()) +
+                     " frames have no track; frames are " +
+                     formatDouble(judgement.judged.interval) +
+                     " s apart, --frame-rate sets their rate");
         if (reader.isCut())
             warn(input.common, "coverage",
                  "the record ends in the midst of a step, which is left out");
@@ -185,16 +199,40 @@ class TrackJudge : public OptionGroup {
         return judgement;
     }
 
-    /// Returns the length of a MOT file's frames that fills the run; empty if they are its moments.
-    static std::optional<double> frameInterval(const TrackFile& file,
-                                               const std::optional<RunInfo>& info, double every) {
+    /// Removes tracks of the kind that is not judged.
+    void leaveOutKinds(TrackFile& file, const CommonOptions& common) const {
+        if (truths_ == "all") return;
+        const std::string other = truths_ == "people" ? "robot" : "person";
+        const std::size_t before = file.rows.size();
+        std::erase_if(file.rows,
+                      [&](const TrackRow& row) { return file.kinds[row.track] == other; });
+        if (const std::size_t left_out = before - file.rows.size(); left_out > 0)
+            warn(common, "coverage",
+                 std::to_string(left_out) + " positions of tracks of the kind " + other +
+                     " are left out by --truths");
+        if (file.rows.empty())
+            throw UsageError("--truths " + truths_ + ": no track of " + displayName(tracks_) +
+                             " is of that kind");
+    }
+
+    /// Returns the length of a MOT file's frames if they fill the run at a whole rate; empty if
+    /// they are its moments. \throws UsageError for others
+    [[nodiscard]] std::optional<double> frameInterval(const TrackFile& file,
+                                                      const std::optional<RunInfo>& info,
+                                                      double every) const {
         const double frames = file.rows.back().time;
         if (!info || info->steps <= 0 || frames < 2) return {};
         const double duration = static_cast<double>(info->steps) * info->step;
-        constexpr double kSlack = 1.01, kHalf = 0.5;
+        constexpr double kSlack = 1.01, kHalf = 0.5, kOff = 0.01;
         const double by_moments = (frames - 1) * every;
         if (by_moments <= kSlack * duration && by_moments >= kHalf * duration) return {};
-        return duration / (frames - 1);
+        const double rate = (frames - 1) / duration;
+        if (std::abs(rate - std::round(rate)) > kOff * rate)
+            throw UsageError("--frame-rate: say how many frames a second " + displayName(tracks_) +
+                             " has, its " + formatDouble(frames) +
+                             " frames tell no whole rate for the run's " + formatDouble(duration) +
+                             " s");
+        return 1 / std::round(rate);
     }
 
     static void countSensors(Judgement& judgement, const Scene& scene) {
@@ -256,11 +294,18 @@ class TrackJudge : public OptionGroup {
         writeAll(report_, report_format_ == "pdf" ? pdfOf(page) : htmlOf(page));
     }
 
-    void writeFilms(const Judgement& judgement, const Scene& scene) const {
+    void writeFilms(const Judgement& judgement, const Scene& scene,
+                    const CommonOptions& common) const {
         fs::create_directories(films_);
-        for (std::size_t i = 0; i < judgement.losses.size(); ++i)
+        constexpr std::size_t kMostFilms = 100;
+        const std::size_t count = std::min(judgement.losses.size(), kMostFilms);
+        for (std::size_t i = 0; i < count; ++i)
             writeAll((fs::path(films_) / lossFilmName(judgement, i)).string(),
                      lossFilm(judgement, scene, i));
+        if (count < judgement.losses.size())
+            warn(common, "coverage",
+                 "films of the first " + std::to_string(count) + " of " +
+                     std::to_string(judgement.losses.size()) + " losses are written");
     }
 
     std::string tracks_, truths_ = "all", films_, run_, report_, report_format_;

@@ -179,7 +179,9 @@ std::string lossFilm(const Judgement& judgement, const Scene& scene, std::size_t
         return static_cast<std::size_t>(
             std::clamp(at, 0.0, static_cast<double>(run.times.size() - 1)));
     };
-    const std::size_t first = frame_at(loss.begin - kAround), last = frame_at(loss.end + kAround);
+    constexpr double kLongest = 30;
+    const std::size_t first = frame_at(loss.begin - kAround),
+                      last = frame_at(std::min(loss.end + kAround, loss.begin + kLongest));
     const auto stride =
         static_cast<std::size_t>(std::max(1.0, std::round(1 / (kFramesASecond * run.interval))));
     const auto trail = static_cast<std::size_t>(std::max(1.0, kTrail / run.interval));

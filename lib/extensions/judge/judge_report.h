@@ -60,8 +60,8 @@ Picture judgementMap(const Judgement& judgement, const Scene& scene, const std::
                      int width);
 ReportPage judgementPage(const Judgement& judgement, const Scene& scene,
                          const std::string& command);
-/// Draws a loss from 2 s before it to 2 s after it as a film in GIF. \pre index of
-/// Judgement::losses
+/// Draws a loss from 2 s before it to 2 s after it, at most its first 30 s, as a film in GIF. \pre
+/// index of Judgement::losses
 std::string lossFilm(const Judgement& judgement, const Scene& scene, std::size_t index);
 /// Returns "loss-003-ann.gif".
 std::string lossFilmName(const Judgement& judgement, std::size_t index);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/number.h"
 
 namespace ispace {
 
@@ -112,7 +113,9 @@ void placeTracks(const TrackFile& file, const Frames& frames,
     std::vector<std::map<std::size_t, Nearest>> rows(judged.times.size());
     for (const TrackRow& row : file.rows) {
         const double at = (time_of(row) - frames.at(0)) / frames.interval;
-        const double frame = std::round(at);
+        // A row half-way between frames belongs to the earlier one, whatever rounding makes of it.
+        constexpr double kHalf = 0.5 - 1e-6;
+        const double frame = std::floor(at + kHalf);
         if (frame < 0 || frame >= static_cast<double>(rows.size())) {
             ++judged.rows_outside;
             continue;
@@ -132,7 +135,8 @@ void placeTracks(const TrackFile& file, const Frames& frames,
 
 JudgedRun judgedRun(RunReader& run, const TrackFile& file, const FrameChoice& choice,
                     double every) {
-    constexpr std::size_t kMostFrames = 10'000'000;
+    constexpr std::size_t kMostFrames = 2'000'000;
+    constexpr double kLeastInterval = 1e-4;
     TruthReader truths(run, choice.truths);
     if (truths.empty())
         throw FormatError({run.name(), 0, 0, "the record holds no moment", Severity::Error});
@@ -149,6 +153,9 @@ JudgedRun judgedRun(RunReader& run, const TrackFile& file, const FrameChoice& ch
     } else {
         frames.interval = intervalOf(file).value_or(every);
     }
+    if (frames.interval < kLeastInterval)
+        throw UsageError("positions of one track are " + formatDouble(frames.interval) +
+                         " s apart: --frame-rate sets frames that are longer than 0.1 ms");
     JudgedRun judged;
     judged.interval = frames.interval;
     judged.tracks = file.tracks;
@@ -158,8 +165,8 @@ JudgedRun judgedRun(RunReader& run, const TrackFile& file, const FrameChoice& ch
         std::ceil((truths.first() - slack - frames.phase) / frames.interval));
     for (std::int64_t i = 0; truths.reach(frames.at(i)); ++i) {
         if (judged.times.size() == kMostFrames)
-            throw UsageError("the run has more than ten million frames of " +
-                             std::to_string(frames.interval) + " s: --frame-rate sets fewer");
+            throw UsageError("the run has more than two million frames of " +
+                             formatDouble(frames.interval) + " s: --frame-rate sets fewer");
         judged.times.push_back(frames.at(i));
         judged.truth_places.push_back(truths.at(frames.at(i)));
     }
@@ -248,6 +255,7 @@ std::vector<Loss> lossesOf(const JudgedRun& run, const ClearMot& clear) {
     struct State {
         std::optional<std::size_t> track;
         std::optional<Loss> open;
+        std::size_t frame = 0;  // the last one with it
     };
     std::vector<State> states(run.truths.size());
     std::vector<Loss> losses;
@@ -259,6 +267,12 @@ std::vector<Loss> lossesOf(const JudgedRun& run, const ClearMot& clear) {
     forEachTruth(run, clear, [&](std::size_t f, const TruthPlace& one, const FrameMatch* match) {
         State& state = states[one.truth];
         const double time = run.times[f];
+        // A mover that is away is not lost.
+        if (state.open && f > state.frame + 1) {
+            state.open->end = run.times[state.frame + 1];
+            losses.push_back(*std::exchange(state.open, {}));
+        }
+        state.frame = f;
         if (match == nullptr) {
             if (!state.open)
                 state.open =
@@ -278,7 +292,7 @@ std::vector<Loss> lossesOf(const JudgedRun& run, const ClearMot& clear) {
     });
     for (State& state : states)
         if (state.open) {
-            state.open->end = run.times.back();
+            state.open->end = run.times[std::min(state.frame + 1, run.times.size() - 1)];
             losses.push_back(*state.open);
         }
     std::stable_sort(losses.begin(), losses.end(), [](const Loss& a, const Loss& b) {

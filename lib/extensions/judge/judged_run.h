@@ -44,7 +44,7 @@ struct FrameChoice {
 /// rate from the run's beginning; between recorded moments truths are interpolated. A track has at
 /// most one row in a frame, the nearest one within half an interval; later rows of a faster file
 /// are left out. \param every seconds between recorded moments, of which MOT files without a rate
-/// count theirs \throws UsageError for more than ten million frames; FormatError as the reader, and
+/// count theirs \throws UsageError for more than two million frames; FormatError as the reader, and
 /// for a run without truths
 JudgedRun judgedRun(RunReader& run, const TrackFile& file, const FrameChoice& choice, double every);
 
@@ -78,7 +78,7 @@ struct ClassFigures {
     double distance = 0;  ///< sum over the matches, metres
 };
 
-/// Finds the losses: intervals without a match from the second frame of a truth on, and switches. A
+/// Finds the losses: intervals without a match while the truth is there, and switches. A
 /// loss is an entry if the truth was never matched before; unseen if no sensor sees its place at
 /// the begin, if that is known; a crossing if another truth is within 1 m of it there.
 std::vector<Loss> lossesOf(const JudgedRun& run, const ClearMot& clear);

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -81,6 +84,38 @@ TEST(JudgedRun, LossesHaveReasons) {
     EXPECT_DOUBLE_EQ(losses[1].end, 4);
 }
 
+TEST(JudgedRun, AMoverThatIsAwayIsNotLost) {
+    // Ann is lost at 1 s, leaves after 1.5 s, and comes back at 4 s.
+    std::string people = walk("ann", 0, 0, 1.5), tracks = "t,track,x,y\n0,1,0,0\n0.5,1,0,0\n";
+    for (double t = 0; t <= 5; t += 0.5) {
+        people += formatDouble(t) + ",bob,9,9,0,0,0,0\n";
+        if (t >= 4) people += formatDouble(t) + ",ann,0,0,0,0,0,0\n";
+    }
+    std::istringstream lines(people);
+    std::vector<std::string> rows;
+    for (std::string line; std::getline(lines, line);) rows.push_back(line);
+    std::stable_sort(rows.begin(), rows.end(), [](const std::string& a, const std::string& b) {
+        return std::stod(a) < std::stod(b);
+    });
+    people.clear();
+    for (const std::string& row : rows) people += row + '\n';
+    const JudgedRun run = judgedBy(people, tracks);
+    const std::vector<Loss> losses = lossesOf(run, clearMot(scored(run, {""})));
+    const auto of_ann = std::find_if(losses.begin(), losses.end(), [&](const Loss& one) {
+        return run.truths[one.truth].id == "ann";
+    });
+    ASSERT_NE(of_ann, losses.end());
+    EXPECT_DOUBLE_EQ(of_ann->begin, 1);
+    EXPECT_DOUBLE_EQ(of_ann->end, 2);
+}
+
+TEST(JudgedRun, RowsBetweenFramesEachHaveOne) {
+    std::string tracks = "t,track,x,y\n";
+    for (int k = 0; k < 40; ++k) tracks += formatFixed(0.05 + 0.1 * k, 2) + ",1,0,0\n";
+    const JudgedRun run = judgedBy(walk("ann", 0, 0, 4), tracks, 10);
+    for (std::size_t f = 0; f < 40; ++f) EXPECT_EQ(run.track_places[f].size(), 1U) << f;
+}
+
 TEST(JudgedRun, ATrackOfARobotFindsNoPerson) {
     const JudgedRun run =
         judgedBy(walk("ann", 1, 0, 1), "t,track,x,y,kind\n0,1,0,0,robot\n0.5,1,0.5,0,robot\n");
@@ -110,6 +145,12 @@ TEST(TrackFiles, RoundedTimesHaveTheirMeanInterval) {
     for (int k = 0; k < 300; ++k)
         if (k % 7 != 3) text += formatFixed(k / 30.0, 3) + ",1,0,0\n";
     EXPECT_NEAR(intervalOf(readTracks(text, "f")).value(), 1.0 / 30, 1e-5);
+    // With two digits, of two tracks that are told at different moments.
+    text = "t,track,x,y\n";
+    for (int k = 0; k < 300; ++k)
+        text +=
+            formatFixed(k / 30.0, 2) + ",1,0,0\n" + formatFixed(k / 30.0 + 0.01, 2) + ",2,0,0\n";
+    EXPECT_NEAR(intervalOf(readTracks(text, "f")).value(), 1.0 / 30, 1e-4);
     EXPECT_DOUBLE_EQ(
         intervalOf(readTracks("t,track,x,y\n0,1,0,0\n0.5,1,0,0\n1.25,1,0,0\n", "f")).value(), 0.5);
     EXPECT_FALSE(intervalOf(readTracks("t,track,x,y\n0,1,0,0\n0,2,0,0\n", "f")));

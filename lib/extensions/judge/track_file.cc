@@ -134,9 +134,7 @@ class TrackReader {
         if (track == object.end() || !(track->is_string() || track->is_number_integer()))
             fail("\"track\" is neither a text nor a whole number");
         const auto kind = object.find("kind");
-        add(number("t", kMostTime),
-            track->is_string() ? track->get<std::string>()
-                               : std::to_string(track->get<std::int64_t>()),
+        add(number("t", kMostTime), track->is_string() ? track->get<std::string>() : track->dump(),
             {number("x", kMostMetres), number("y", kMostMetres)},
             kind != object.end() && kind->is_string() ? kind->get<std::string>() : std::string());
     }
@@ -188,20 +186,40 @@ TrackFile readTracks(std::string_view bytes, const std::string& name) {
     return file;
 }
 
+namespace {
+
+/// Returns the digits' step of all times: 0.01 for times with two decimals; 0 for more than six.
+double resolutionOf(const TrackFile& file) {
+    constexpr int kMostDigits = 6;
+    double scale = 1;
+    for (int digits = 0; digits <= kMostDigits; ++digits, scale *= 10) {
+        const bool fits = std::all_of(file.rows.begin(), file.rows.end(), [&](const TrackRow& row) {
+            return std::abs(row.time * scale - std::round(row.time * scale)) <
+                   1e-6 * std::max(1.0, row.time);
+        });
+        if (fits) return 1 / scale;
+    }
+    return 0;
+}
+
+}  // namespace
+
 std::optional<double> intervalOf(const TrackFile& file) {
     std::vector<double> intervals;
-    for (std::size_t i = 1; i < file.rows.size(); ++i)
-        if (const double one = file.rows[i].time - file.rows[i - 1].time; one > 0)
-            intervals.push_back(one);
+    std::vector<std::optional<double>> last(file.tracks.size());
+    for (const TrackRow& row : file.rows)
+        if (const auto before = std::exchange(last[row.track], row.time))
+            intervals.push_back(row.time - *before);
     if (intervals.empty()) return {};
     const double least = *std::min_element(intervals.begin(), intervals.end());
     // Times of 30 frames a second with three digits are 33 or 34 ms apart: their mean is the rate.
-    constexpr double kRounding = 0.1, kFew = 20;
+    constexpr double kRounding = 0.1, kMostRounding = 0.45, kFew = 20;
+    const double rounding = std::clamp(1.01 * resolutionOf(file) / least, kRounding, kMostRounding);
     double span = 0, steps = 0;
     for (const double one : intervals) {
         const double count = std::round(one / least);
         if (count > kFew) continue;
-        if (std::abs(one / least - count) > kRounding) return least;
+        if (std::abs(one / least - count) > rounding) return least;
         span += one;
         steps += count;
     }

@@ -36,8 +36,8 @@ struct TrackFile {
 /// line: missing columns, bad numbers, a track twice at one time, no row
 TrackFile readTracks(std::string_view bytes, const std::string& name);
 
-/// Returns the interval of the file's times: the smallest one, or the mean of all if they are
-/// multiples of it but for rounding. Empty for a file of one time. \pre rows are sorted
+/// Returns the interval from row to row of a track: the smallest one of all, or the mean of all if
+/// they are multiples of it but for rounding. Empty for a file of one time. \pre rows are sorted
 std::optional<double> intervalOf(const TrackFile& file);
 
 }  // namespace ispace

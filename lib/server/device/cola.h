@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -154,10 +155,11 @@ class ColaSession : public WireSession {
     WireHost* host_;
     std::string id_;
     ColaTelegrams telegrams_;
-    /// The first and the last beam of scan telegrams, by LMPoutputRange.
+    /// The first and the last beam of scan telegrams, by LMPoutputRange; at first all.
     struct Sector {
-        std::int32_t start = 0, stop = 0;
+        std::int64_t first = 0, last = std::numeric_limits<std::int32_t>::max();
     };
+    [[nodiscard]] std::int32_t angleOf(std::int64_t beam) const;
     ColaFigures figures_;
     Sector sector_;
     std::size_t sensor_ = 0;     // index in the world, valid for:

@@ -122,7 +122,7 @@ bool ColaSession::follow() {
     // Another laser in its place begins with its whole sector.
     if (before.start != figures_.start || before.stop != figures_.stop ||
         before.step != figures_.step)
-        sector_ = {figures_.start, figures_.stop};
+        sector_ = {};
     // Periods restart with another rate and after a replay's seek.
     next_ = std::min(next_, world.period(sensor_) + content_.every);
     return true;
@@ -195,7 +195,7 @@ void ColaSession::read(std::string_view name, std::string_view echo, bool is_bin
         out.i32(figures_.start).i32(figures_.stop);
     } else if (name == "LMPoutputRange") {
         out.u16(1).u32(static_cast<std::uint32_t>(figures_.step));
-        out.i32(sector_.start).i32(sector_.stop);
+        out.i32(angleOf(sector_.first)).i32(angleOf(sector_.last));
     } else if (name == "LMDscandatacfg") {
         out.u8(1).u8(0).u8(content_.remission ? 1 : 0).u8(content_.wide_remission ? 1 : 0);
         out.u8(0).u8(0).u8(0).u8(0).u8(0).u8(0).u8(content_.time ? 1 : 0);
@@ -233,6 +233,15 @@ void ColaSession::set(std::string_view name, std::string_view arguments, bool is
     send(ColaWriter("sWA " + std::string(name), is_binary).frame());
 }
 
+/// Returns the angle of a beam; that of the last one for any after it.
+std::int32_t ColaSession::angleOf(std::int64_t beam) const {
+    const std::int64_t last = std::max(1, laser().beams - 1);
+    if (beam >= last) return figures_.stop;
+    const double share = static_cast<double>(beam) / static_cast<double>(last);
+    return static_cast<std::int32_t>(std::lround(
+        figures_.start + share * (static_cast<double>(figures_.stop) - figures_.start)));
+}
+
 /// Reads LMPoutputRange: a sector, its resolution, start and stop, which are cut to beams. \returns
 /// false, and changes no sector, without a beam between them, and for another resolution
 bool ColaSession::takeSector(std::string_view arguments, bool is_binary) {
@@ -241,15 +250,16 @@ bool ColaSession::takeSector(std::string_view arguments, bool is_binary) {
     const auto start = in.i32(), stop = in.i32();
     if (sectors != 1 || step != static_cast<std::uint32_t>(figures_.step) || !start || !stop)
         return false;
-    const auto first = std::max<std::int64_t>(*start, figures_.start);
-    const auto last = std::min<std::int64_t>(*stop, figures_.stop);
-    if (first > last) return false;
-    // Whole beams, from the first one at or after the start to the last one at or before the stop.
-    const std::int64_t begin = (first - figures_.start + figures_.step - 1) / figures_.step;
-    const std::int64_t end = (last - figures_.start) / figures_.step;
-    if (begin > end) return false;
-    sector_ = {static_cast<std::int32_t>(figures_.start + begin * figures_.step),
-               static_cast<std::int32_t>(figures_.start + end * figures_.step)};
+    // The steps of most lasers are not whole ten-thousandths: beams lie evenly between the ends.
+    const double beams = laser().beams - 1;
+    const double exact = static_cast<double>(figures_.stop - figures_.start) / std::max(beams, 1.0);
+    constexpr double kNear = 5e-4;
+    const double first =
+        std::max(0.0, std::ceil(static_cast<double>(*start - figures_.start) / exact - kNear));
+    const double last =
+        std::min(beams, std::floor(static_cast<double>(*stop - figures_.start) / exact + kNear));
+    if (!(first <= last)) return false;
+    sector_ = {static_cast<std::int64_t>(first), static_cast<std::int64_t>(last)};
     return true;
 }
 
@@ -372,10 +382,13 @@ void ColaSession::appendChannel(ColaWriter& out, std::string_view name, bool wid
     const std::vector<float>& ranges = host_->world().reading(sensor_).scan().ranges;
     const bool is_distance = name == "DIST1";
     out.name(name).f32(is_distance ? figures_.scale : 1).f32(0);
-    const auto first = static_cast<std::size_t>((sector_.start - figures_.start) / figures_.step);
-    const auto last = static_cast<std::size_t>((sector_.stop - figures_.start) / figures_.step);
-    const auto sent = std::span(ranges).subspan(first, std::min(last + 1, ranges.size()) - first);
-    out.i32(sector_.start).u16(static_cast<std::uint32_t>(figures_.step));
+    const auto count = static_cast<std::int64_t>(ranges.size());
+    const std::int64_t first = std::min(sector_.first, count),
+                       last = std::min(sector_.last, count - 1);
+    const auto sent = std::span(ranges).subspan(
+        static_cast<std::size_t>(first),
+        static_cast<std::size_t>(std::max<std::int64_t>(0, last + 1 - first)));
+    out.i32(angleOf(sector_.first)).u16(static_cast<std::uint32_t>(figures_.step));
     out.u16(static_cast<std::uint32_t>(sent.size()));
     for (const float range : sent) {
         const std::uint32_t remission = std::isfinite(range) ? kRemission : 0;

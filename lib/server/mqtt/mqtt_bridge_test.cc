@@ -236,6 +236,7 @@ TEST(MqttSurvey, RemovesWhatAnEarlierRunLeft) {
          true},
         {"homeassistant/light/other/config",
          R"({"state_topic":"their/on","device":{"name":"home","manufacturer":"them"}})", true},
+        {"homeassistant/sensor/odd/config", R"({"device":{"manufacturer":null,"name":7}})", true},
         {"homeassistant/light/cut/config", R"({"state_topic":"home/cut/on",)", true}};
     MemoryClient client(broker);
     const MqttSurvey survey(client, "home");

@@ -142,8 +142,11 @@ MosquittoClient::MosquittoClient(const MqttOptions& options, std::function<void(
     library_.on_connect(
         mosquitto_, [](mosquitto*, void* object, int refusal) { self(object).connected(refusal); });
     library_.on_disconnect(mosquitto_, [](mosquitto*, void* object, int /*reason*/) {
-        const std::lock_guard lock(self(object).mutex_);
-        self(object).is_connected_ = false;
+        {
+            const std::lock_guard lock(self(object).mutex_);
+            self(object).is_connected_ = false;
+        }
+        self(object).changed_.notify_all();
     });
     library_.on_publish(mosquitto_,
                         [](mosquitto*, void* object, int /*id*/) { self(object).arrived(); });
@@ -173,6 +176,11 @@ MosquittoClient::MosquittoClient(const MqttOptions& options, std::function<void(
 
 MosquittoClient::~MosquittoClient() {
     library_.disconnect(mosquitto_);
+    {
+        // Else the broker hears no farewell, and publishes the will.
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, kLastMessages, [this] { return !is_connected_; });
+    }
     library_.stop(mosquitto_, true);
     library_.destroy(mosquitto_);
 }

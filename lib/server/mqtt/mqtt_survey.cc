@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/mqtt/mqtt_survey.h"
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "base/error.h"
 
@@ -33,20 +35,29 @@ MqttSurvey::MqttSurvey(MqttClient& client, const std::string& prefix)
     client.subscribe(kDescriptions);
     // The broker sends retained messages before this one.
     client.publish({topic_, std::string(kAsk) + id_, false});
-    bool is_answered = false, is_online = false;
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (std::chrono::steady_clock::now() < end && (!is_answered || is_online)) {
+    // A run that is marked offline by the end of another one still answers at once.
+    constexpr auto kGrace = std::chrono::milliseconds(100);
+    bool is_answered = false, is_online = false, has_grace = false;
+    auto end = std::chrono::steady_clock::now() + kPatience;
+    while (std::chrono::steady_clock::now() < end) {
         for (const MqttMessage& message : client.take()) {
             if (message.topic == status && message.retain) is_online = message.payload == "online";
             if (message.topic == topic_ && message.payload == std::string(kAsk) + id_)
                 is_answered = true;
-            if (message.topic == topic_ && message.payload.starts_with(kHere))
+            // Of two that start at once, the one with the smaller id goes on.
+            const bool is_rival = message.topic == topic_ && message.payload.starts_with(kAsk) &&
+                                  message.payload.substr(kAsk.size()) < id_;
+            if (message.topic == topic_ && !is_rival) answer(message);
+            if (is_rival || (message.topic == topic_ && message.payload.starts_with(kHere) &&
+                             message.payload.substr(kHere.size()) != id_))
                 throw FormatError({"", 0, 0,
                                    "another run serves the topics " + prefix +
                                        "/... of this broker: end it, or take another prefix "
                                        "(--mqtt-prefix)"});
             collect(message);
         }
+        if (is_answered && !is_online && !std::exchange(has_grace, true))
+            end = std::min(end, std::chrono::steady_clock::now() + kGrace);
         std::this_thread::sleep_for(kPause);
     }
     client.unsubscribe(status);
@@ -59,9 +70,13 @@ void MqttSurvey::collect(const MqttMessage& message) {
     const nlohmann::json entity = nlohmann::json::parse(message.payload, nullptr, false);
     if (!entity.is_object()) return;
     const auto device = entity.find("device");
-    if (device == entity.end() || !device->is_object() ||
-        device->value("manufacturer", "") != "ispace" || device->value("name", "") != prefix_)
-        return;
+    if (device == entity.end() || !device->is_object()) return;
+    // Others' descriptions may hold anything.
+    const auto is = [&device](const char* key, const std::string& wanted) {
+        const auto found = device->find(key);
+        return found != device->end() && found->is_string() && found->get<std::string>() == wanted;
+    };
+    if (!is("manufacturer", "ispace") || !is("name", prefix_)) return;
     leftovers_.insert(message.topic);
     for (const auto& [key, value] : entity.items())
         if (key.ends_with("state_topic") && value.is_string())
