@@ -112,6 +112,7 @@ std::string reportFile(const CoverageToolOptions& options, const SceneInput& inp
         for (const PresenceRequirement& requirement : options.presence_requirements)
             add(requirementPhrase(requirement), checkRequirement(requirement, *parts.presence));
     page.parts = parts;
+    page.findings = sensorFindings(input.scene);
     page.media =
         suffix == "pdf" ? CoveragePageInput::Media::Paper : CoveragePageInput::Media::Screen;
     page.cover = coverOf(options.page);

@@ -112,6 +112,8 @@ PageSection summaryOf(const CoveragePageInput& input) {
     if (input.parts.run != nullptr)
         for (PageText& text : incidentsOf(*input.parts.run))
             section.blocks.push_back(std::move(text));
+    for (const Diagnostic& finding : input.findings)
+        section.blocks.push_back(PageText{"Found: " + finding.message + ".", Tone::Bad});
     std::vector<JudgedRule> rules;
     if (input.parts.rules != nullptr) rules = judgedRules(*input.parts.rules);
     std::erase_if(rules, [](const JudgedRule& rule) { return !rule.is_required; });

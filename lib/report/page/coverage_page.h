@@ -37,6 +37,7 @@ struct CoveragePageInput {
     PageCover cover = {};
     Paper paper = Paper::A4;
     PriceList prices = {};
+    std::vector<Diagnostic> findings = {};  ///< about sensors, such as one outside of the room
 };
 
 /// Tells of collisions and of targets that were given up; empty without any.
