@@ -40,6 +40,7 @@ PageSection buildingSummary(const BuildingPageInput& input) {
     if (input.run != nullptr)
         for (PageText& text : incidentsOf(input.run->sum))
             section.blocks.push_back(std::move(text));
+    for (PageText& text : findingTexts(input.findings)) section.blocks.push_back(std::move(text));
     if (!input.requirements.empty())
         section.blocks.push_back(requirementsTable(input.requirements));
     return section;

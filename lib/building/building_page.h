@@ -21,7 +21,8 @@ struct BuildingPageInput {
     PageCover cover = {};
     Paper paper = Paper::A4;
     PriceList prices = {};
-    std::vector<PageSection> more = {};  ///< after the storeys' table
+    std::vector<PageSection> more = {};     ///< after the storeys' table
+    std::vector<Diagnostic> findings = {};  ///< about sensors, with their storeys
 };
 
 /// Builds the report of a building: summary, requirements, figures by storey and in sum; map,

@@ -169,10 +169,20 @@ std::optional<Advice> adviceFor(const CoverageToolOptions& options, const Buildi
     return advice;
 }
 
+/// Returns the findings about sensors of all storeys.
+std::vector<Diagnostic> findingsOf(const BuildingScene& building) {
+    std::vector<Diagnostic> findings = storeyWarnings(Coupling(building), sensorChecks());
+    for (std::size_t i = 0; i < building.scenes.size(); ++i)
+        if (const auto deaf = receiverFinding(*building.scenes[i]))
+            findings.push_back({.message = building.document.storeys[i].id + ": " + deaf->message,
+                                .severity = Severity::Warning});
+    return findings;
+}
+
 /// Returns the bytes of --report.
 std::string buildingReport(const CoverageToolOptions& options, const BuildingInput& input,
                            const BuildingCoverage& coverage, const BuildingRunCoverage* run,
-                           const Advice* advice) {
+                           const Advice* advice, const std::vector<Diagnostic>& findings) {
     const std::string suffix = suffixOf(options.report);
     if (suffix == "json") return buildingCoverageJson(input.building, coverage, run, advice);
     BuildingPageInput page{input.building, coverage, "", options.history_line, {}, run, advice};
@@ -183,6 +193,7 @@ std::string buildingReport(const CoverageToolOptions& options, const BuildingInp
         page.requirements.push_back(
             {requirementPhrase(requirement), verdict.is_met, verdict.text, verdict.margin});
     }
+    page.findings = findings;
     page.cover = coverOf(options.page);
     page.paper = paperOf(options.page);
     page.prices = pricesOf(options.page);
@@ -213,11 +224,8 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     addZones(options.zones, input.building);
     warn(options.common, "coverage", input.warnings);
     if (!options.report.empty()) mustBeWritable(options.report);
-    warn(options.common, "coverage", storeyWarnings(Coupling(input.building), sensorChecks()));
-    for (std::size_t i = 0; i < input.building.scenes.size(); ++i)
-        if (auto deaf = receiverFinding(*input.building.scenes[i]))
-            warn(options.common, "coverage",
-                 input.building.document.storeys[i].id + ": " + deaf->message);
+    const std::vector<Diagnostic> findings = findingsOf(input.building);
+    warn(options.common, "coverage", findings);
     BuildingCoverage coverage = measureBuilding(input.building, options.measure);
     if (!options.facing.empty())
         coverage.rules = measureBuildingFacing(input.building, coverage, options.facing);
@@ -242,7 +250,8 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     const std::optional<Advice> advice = adviceFor(options, input, coverage, signal);
     const Advice* const of_advice = advice ? &*advice : nullptr;
     if (!options.report.empty())
-        writeAll(options.report, buildingReport(options, input, coverage, of_run, of_advice));
+        writeAll(options.report,
+                 buildingReport(options, input, coverage, of_run, of_advice, findings));
     writeAll("-", options.json ? buildingCoverageJson(input.building, coverage, of_run, of_advice)
                                : buildingCoverageText(input.building, coverage, of_run) +
                                      (advice ? suggestionsText(*advice) : ""));

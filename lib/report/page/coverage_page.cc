@@ -112,8 +112,7 @@ PageSection summaryOf(const CoveragePageInput& input) {
     if (input.parts.run != nullptr)
         for (PageText& text : incidentsOf(*input.parts.run))
             section.blocks.push_back(std::move(text));
-    for (const Diagnostic& finding : input.findings)
-        section.blocks.push_back(PageText{"Found: " + finding.message + ".", Tone::Bad});
+    for (PageText& text : findingTexts(input.findings)) section.blocks.push_back(std::move(text));
     std::vector<JudgedRule> rules;
     if (input.parts.rules != nullptr) rules = judgedRules(*input.parts.rules);
     std::erase_if(rules, [](const JudgedRule& rule) { return !rule.is_required; });
@@ -225,6 +224,14 @@ void addRequirements(const CoveragePageInput& input, ReportPage& page) {
 }
 
 }  // namespace
+
+std::vector<PageText> findingTexts(const std::vector<Diagnostic>& findings) {
+    std::vector<PageText> texts;
+    texts.reserve(findings.size());
+    for (const Diagnostic& finding : findings)
+        texts.push_back({"Found: " + finding.message + ".", Tone::Bad});
+    return texts;
+}
 
 PageTable sensorsTable(const Scene& scene, const Coverage& coverage) {
     PageTable table{

@@ -43,6 +43,9 @@ struct CoveragePageInput {
 /// Tells of collisions and of targets that were given up; empty without any.
 std::vector<PageText> incidentsOf(const RunCoverage& run);
 
+/// Tells of findings about sensors, as messages do.
+std::vector<PageText> findingTexts(const std::vector<Diagnostic>& findings);
+
 /// Tells for which share of their time movers were seen, and the longest time without sight.
 /// \param movers e.g. "robots and people"
 PageText sightInRun(const RunCoverage& run, const std::string& movers);
