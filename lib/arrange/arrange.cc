@@ -200,14 +200,15 @@ void measure(Arrangement& result, CoverageModel& model) {
         result.idle.push_back(wholeId(model.site(), result.sensors[i]));
 }
 
-/// Returns in [n] the value of the best n of these sensors, chosen greedily. If coverage must be
-/// connected, a subset may not be: then only the full set counts. O(n^2 * runs)
-std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Choice> chosen) {
+/// Returns in [n] the best n of these sensors, chosen greedily, with their value. If coverage must
+/// be connected, a subset may not be: then only the full set counts, others are empty. O(n^2 *
+/// runs)
+std::vector<Solution> bestSubsets(const Problem& problem, std::vector<Choice> chosen) {
     const std::vector<std::uint32_t> partial_weights = partialWeights(problem);
     CoverageState state(problem, partial_weights);
-    std::vector<std::uint64_t> values(chosen.size() + 1, state.value());
-    values.back() = valueOf(problem, chosen);
-    if (problem.is_connected) return values;
+    std::vector<Solution> subsets(chosen.size() + 1, {{}, state.value()});
+    subsets.back() = {chosen, valueOf(problem, chosen)};
+    if (problem.is_connected) return subsets;
     for (std::size_t n = 1; !chosen.empty(); ++n) {
         std::uint64_t best = 0;
         std::size_t next = 0;
@@ -221,9 +222,9 @@ std::vector<std::uint64_t> valuesOfFirst(const Problem& problem, std::vector<Cho
         }
         state.add(chosen[next]);
         chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(next));
-        values[n] = state.value();
+        subsets[n] = {state.chosen(), state.value()};
     }
-    return values;
+    return subsets;
 }
 
 /// Points of a curve up to this number of sensors are searched even if no time is left: greedy
@@ -246,7 +247,7 @@ bool isByNumber(const CoverageModel& model) {
 /// is used up: the value of that many of the sensors found, without a bound.
 std::vector<SearchResult> searchByNumber(const SearchResult& found, const CoverageModel& model,
                                          Progress& progress) {
-    const std::vector<std::uint64_t> part = valuesOfFirst(model.problem(), found.best.chosen);
+    const std::vector<Solution> part = bestSubsets(model.problem(), found.best.chosen);
     const std::size_t last = part.size() - 1, quick = quickPoints(model);
     Problem fewer = model.problem();
     fewer.order.clear();
@@ -256,17 +257,39 @@ std::vector<SearchResult> searchByNumber(const SearchResult& found, const Covera
     // One phase for all searches.
     progress.begin("curve", static_cast<std::int64_t>(last));
     StopsWith stops(progress);
+    // One sensor more than before, or one less than later, is near the best, and so are
+    // multipliers.
+    SimilarSearch similar;
+    SearchOptions options = model.searchOptions();
+    options.similar = &similar;
     for (std::size_t n = 1; n <= last; ++n) {
         fewer.budget = static_cast<double>(n);
+        if (fewer.is_connected)
+            similar.starts.clear();
+        else if (n > 1)
+            similar.starts.push_back(part[n].chosen);
         SearchResult result;
         result.bound = fewer.totalWeight();
         if (n == last && isByNumber(model))
             result = found;
         else if (n <= quick || !progress.stopped())
-            result = search(fewer, model.searchOptions(), stops);
-        result.best.value = std::max(result.best.value, part[n]);
+            result = search(fewer, options, stops);
+        if (part[n].value > result.best.value) result.best = part[n];
         results.push_back(std::move(result));
         progress.advance(1);
+    }
+    // Back again: the best of one sensor more, less one.
+    const bool goes_back = options.optimizer != Optimizer::Greedy && !fewer.is_connected;
+    for (std::size_t n = last - 1; goes_back && n > 0 && !progress.stopped(); --n) {
+        SearchResult& result = results[n - 1];
+        if (result.best.value >= result.bound) continue;
+        fewer.budget = static_cast<double>(n);
+        SwapOptions swap = options.swap;
+        swap.starts = 0;
+        swap.enough = result.bound;
+        const Solution better =
+            improveBySwaps(fewer, bestSubsets(fewer, results[n].best.chosen)[n], swap, stops);
+        if (better.value > result.best.value) result.best = better;
     }
     progress.end();
     return results;

@@ -277,7 +277,13 @@ Bound lagrangianBound(const Problem& problem, const std::vector<Choice>& near,
     bound.scale = cells.scale;
     bound.cut = limits.cut;
     bound.value = std::max(problem.totalWeight(), limits.cut);
-    bound.multipliers = root.startFrom(near);
+    if (limits.start != nullptr && limits.start->size() == problem.cells()) {
+        bound.multipliers = *limits.start;
+        for (std::size_t i = 0; i < problem.cells(); ++i)
+            bound.multipliers[i] = std::min(bound.multipliers[i], cells.weights[i]);
+    } else {
+        bound.multipliers = root.startFrom(near);
+    }
     const std::uint64_t cut = cells.most(limits.cut);
     const std::size_t sensors = root.counts().total();
     const std::size_t working = std::clamp<std::size_t>(64 * sensors, 128, 512);

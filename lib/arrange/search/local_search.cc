@@ -13,6 +13,7 @@
 
 #include "arrange/search/problem.h"
 #include "base/random.h"
+#include "base/simd.h"
 
 namespace ispace {
 
@@ -80,6 +81,35 @@ LocalSearch::LocalSearch(const SearchBasis& basis, ResponseCache& cache, std::ui
       is_by_cost_(basis.problem.budget && haveCostsThatDiffer(basis.problem)),
       max_slots_(slotsFor(basis)) {}
 
+namespace {
+
+/// Sets what the gains of cells rise by, 0 where they fall; returns true if any rises.
+ISPACE_SIMD_CLONES bool setRises(const std::uint32_t* now, const std::uint32_t* before,
+                                 std::uint32_t* rises, std::size_t cells) {
+    std::uint32_t any = 0;
+    for (std::size_t i = 0; i < cells; ++i) {
+        rises[i] = std::max(now[i], before[i]) - before[i];
+        any |= rises[i];
+    }
+    return any != 0;
+}
+
+/// Raises bounds by these rises, to at most `full`.
+ISPACE_SIMD_CLONES void raise(const std::uint32_t* full, const std::uint32_t* rises,
+                              std::uint32_t* bounds, std::size_t sites) {
+    for (std::size_t site = 0; site < sites; ++site) {
+        const std::uint32_t left = full[site] - std::min(full[site], bounds[site]);
+        bounds[site] = full[site] - (std::max(left, rises[site]) - rises[site]);
+    }
+}
+
+ISPACE_SIMD_CLONES void lower(const std::uint32_t* most, std::uint32_t* bounds, std::size_t sites) {
+    for (std::size_t site = 0; site < sites; ++site)
+        bounds[site] = std::min(bounds[site], most[site]);
+}
+
+}  // namespace
+
 LocalSearch::Slot& LocalSearch::slotAt(std::size_t position) {
     const std::size_t index = std::min(position, max_slots_ - 1);
     while (slots_.size() <= index) {
@@ -101,24 +131,14 @@ void LocalSearch::renew(SiteBounds& known, std::size_t kind) {
     if (!known.gains.empty()) {
         // A candidate's gain rises by at most the sum over the cells that it sees.
         rises_.resize(gains_.size());
-        bool rises = false;
-        for (std::size_t i = 0; i < gains_.size(); ++i) {
-            rises_[i] = gains_[i] > known.gains[i] ? gains_[i] - known.gains[i] : 0U;
-            rises = rises || rises_[i] > 0;
-        }
-        if (rises) {
+        if (setRises(gains_.data(), known.gains.data(), rises_.data(), gains_.size())) {
             blocks.bound(rises_, most_);
-            const std::vector<std::uint32_t>& full = basis_.site_full[kind];
-            for (std::size_t site = 0; site < full.size(); ++site) {
-                const std::uint32_t left = full[site] - std::min(full[site], known.bounds[site]);
-                known.bounds[site] = full[site] - (left > most_[site] ? left - most_[site] : 0U);
-            }
+            raise(basis_.site_full[kind].data(), most_.data(), known.bounds.data(), most_.size());
         }
     }
     known.gains = gains_;
     blocks.bound(gains_, most_);
-    for (std::size_t site = 0; site < most_.size(); ++site)
-        known.bounds[site] = std::min(known.bounds[site], most_[site]);
+    lower(most_.data(), known.bounds.data(), most_.size());
 }
 
 BestCandidate LocalSearch::bestOf(const CoverageState& others, std::size_t kind, SiteBounds& bounds,

@@ -243,6 +243,9 @@ struct LagrangeLimits {
     /// Ends once four rounds gain less than this part of the distance between bound and cut.
     double stall = 0.05;
     SearchPace pace = SearchPace();
+    /// Multipliers of a similar problem to start from instead, see Bound::multipliers; may be null
+    /// or empty.
+    const std::vector<std::uint32_t>* start = nullptr;
 };
 
 /// Computes an upper bound of max sum w_i y_i subject to required y_i <= achieved_i + sum_j m_j

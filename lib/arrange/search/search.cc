@@ -2,6 +2,7 @@
 #include "arrange/search/search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -29,6 +30,8 @@ constexpr int kOverlapRounds = 60;
 /// A tree over so few sets of sensors takes less time than swaps from many starts.
 constexpr double kFewSets = 3e5;
 constexpr double kOverlapStall = 0.04;
+/// Share of the random starts that a search from solutions of similar problems takes.
+constexpr double kFewerStarts = 0.4;
 
 LagrangeLimits limitsOf(const SearchOptions& options) {
     LagrangeLimits limits;
@@ -152,6 +155,12 @@ class Search {
     }
 
   private:
+    [[nodiscard]] Bound boundWithin(LagrangeLimits limits) {
+        if (options_.similar != nullptr) limits.start = &options_.similar->multipliers;
+        Bound bound = lagrangianBound(problem_, result_.best.chosen, limits, progress_);
+        if (options_.similar != nullptr) options_.similar->multipliers = bound.multipliers;
+        return bound;
+    }
     void swap() {
         const bool is_few = result_.best.chosen.size() < kManySensors && !problem_.budget;
         if (is_few)
@@ -161,7 +170,7 @@ class Search {
         LagrangeLimits quick = kQuick;
         quick.cut = result_.best.value;
         quick.gap = std::min(quick.gap, limitsOf(options_).gap);
-        const Bound bound = lagrangianBound(problem_, result_.best.chosen, quick, progress_);
+        const Bound bound = boundWithin(quick);
         result_.bound = bound.value;
         noteProgress(problem_, result_, progress_);
         if (is_few && areFew(bound, result_.best.chosen.size())) return branch(bound);
@@ -170,6 +179,11 @@ class Search {
             SwapOptions swap = options_.swap;
             swap.enough = std::min(swap.enough, enoughOf(problem_, result_.bound, options_.gap));
             swap.share = &share_;
+            if (options_.similar != nullptr && !options_.similar->starts.empty()) {
+                swap.more = options_.similar->starts;
+                swap.starts = static_cast<int>(std::ceil(kFewerStarts * swap.starts));
+            }
+            if (options_.similar != nullptr) swap.ends = &options_.similar->starts;
             better.best = improveBySwaps(problem_, result_.best, swap, progress_);
             return better;
         });
@@ -177,9 +191,9 @@ class Search {
     void prove() {
         LagrangeLimits limits = limitsOf(options_);
         limits.cut = result_.best.value;
-        const Bound bound = recalled(share_, problem_, "bound", unpackBound, progress_, [&] {
-            return lagrangianBound(problem_, result_.best.chosen, limits, progress_);
-        });
+        const Bound bound = recalled(share_, problem_, "bound", unpackBound, progress_,
+                                     [&] { return boundWithin(limits); });
+        if (options_.similar != nullptr) options_.similar->multipliers = bound.multipliers;
         if (bound.value < result_.best.value) Unpacker::refuse();  // a kept bound is wrong
         result_.bound = std::min(result_.bound, bound.value);
         noteProgress(problem_, result_, progress_);

@@ -35,6 +35,10 @@ struct SwapOptions {
     std::uint64_t seed = 0;
     /// The search ends once it reaches this value.
     std::uint64_t enough = std::numeric_limits<std::uint64_t>::max();
+    /// Feasible sensors, of solutions of similar problems, to search from as from `start`.
+    std::vector<std::vector<Choice>> more = {};
+    /// Receives the sensors found from each start, the best first; null: none.
+    std::vector<std::vector<Choice>>* ends = nullptr;
     /// Null: the whole search. A shard of starts stores its solutions and returns `start`.
     const SearchShare* share = nullptr;
 };
@@ -63,12 +67,23 @@ std::string_view nameOf(Optimizer optimizer);
 /// Default memory limit of the open nodes of a search tree.
 constexpr std::size_t kMaxTreeBytes = std::size_t{1} << 30U;
 
+/// Findings of one search that speed up the next one of a series of similar problems, with the same
+/// candidates and cells.
+struct SimilarSearch {
+    /// Sensors found from the last starts, the best first: feasible in the next problem, which is
+    /// searched from these, and from fewer random starts.
+    std::vector<std::vector<Choice>> starts;
+    std::vector<std::uint32_t> multipliers;  ///< of the last bound; empty: none
+};
+
 struct SearchOptions {
     Optimizer optimizer = Optimizer::Swap;
     double gap = 0;  ///< relative gap (bound - value) / bound at which the search ends
     SwapOptions swap = SwapOptions();
     std::size_t max_bytes = kMaxTreeBytes;
     SearchShare share = SearchShare();
+    /// Read before a search, its multipliers are written after it; null: none.
+    SimilarSearch* similar = nullptr;
 };
 
 /// Greedy search; then, depending on the optimizer, swap search and branch and bound. Computes

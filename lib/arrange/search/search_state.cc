@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrange/search/greedy_search.h"
+#include "base/simd.h"
 
 #include <algorithm>
 #include <limits>
@@ -149,16 +150,26 @@ bool CoverageState::canTake(std::size_t kind, int limit) const {
            (!problem_->budget || isAffordable(*problem_, cost() + problem_->kinds[kind].cost));
 }
 
+namespace {
+
+/// Sets the weights of the cells that so much more completes; 0 for the others.
+ISPACE_SIMD_CLONES void setCompleted(const std::uint32_t* loads, std::uint32_t more,
+                                     std::uint32_t required, const std::uint32_t* weights,
+                                     std::uint32_t* gains, std::size_t cells) {
+    for (std::size_t i = 0; i < cells; ++i)
+        gains[i] = (loads[i] < required) & (loads[i] + more >= required) ? weights[i] : 0;
+}
+
+}  // namespace
+
 void CoverageState::marginalGains(std::size_t kind, Measure measure,
                                   std::vector<std::uint32_t>& gains) const {
     const std::size_t cells = loads_.size();
     const std::uint32_t multiplicity = multiplicities_[kind], required = required_;
     gains.resize(cells);
     if (measure == Measure::Full) {
-        const std::uint32_t* weights = problem_->weights.data();
-        for (std::size_t i = 0; i < cells; ++i)
-            gains[i] =
-                loads_[i] < required && loads_[i] + multiplicity >= required ? weights[i] : 0;
+        setCompleted(loads_.data(), multiplicity, required, problem_->weights.data(), gains.data(),
+                     cells);
     } else {
         const std::uint32_t* weights = partial_weights_->data();
         for (std::size_t i = 0; i < cells; ++i)

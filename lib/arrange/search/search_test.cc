@@ -35,6 +35,37 @@ class DetectionMonitor final : public Progress {
     std::string_view last_;  // ends where this phase begins
 };
 
+TEST(Search, SeriesOfSimilarProblemsKeepsValuesAndBounds) {
+    std::uint64_t apart = 0, in_series = 0;
+    for (std::uint64_t round = 0; round < 20; ++round) {
+        RandomProblem random = randomProblem(round, {});
+        SimilarSearch similar;
+        DetectionMonitor first, last;
+        for (int count = 1; count <= 3; ++count) {
+            for (SensorType& kind : random.problem.kinds) {
+                kind.most = 3;
+                kind.cost = 1;
+            }
+            random.problem.order.clear();
+            random.problem.budget = count;
+            SearchOptions options;
+            const SearchResult alone = search(random.problem, options, first);
+            options.similar = &similar;
+            const SearchResult result = search(random.problem, options, last);
+            const std::uint64_t best = bestByBruteForce(random.problem).value;
+            ASSERT_GE(result.bound, best) << round;
+            ASSERT_LE(result.best.value, best) << round;
+            ASSERT_TRUE(isFeasible(random.problem, result.best.chosen)) << round;
+            ASSERT_EQ(similar.multipliers.size(), random.problem.cells());
+            for (const auto& chosen : similar.starts)
+                ASSERT_TRUE(isFeasible(random.problem, chosen)) << round;
+            apart += alone.best.value;
+            in_series += result.best.value;
+        }
+    }
+    EXPECT_GE(in_series, apart);
+}
+
 TEST(Search, ValueIsBelowTheBestAndBoundAbove) {
     SilentProgress progress;
     for (std::uint64_t round = 0; round < 60; ++round) {

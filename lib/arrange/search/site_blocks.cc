@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/per_thread.h"
+#include "base/simd.h"
 
 namespace ispace {
 
@@ -76,6 +77,17 @@ void SiteBlocks::addViews(const Problem& problem, const CandidateSet& candidates
     });
 }
 
+namespace {
+
+/// Adds the weight that each site sees of a block, at most `most`, to the sums.
+ISPACE_SIMD_CLONES void addSeen(const std::int16_t* seen, std::int16_t most, std::size_t sites,
+                                std::uint32_t* sums) {
+    for (std::size_t site = 0; site < sites; ++site)
+        sums[site] += static_cast<std::uint16_t>(std::min(most, seen[site]));
+}
+
+}  // namespace
+
 void SiteBlocks::bound(std::span<const std::uint32_t> gains,
                        std::span<std::uint32_t> bounds) const {
     auto& left = perThread<std::vector<std::uint32_t>, struct LeftOfBlocks>();
@@ -85,10 +97,7 @@ void SiteBlocks::bound(std::span<const std::uint32_t> gains,
     for (std::size_t block = 0; block < blocks_; ++block) {
         if (left[block] == 0) continue;
         const auto most = static_cast<std::int16_t>(scaledUp(left[block], shift_));
-        const std::int16_t* const seen = seen_.data() + block * sites_;
-        std::uint32_t* const sums = bounds.data();
-        for (std::size_t site = 0; site < sites_; ++site)
-            sums[site] += static_cast<std::uint16_t>(std::min(most, seen[site]));
+        addSeen(seen_.data() + block * sites_, most, sites_, bounds.data());
     }
     if (shift_ == 0) return;
     const std::uint32_t most = std::numeric_limits<std::uint32_t>::max() >> shift_;

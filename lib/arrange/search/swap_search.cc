@@ -79,6 +79,9 @@ constexpr std::uint64_t kKicksPerStart = 10;
 constexpr std::size_t kMaxBuyers = 6;
 constexpr std::size_t kStartsPerBuyer = 4;
 
+/// Maximum number of ends that are told.
+constexpr std::size_t kMaxEnds = 6;
+
 /// The result of a start.
 struct End {
     std::size_t start = 0;
@@ -161,14 +164,16 @@ class SwapSearch {
           seed_(options.seed),
           enough_(options.enough),
           share_(options.share),
+          more_(options.more),
           progress_(progress),
           reporter_(problem, progress) {
         basis_.addBlocks();
     }
 
-    /// Searches from the given solution (start 0); if cells require several sensors, from a greedy
-    /// solution by partial gains (start 1); and from random sensors. The results up to the first
-    /// with a sufficient value are deterministic for any number of threads; later ones are empty.
+    /// Searches from the given solution (start 0) and those of SwapOptions::more; if cells require
+    /// several sensors, from a greedy solution by partial gains (the next start); and from random
+    /// sensors. The results up to the first with a sufficient value are deterministic for any
+    /// number of threads; later ones are empty.
     std::vector<End> searchFromAll(std::size_t starts, const std::vector<Choice>& given) {
         std::vector<End> ends(starts);
         const auto [begin, end] = ownOf(starts);
@@ -247,12 +252,16 @@ class SwapSearch {
         const Shard::Block block = share_->own->blockOf(static_cast<std::int64_t>(starts));
         return {static_cast<std::size_t>(block.first), static_cast<std::size_t>(block.end)};
     }
-    End searchFrom(std::size_t start, const std::vector<Choice>& given, Progress& progress) {
+    End searchFrom(std::size_t index, const std::vector<Choice>& given, Progress& progress) {
         CoverageState state = basis_.emptyState();
         LocalSearch search(basis_, cache_, enough_, progress);
+        std::size_t start = index;
         if (start == 0) {
             for (const Choice& choice : given) state.add(choice);
+        } else if (start <= more_.size()) {
+            for (const Choice& choice : more_[start - 1]) state.add(choice);
         } else {
+            start -= more_.size();
             // Greedy search prefers complete cells; starting from partial gains reaches other
             // solutions.
             if (start > 1 || !takesSteps(basis_.problem)) addRandomSensors(state, start);
@@ -263,7 +272,7 @@ class SwapSearch {
         }
         search.improve(state);
         reporter_.report(state.value());
-        return {start, state};
+        return {index, state};
     }
 
     [[nodiscard]] CoverageState stateOf(const End& end) const {
@@ -310,6 +319,7 @@ class SwapSearch {
     RandomCandidates places_;
     std::uint64_t seed_, enough_;
     const SearchShare* share_;
+    const std::vector<std::vector<Choice>>& more_;
     Progress& progress_;
     BestReporter reporter_;
     ResponseCache cache_;
@@ -352,12 +362,13 @@ Solution improveBySwaps(const Problem& problem, const Solution& start, const Swa
                         Progress& progress) {
     if (start.value >= options.enough) return start;
     const auto starts = static_cast<std::size_t>(std::max(0, options.starts));
+    const std::size_t given = 1 + options.more.size();
     const std::size_t kicked = (starts + kStartsPerKicked - 1) / kStartsPerKicked;
     const std::size_t buyers =
         problem.budget ? std::min(1 + starts / kStartsPerBuyer, kMaxBuyers) : 0;
-    progress.begin("improving", static_cast<std::int64_t>(1 + starts + buyers + kicked));
+    progress.begin("improving", static_cast<std::int64_t>(given + starts + buyers + kicked));
     SwapSearch search(problem, options, progress);
-    std::vector<End> ends = search.searchFromAll(starts + 1, start.chosen);
+    std::vector<End> ends = search.searchFromAll(given + starts, start.chosen);
     if (search.isShard()) {
         progress.end();
         return start;
@@ -376,6 +387,11 @@ Solution improveBySwaps(const Problem& problem, const Solution& start, const Swa
     };
     go_on(buyers, &SwapSearch::searchByPairs);
     go_on(kicked, &SwapSearch::searchAbout);
+    if (options.ends != nullptr) {
+        options.ends->clear();
+        for (End& end : bestOf(ends, kMaxEnds))
+            if (!end.chosen.empty()) options.ends->push_back(std::move(end.chosen));
+    }
     progress.end();
     return {inOrder(problem, std::move(best.chosen)), best.value};
 }
