@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim: autonomous movers.
+// Autonomous movers.
 #pragma once
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace ispace {
 
@@ -40,11 +41,10 @@ Steering::Steering(const SteeringState& helm, double speed, double horizon)
     : place_(helm.around->motions[helm.mover].pose.position),
       radius_(helm.around->movers[helm.mover].model.radius),
       speed_(speed),
-      horizon_(horizon) {
+      horizon_(horizon),
+      helm_(&helm) {
     neighbours_.reserve(kUsual);
-    lines_.reserve(kUsual);
     findNeighbours(*helm.around, helm.mover);
-    findLines(helm);
 }
 
 void Steering::findNeighbours(const Surroundings& around, std::size_t mover) {
@@ -62,11 +62,13 @@ void Steering::findNeighbours(const Surroundings& around, std::size_t mover) {
     });
 }
 
-void Steering::findLines(const SteeringState& helm) {
+void Steering::findLines() const {
+    if (std::exchange(has_lines_, true)) return;
     const double ahead = speed_ * horizon_ + kGap;
-    if (helm.clearance > ahead) return;
-    helm.vicinity->forEachWithin(
-        *helm.obstacles, place_, radius_ + ahead, [&](const Segment2& line, double apart) {
+    if (helm_->clearance > ahead) return;
+    lines_.reserve(kUsual);
+    helm_->vicinity->forEachWithin(
+        *helm_->obstacles, place_, radius_ + ahead, [&](const Segment2& line, double apart) {
             // A hair less, so that the way along it is free.
             lines_.push_back({line, std::min(radius_ + kGap, apart - kHair)});
         });
@@ -90,15 +92,32 @@ double Steering::untilNeighbour(Vec2 velocity) const {
 /// Tests the first `most` of the horizon.
 double Steering::untilLine(Vec2 velocity, double most) const {
     constexpr double kMinValue = 1.0 / 8;
-    if (lines_.empty()) return kForever;
+    const bool has_index = helm_->index != nullptr && !has_lines_;
+    if (!has_index) findLines();
+    if (!has_index && lines_.empty()) return kForever;
     for (double share = most; share >= kMinValue; share /= 2) {
         const Segment2 way{place_, place_ + share * horizon_ * velocity};
-        const bool is_free = std::none_of(lines_.begin(), lines_.end(), [&](const Line& line) {
-            return comesNear(way, line.line, line.reach);
-        });
+        const bool is_free =
+            has_index ? isFreeByIndex(way)
+                      : std::none_of(lines_.begin(), lines_.end(), [&](const Line& line) {
+                            return comesNear(way, line.line, line.reach);
+                        });
         if (is_free) return share == most ? kForever : share * horizon_;
     }
     return 0;
+}
+
+/// Tests a way against the lines that findLines() would find, of which it reads those near the way.
+bool Steering::isFreeByIndex(const Segment2& way) const {
+    const double ahead = speed_ * horizon_ + kGap;
+    if (helm_->clearance > ahead || helm_->index->isClear(way, radius_ + kGap)) return true;
+    helm_->index->findIn(bounds(way).expanded(radius_ + kGap), nearby_);
+    const double farthest = radius_ + ahead;
+    return std::none_of(nearby_.begin(), nearby_.end(), [&](const Segment2& line) {
+        const double square = squaredDistance(place_, line);
+        return square < farthest * farthest &&
+               comesNear(way, line, std::min(radius_ + kGap, std::sqrt(square) - kHair));
+    });
 }
 
 double Steering::freeTime(Angle direction, double share) const {
@@ -109,6 +128,7 @@ double Steering::freeTime(Angle direction, double share) const {
 
 bool Steering::isFree(Vec2 way) const {
     const Segment2 path{place_, place_ + way};
+    findLines();
     const bool is_clear = std::all_of(lines_.begin(), lines_.end(), [&](const Line& line) {
         const double at_end = std::sqrt(squaredDistance(path.b, line.line));
         const double reach = std::min(line.reach, std::max(radius_, at_end) - kHair);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sim: finds free headings for autonomous movers.
+// Free headings for autonomous movers.
 #pragma once
 
 #include <cstddef>
@@ -20,6 +20,19 @@ struct Surroundings {
     const Traffic* traffic = nullptr;  ///< built for that moment
 };
 
+/// An index of obstacles for worlds that look at the same ones often. Results do not depend on it.
+class ObstacleIndex {
+  public:
+    ObstacleIndex() = default;
+    ObstacleIndex(const ObstacleIndex&) = default;
+    ObstacleIndex& operator=(const ObstacleIndex&) = default;
+    virtual ~ObstacleIndex() = default;
+    /// Returns true only if no obstacle comes nearer to the way than `reach`; false if unknown.
+    [[nodiscard]] virtual bool isClear(const Segment2& way, double reach) const = 0;
+    /// Replaces `lines` by those whose bounds meet the box, and possibly others, some repeated.
+    virtual void findIn(const Box2& box, std::vector<Segment2>& lines) const = 0;
+};
+
 /// Pose and surroundings of a mover that is steered.
 struct SteeringState {
     const Surroundings* around = nullptr;
@@ -28,6 +41,7 @@ struct SteeringState {
     std::size_t mover = 0;
     double clearance = 0;  ///< no obstacle is nearer to the mover's circle
     SimTime time{}, step{};
+    const ObstacleIndex* index = nullptr;  ///< of the obstacles; may be null
 };
 
 /// A direction, and the seconds for which it is free.
@@ -43,6 +57,7 @@ struct FreeHeading {
 class Steering {
   public:
     /// Computes the free headings as far as the mover gets in `horizon` seconds at `speed`.
+    /// \pre the state outlives it
     Steering(const SteeringState& helm, double speed, double horizon);
 
     /// Returns the seconds until an obstacle or a mover blocks the direction, at most `horizon`;
@@ -65,9 +80,10 @@ class Steering {
         double reach;  // of both circles and the gap
     };
     void findNeighbours(const Surroundings& around, std::size_t mover);
-    void findLines(const SteeringState& helm);
+    void findLines() const;
     [[nodiscard]] double untilNeighbour(Vec2 velocity) const;
     [[nodiscard]] double untilLine(Vec2 velocity, double most) const;
+    [[nodiscard]] bool isFreeByIndex(const Segment2& way) const;
     [[nodiscard]] double freeTime(Angle direction, double share) const;
 
     struct Line {
@@ -77,7 +93,10 @@ class Steering {
     Point2 place_;
     double radius_, speed_, horizon_;
     std::vector<Neighbour> neighbours_;
-    std::vector<Line> lines_;
+    const SteeringState* helm_;
+    mutable std::vector<Line> lines_;
+    mutable bool has_lines_ = false;        // lines_ are found
+    mutable std::vector<Segment2> nearby_;  // of an index, for one way
 };
 
 }  // namespace ispace
