@@ -14,6 +14,9 @@
 #ifdef ISPACE_HAS_JUDGE
 #include "extensions/judge/judge.h"
 #endif
+#ifdef ISPACE_HAS_LEARNING
+#include "extensions/learning/learning.h"
+#endif
 #ifdef ISPACE_HAS_REALITY
 #include "extensions/reality/reality.h"
 #endif
@@ -40,6 +43,9 @@ std::span<const ToolExtension> toolExtensions() {
 #endif
 #ifdef ISPACE_HAS_JUDGE
         {"judge", "coverage", makeTrackJudge},
+#endif
+#ifdef ISPACE_HAS_LEARNING
+        {"learning", "simrun", makeLearning},
 #endif
 #ifdef ISPACE_HAS_REALITY
         {"reality", "scan", makeRealityOptions},

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "cli/extension.h"
+
+namespace ispace {
+
+/// Returns the options of `simrun --vector N --shm NAME`.
+std::unique_ptr<OptionGroup> makeLearning();
+
+}  // namespace ispace
