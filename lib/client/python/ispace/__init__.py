@@ -17,7 +17,11 @@ Robot and Person drive, LaserSensor, Camera and their kin read, World controls t
 is a separate connection to a running simrun, by its address ``"127.0.0.1:7001"``. Units are those of the protocol:
 metres, degrees, simulated seconds; frames are right-handed and headings counter-clockwise. Failures raise an Error
 with the server's text. The standard library is enough; arrays are numpy's if it is installed.
+
+VectorEnv and Env are worlds for learners, which require numpy; check_vector_env checks such environments of any make.
 """
+
+from typing import TYPE_CHECKING, Any
 
 from ._connection import Address, Connection
 from ._message import Fields, Message, Pose, Pose3
@@ -63,8 +67,32 @@ from .thermometer import Temperature, Thermometer
 from .uwb import TagRange, TagRanges, Uwb
 from .world import Event, Lift, World
 
+if TYPE_CHECKING:
+    from .check import VectorEnvFaults, check_vector_env
+    from .vector import AutoresetMode, Env, VectorEnv
+
+
+def __getattr__(name: str) -> Any:
+    """Imports the classes of learners when they are first asked for: these require numpy."""
+    import importlib
+
+    modules = {
+        "AutoresetMode": "vector",
+        "Env": "vector",
+        "VectorEnv": "vector",
+        "VectorEnvFaults": "check",
+        "check_vector_env": "check",
+    }
+    if name not in modules:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(f".{modules[name]}", __name__), name)
+    globals()[name] = value
+    return value
+
+
 __all__ = [
     "Address",
+    "AutoresetMode",
     "Bumper",
     "Burst",
     "Camera",
@@ -77,6 +105,7 @@ __all__ = [
     "Detection",
     "Detections",
     "End",
+    "Env",
     "Error",
     "Event",
     "Fields",
@@ -132,9 +161,12 @@ __all__ = [
     "ToolError",
     "Ultrasound",
     "Uwb",
+    "VectorEnv",
+    "VectorEnvFaults",
     "World",
     "__version__",
     "arrange",
+    "check_vector_env",
     "coverage",
     "info",
     "scan",
