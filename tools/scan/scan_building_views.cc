@@ -166,6 +166,28 @@ class BuildingViews {
         return own;
     }
 
+    /// A storey of a picture of the whole building.
+    struct StoreyPicture {
+        Scene scene;
+        ViewSpec view;
+        ViewOptions options;
+    };
+
+    /// Draws storeys over a background. Each is rendered as far as nearer ones leave it visible.
+    /// \param storeys the farthest first
+    static Image layered(Image behind, const std::vector<StoreyPicture>& storeys) {
+        const PictureSize size{behind.width, behind.height};
+        std::vector<bool> hidden(behind.pixels.size());
+        std::vector<ViewLayer> layers;  // the nearest first
+        for (auto storey = storeys.rbegin(); storey != storeys.rend(); ++storey) {
+            layers.push_back(viewLayer(storey->scene, storey->view, size, storey->options, hidden));
+            layers.back().hide(hidden);
+        }
+        for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer)
+            behind = layer->over(behind);
+        return behind;
+    }
+
     /// Draws all storeys in their positions, each over those that it hides. Rays that descend meet
     /// the higher storey first, rays that ascend the lower one.
     [[nodiscard]] Image drawWhole(const ViewSpec& view, PictureSize size) const {
@@ -184,24 +206,22 @@ class BuildingViews {
         Image image{size.columns, size.rows, {}};
         image.pixels.assign(
             static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows), 0xFFFFFF);
-        struct Labels {
-            Scene scene;
-            ViewSpec view;
-            ViewOptions options;
-        };
-        std::vector<Labels> labels;
+        std::vector<StoreyPicture> labels;
+        const bool has_overlay = options_.view.drawing.show != OverlayLayers::None;
         for (const std::size_t i : order) {
             ViewOptions own = drawingOf(i);
             for (std::string& id : own.highlight) id = wholeId(storeys[i], id);
             Scene scene = *sceneOfBuilding(building_, i);
             if (auto room = coupling_.opened(i)) scene.environment = *std::move(room);
             labels.push_back({std::move(scene), inFrameOf(storeys[i], view, contents), own});
+            if (!has_overlay) continue;
             own.behind = &image;
             own.labels = false;
             image = viewPicture(labels.back().scene, labels.back().view, size, own);
         }
+        if (!has_overlay) image = layered(std::move(image), labels);
         if (!options_.view.drawing.labels) return image;
-        for (const Labels& of_storey : labels)
+        for (const StoreyPicture& of_storey : labels)
             image = withLabels(image, of_storey.scene, of_storey.view, of_storey.options);
         return image;
     }

@@ -66,6 +66,20 @@ class ViewDrawer {
         return rasterOf(page);
     }
 
+    /// \param hidden marks pixels of the picture
+    ViewLayer drawLayer(const std::vector<bool>& hidden) {
+        std::vector<bool> fine_pixels;
+        if (fine_ > 1) {
+            const auto fine = static_cast<std::size_t>(fine_);
+            fine_pixels.reserve(columns() * rows());
+            for (std::size_t row = 0; row < rows(); ++row)
+                for (std::size_t column = 0; column < columns(); ++column)
+                    fine_pixels.push_back(hidden[row / fine * (columns() / fine) + column / fine]);
+        }
+        render(fine_ > 1 ? &fine_pixels : &hidden);
+        return layer();
+    }
+
     Image label(const Image& picture) {
         Picture page(size_.columns, size_.rows);
         page.image({0, 0}, picture, 1, 1);
@@ -84,7 +98,7 @@ class ViewDrawer {
         return std::max(9.0, std::max(size_.columns, size_.rows) / 80.0);
     }
 
-    void render() {
+    void render(const std::vector<bool>* hidden_pixels = nullptr) {
         RenderSceneOptions what;
         what.ceilings = !standpoint_.looks_in;
         what.paint = std::move(marks_.paint);
@@ -102,6 +116,7 @@ class ViewDrawer {
         how.labels = !highlighted_.empty();
         how.depths = true;
         how.hidden = standpoint_.hidden;
+        how.hidden_pixels = hidden_pixels;
         how.light = options_.light;
         if (standpoint_.looks_in) {
             how.background = Rgb{1, 1, 1};
@@ -145,7 +160,7 @@ class ViewDrawer {
     }
 
     /// Draws rims of highlighted records, this wide, into a picture as rendered.
-    void outline(std::vector<std::uint8_t>& bytes) const {
+    void outline(std::vector<std::uint8_t>& bytes, std::vector<bool>& is_clear) const {
         const auto reach = static_cast<int>(std::lround(fine_ * em() / 5));
         const auto wide = static_cast<int>(columns()), high = static_cast<int>(rows());
         const auto label = [&](int x, int y) {
@@ -167,8 +182,10 @@ class ViewDrawer {
                             if (u * u + v * v > reach * reach || px < 0 || py < 0 || px >= wide ||
                                 py >= high || label(px, py) == record + 1)
                                 continue;
-                            const std::size_t at = 3 * (static_cast<std::size_t>(py) * columns() +
-                                                        static_cast<std::size_t>(px));
+                            const std::size_t pixel = static_cast<std::size_t>(py) * columns() +
+                                                      static_cast<std::size_t>(px);
+                            const std::size_t at = 3 * pixel;
+                            is_clear[pixel] = false;
                             bytes[at] = static_cast<std::uint8_t>(255 * c.red);
                             bytes[at + 1] = static_cast<std::uint8_t>(255 * c.green);
                             bytes[at + 2] = static_cast<std::uint8_t>(255 * c.blue);
@@ -176,44 +193,48 @@ class ViewDrawer {
                 }
     }
 
-    /// Sets a pixel of the picture as rendered to what is behind the room.
-    void setBackground(std::vector<std::uint8_t>& bytes, std::size_t i) const {
-        constexpr std::uint32_t kWhite = 0xFFFFFF;
-        const auto fine = static_cast<std::size_t>(fine_);
-        const std::size_t pixel =
-            i / columns() / fine * static_cast<std::size_t>(size_.columns) + i % columns() / fine;
-        const std::uint32_t rgb =
-            options_.behind == nullptr ? kWhite : options_.behind->pixels[pixel];
-        for (unsigned k = 0; k < 3; ++k)
-            bytes[3 * i + k] = static_cast<std::uint8_t>(rgb >> (16 - 8 * k));
-    }
-
-    /// Returns the rendered picture, scaled to its size.
-    [[nodiscard]] Image finished() const {
+    /// Returns the rendered picture, scaled to its size, with a clear background.
+    [[nodiscard]] ViewLayer layer() const {
         constexpr double kPaper = 1.15;  // floor looks dark beside white paper
         std::vector<std::uint8_t> bytes =
             toSrgb8(picture_, options_.exposure * (standpoint_.looks_in ? kPaper : 1));
+        std::vector<bool> is_clear(picture_.depths.size());
         if (standpoint_.looks_in)
             for (std::size_t i = 0; i < picture_.depths.size(); ++i)
-                if (!std::isfinite(picture_.depths[i]) && picture_.radiance[i] == Rgb{1, 1, 1})
-                    setBackground(bytes, i);
-        if (!highlighted_.empty()) outline(bytes);
-        Image image{size_.columns, size_.rows, {}};
+                is_clear[i] =
+                    !std::isfinite(picture_.depths[i]) && picture_.radiance[i] == Rgb{1, 1, 1};
+        if (!highlighted_.empty()) outline(bytes, is_clear);
         const auto fine = static_cast<std::size_t>(fine_);
-        const std::size_t count = fine * fine;
+        ViewLayer layer{size_, static_cast<unsigned>(fine * fine), {}, {}};
+        layer.sums.reserve(rows() / fine * (columns() / fine));
+        layer.clear.reserve(rows() / fine * (columns() / fine));
         for (std::size_t row = 0; row < rows(); row += fine)
             for (std::size_t column = 0; column < columns(); column += fine) {
-                std::uint32_t rgb = 0;
-                for (std::size_t k = 0; k < 3; ++k) {
-                    std::size_t sum = count / 2;
-                    for (std::size_t v = 0; v < fine; ++v)
-                        for (std::size_t u = 0; u < fine; ++u)
-                            sum += bytes[3 * ((row + v) * columns() + column + u) + k];
-                    rgb = rgb << 8U | static_cast<std::uint32_t>(sum / count);
-                }
-                image.pixels.push_back(rgb);
+                std::array<std::uint16_t, 3> sums{};
+                std::uint8_t clear = 0;
+                for (std::size_t v = 0; v < fine; ++v)
+                    for (std::size_t u = 0; u < fine; ++u) {
+                        const std::size_t i = (row + v) * columns() + column + u;
+                        if (is_clear[i]) {
+                            ++clear;
+                            continue;
+                        }
+                        for (std::size_t k = 0; k < 3; ++k)
+                            sums[k] = static_cast<std::uint16_t>(sums[k] + bytes[3 * i + k]);
+                    }
+                layer.sums.push_back(sums);
+                layer.clear.push_back(clear);
             }
-        return image;
+        return layer;
+    }
+
+    [[nodiscard]] Image finished() const {
+        constexpr std::uint32_t kWhite = 0xFFFFFF;
+        if (options_.behind != nullptr) return layer().over(*options_.behind);
+        Image white{size_.columns, size_.rows, {}};
+        white.pixels.assign(
+            static_cast<std::size_t>(size_.columns) * static_cast<std::size_t>(size_.rows), kWhite);
+        return layer().over(white);
     }
 
     /// Converts a pixel to the page.
@@ -361,6 +382,33 @@ class ViewDrawer {
 Image viewPicture(const Scene& scene, const ViewSpec& spec, PictureSize size,
                   const ViewOptions& options) {
     return ViewDrawer(scene, spec, size, options).draw();
+}
+
+Image ViewLayer::over(const Image& behind) const {
+    Image image{size.columns, size.rows, {}};
+    image.pixels.reserve(sums.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        std::uint32_t rgb = 0;
+        for (unsigned k = 0; k < 3; ++k) {
+            const std::uint32_t back = behind.pixels[i] >> (16 - 8 * k) & 0xFFU;
+            rgb = rgb << 8U | (sums[i][k] + clear[i] * back + parts / 2) / parts;
+        }
+        image.pixels.push_back(rgb);
+    }
+    return image;
+}
+
+void ViewLayer::hide(std::vector<bool>& hidden) const {
+    for (std::size_t i = 0; i < clear.size(); ++i)
+        if (clear[i] == 0) hidden[i] = true;
+}
+
+ViewLayer viewLayer(const Scene& scene, const ViewSpec& spec, PictureSize size,
+                    const ViewOptions& options, const std::vector<bool>& hidden) {
+    ViewOptions plain = options;
+    plain.show = OverlayLayers::None;
+    plain.ways.clear();
+    return ViewDrawer(scene, spec, size, plain).drawLayer(hidden);
 }
 
 Image withLabels(const Image& picture, const Scene& scene, const ViewSpec& spec,

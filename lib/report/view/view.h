@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,25 @@ struct ViewOptions {
 /// UsageError for unknown ids, FormatError for a texture that cannot be read
 Image viewPicture(const Scene& scene, const ViewSpec& spec, PictureSize size,
                   const ViewOptions& options);
+
+/// A picture without overlays in which the background is clear: each of its pixels is the mean of a
+/// few parts, some of them clear.
+struct ViewLayer {
+    PictureSize size;
+    unsigned parts = 1;                              ///< of a pixel
+    std::vector<std::array<std::uint16_t, 3>> sums;  ///< of red, green and blue of opaque parts
+    std::vector<std::uint8_t> clear;                 ///< number of clear parts
+
+    /// Returns the picture before another one of the same size.
+    [[nodiscard]] Image over(const Image& behind) const;
+    /// Marks the pixels that it hides wholly.
+    void hide(std::vector<bool>& hidden) const;
+};
+
+/// Renders as viewPicture(), without ViewOptions::show, ways and behind.
+/// \param hidden marks pixels that a nearer layer hides wholly: these are not rendered
+ViewLayer viewLayer(const Scene& scene, const ViewSpec& spec, PictureSize size,
+                    const ViewOptions& options, const std::vector<bool>& hidden);
 
 /// Writes the ids and dots of ViewOptions::labels into a picture of several scenes, for one of
 /// them. \pre the viewer looks in from outside

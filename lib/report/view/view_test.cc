@@ -99,6 +99,35 @@ TEST(View, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
 }
 
+TEST(View, LayersOverEachOtherAreThePicturesOverEachOther) {
+    const Scene near = room();
+    const Scene far = scene("ispace size=9,3 height=1.5\ncube id=box at=3.5,-0.5 size=0.8\n");
+    const ViewSpec spec = parseView("orbit:30,35");
+    for (const int samples : {1, 16}) {
+        ViewOptions options;
+        options.labels = false;
+        options.samples = samples;
+        ViewSpec of_far = spec;
+        of_far.contents = {{-3, -2, 0}, {3, 2, 0}, {-3, 2, 2.5}, {3, -2, 2.5}};
+        ViewSpec of_near = of_far;
+        const Image behind = viewPicture(far, of_far, kSmall, options);
+        ViewOptions before = options;
+        before.behind = &behind;
+        const Image expected = viewPicture(near, of_near, kSmall, before);
+
+        std::vector<bool> hidden(behind.pixels.size());
+        const ViewLayer top = viewLayer(near, of_near, kSmall, options, hidden);
+        top.hide(hidden);
+        const auto count = std::count(hidden.begin(), hidden.end(), true);
+        EXPECT_GT(count, 1000);
+        EXPECT_LT(count, static_cast<std::ptrdiff_t>(hidden.size()));
+        Image white{kSmall.columns, kSmall.rows, {}};
+        white.pixels.assign(hidden.size(), 0xFFFFFF);
+        const ViewLayer bottom = viewLayer(far, of_far, kSmall, options, hidden);
+        EXPECT_EQ(top.over(bottom.over(white)).pixels, expected.pixels) << samples;
+    }
+}
+
 TEST(View, CoveredFloorHasTheSensorsColour) {
     const Scene scene = room();
     ViewOptions options;

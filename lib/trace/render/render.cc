@@ -9,6 +9,8 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "base/random.h"
 #include "trace/render/light_tracer.h"
@@ -19,6 +21,69 @@
 namespace ispace {
 
 namespace {
+
+/// Beyond all pixels.
+constexpr double kNoPixel = std::numeric_limits<double>::infinity();
+
+/// Pixels [left, right) of rows [top, bottom).
+struct PixelBox {
+    int left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// Returns the middle of a box of surfaces, and half its extents.
+std::optional<std::pair<Point3, Vec3>> boxOf(const SurfaceSet& set) {
+    if (set.empty()) return std::nullopt;
+    RTCBounds box;
+    rtcGetSceneBounds(set.scene(), &box);
+    const auto mean = [](float a, float b) { return (double{a} + double{b}) / 2; };
+    const auto half = [](float a, float b) { return (double{b} - double{a}) / 2; };
+    return std::pair{Point3{mean(box.lower_x, box.upper_x), mean(box.lower_y, box.upper_y),
+                            mean(box.lower_z, box.upper_z)},
+                     Vec3{half(box.lower_x, box.upper_x), half(box.lower_y, box.upper_y),
+                          half(box.lower_z, box.upper_z)}};
+}
+
+/// Returns the pixels of a box that can show a surface of the scene, or more; the whole box if the
+/// viewer is among them.
+PixelBox pixelsOf(const RenderScene::Data& scene, const EvenPixelRays& lines, PixelBox whole) {
+    constexpr double kMargin = 0.01;  // metres; far more than the error of a float
+    const bool is_flat = length(lines.origin_right) > 0;
+    const Vec3 right = is_flat ? lines.origin_right : lines.right;
+    const Vec3 down = is_flat ? lines.origin_down : lines.down;
+    const double volume = dot(cross(right, down), lines.direction);
+    double left = kNoPixel, top = kNoPixel, most_right = -kNoPixel, bottom = -kNoPixel;
+    for (const SurfaceKind kind : {SurfaceKind::Solid, SurfaceKind::Body, SurfaceKind::Person,
+                                   SurfaceKind::Glass, SurfaceKind::Paint, SurfaceKind::View}) {
+        const auto box = boxOf(scene.set(kind));
+        if (!box) continue;
+        const auto& [middle, half] = *box;
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            const auto side = [corner](unsigned bit, double extent) {
+                return ((corner >> bit & 1U) != 0 ? 1 : -1) * (extent + kMargin);
+            };
+            const Point3 p = middle + Vec3{side(0, half.x), side(1, half.y), side(2, half.z)};
+            // The corner is at column * right + row * down + depth * direction, by Cramer's rule;
+            // of a central projection, these are multiples of the depth.
+            const Vec3 to = p - (lines.origin + scene.still->shift);
+            const double column = dot(cross(to, down), lines.direction) / volume;
+            const double row = dot(cross(right, to), lines.direction) / volume;
+            const double depth = dot(cross(right, down), to) / volume;
+            if (!std::isfinite(depth) || (!is_flat && depth <= kMargin)) return whole;
+            const double scale = is_flat ? 1 : 1 / depth;
+            left = std::min(left, scale * column);
+            most_right = std::max(most_right, scale * column);
+            top = std::min(top, scale * row);
+            bottom = std::max(bottom, scale * row);
+        }
+    }
+    const auto within = [](double pixel, int low, int high) {
+        return static_cast<int>(std::clamp(pixel, 1.0 * low, 1.0 * high));
+    };
+    return {within(std::floor(left) - 1, whole.left, whole.right),
+            within(std::floor(top) - 1, whole.top, whole.bottom),
+            within(std::ceil(most_right) + 2, whole.left, whole.right),
+            within(std::ceil(bottom) + 2, whole.top, whole.bottom)};
+}
 
 /// State shared by the threads of one picture.
 struct Job {
@@ -41,6 +106,29 @@ struct Job {
     }
     /// Light samples per pixel.
     [[nodiscard]] int lightSamples() const { return std::max(1, options.samples / 4); }
+
+    /// Parts of the work that a tile takes; each includes those before it.
+    enum class Tile : unsigned char {
+        Empty,   ///< shows background
+        Hidden,  ///< not needed
+        Lit,     ///< its light is needed about other tiles
+        Full,
+    };
+    [[nodiscard]] Tile tile(int column, int row) const {
+        return tiles.empty() ? Tile::Full : tiles[tileIndex(column / kTile, row / kTile)];
+    }
+
+  private:
+    [[nodiscard]] int tileColumns() const { return (out.columns + kTile - 1) / kTile; }
+    [[nodiscard]] int tileRows() const { return (out.rows + kTile - 1) / kTile; }
+    [[nodiscard]] std::size_t tileIndex(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(tileColumns()) +
+               static_cast<std::size_t>(column);
+    }
+    void markTiles();
+    [[nodiscard]] bool isNeeded(int column, int row) const;
+
+    std::vector<Tile> tiles;  ///< row by row; empty: all are full
 };
 
 Illumination chosen(Illumination wanted, const StillSurfaces& still) {
@@ -71,7 +159,42 @@ Job::Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptio
         field = LightField(out.columns, out.rows);
     }
     if (options.labels) out.labels.resize(pixels);
-    if (options.depths) out.depths.resize(pixels);
+    if (options.depths) out.depths.resize(pixels, std::numeric_limits<float>::infinity());
+    if (options.colors && (options.background || options.hidden_pixels != nullptr)) markTiles();
+}
+
+/// Returns true if a pixel of the tile is needed.
+bool Job::isNeeded(int column, int row) const {
+    if (options.hidden_pixels == nullptr) return true;
+    for (int y = row * kTile; y < std::min(out.rows, (row + 1) * kTile); ++y)
+        for (int x = column * kTile; x < std::min(out.columns, (column + 1) * kTile); ++x)
+            if (!(*options.hidden_pixels)[pixel(x, y)]) return true;
+    return false;
+}
+
+void Job::markTiles() {
+    // Light is smoothed over two pixels, then over two tiles.
+    constexpr int kReach = 3;
+    const int wide = tileColumns(), high = tileRows();
+    tiles.assign(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high), Tile::Hidden);
+    PixelBox box{0, 0, out.columns, out.rows};
+    if (options.background && even) box = pixelsOf(scene, *even, box);
+    const int left = box.left / kTile, right = (box.right + kTile - 1) / kTile;
+    const int top = box.top / kTile, bottom = (box.bottom + kTile - 1) / kTile;
+    for (int row = 0; row < high; ++row)
+        for (int column = 0; column < wide; ++column)
+            if (column < left || column >= right || row < top || row >= bottom)
+                tiles[tileIndex(column, row)] = Tile::Empty;
+    for (int row = top; row < bottom; ++row)
+        for (int column = left; column < right; ++column) {
+            if (!isNeeded(column, row)) continue;
+            tiles[tileIndex(column, row)] = Tile::Full;
+            for (int y = std::max(top, row - kReach); y < std::min(bottom, row + kReach + 1); ++y)
+                for (int x = std::max(left, column - kReach);
+                     x < std::min(right, column + kReach + 1); ++x)
+                    if (Tile& beside = tiles[tileIndex(x, y)]; beside == Tile::Hidden)
+                        beside = Tile::Lit;
+        }
 }
 
 /// Renders tiles; one instance per thread.
@@ -92,6 +215,7 @@ class TileWorker {
 
     /// Finds the surfaces and computes their light.
     void gatherLight(int column, int row) {
+        if (job_.tile(column, row) < Job::Tile::Lit) return;
         aim(column, row, {});
         tracer_.trace(tile_);
         writeMeasures(column, row);
@@ -103,6 +227,9 @@ class TileWorker {
             const double depth = length(point.place - tile_.origin(lane));
             job_.field.setPlace(pixel, {point.place, point.normal}, static_cast<float>(depth));
         });
+        if (std::none_of(places_.is_wanted.begin(), places_.is_wanted.end(),
+                         [](bool is_wanted) { return is_wanted; }))
+            return;  // its light is 0
         drawNumbers(column, row);
         lights_.gather(places_, draws_);
         forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
@@ -113,6 +240,14 @@ class TileWorker {
     /// The samples of the tile's pixels.
     void color(int column, int row) {
         const float share = 1 / static_cast<float>(job_.samples.size());
+        const Job::Tile tile = job_.tile(column, row);
+        if (tile == Job::Tile::Empty)
+            return forEachPixel(column, row, [&](std::size_t, std::size_t pixel) {
+                for (std::size_t i = 0; i < job_.samples.size(); ++i)
+                    for (std::size_t k = 0; k < 3; ++k)
+                        job_.out.radiance[pixel][k] += share * (*job_.options.background)[k];
+            });
+        if (tile != Job::Tile::Full) return;
         for (const PixelPoint at : job_.samples) {
             aim(column, row, at);
             tracer_.trace(tile_);
@@ -131,6 +266,7 @@ class TileWorker {
         const int last_column = job_.out.columns - 1, last_row = job_.out.rows - 1;
         const Vec3 shift = job_.scene.still->shift;
         if (job_.even) return tile_.set(*job_.even, {column + at.column, row + at.row}, shift);
+        lookAround(column, row);
         for (int i = 0; i < kTile * kTile; ++i) {
             const auto lane = static_cast<std::size_t>(i);
             const PixelPoint place{1.0 * std::min(column + i % kTile, last_column),
@@ -144,19 +280,17 @@ class TileWorker {
     /// Returns the line of sight at a fraction of a pixel beside its centre, interpolated between
     /// the surrounding centres if all have one: those are stored.
     [[nodiscard]] std::optional<PixelRay> sightLineNear(PixelPoint place, PixelPoint at) const {
-        const Viewpoint& from = job_.viewpoint;
         const bool is_inner = place.column > 0 && place.column + 1 < job_.out.columns &&
                               place.row > 0 && place.row + 1 < job_.out.rows;
-        if (at.column == 0 && at.row == 0) return from.sightLine(place);
-        const auto middle = from.sightLine(place);
-        const auto aside =
-            is_inner ? from.sightLine({place.column + (at.column < 0 ? -1 : 1), place.row})
-                     : std::nullopt;
-        const auto below = is_inner
-                               ? from.sightLine({place.column, place.row + (at.row < 0 ? -1 : 1)})
-                               : std::nullopt;
+        const std::optional<PixelRay>& middle = around(place);
+        if (at.column == 0 && at.row == 0) return middle;
+        static const std::optional<PixelRay> none;
+        const std::optional<PixelRay>& aside =
+            is_inner ? around({place.column + (at.column < 0 ? -1 : 1), place.row}) : none;
+        const std::optional<PixelRay>& below =
+            is_inner ? around({place.column, place.row + (at.row < 0 ? -1 : 1)}) : none;
         if (!middle || !aside || !below)
-            return from.sightLine({place.column + at.column, place.row + at.row});
+            return job_.viewpoint.sightLine({place.column + at.column, place.row + at.row});
         const double u = std::fabs(at.column), v = std::fabs(at.row);
         const auto between = [u, v](double a, double b, double c) {
             return a + u * (b - a) + v * (c - a);
@@ -168,6 +302,26 @@ class TileWorker {
                         {between(d.x, aside->direction.x, below->direction.x),
                          between(d.y, aside->direction.y, below->direction.y),
                          between(d.z, aside->direction.z, below->direction.z)}};
+    }
+
+    static constexpr int kAround = kTile + 2;
+
+    /// Stores the lines of sight of a tile's pixels, and of those about it.
+    void lookAround(int column, int row) {
+        if (column == around_column_ && row == around_row_) return;
+        around_column_ = column;
+        around_row_ = row;
+        for (int i = 0; i < kAround * kAround; ++i) {
+            const int x = column - 1 + i % kAround, y = row - 1 + i / kAround;
+            const bool is_inside = x >= 0 && y >= 0 && x < job_.out.columns && y < job_.out.rows;
+            around_[static_cast<std::size_t>(i)] =
+                is_inside ? job_.viewpoint.sightLine({1.0 * x, 1.0 * y}) : std::nullopt;
+        }
+    }
+    [[nodiscard]] const std::optional<PixelRay>& around(PixelPoint place) const {
+        const int x = static_cast<int>(place.column) - around_column_ + 1;
+        const int y = static_cast<int>(place.row) - around_row_ + 1;
+        return around_[static_cast<std::size_t>(y * kAround + x)];
     }
 
     template <typename Visit>
@@ -298,6 +452,8 @@ class TileWorker {
     std::vector<float> draws_;
     std::array<std::uint16_t, kLanes> labels_{};
     int drawn_column_ = -1, drawn_row_ = -1;
+    std::array<std::optional<PixelRay>, std::size_t{kAround} * kAround> around_;
+    int around_column_ = -1, around_row_ = -1;
     const SurfaceSet& solid_ = *job_.scene.still->solid;
     bool has_coverings_ = !job_.scene.still->coverings.empty();
 };
@@ -384,7 +540,17 @@ Rendering renderInBands(const RenderScene& scene, const Viewpoint& viewpoint,
         const int first = std::max(row - kOverlap, 0);
         const int last = std::min(row + rows + kOverlap, out.rows);
         const int end = std::min(row + rows, out.rows);
-        const Rendering band = render(scene, Band(viewpoint, first, last - first), options);
+        RenderOptions own = options;
+        std::vector<bool> hidden;
+        if (options.hidden_pixels != nullptr) {
+            const auto at = [&](int line) {
+                return options.hidden_pixels->begin() +
+                       static_cast<std::ptrdiff_t>(line) * out.columns;
+            };
+            hidden.assign(at(first), at(last));
+            own.hidden_pixels = &hidden;
+        }
+        const Rendering band = render(scene, Band(viewpoint, first, last - first), own);
         append(out.radiance, band.radiance, out.columns, row - first, end - first);
         append(out.labels, band.labels, out.columns, row - first, end - first);
         append(out.depths, band.depths, out.columns, row - first, end - first);

@@ -69,6 +69,9 @@ struct RenderOptions {
     std::optional<Rgb> background = std::nullopt;
     /// Surfaces with smaller depths are ignored, e.g. the wall behind a camera.
     double min_depth = 1e-3;
+    /// Marks pixels, row by row, that need not be computed, as a nearer picture hides them: their
+    /// values are arbitrary. Null: all are needed.
+    const std::vector<bool>* hidden_pixels = nullptr;
 };
 
 /// A picture, row by row from the top.
