@@ -126,11 +126,36 @@ std::optional<LegView> fittedDisc(std::span<const Vector2d> points, double radiu
     return leg;
 }
 
+/// Takes the velocity of each leg, or of the middle of two, from its nearest neighbours in the
+/// scans before and after. \param speed the highest that is expected, m/s
+void addVelocities(std::vector<LegScan>& scans, double speed) {
+    const auto nearest = [speed](const LegScan& scan, const LegView& leg) -> const LegView* {
+        const LegView* found = nullptr;
+        constexpr double kLeast = 0.05;
+        double least = std::max(kLeast, speed * std::abs(scan.time - leg.time));
+        for (const LegView& other : scan.legs)
+            if (const double off = (other.centre - leg.centre).norm(); off < least) {
+                least = off;
+                found = &other;
+            }
+        return found;
+    };
+    for (std::size_t i = 0; i < scans.size(); ++i)
+        for (LegView& leg : scans[i].legs) {
+            const LegView* before = i > 0 ? nearest(scans[i - 1], leg) : nullptr;
+            const LegView* after = i + 1 < scans.size() ? nearest(scans[i + 1], leg) : nullptr;
+            if (before == nullptr) before = &leg;
+            if (after == nullptr) after = &leg;
+            if (after->time > before->time)
+                leg.velocity = (after->centre - before->centre) / (after->time - before->time);
+        }
+}
+
 /// Finds the legs in the scans of a laser.
 class LegFinder {
   public:
-    LegFinder(const WatchingLaser& laser, std::size_t index)
-        : laser_(laser), index_(index), limits_(foregroundOf(laser)), shape_(legShape()) {
+    LegFinder(const WatchingLaser& laser, std::size_t index, double radius)
+        : laser_(laser), index_(index), limits_(foregroundOf(laser)), radius_(radius) {
         const auto& model = laser.sensor.as<Laser>();
         for (int k = 0; k < model.beams; ++k) {
             const Vec2 way = unitVector(model.bearing(k));
@@ -142,7 +167,8 @@ class LegFinder {
         std::vector<LegScan> scans;
         for (std::size_t i = 0; i < laser_.scans.size(); ++i)
             scans.push_back({index_, laser_.times[i], legsOf(i)});
-        addVelocities(scans);
+        constexpr double kFoot = 3;
+        addVelocities(scans, kFoot);
         return scans;
     }
 
@@ -177,7 +203,7 @@ class LegFinder {
         std::vector<Vector2d> points;
         for (std::size_t k = begin; k < end; ++k)
             points.emplace_back((laser_.scans[scan][k] - model.noise.bias) * ways_[k]);
-        const double radius = shape_.radius * kUsualHeight;
+        const double radius = radius_;
         if ((points.front() - points.back()).norm() > 2.4 * radius) return;
         const double range = points[points.size() / 2].norm();
         const auto& [s0, s1, s2] = model.noise.sigma;
@@ -191,49 +217,34 @@ class LegFinder {
         legs.push_back(*leg);
     }
 
-    /// Takes the speed of each leg from its nearest neighbours in the scans before and after.
-    static void addVelocities(std::vector<LegScan>& scans) {
-        const auto nearest = [](const LegScan& scan, const LegView& leg) -> const LegView* {
-            const LegView* found = nullptr;
-            double least = 0.15;
-            for (const LegView& other : scan.legs)
-                if (const double off = (other.centre - leg.centre).norm(); off < least) {
-                    least = off;
-                    found = &other;
-                }
-            return found;
-        };
-        for (std::size_t i = 1; i + 1 < scans.size(); ++i)
-            for (LegView& leg : scans[i].legs) {
-                const LegView* const before = nearest(scans[i - 1], leg);
-                const LegView* const after = nearest(scans[i + 1], leg);
-                if (before != nullptr && after != nullptr && after->time > before->time)
-                    leg.velocity = (after->centre - before->centre) / (after->time - before->time);
-            }
-    }
-
     const WatchingLaser& laser_;
     std::size_t index_;
     std::vector<double> limits_;
-    LegShape shape_;
+    double radius_;
     std::vector<Vector2d> ways_;
 };
+
+/// Feet of a person are not farther apart.
+constexpr double kStride = 0.6;
+
+LegView middleOf(const LegView& one, const LegView& other) {
+    LegView both = one;
+    both.time = 0.5 * (one.time + other.time);
+    both.centre = 0.5 * (one.centre + other.centre);
+    both.away = 0.5 * (one.away + other.away);
+    both.covariance = 0.25 * (one.covariance + other.covariance);
+    both.velocity = 0.5 * (one.velocity + other.velocity);
+    return both;
+}
 
 /// Replaces two legs of a scan by their middle; scans with another number of legs are emptied.
 void joinLegs(std::vector<LegScan>& scans) {
     for (LegScan& scan : scans) {
-        constexpr double kStride = 0.6;
         if (scan.legs.size() != 2 || (scan.legs[0].centre - scan.legs[1].centre).norm() > kStride) {
             scan.legs.clear();
             continue;
         }
-        LegView& both = scan.legs[0];
-        const LegView& other = scan.legs[1];
-        both.time = 0.5 * (both.time + other.time);
-        both.centre = 0.5 * (both.centre + other.centre);
-        both.away = 0.5 * (both.away + other.away);
-        both.covariance = 0.25 * (both.covariance + other.covariance);
-        both.velocity = 0.5 * (both.velocity + other.velocity);
+        scan.legs[0] = middleOf(scan.legs[0], scan.legs[1]);
         scan.legs.pop_back();
     }
 }
@@ -423,15 +434,25 @@ struct BodyFunctor {
 /// Fits the poses of lasers to each other.
 class BodyFitter {
   public:
-    explicit BodyFitter(std::span<const WatchingLaser> lasers) : lasers_(lasers) {
+    BodyFitter(std::span<const WatchingLaser> lasers, const BodyTarget& target)
+        : lasers_(lasers),
+          target_(target),
+          radius_(target.isPerson() ? legShape().radius * kUsualHeight : target.radius) {
         for (std::size_t i = 0; i < lasers.size(); ++i)
-            scans_.push_back(LegFinder(lasers[i], i).all());
+            scans_.push_back(LegFinder(lasers[i], i, radius_).all());
         const auto height = [&](std::size_t i) { return lasers[i].sensor.pose.position.z; };
         constexpr double kLevel = 0.01;
-        for (std::size_t i = 1; i < lasers.size(); ++i)
+        for (std::size_t i = 0; i < lasers.size(); ++i) {
+            // Legs of other heights, or at other times: they swing faster than their owner walks.
             if (std::abs(height(i) - height(0)) > kLevel) joins_ = true;
-        if (joins_)
-            for (std::vector<LegScan>& one : scans_) joinLegs(one);
+            if (lasers[i].sensor.as<Laser>().spin != 0) joins_ = true;
+        }
+        if (joins_ && target.isPerson())
+            for (std::vector<LegScan>& one : scans_) {
+                joinLegs(one);
+                constexpr double kWalk = 2;
+                addVelocities(one, kWalk);
+            }
         moments_ = momentsOf(scans_);
     }
 
@@ -460,8 +481,10 @@ class BodyFitter {
         return {groups, static_cast<int>(lasers_.size()), static_cast<int>(rows)};
     }
 
+    [[nodiscard]] std::string bodies() const { return target_.isPerson() ? "people" : "robots"; }
+
     [[nodiscard]] std::string undetermined(std::size_t laser) const {
-        return "the ways of the people do not determine how " + lasers_[laser].sensor.id +
+        return "the ways of the " + bodies() + " do not determine how " + lasers_[laser].sensor.id +
                " stands to " + lasers_[0].sensor.id;
     }
 
@@ -504,7 +527,8 @@ class BodyFitter {
     [[nodiscard]] std::string apart(const std::vector<std::optional<Motion>>& known) const {
         for (std::size_t i = 0; i < known.size(); ++i)
             if (!known[i])
-                return "people walk too little in sight of " + lasers_[i].sensor.id +
+                return bodies() + (target_.isPerson() ? " walk" : " drive") +
+                       " too little in sight of " + lasers_[i].sensor.id +
                        " and another laser at one time";
         return "";
     }
@@ -596,10 +620,13 @@ class BodyFitter {
         fit.legs.assign(lasers_.size(), 0);
         for (const LegGroup& group : groups)
             for (const LegView* view : group.views) ++fit.legs[view->laser];
-        const double radius = legShape().radius;
-        fit.height = kUsualHeight + x[x.size() - 1] / radius;
-        fit.height_sigma =
-            std::sqrt(covariance(covariance.rows() - 1, covariance.cols() - 1)) / radius;
+        fit.radius = radius_ + x[x.size() - 1];
+        fit.radius_sigma = std::sqrt(covariance(covariance.rows() - 1, covariance.cols() - 1));
+        if (target_.isPerson()) {
+            const double radius = legShape().radius;
+            fit.height = fit.radius / radius;
+            fit.height_sigma = fit.radius_sigma / radius;
+        }
         addPoses(x, covariance, fit);
         return fit;
     }
@@ -633,23 +660,21 @@ class BodyFitter {
     }
 
     std::span<const WatchingLaser> lasers_;
+    BodyTarget target_;
+    double radius_;
     std::vector<std::vector<LegScan>> scans_;
     std::vector<LegMoment> moments_;
     bool joins_ = false;
 };
 
-}  // namespace
-
-BodyFit fitToBodies(std::span<const WatchingLaser> lasers) {
-    if (lasers.size() < 2) refuseBodies("wanted two lasers or more that see the same people");
-    constexpr std::size_t kMostLasers = 64;
-    if (lasers.size() > kMostLasers) refuseBodies("wanted at most 64 lasers");
+/// \throws FormatError for a laser that cannot see the bodies
+void mustSee(std::span<const WatchingLaser> lasers, const BodyTarget& target) {
     const double hips = legShape().hip * kUsualHeight;
     for (const WatchingLaser& laser : lasers) {
         if (!scansSlice(laser.sensor)) refuseBodies(laser.sensor.id + " is not level");
         // Hands hang there, too.
         constexpr double kBelow = 0.8;
-        if (laser.sensor.pose.position.z > kBelow * hips)
+        if (target.isPerson() && laser.sensor.pose.position.z > kBelow * hips)
             refuseBodies(laser.sensor.id + " scans at " +
                          formatFixed(laser.sensor.pose.position.z, 2) + " m: wanted legs, below " +
                          formatFixed(kBelow * hips, 2) + " m");
@@ -657,7 +682,105 @@ BodyFit fitToBodies(std::span<const WatchingLaser> lasers) {
             if (scan.size() != static_cast<std::size_t>(laser.sensor.as<Laser>().beams))
                 refuseBodies("scans of " + laser.sensor.id + " have different beams");
     }
-    return BodyFitter(lasers).fit();
+}
+
+/// Appends the middles of the pairs of legs of a scan, the nearest first.
+void addPairs(LegScan scan, const WatchingLaser& laser, double wider,
+              std::vector<SeenPerson>& seen) {
+    const Pose2 frame{laser.sensor.pose.position.onFloor(), laser.sensor.pose.heading};
+    while (scan.legs.size() > 1) {
+        std::size_t a = 0, b = 0;
+        double least = kStride;
+        for (std::size_t i = 0; i < scan.legs.size(); ++i)
+            for (std::size_t j = i + 1; j < scan.legs.size(); ++j)
+                if (const double off = (scan.legs[i].centre - scan.legs[j].centre).norm();
+                    off < least) {
+                    least = off;
+                    a = i;
+                    b = j;
+                }
+        if (b == 0) return;
+        const LegView both = middleOf(scan.legs[a], scan.legs[b]);
+        const Vector2d place = both.centre + wider * both.away;
+        seen.push_back({both.time, frame * Point2{place[0], place[1]}});
+        scan.legs.erase(scan.legs.begin() + static_cast<std::ptrdiff_t>(b));
+        scan.legs.erase(scan.legs.begin() + static_cast<std::ptrdiff_t>(a));
+    }
+}
+
+}  // namespace
+
+std::vector<SeenPerson> peopleSeen(std::span<const WatchingLaser> lasers, double height) {
+    mustSee(lasers, {});
+    const double radius = legShape().radius;
+    std::vector<SeenPerson> seen;
+    for (std::size_t i = 0; i < lasers.size(); ++i)
+        for (LegScan& scan : LegFinder(lasers[i], i, radius * kUsualHeight).all())
+            addPairs(std::move(scan), lasers[i], radius * (height - kUsualHeight), seen);
+    std::stable_sort(seen.begin(), seen.end(),
+                     [](const SeenPerson& a, const SeenPerson& b) { return a.time < b.time; });
+    return seen;
+}
+
+std::vector<Point2> peopleAt(std::span<const SeenPerson> seen, double time) {
+    constexpr double kAround = 0.2, kApart = 0.5;  // seconds, metres
+    struct Person {
+        std::vector<const SeenPerson*> points;
+        Vector2d sum = Vector2d::Zero();
+    };
+    std::vector<Person> people;
+    auto at =
+        std::lower_bound(seen.begin(), seen.end(), time - kAround,
+                         [](const SeenPerson& one, double before) { return one.time < before; });
+    for (; at != seen.end() && at->time <= time + kAround; ++at) {
+        const Vector2d place(at->place.x, at->place.y);
+        const auto known = std::find_if(people.begin(), people.end(), [&](const Person& person) {
+            return (person.sum / static_cast<double>(person.points.size()) - place).norm() < kApart;
+        });
+        Person& person = known == people.end() ? people.emplace_back() : *known;
+        person.points.push_back(&*at);
+        person.sum += place;
+    }
+    std::vector<Point2> places;
+    for (const Person& person : people) {
+        // A line through the points, or the only one if it is of this time.
+        const auto count = static_cast<double>(person.points.size());
+        const Vector2d mean = person.sum / count;
+        double mean_time = 0, squares = 0;
+        for (const SeenPerson* one : person.points) mean_time += (one->time - time) / count;
+        Vector2d slope = Vector2d::Zero();
+        for (const SeenPerson* one : person.points) {
+            const double off = one->time - time - mean_time;
+            squares += off * off;
+            slope += off * (Vector2d(one->place.x, one->place.y) - mean);
+        }
+        constexpr double kSameTime = 0.02, kLeast = 1e-6;
+        const bool is_between = person.points.front()->time <= time + kSameTime &&
+                                person.points.back()->time >= time - kSameTime;
+        if (!is_between) continue;
+        const Vector2d place =
+            squares > kLeast ? Vector2d(mean - mean_time * slope / squares) : mean;
+        places.push_back({place[0], place[1]});
+    }
+    return places;
+}
+
+BodyFit fitToBodies(std::span<const WatchingLaser> lasers, BodyTarget target) {
+    if (lasers.size() < 2)
+        refuseBodies("wanted two lasers or more that see the same " +
+                     std::string(target.isPerson() ? "people" : "robots"));
+    constexpr std::size_t kMostLasers = 64;
+    if (lasers.size() > kMostLasers) refuseBodies("wanted at most 64 lasers");
+    mustSee(lasers, target);
+    BodyFit fit = BodyFitter(lasers, target).fit();
+    // Discs are found by a fixed radius: those of a robot once more, by the radius found.
+    constexpr double kSame = 0.0005;
+    for (int round = 0;
+         round < 3 && !target.isPerson() && std::abs(fit.radius - target.radius) > kSame; ++round) {
+        target.radius = fit.radius;
+        fit = BodyFitter(lasers, target).fit();
+    }
+    return fit;
 }
 
 }  // namespace ispace

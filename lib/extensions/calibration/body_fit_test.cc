@@ -44,7 +44,20 @@ Step walk(double t, double wide) {
 struct WalkOptions {
     double seconds = 300, rate = 10, height = 1.8, wide = 1.8;
     bool is_still = false;
+    double later = 0;  ///< seconds from laser to laser at which they scan
+    double robot = 0;  ///< radius of a robot instead of a person
+    double hurry = 1;
+    double spin = 0;
 };
+
+std::vector<MovingBody> bodyAt(const WalkOptions& how, const Step& step) {
+    if (how.robot == 0) return humanBodies(how.height, step.pose, 0, step.swing);
+    MovingBody body;
+    body.pose = step.pose;
+    body.radius = how.robot;
+    body.top = 0.6;
+    return {body};
+}
 
 /// Records the scans of lasers while a person walks.
 std::vector<WatchingLaser> recorded(const std::vector<Sensor>& sensors, const WalkOptions& how) {
@@ -57,13 +70,14 @@ std::vector<WatchingLaser> recorded(const std::vector<Sensor>& sensors, const Wa
         lasers.push_back({sensor, {}, {}});
     }
     const int count = static_cast<int>(how.seconds * how.rate);
-    for (int i = 0; i < count; ++i) {
-        const double t = i / how.rate;
-        const Step step = walk(how.is_still ? 0 : t, how.wide);
-        const MovingBodies bodies(i < count / 50 && how.is_still
-                                      ? std::vector<MovingBody>()
-                                      : humanBodies(how.height, step.pose, 0, step.swing));
-        for (WatchingLaser& laser : lasers) {
+    for (int i = 0; i < count; ++i)
+        for (std::size_t k = 0; k < lasers.size(); ++k) {
+            WatchingLaser& laser = lasers[k];
+            const double t = i / how.rate + static_cast<double>(k) * how.later;
+            const bool is_empty = i < count / 50 && how.is_still;
+            const MovingBodies bodies(
+                is_empty ? std::vector<MovingBody>()
+                         : bodyAt(how, walk(how.is_still ? 0 : how.hurry * t, how.wide)));
             Scan scan;
             scan.frame = i;
             scan.pose = laser.sensor.pose;
@@ -71,7 +85,7 @@ std::vector<WatchingLaser> recorded(const std::vector<Sensor>& sensors, const Wa
             laser.times.push_back(t);
             laser.scans.push_back(scan.ranges);
         }
-    }
+    for (WatchingLaser& laser : lasers) laser.sensor.as<Laser>().spin = how.spin;
     return lasers;
 }
 
@@ -109,6 +123,42 @@ TEST(BodyFit, LasersAtDifferentHeightsCompareTheMiddleOfBothLegs) {
     sensors[1].pose.position.z = 0.15;
     sensors[2].pose.position.z = 0.5;
     expectPoses(fitToBodies(recorded(sensors, {})), sensors, 0.003, 0.03);
+}
+
+TEST(BodyFit, LasersThatScanAtDifferentTimesCompareTheMiddleOfBothLegs) {
+    // At 1.5 m/s the body moves by 6 cm between the scans, a leg by twice as much. Two lasers that
+    // face each other tell the size of legs worst.
+    std::vector<Sensor> sensors = three();
+    sensors.pop_back();
+    const BodyFit fit = fitToBodies(recorded(
+        sensors, {.seconds = 120, .height = 1.7, .later = 0.04, .hurry = 1.4, .spin = 1e6}));
+    expectPoses(fit, sensors, 0.005, 0.05);
+    EXPECT_NEAR(fit.height, 1.7, 0.15);
+}
+
+TEST(BodyFit, ARoundRobotJoinsThreeLasers) {
+    std::vector<WatchingLaser> lasers = recorded(three(), {.seconds = 120, .robot = 0.22});
+    lasers[1].sensor.pose = {{0, 0, 0.3}, {}, {}, {}};
+    lasers[2].sensor.pose = {{3, 3, 0.3}, Angle::degrees(123), {}, {}};
+    const BodyFit fit = fitToBodies(lasers, {.radius = 0.2});
+    expectPoses(fit, three(), 0.002, 0.02);
+    EXPECT_NEAR(fit.radius, 0.22, 0.001);
+    EXPECT_EQ(fit.height, 0);
+}
+
+TEST(PeopleSeen, FollowAPersonToATime) {
+    const std::vector<Sensor> sensors = three();
+    const auto seen = peopleSeen(recorded(sensors, {.seconds = 20}), 1.8);
+    int found = 0;
+    for (double t = 1; t < 19; t += 0.37) {
+        const std::vector<Point2> places = peopleAt(seen, t);
+        ASSERT_LE(places.size(), 1U) << t;
+        if (places.empty()) continue;
+        ++found;
+        EXPECT_LT(distance(places[0], walk(t, 1.8).pose.position), 0.03) << t;
+    }
+    EXPECT_GT(found, 45);
+    EXPECT_TRUE(peopleAt(seen, 100).empty());
 }
 
 std::string refusalOf(const std::vector<WatchingLaser>& lasers) {

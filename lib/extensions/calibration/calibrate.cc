@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/confined.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_writer.h"
@@ -20,12 +21,15 @@
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "extensions/calibration/body_fit.h"
+#include "extensions/calibration/camera_fit.h"
 #include "extensions/calibration/drive_fit.h"
 #include "extensions/calibration/occupancy.h"
 #include "extensions/calibration/plan_fit.h"
 #include "extensions/reality/log.h"
+#include "raster/picture.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "sense/scan.h"
 
 namespace ispace {
 
@@ -38,6 +42,14 @@ struct CalibratedLaser {
     WatchingLaser seen;  ///< with the beams of the log
     Record record;
     PlanFit fit = {};
+};
+
+/// A fixed camera, and what the log shows of it.
+struct CalibratedCamera {
+    Sensor sensor;
+    Record record;
+    std::vector<const LogPicture*> pictures = {};
+    CameraFit fit = {};
 };
 
 /// Returns true if a source of a log is the sensor: by its id, or by a topic with it, "/l1/scan".
@@ -74,32 +86,54 @@ void takeScans(const std::string& log, std::span<LogScan* const> scans, Calibrat
     }
 }
 
-/// Returns the fixed lasers of a scene that do not sweep.
-std::vector<CalibratedLaser> fixedLasers(const Scene& scene) {
-    std::vector<CalibratedLaser> lasers;
+/// Returns the fixed sensors of a keyword in a scene, with their records.
+std::vector<std::pair<Sensor, Record>> fixedSensors(const Scene& scene, std::string_view keyword) {
+    std::vector<std::pair<Sensor, Record>> sensors;
     for (const PlacedRecord& placed : scene.placed) {
         const Record& record = scene.records[placed.record];
-        if (record.keyword() != "laser" || placed.mount) continue;
+        if (record.keyword() != keyword || placed.mount) continue;
         const Sensor& sensor = scene.sensors[placed.index];
-        if (!sensor.mount && !sensor.person && sensor.as<Laser>().sweep == SweepAxis::None)
-            lasers.push_back({{sensor, {}, {}}, record});
+        if (!sensor.mount && !sensor.person) sensors.emplace_back(sensor, record);
     }
-    return lasers;
+    return sensors;
 }
 
 /// Returns those of a layout alone, without its room.
-std::vector<CalibratedLaser> fixedLasers(const Document& layout) {
-    std::vector<CalibratedLaser> lasers;
+std::vector<std::pair<Sensor, Record>> fixedSensors(const Document& layout,
+                                                    std::string_view keyword) {
+    std::vector<std::pair<Sensor, Record>> sensors;
     const std::vector<std::string> ids = assignIds(layout.records);
     const DeviceCatalogue& devices = devicesFor({&layout});
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const Record& record = layout.records[i];
-        if (record.keyword() != "laser" || record.has("on")) continue;
-        Sensor sensor{ids[i], sensorModelOf(record, devices), poseOf(record)};
-        if (sensor.as<Laser>().sweep == SweepAxis::None)
-            lasers.push_back({{std::move(sensor), {}, {}}, record});
+        if (record.keyword() == keyword && !record.has("on"))
+            sensors.emplace_back(Sensor{ids[i], sensorModelOf(record, devices), poseOf(record)},
+                                 record);
     }
+    return sensors;
+}
+
+/// Returns the fixed lasers of a scene or a layout that do not sweep.
+template <typename Source>
+std::vector<CalibratedLaser> fixedLasers(const Source& source) {
+    std::vector<CalibratedLaser> lasers;
+    for (auto& [sensor, record] : fixedSensors(source, "laser"))
+        if (sensor.template as<Laser>().sweep == SweepAxis::None)
+            lasers.push_back({{std::move(sensor), {}, {}}, std::move(record)});
     return lasers;
+}
+
+/// Returns the fixed cameras that the log has pictures of.
+template <typename Source>
+std::vector<CalibratedCamera> fixedCameras(const Source& source, const Log& log) {
+    std::vector<CalibratedCamera> cameras;
+    for (auto& [sensor, record] : fixedSensors(source, "camera")) {
+        CalibratedCamera camera{std::move(sensor), std::move(record)};
+        for (const LogPicture& picture : log.pictures)
+            if (isSource(picture.sensor, camera.sensor.id)) camera.pictures.push_back(&picture);
+        if (!camera.pictures.empty()) cameras.push_back(std::move(camera));
+    }
+    return cameras;
 }
 
 /// Pairs fixed lasers with the sources of a log.
@@ -243,7 +277,10 @@ void addCovariance(JsonWriter& json, const PlanCovariance& covariance) {
     json.endArray();
 }
 
-std::string calibrationJson(std::span<const CalibratedLaser> lasers) {
+void addCameras(JsonWriter& json, std::span<const CalibratedCamera> cameras);
+
+std::string calibrationJson(std::span<const CalibratedLaser> lasers,
+                            std::span<const CalibratedCamera> cameras) {
     JsonWriter json;
     beginReport(json, "ispace-calibration/1", "envc").key("sensors").beginArray();
     for (const CalibratedLaser& laser : lasers) {
@@ -264,12 +301,13 @@ std::string calibrationJson(std::span<const CalibratedLaser> lasers) {
         }
         json.endArray().endObject();
     }
-    return json.endArray().endObject().take() + '\n';
+    json.endArray();
+    addCameras(json, cameras);
+    return json.endObject().take() + '\n';
 }
 
-/// Writes the pose of a laser into its record in the layout, or adds the record of ENV there.
-void setPose(const CalibratedLaser& laser, Document& layout) {
-    const Record& source = laser.record;
+/// Returns the record of a sensor in the layout; the record of ENV is added there.
+Record& recordIn(Document& layout, const Record& source, const std::string& id) {
     auto found =
         std::find_if(layout.records.begin(), layout.records.end(), [&source](const Record& record) {
             return record == source && record.place().line == source.place().line &&
@@ -277,8 +315,14 @@ void setPose(const CalibratedLaser& laser, Document& layout) {
         });
     if (found == layout.records.end()) {
         found = layout.records.insert(found, source);
-        if (found->writtenId().empty()) found->set("id", laser.seen.sensor.id);
+        if (found->writtenId().empty()) found->set("id", id);
     }
+    return *found;
+}
+
+/// Writes the pose of a laser into its record in the layout, or adds the record of ENV there.
+void setPose(const CalibratedLaser& laser, Document& layout) {
+    Record* const found = &recordIn(layout, laser.record, laser.seen.sensor.id);
     const Pose3& pose = laser.fit.pose;
     Tuple at{nineDecimals(pose.position.x), nineDecimals(pose.position.y)};
     if (found->has("at") && found->tuple("at").size() == 3) at.push_back(found->tuple("at")[2]);
@@ -287,7 +331,8 @@ void setPose(const CalibratedLaser& laser, Document& layout) {
 }
 
 /// The same of lasers by people.
-std::string peopleJson(std::span<const CalibratedLaser> lasers, const BodyFit& fit) {
+std::string peopleJson(std::span<const CalibratedLaser> lasers, const BodyFit& fit,
+                       const BodyTarget& target, std::span<const CalibratedCamera> cameras) {
     JsonWriter json;
     beginReport(json, "ispace-calibration/1", "envc").key("sensors").beginArray();
     for (std::size_t i = 0; i < lasers.size(); ++i) {
@@ -297,30 +342,150 @@ std::string peopleJson(std::span<const CalibratedLaser> lasers, const BodyFit& f
         json.key("scans").value(lasers[i].seen.scans.size());
         json.key("legs").value(fit.legs[i]).endObject();
     }
-    json.endArray().key("people").beginObject().key("height").value(fit.height);
-    json.key("height_sigma").value(fit.height_sigma).key("moments").value(fit.moments);
-    return json.key("scatter").value(fit.scatter).endObject().endObject().take() + '\n';
+    json.endArray().key(target.isPerson() ? "people" : "robots").beginObject();
+    if (target.isPerson()) {
+        json.key("height").value(fit.height).key("height_sigma").value(fit.height_sigma);
+    } else {
+        json.key("radius").value(fit.radius).key("radius_sigma").value(fit.radius_sigma);
+    }
+    json.key("moments").value(fit.moments).key("scatter").value(fit.scatter).endObject();
+    addCameras(json, cameras);
+    return json.endObject().take() + '\n';
 }
 
 /// Reports the lasers on stderr, and adds them to the layout.
-void takePeople(const TaskInput& task, const BodyFit& fit, std::vector<CalibratedLaser>& lasers,
-                Document& layout) {
+void takePeople(const TaskInput& task, const BodyFit& fit, const BodyTarget& target,
+                std::vector<CalibratedLaser>& lasers, Document& layout) {
+    const std::string bodies =
+        target.isPerson() ? "people of " + formatFixed(fit.height, 2) + " m (+- " +
+                                formatFixed(fit.height_sigma, 2) + " m by the size of their legs)"
+                          : "robots with a radius of " + formatFixed(fit.radius, 4) + " m (+- " +
+                                formatFixed(fit.radius_sigma, 4) + " m)";
     tell(task.common, "envc",
-         "people of " + formatFixed(fit.height, 2) + " m (+- " + formatFixed(fit.height_sigma, 2) +
-             " m by the size of their legs) at " + std::to_string(fit.moments) +
-             " moments; the pose of " + lasers[0].seen.sensor.id +
-             " is that of the layout, the others stand to it");
+         bodies + " at " + std::to_string(fit.moments) + " moments; the pose of " +
+             lasers[0].seen.sensor.id + " is that of the layout, the others stand to it");
     for (std::size_t i = 1; i < lasers.size(); ++i) {
         CalibratedLaser& laser = lasers[i];
         laser.fit.pose = fit.poses[i];
         laser.fit.covariance = fit.covariances[i];
         laser.fit.scans = laser.seen.scans.size();
         tell(task.common, "envc",
-             movedText(laser) + " by " + countText(fit.legs[i], "leg") + "; standard deviations " +
-                 sigmasText(laser.fit));
+             movedText(laser) + " by " +
+                 countText(fit.legs[i], target.isPerson() ? "leg" : "robot") +
+                 "; standard deviations " + sigmasText(laser.fit));
         setPose(laser, layout);
         layout.history.push_back(historyOf(laser));
     }
+}
+
+/// Returns what the pictures of a camera show, and where lasers saw people meanwhile.
+std::vector<PictureMoment> momentsOf(const CalibratedCamera& camera,
+                                     std::span<const SeenPerson> people, const std::string& log) {
+    // At most so many pictures, over the whole time: more tell little more.
+    constexpr std::size_t kMost = 600;
+    const auto& all = camera.pictures;
+    const std::size_t count = std::min(kMost, all.size());
+    const auto numbered = [&](std::size_t i) { return all[i * all.size() / count]; };
+    ConfinedReader reader;
+    const auto& model = camera.sensor.as<Camera>();
+    const auto bodies = bodiesInPictures(count, [&](std::size_t i) {
+        const LogPicture& picture = *numbered(i);
+        const std::string name = picture.file.empty()
+                                     ? displayName(log) + ", " + camera.sensor.id + " at " +
+                                           formatDouble(picture.time) + " s"
+                                     : picture.file;
+        ColorPicture color = parseColorPicture(
+            picture.file.empty() ? picture.bytes : readAll(picture.file, InputKind::Regular), name,
+            reader);
+        if (color.width != model.columns || color.height != model.rows)
+            throw FormatError({name, 0, 0,
+                               "the picture has " + std::to_string(color.width) + " x " +
+                                   std::to_string(color.height) + " pixels, and the camera " +
+                                   std::to_string(model.columns) + " x " +
+                                   std::to_string(model.rows)});
+        return color;
+    });
+    std::vector<PictureMoment> moments;
+    moments.reserve(count);
+    for (std::size_t i = 0; i < count; ++i)
+        moments.push_back({peopleAt(people, numbered(i)->time), bodies[i]});
+    return moments;
+}
+
+/// Writes the pose of a camera into its record in the layout, or adds the record of ENV there.
+void setPose(const CalibratedCamera& camera, Document& layout) {
+    Record& record = recordIn(layout, camera.record, camera.sensor.id);
+    const Pose3& pose = camera.fit.pose;
+    record.set("at", Tuple{nineDecimals(pose.position.x), nineDecimals(pose.position.y),
+                           nineDecimals(pose.position.z)});
+    record.set("heading", nineDecimals(wrapped(pose.heading).degrees()));
+    record.set("tilt", nineDecimals(wrapped(pose.tilt).degrees()));
+    record.set("roll", nineDecimals(wrapped(pose.roll).degrees()));
+}
+
+/// Estimates the poses of cameras by people that lasers at known poses see, reports them on stderr
+/// and adds them to the layout.
+/// \param lasers at their poses; those that see no legs do not help
+void calibrateCameras(const TaskInput& task, std::span<const WatchingLaser> lasers,
+                      const PeopleHeight& height, const Log& log,
+                      std::vector<CalibratedCamera>& cameras, Document& layout) {
+    if (cameras.empty()) return;
+    std::vector<SeenPerson> people;
+    try {
+        people = peopleSeen(lasers, height.mean);
+        for (CalibratedCamera& camera : cameras) {
+            camera.fit = fitToPictures(camera.sensor, momentsOf(camera, people, log.name), height);
+            const CameraFit& fit = camera.fit;
+            const Pose3& before = camera.sensor.pose;
+            const auto sigma = [&fit](std::size_t a, std::size_t b, std::size_t c) {
+                return std::sqrt(fit.covariance[a][a] + fit.covariance[b][b] +
+                                 fit.covariance[c][c]);
+            };
+            tell(task.common, "envc",
+                 camera.sensor.id + ": moved by " +
+                     formatFixed(length(fit.pose.position - before.position), 3) + " m by " +
+                     countText(fit.pictures, "picture") + "; standard deviations " +
+                     formatFixed(1000 * sigma(0, 1, 2), 1) + " mm and " +
+                     formatFixed(kDegrees * sigma(3, 4, 5), 3) + " deg; outlines of people " +
+                     formatFixed(fit.height.mean, 2) + " m high within " +
+                     formatFixed(fit.pixels, 1) + " pixels");
+            setPose(camera, layout);
+            std::string line = "calibrated " + camera.sensor.id + " by " +
+                               countText(fit.pictures, "picture") +
+                               ": covariance of x, y, z (m), turn about x, y, z (rad), upper "
+                               "triangle:";
+            for (std::size_t i = 0; i < 6; ++i)
+                for (std::size_t j = i; j < 6; ++j)
+                    line += ' ' + formatDouble(roundSignificant(fit.covariance[i][j], 4));
+            layout.history.push_back(line);
+        }
+    } catch (const FormatError& error) {
+        Diagnostic first = error.diagnostics().front();
+        if (first.file.empty()) first.file = displayName(log.name);
+        throw FormatError(first);
+    }
+}
+
+void addCameras(JsonWriter& json, std::span<const CalibratedCamera> cameras) {
+    if (cameras.empty()) return;
+    json.key("cameras").beginArray();
+    for (const CalibratedCamera& camera : cameras) {
+        const CameraFit& fit = camera.fit;
+        json.beginObject().key("id").value(camera.sensor.id);
+        addPose(json, fit.pose);
+        json.key("tilt").value(wrapped(fit.pose.tilt).degrees());
+        json.key("roll").value(wrapped(fit.pose.roll).degrees());
+        json.key("covariance").beginArray();
+        for (const auto& row : fit.covariance) {
+            json.beginArray();
+            for (const double value : row) json.value(value);
+            json.endArray();
+        }
+        json.endArray().key("pictures").value(fit.pictures).key("pixels").value(fit.pixels);
+        json.key("height").value(fit.height.mean);
+        json.key("height_sigma").value(fit.height.sigma).endObject();
+    }
+    json.endArray();
 }
 
 std::string folderOf(const std::string& file) {
@@ -331,21 +496,29 @@ class Calibration final : public OptionGroup {
   public:
     void declare(CommandLine& line) override {
         line.group("Calibration");
-        line.file("--calibrate", "LOG", log_,
-                  "correct the poses of the fixed lasers of ENV LAYOUT by their scans in a log; of "
-                  "the drive of a robot: its wheels and laser, without operands",
-                  Enters::BaseName);
+        line.file(
+            "--calibrate", "LOG", log_,
+            "correct the poses of the fixed lasers of ENV LAYOUT by their scans in a log, and of "
+            "cameras by the people that both see; of the drive of a robot: its wheels and "
+            "laser, without operands",
+            Enters::BaseName);
         line.flag("--by-people", by_people_,
                   "without a room: how the lasers of LAYOUT stand to the first one, by the people "
                   "that they see",
                   Enters::History);
+        line.meters("--by-robots", robot_radius_, 0.03, 1,
+                    "the same by round robots of about this radius", Enters::History);
     }
     [[nodiscard]] bool isAsked() const override { return !log_.empty(); }
     [[nodiscard]] std::span<const std::string_view> honours() const override {
         static constexpr std::string_view kOptions[] = {"--json"};
         return kOptions;
     }
-    void take(const CommandLine& line) override { is_json_ = line.given("--json"); }
+    void take(const CommandLine& line) override {
+        is_json_ = line.given("--json");
+        if (by_people_ && robot_radius_)
+            throw UsageError("--by-people and --by-robots exclude each other");
+    }
 
     void run(const TaskInput& task) override {
         std::error_code ignored;
@@ -355,8 +528,8 @@ class Calibration final : public OptionGroup {
         std::vector<std::string> named = task.operands;
         named.push_back(log_);
         mustReadStdinOnce(named);
-        if (by_people_)
-            calibrateByPeople(task);
+        if (by_people_ || robot_radius_)
+            calibrateByBodies(task);
         else
             calibrateByPlan(task);
     }
@@ -368,9 +541,9 @@ class Calibration final : public OptionGroup {
     }
 
     void writeDrive(const TaskInput& task, const std::string& bytes) const {
-        if (!task.operands.empty() || by_people_)
+        if (!task.operands.empty() || by_people_ || robot_radius_)
             throw UsageError("--calibrate with the drive of a robot takes no operand" +
-                             std::string(by_people_ ? " and no --by-people" : ""));
+                             std::string(by_people_ || robot_radius_ ? " and no " + byWhat() : ""));
         const std::string format = formatFor(task, "txt");
         claimOutputs(task.common);
         const DriveFit fit = fitDrive(readDrive(bytes, log_), log_);
@@ -398,8 +571,9 @@ class Calibration final : public OptionGroup {
         const SceneInput input = readScene(request);
         warnOfImport(task.common, "envc", input);
         if (!input.layout) throw UsageError("--calibrate corrects a LAYOUT, and no operand is one");
-        Log log = readLog(log_);
+        Log log = readLog(log_, LogPictures::Keep);
         std::vector<CalibratedLaser> lasers = LaserPairs(task, log).of(fixedLasers(input.scene));
+        std::vector<CalibratedCamera> cameras = fixedCameras(input.scene, log);
         Document layout = productOf(task, *input.layout, input.layout_operand);
         Diagnostics findings;
         for (CalibratedLaser& laser : lasers) {
@@ -417,47 +591,72 @@ class Calibration final : public OptionGroup {
             layout.history.push_back(historyOf(laser));
         }
         findings.throwIfAny();
+        calibrateCameras(task, legLasers(lasers), {}, log, cameras, layout);
         writeAll(task.common.output,
-                 format == "json" ? calibrationJson(lasers) : writeRecordText(layout));
+                 format == "json" ? calibrationJson(lasers, cameras) : writeRecordText(layout));
         std::vector<std::string> files = filesOf(input);
         files.insert(files.end(), log.files.begin(), log.files.end());
         writeDependencies(task.common, files);
     }
 
-    void calibrateByPeople(const TaskInput& task) const {
+    [[nodiscard]] std::string byWhat() const {
+        return robot_radius_ ? "--by-robots" : "--by-people";
+    }
+
+    void calibrateByBodies(const TaskInput& task) const {
+        const BodyTarget target{robot_radius_.value_or(0)};
         if (task.operands.size() != 1)
-            throw UsageError("--by-people wants one operand, a LAYOUT: it needs no room");
+            throw UsageError(byWhat() + " wants one operand, a LAYOUT: it needs no room");
         const std::string format = formatFor(task, "3dm");
         claimOutputs(task.common);
         ImportOptions import;
         import.load_files = false;
         const Document read = readDocument(task.operands[0], import, sceneSchemas());
         if (read.kind != DocumentKind::Layout)
-            throw UsageError("--by-people wants a LAYOUT, and " + displayName(task.operands[0]) +
+            throw UsageError(byWhat() + " wants a LAYOUT, and " + displayName(task.operands[0]) +
                              " is none");
-        Log log = readLog(log_);
+        Log log = readLog(log_, target.isPerson() ? LogPictures::Keep : LogPictures::Skip);
         std::vector<CalibratedLaser> lasers = LaserPairs(task, log).of(fixedLasers(read));
+        std::vector<CalibratedCamera> cameras = fixedCameras(read, log);
         std::vector<WatchingLaser> seen;
         seen.reserve(lasers.size());
         for (const CalibratedLaser& laser : lasers) seen.push_back(laser.seen);
         Document layout = productOf(task, read, task.operands[0]);
         const BodyFit fit = [&] {
             try {
-                return fitToBodies(seen);
+                return fitToBodies(seen, target);
             } catch (const FormatError& error) {
                 throw FormatError(
                     Diagnostic{displayName(log_), 0, 0, error.diagnostics().front().message});
             }
         }();
-        takePeople(task, fit, lasers, layout);
-        writeAll(task.common.output,
-                 format == "json" ? peopleJson(lasers, fit) : writeRecordText(layout));
+        takePeople(task, fit, target, lasers, layout);
+        for (std::size_t i = 0; i < seen.size(); ++i) seen[i].sensor.pose = fit.poses[i];
+        calibrateCameras(task, seen, {fit.height, std::max(fit.height_sigma, 0.02)}, log, cameras,
+                         layout);
+        writeAll(task.common.output, format == "json" ? peopleJson(lasers, fit, target, cameras)
+                                                      : writeRecordText(layout));
         std::vector<std::string> files{task.operands[0]};
         files.insert(files.end(), log.files.begin(), log.files.end());
         writeDependencies(task.common, files);
     }
 
+    /// Returns the lasers of a room that see legs, at their poses.
+    [[nodiscard]] static std::vector<WatchingLaser> legLasers(
+        std::span<const CalibratedLaser> lasers) {
+        std::vector<WatchingLaser> seeing;
+        for (const CalibratedLaser& laser : lasers) {
+            constexpr double kKnees = 0.65;
+            if (!scansSlice(laser.seen.sensor) || laser.seen.sensor.pose.position.z > kKnees)
+                continue;
+            seeing.push_back(laser.seen);
+            seeing.back().sensor.pose = laser.fit.pose;
+        }
+        return seeing;
+    }
+
     std::string log_;
+    std::optional<double> robot_radius_;
     bool is_json_ = false, by_people_ = false;
 };
 

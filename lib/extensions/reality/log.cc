@@ -120,7 +120,9 @@ void storePart(std::vector<Part>& parts, Part part, const json& line) {
 }
 
 /// Reads lines of ispace-scan/1; an incomplete last line is skipped, as a killed run leaves it.
-void addScanLines(std::string_view bytes, const std::string& name, Log& log) {
+void addScanLines(std::string_view bytes, const std::string& name, LogPictures pictures, Log& log) {
+    const std::string folder =
+        name == "-" ? "" : std::filesystem::path(name).parent_path().string();
     LogBudget budget(name);
     int number = 0;
     for (std::size_t begin = 0; begin < bytes.size();) {
@@ -144,6 +146,13 @@ void addScanLines(std::string_view bytes, const std::string& name, Log& log) {
             } else if (line.contains("heard") && line.contains("pose")) {
                 budget.take(line["heard"].size());
                 storePart(log.bursts, burstOfLine(line), line);
+            } else if (pictures == LogPictures::Keep && line.contains("file") &&
+                       line["file"].is_string()) {
+                budget.take(1);
+                const std::filesystem::path file = line["file"].get<std::string>();
+                LogPicture picture;
+                picture.file = (std::filesystem::path(folder) / file).string();
+                storePart(log.pictures, std::move(picture), line);
             }
         } catch (const json::exception&) {
             throw FormatError({displayName(name), number, 0, "no line of ispace-scan/1"});
@@ -236,7 +245,7 @@ void addRecordedOdometry(const std::string& folder, Log& log) {
     }
 }
 
-Log readRecordFolder(const std::string& folder) {
+Log readRecordFolder(const std::string& folder, LogPictures pictures) {
     Log log;
     log.name = folder;
     log.format = "record";
@@ -248,7 +257,7 @@ Log readRecordFolder(const std::string& folder) {
         if (text.size() > kMaxFileBytes)
             throw FormatError({files.scans, 0, 0, "more than " + formatBytes(kMaxFileBytes)});
     }
-    addScanLines(text, files.scans, log);
+    addScanLines(text, files.scans, pictures, log);
     text.clear();
     sortLog(log);
     addRecordedOdometry(folder, log);
@@ -272,8 +281,9 @@ std::vector<std::string> bagFiles(const std::string& folder) {
     return files;
 }
 
-Log readBagFolder(const std::string& folder, const std::vector<std::string>& files) {
-    RosLogBuilder builder(folder);
+Log readBagFolder(const std::string& folder, const std::vector<std::string>& files,
+                  LogPictures pictures) {
+    RosLogBuilder builder(folder, pictures);
     for (const std::string& file : files) {
         if (file.ends_with(".db3"))
             addSqliteBag(file, builder);
@@ -286,12 +296,12 @@ Log readBagFolder(const std::string& folder, const std::vector<std::string>& fil
     return log;
 }
 
-Log readLogFolder(const std::string& folder) {
+Log readLogFolder(const std::string& folder, LogPictures pictures) {
     if (const std::vector<std::string> files = bagFiles(folder); !files.empty())
-        return readBagFolder(folder, files);
+        return readBagFolder(folder, files, pictures);
     const RecordedFiles record(folder);
     if (std::filesystem::exists(record.scans) && std::filesystem::exists(record.robots))
-        return readRecordFolder(folder);
+        return readRecordFolder(folder, pictures);
     throw FormatError({folder, 0, 0,
                        "neither a bag of ROS 2 (.mcap, .db3) nor a record of simrun (scans.jsonl, "
                        "robots.csv)"});
@@ -342,6 +352,7 @@ void sortLog(Log& log) {
     sort(log.scans);
     sort(log.clouds);
     sort(log.bursts);
+    sort(log.pictures);
 }
 
 void finishLog(Log& log) {
@@ -352,18 +363,18 @@ void finishLog(Log& log) {
         throw FormatError({displayName(log.name), 0, 0, "the log holds no scans and no clouds"});
 }
 
-Log readScanLines(std::string_view bytes, const std::string& name) {
+Log readScanLines(std::string_view bytes, const std::string& name, LogPictures pictures) {
     Log log;
     log.name = name;
     log.format = "jsonl";
-    addScanLines(bytes, name, log);
+    addScanLines(bytes, name, pictures, log);
     sortLog(log);
     finishLog(log);
     return log;
 }
 
-Log readMcapLog(std::string_view bytes, const std::string& name) {
-    RosLogBuilder builder(name);
+Log readMcapLog(std::string_view bytes, const std::string& name, LogPictures pictures) {
+    RosLogBuilder builder(name, pictures);
     addMcap(bytes, name, builder);
     return builder.finish();
 }
@@ -375,14 +386,14 @@ bool isLog(std::string_view bytes) {
             bytes.substr(0, kHeader).find("\"ispace-scan/") != std::string_view::npos);
 }
 
-Log parseLog(std::string_view bytes, const std::string& name) {
+Log parseLog(std::string_view bytes, const std::string& name, LogPictures pictures) {
     Log log;
     if (bytes.starts_with(kMcap)) {
-        log = readMcapLog(bytes, name);
+        log = readMcapLog(bytes, name, pictures);
     } else if (bytes.starts_with(kSqlite)) {
         throw FormatError({displayName(name), 0, 0, "a bag of SQLite: its name must end in .db3"});
     } else if (bytes.starts_with('{')) {
-        log = readScanLines(bytes, name);
+        log = readScanLines(bytes, name, pictures);
     } else if (isCarmen(bytes)) {
         log = readCarmenLog(bytes, name);
     } else {
@@ -394,15 +405,15 @@ Log parseLog(std::string_view bytes, const std::string& name) {
     return log;
 }
 
-Log readLog(const std::string& operand) {
+Log readLog(const std::string& operand, LogPictures pictures) {
     std::error_code ignored;
     if (operand != "-" && std::filesystem::is_directory(operand, ignored))
-        return readLogFolder(operand);
+        return readLogFolder(operand, pictures);
     if (operand.ends_with(".db3")) {
-        Log log = readBagFolder(operand, {operand});
+        Log log = readBagFolder(operand, {operand}, pictures);
         return log;
     }
-    return parseLog(operand == "-" ? readStdin() : readAll(operand), operand);
+    return parseLog(operand == "-" ? readStdin() : readAll(operand), operand, pictures);
 }
 
 }  // namespace ispace

@@ -58,6 +58,14 @@ struct LogBurst {
     std::vector<std::pair<std::string, double>> heard;  ///< receivers and distances in metres
 };
 
+/// A picture of a camera, as it is stored.
+struct LogPicture {
+    std::string sensor;
+    double time = 0;
+    std::string file = {};   ///< that holds it; "" for one within the log
+    std::string bytes = {};  ///< PNG, JPEG, PGM or PPM; "" for one in a file
+};
+
 /// A pose by odometry.
 struct LogOdometry {
     std::string source;  ///< "ODOM", the topic, or the robot's id
@@ -78,8 +86,12 @@ struct Log {
     std::vector<LogScan> scans;
     std::vector<LogCloud> clouds;
     std::vector<LogBurst> bursts;
+    std::vector<LogPicture> pictures;  ///< if they were asked for
     std::vector<LogOdometry> odometry;
 };
+
+/// Whether a reader keeps the pictures of cameras: most logs consist of little else.
+enum class LogPictures { Skip, Keep };
 
 /// Most ranges and points of a log, together: as many fit in 3 GB.
 constexpr std::size_t kMaxLogValues = 200'000'000;
@@ -87,12 +99,13 @@ constexpr std::size_t kMaxLogValues = 200'000'000;
 /// Reads a log, in the format that its content has; `operand` is a file, a folder (rosbag2, a
 /// record of simrun) or - for stdin. \throws FormatError with the line of text, or the byte of a
 /// binary file, for anything malformed, and for a log without measurements; std::system_error
-Log readLog(const std::string& operand);
+Log readLog(const std::string& operand, LogPictures pictures = LogPictures::Skip);
 
 /// Returns true for a log of one file: CARMEN, MCAP, JSON lines of scan. O(1)
 bool isLog(std::string_view bytes);
 /// Reads a log of one file from memory. \param name of the file, for messages \throws as readLog()
-Log parseLog(std::string_view bytes, const std::string& name);
+Log parseLog(std::string_view bytes, const std::string& name,
+             LogPictures pictures = LogPictures::Skip);
 
 // The formats, from memory. `name` is that of the file, for messages. \throws FormatError
 
@@ -100,9 +113,11 @@ Log parseLog(std::string_view bytes, const std::string& name);
 /// ROBOTLASERn, ODOM. A reading of the maximum range is no return. Poses of the laser that keep
 /// their offset to the robot's odometry are the odometry; others are corrected.
 Log readCarmenLog(std::string_view bytes, const std::string& name);
-/// `scan -o x.jsonl`: lasers, rangers, tags.
-Log readScanLines(std::string_view bytes, const std::string& name);
-/// MCAP with messages in CDR: LaserScan, PointCloud2, Odometry, tf.
-Log readMcapLog(std::string_view bytes, const std::string& name);
+/// `scan -o x.jsonl`: lasers, rangers, tags, and pictures in files beside it.
+Log readScanLines(std::string_view bytes, const std::string& name,
+                  LogPictures pictures = LogPictures::Skip);
+/// MCAP with messages in CDR: LaserScan, PointCloud2, Odometry, tf, Image and CompressedImage.
+Log readMcapLog(std::string_view bytes, const std::string& name,
+                LogPictures pictures = LogPictures::Skip);
 
 }  // namespace ispace

@@ -148,7 +148,7 @@ class McapRecords {
         const auto channel = channels_.find(id);
         if (channel == channels_.end())
             refuseBytes("a message of channel " + std::to_string(id) + ", which the file lacks");
-        if (RosLogBuilder::reads(channel->second.type))
+        if (builder_.reads(channel->second.type))
             builder_.add(channel->second.topic, channel->second.type, in.rest(), name_, place);
     }
 

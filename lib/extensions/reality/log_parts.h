@@ -33,13 +33,13 @@ void finishLog(Log& log);
 /// Collects messages of ROS 2 and resolves their frames when all transforms are known.
 class RosLogBuilder {
   public:
-    explicit RosLogBuilder(std::string name);
+    explicit RosLogBuilder(std::string name, LogPictures pictures = LogPictures::Skip);
     ~RosLogBuilder();
     RosLogBuilder(const RosLogBuilder&) = delete;
     RosLogBuilder& operator=(const RosLogBuilder&) = delete;
 
     /// Returns true for the types that are read: "sensor_msgs/msg/LaserScan".
-    static bool reads(std::string_view type);
+    [[nodiscard]] bool reads(std::string_view type) const;
     /// Reads a message in CDR. \param file, place of the message, for errors: "byte 4711"
     /// \throws FormatError
     void add(std::string_view topic, std::string_view type, std::string_view message,

@@ -141,9 +141,11 @@ struct CloudField {
 }  // namespace
 
 struct RosLogBuilder::Data {
-    explicit Data(std::string log_name) : name(std::move(log_name)), budget(name) {}
+    Data(std::string log_name, LogPictures kept)
+        : name(std::move(log_name)), pictures(kept), budget(name) {}
 
     std::string name;
+    LogPictures pictures;
     LogBudget budget;
     Log log;
     std::vector<std::string> scan_frames, cloud_frames, odometry_frames;
@@ -235,6 +237,57 @@ struct RosLogBuilder::Data {
         budget.take(cloud.ranges.size());
         log.clouds.push_back(std::move(cloud));
         cloud_frames.push_back(std::move(stamp.frame));
+    }
+
+    void storePicture(std::string_view topic, double time, std::string bytes) {
+        budget.take(bytes.size() / sizeof(float));
+        log.pictures.push_back(
+            {.sensor = std::string(topic), .time = time, .bytes = std::move(bytes)});
+    }
+
+    void addCompressed(std::string_view topic, CdrReader in) {
+        const RosStamp stamp = readStamp(in);
+        static_cast<void>(in.text());  // the bytes say it themselves
+        const std::size_t size = in.number<std::uint32_t>();
+        storePicture(topic, stamp.time, std::string(in.values(size, 1)));
+    }
+
+    /// Stores colours of eight bits as PPM, grey as PGM. Other pictures, such as depths, are left
+    /// out.
+    void addImage(std::string_view topic, CdrReader in) {
+        const RosStamp stamp = readStamp(in);
+        const std::size_t rows = in.number<std::uint32_t>(), columns = in.number<std::uint32_t>();
+        const std::string_view encoding = in.text();
+        static_cast<void>(in.number<std::uint8_t>());
+        const std::size_t step = in.number<std::uint32_t>();
+        const std::size_t size = in.number<std::uint32_t>();
+        const std::string_view data = in.values(size, 1);
+        const bool is_grey = encoding == "mono8" || encoding == "8UC1";
+        const bool is_blue_first = encoding.starts_with("bgr");
+        const std::size_t channels = is_grey                                      ? 1
+                                     : encoding == "rgb8" || encoding == "bgr8"   ? 3
+                                     : encoding == "rgba8" || encoding == "bgra8" ? 4
+                                                                                  : 0;
+        if (channels == 0) return;
+        constexpr std::size_t kMostSide = 1U << 16U;
+        if (rows == 0 || columns == 0 || rows > kMostSide || columns > kMostSide ||
+            step < columns * channels || size < rows * step)
+            refuseMessage("fewer bytes than the picture has pixels");
+        std::string picture = (is_grey ? "P5\n" : "P6\n") + std::to_string(columns) + ' ' +
+                              std::to_string(rows) + "\n255\n";
+        for (std::size_t row = 0; row < rows; ++row) {
+            const std::string_view line = data.substr(row * step, columns * channels);
+            if (is_grey) {
+                picture += line;
+                continue;
+            }
+            for (std::size_t k = 0; k < line.size(); k += channels) {
+                picture += line[k + (is_blue_first ? 2 : 0)];
+                picture += line[k + 1];
+                picture += line[k + (is_blue_first ? 0 : 2)];
+            }
+        }
+        storePicture(topic, stamp.time, std::move(picture));
     }
 
     void addOdometry(std::string_view topic, CdrReader in) {
@@ -340,10 +393,13 @@ struct RosLogBuilder::Data {
     }
 };
 
-RosLogBuilder::RosLogBuilder(std::string name) : data_(std::make_unique<Data>(std::move(name))) {}
+RosLogBuilder::RosLogBuilder(std::string name, LogPictures pictures)
+    : data_(std::make_unique<Data>(std::move(name), pictures)) {}
 RosLogBuilder::~RosLogBuilder() = default;
 
-bool RosLogBuilder::reads(std::string_view type) {
+bool RosLogBuilder::reads(std::string_view type) const {
+    if (type == "sensor_msgs/msg/Image" || type == "sensor_msgs/msg/CompressedImage")
+        return data_->pictures == LogPictures::Keep;
     return type == "sensor_msgs/msg/LaserScan" || type == "sensor_msgs/msg/PointCloud2" ||
            type == "nav_msgs/msg/Odometry" || type == "tf2_msgs/msg/TFMessage";
 }
@@ -356,6 +412,8 @@ void RosLogBuilder::add(std::string_view topic, std::string_view type, std::stri
         if (type == "sensor_msgs/msg/PointCloud2") return data_->addCloud(topic, in);
         if (type == "nav_msgs/msg/Odometry") return data_->addOdometry(topic, in);
         if (type == "tf2_msgs/msg/TFMessage") return data_->addTransforms(topic, in);
+        if (type == "sensor_msgs/msg/CompressedImage") return data_->addCompressed(topic, in);
+        if (type == "sensor_msgs/msg/Image") return data_->addImage(topic, in);
     } catch (const FormatError& error) {
         const Diagnostic& first = error.diagnostics().front();
         if (!first.file.empty()) throw;

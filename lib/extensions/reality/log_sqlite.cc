@@ -43,7 +43,7 @@ class SqliteBag {
              status = sqlite3_step(rows.get())) {
             if (status != SQLITE_ROW) fail();
             const std::string_view topic = text(rows.get(), 0), type = text(rows.get(), 1);
-            if (!RosLogBuilder::reads(type) || text(rows.get(), 2) != "cdr") continue;
+            if (!builder.reads(type) || text(rows.get(), 2) != "cdr") continue;
             constexpr int kData = 3, kId = 4;
             builder.add(topic, type, text(rows.get(), kData), file_,
                         "message " + std::to_string(sqlite3_column_int64(rows.get(), kId)));

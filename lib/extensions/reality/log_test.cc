@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "sense/formats/cdr.h"
 #include "sense/formats/mcap_writer.h"
 #include "sense/formats/ros_messages.h"
 #include "support/test_folder.h"
@@ -136,6 +137,19 @@ TEST(ScanLines, PosesOfSensorsThatStandStillAreLeftOut) {
     EXPECT_EQ(log.bursts[0].heard[0].second, 1.5);
 }
 
+TEST(ScanLines, PicturesAreFilesBesideTheLog) {
+    const std::string text =
+        "{\"schema\":\"ispace-scan/1\"}\n"
+        "{\"sensor\":\"l1\",\"t\":0,\"angle_min\":0,\"angle_increment\":1,\"range_min\":0,"
+        "\"range_max\":9,\"ranges\":[1],\"pose\":[0,0,0,0,0,0]}\n"
+        "{\"sensor\":\"c1\",\"t\":2,\"file\":\"pictures/c1-1.png\"}\n";
+    EXPECT_TRUE(readScanLines(text, "run/scans.jsonl").pictures.empty());
+    const Log log = readScanLines(text, "run/scans.jsonl", LogPictures::Keep);
+    ASSERT_EQ(log.pictures.size(), 1U);
+    EXPECT_EQ(log.pictures[0].file, "run/pictures/c1-1.png");
+    EXPECT_DOUBLE_EQ(log.pictures[0].time, 2);
+}
+
 TEST(ScanLines, MalformedLinesAreErrorsWithTheirPlace) {
     for (const std::string line :
          {"[]\n", "{\"sensor\":\"l\",\"ranges\":[1]}\n", "nonsense\n",
@@ -229,6 +243,39 @@ TEST(RosLog, McapWithAndWithoutZstd) {
     const Drive drive;
     expectDrive(readMcapLog(drive.mcap(McapCompression::None), "a.mcap"));
     expectDrive(readMcapLog(drive.mcap(McapCompression::Zstd), "a.mcap"));
+}
+
+/// A message of sensor_msgs/Image with two pixels in a row of seven bytes.
+std::string rawImage(const std::string& encoding, std::uint32_t columns = 2) {
+    CdrWriter out;
+    out.put(std::int32_t{1}).put(std::uint32_t{0}).put("eye").put(std::uint32_t{1}).put(columns);
+    out.put(encoding).put(std::uint8_t{0}).put(std::uint32_t{7}).put(std::uint32_t{7});
+    for (const char c : {'a', 'b', 'c', 'd', 'e', 'f', 'x'}) out.put(static_cast<std::uint8_t>(c));
+    return out.take();
+}
+
+TEST(RosLog, PicturesAreKeptIfTheyAreAskedFor) {
+    Drive drive;
+    drive.add("/c1/image_raw/compressed", RosType::CompressedImage,
+              compressedImageMessage({Drive::kSecond, "eye"}, "png", "bytes"));
+    drive.add("/c2/image_raw", RosType::Image, rawImage("bgr8"));
+    drive.add("/c3/image_raw", RosType::Image, rawImage("mono8"));
+    drive.add("/d1/depth", RosType::Image, rawImage("32FC1", 1));
+    const std::string file = drive.mcap(McapCompression::None);
+    EXPECT_TRUE(readMcapLog(file, "a.mcap").pictures.empty());
+    const Log log = readMcapLog(file, "a.mcap", LogPictures::Keep);
+    expectDrive(log);
+    ASSERT_EQ(log.pictures.size(), 3U);
+    EXPECT_EQ(log.pictures[0].bytes, "bytes");
+    EXPECT_EQ(log.pictures[0].sensor, "/c1/image_raw/compressed");
+    EXPECT_DOUBLE_EQ(log.pictures[0].time, 1);
+    EXPECT_EQ(log.pictures[1].bytes, "P6\n2 1\n255\ncbafed");
+    EXPECT_EQ(log.pictures[2].bytes, "P5\n2 1\n255\nab");
+    // More pixels than bytes.
+    drive.add("/c4/image_raw", RosType::Image, rawImage("rgb8", 3));
+    EXPECT_THROW(static_cast<void>(
+                     readMcapLog(drive.mcap(McapCompression::None), "a.mcap", LogPictures::Keep)),
+                 FormatError);
 }
 
 /// Replaces the first chunk of a file by the same records, packed by lz4.
