@@ -27,6 +27,7 @@ envc "$data/drawings/flat.svg" -q --rooms list -o flat.rooms.json
 envc --calibrate "$data/turns.tuple" --json >drive.json
 scan "$scenes/ispace.env" "$scenes/ispace.3dm" -q --select l1 -o real.jsonl
 envc "$scenes/ispace.env" "$scenes/ispace.3dm" -q --calibrate real.jsonl --json >poses.json
+scan "$scenes/ispace.env" "$scenes/ispace.3dm" -q --against real.jsonl --json >reality.json
 for layout in ultrasound ranger uwb; do
     scan "$data/square.env" "$data/$layout.3dm" --any-environment -q -o "$layout.jsonl"
     coverage "$data/square.env" "$data/$layout.3dm" --any-environment -q --report "$layout.json" >/dev/null

@@ -290,6 +290,8 @@ BeamFit fitFrom(const BeamModel& start, std::span<const BeamSample> samples, Spr
         if (std::abs(likelihood - before) < kEnough * (1 + std::abs(likelihood))) break;
         before = likelihood;
     }
+    // Ranges without noise: the last step may pass 0.
+    if (terms == SpreadTerms::Constant) fit.model.sigma[0] = std::max(fit.model.sigma[0], 0.0);
     fit.log_likelihood = fit.model.meanLogLikelihood(samples);
     return fit;
 }

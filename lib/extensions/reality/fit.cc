@@ -142,6 +142,64 @@ VarianceFit fitVariance(const Eigen::MatrixXd& causes, const Eigen::VectorXd& sq
     return fit;
 }
 
+/// Standard deviation of errors as a linear function of what causes them, beside that of the
+/// corrected poses, by maximum likelihood: Fisher scoring. Causes that would lower it count as 0.
+VarianceFit fitDeviation(const Eigen::MatrixXd& causes, const Eigen::VectorXd& squares) {
+    const Eigen::Index count = causes.cols();
+    VarianceFit fit{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
+    std::vector<Eigen::Index> active;
+    for (Eigen::Index k = 0; k < count; ++k)
+        if (causes.col(k).squaredNorm() > 0) active.push_back(k);
+    const double mean = std::max(squares.mean(), 1e-18);
+    bool has_rest = true;  // the variance of the corrected poses
+    while (!active.empty()) {
+        const auto size = static_cast<Eigen::Index>(active.size());
+        const Eigen::Index all = size + (has_rest ? 1 : 0);
+        Eigen::MatrixXd x(causes.rows(), size);
+        for (Eigen::Index k = 0; k < size; ++k)
+            x.col(k) = causes.col(active[static_cast<std::size_t>(k)]);
+        Eigen::VectorXd found = Eigen::VectorXd::Constant(
+            all, std::sqrt(mean) / std::max(x.rowwise().sum().mean(), 1e-12));
+        if (has_rest) found(size) = 0.1 * mean;
+        Eigen::MatrixXd information;
+        constexpr int kRounds = 200;
+        for (int round = 0; round < kRounds; ++round) {
+            const Eigen::VectorXd linear = x * found.head(size);
+            const double rest = has_rest ? found(size) : 0;
+            const Eigen::VectorXd variance = (linear.array().square() + rest).max(1e-4 * mean);
+            Eigen::MatrixXd slopes(causes.rows(), all);  // of the variance, by itself
+            for (Eigen::Index k = 0; k < size; ++k)
+                slopes.col(k) = 2 * linear.array() * x.col(k).array() / variance.array();
+            if (has_rest) slopes.col(size) = variance.cwiseInverse();
+            information = 0.5 * slopes.transpose() * slopes;
+            const Eigen::VectorXd excess = squares.array() / variance.array() - 1;
+            const Eigen::VectorXd step =
+                information.ldlt().solve(0.5 * slopes.transpose() * excess);
+            if (!step.allFinite()) break;
+            // Half steps: a deviation may not pass through 0.
+            found += 0.5 * step;
+            if (step.norm() < 1e-9 * found.norm()) break;
+        }
+        if (has_rest && found(size) < 0) {
+            has_rest = false;
+            continue;
+        }
+        Eigen::Index lowest = 0;
+        if (found.head(size).minCoeff(&lowest) < 0) {
+            active.erase(active.begin() + lowest);
+            continue;
+        }
+        const Eigen::MatrixXd covariance = information.inverse();
+        for (Eigen::Index k = 0; k < size; ++k) {
+            fit.values(active[static_cast<std::size_t>(k)]) = found(k);
+            fit.errors(active[static_cast<std::size_t>(k)]) =
+                std::sqrt(std::max(covariance(k, k), 0.0));
+        }
+        break;
+    }
+    return fit;
+}
+
 Pose2 relative(const Pose2& frame, const Pose2& pose) {
     const Vec2 way = pose.position - frame.position;
     const auto [c, s] = cosSin(frame.heading);
@@ -238,6 +296,21 @@ void limitOutliers(Eigen::VectorXd& errors) {
     const double most = 5 * std::max(spread.sigma, 1e-9);
     for (double& error : errors)
         error = std::clamp(error, spread.median - most, spread.median + most);
+}
+
+/// Returns the squares of errors without outliers: those beyond five deviations of a motion of this
+/// size.
+Eigen::VectorXd squaresOf(const Eigen::VectorXd& errors, const Eigen::MatrixXd& causes) {
+    Eigen::VectorXd limited = errors;
+    limitOutliers(limited);
+    constexpr int kRounds = 5;
+    constexpr double kMost = 5;
+    for (int round = 0; round < kRounds; ++round) {
+        const VarianceFit fit = fitVariance(causes, limited.array().square());
+        const Eigen::VectorXd most = kMost * (causes * fit.values).cwiseMax(1e-18).cwiseSqrt();
+        limited = errors.cwiseMax(-most).cwiseMin(most);
+    }
+    return limited.array().square();
 }
 
 double significant(double value) {
@@ -434,9 +507,7 @@ std::optional<OdometryFit> fitOdometry(const Log& log) {
     fit.motions = motions.size();
     fit.scale_turn = turn_sum > 0 ? turn_errors / turn_sum : 0;
     fit.scale_way = way_sum > 0 ? way_errors / way_sum : 0;
-    limitOutliers(turn);
-    limitOutliers(way);
-    const Eigen::VectorXd turn2 = turn.array().square(), way2 = way.array().square();
+    const Eigen::VectorXd turn2 = squaresOf(turn, causes), way2 = squaresOf(way, causes);
     const auto take = [&](const Eigen::MatrixXd& of, std::array<double, 4>& alphas,
                           std::array<double, 4>& errors) {
         const VarianceFit turns = fitVariance(of, turn2), ways = fitVariance(of, way2);
@@ -447,6 +518,11 @@ std::optional<OdometryFit> fitOdometry(const Log& log) {
     };
     std::tie(fit.turn_error, fit.way_error) = take(causes, fit.alphas, fit.errors);
     static_cast<void>(take(squares, fit.thrun, fit.thrun_errors));
+    const Eigen::MatrixXd sizes = squares.leftCols(2).cwiseSqrt();
+    const VarianceFit turns = fitDeviation(sizes, turn2);
+    const VarianceFit ways = fitDeviation(sizes, way2);
+    fit.carmen = {turns.values(0), turns.values(1), ways.values(1), ways.values(0)};
+    fit.carmen_errors = {turns.errors(0), turns.errors(1), ways.errors(1), ways.errors(0)};
     return fit;
 }
 
@@ -540,6 +616,9 @@ std::string fittedLayout(const std::vector<SensorFit>& sensors,
         comments += "\n#   for variances alpha d^2 of single motions";
         for (std::size_t k = 0; k < fit.thrun.size(); ++k)
             comments += (k == 0 ? " " : ", ") + withError(fit.thrun[k], fit.thrun_errors[k]);
+        comments += "\n#   for CARMEN's deviations alpha |d| of single motions";
+        for (std::size_t k = 0; k < fit.carmen.size(); ++k)
+            comments += (k == 0 ? " " : ", ") + withError(fit.carmen[k], fit.carmen_errors[k]);
         comments += "\n#   systematic: " + formatDouble(significant(fit.scale_turn)) +
                     " a radian, " + formatDouble(significant(fit.scale_way)) +
                     " a metre; corrected poses " + formatDouble(significant(fit.turn_error)) +

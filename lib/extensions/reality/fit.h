@@ -44,9 +44,11 @@ std::vector<SensorFit> fitSensors(const LoggedRun& run);
 struct OdometryFit {
     std::size_t motions = 0;
     std::array<double, 4> alphas{}, errors{};       ///< variance a radian or a metre
-    std::array<double, 4> thrun{}, thrun_errors{};  ///< of (alpha d)^2 of each motion
-    double turn_error = 0, way_error = 0;           ///< of the corrected poses: standard deviations
-    double scale_turn = 0, scale_way = 0;           ///< means of errors a radian and a metre
+    std::array<double, 4> thrun{}, thrun_errors{};  ///< variances alpha d^2 of each motion
+    /// CARMEN's: standard deviations alpha |d| of each motion, those of turn and way added.
+    std::array<double, 4> carmen{}, carmen_errors{};
+    double turn_error = 0, way_error = 0;  ///< of the corrected poses: standard deviations
+    double scale_turn = 0, scale_way = 0;  ///< means of errors a radian and a metre
 };
 /// Returns nullopt if the log has fewer than 20 motions with both poses.
 std::optional<OdometryFit> fitOdometry(const Log& log);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 
 #include "base/number.h"
@@ -22,6 +23,7 @@ struct CellVotes {
     std::uint32_t agreed = 0;                // beams end at the surface that the plan has here
     std::uint32_t last_end = 0, last_pass = 0, last_gone = 0, last_agreed = 0;  // scan, from 1
     float height = 0;
+    Vec2 end_sum, gone_sum;  // of the beams' ends
     std::map<std::int32_t, std::uint32_t> elements = {};
 };
 
@@ -75,12 +77,14 @@ void addBeam(VoteGrid& grid, const MeasuredBeam& beam, const MeasuredRays& rays,
         CellVotes& cell_votes = grid[grid.keyOf(at(measured))];
         vote(cell_votes.ends, cell_votes.last_end, scan);
         ++cell_votes.end_beams;
+        cell_votes.end_sum = cell_votes.end_sum + (at(measured) - Point2());
         cell_votes.height = static_cast<float>(origin.z);
     } else if (beam.expected < kNoReturn) {
         CellVotes& cell_votes = grid[grid.keyOf(at(double{beam.expected}))];
         if (residual > threshold) {
             vote(cell_votes.gone, cell_votes.last_gone, scan);
             ++cell_votes.gone_beams;
+            cell_votes.gone_sum = cell_votes.gone_sum + (at(double{beam.expected}) - Point2());
             cell_votes.height = static_cast<float>(origin.z);
             ++cell_votes.elements[beam.surface];
         } else {
@@ -136,6 +140,7 @@ std::vector<PlanError> regionsOf(const VoteGrid& grid, std::vector<VoteGrid::Key
         std::vector<std::size_t> open{first};
         done[first] = true;
         double passed = 0, agreed = 0;
+        Vec2 sum;
         while (!open.empty()) {
             const VoteGrid::Key key = keys[open.back()];
             open.pop_back();
@@ -145,6 +150,7 @@ std::vector<PlanError> regionsOf(const VoteGrid& grid, std::vector<VoteGrid::Key
             region.scans = std::max<std::size_t>(region.scans, is_new ? votes.ends : votes.gone);
             region.beams += is_new ? votes.end_beams : votes.gone_beams;
             region.height = double{votes.height};
+            sum = sum + (is_new ? votes.end_sum : votes.gone_sum);
             for (const auto& [element, beams] : votes.elements) elements[element] += beams;
             passed += votes.gone;
             agreed += votes.agreed;
@@ -169,9 +175,81 @@ std::vector<PlanError> regionsOf(const VoteGrid& grid, std::vector<VoteGrid::Key
             region.share = passed / std::max(passed + agreed, 1.0);
         }
         frame(region, cell);
+        region.mean = Point2() + (1 / static_cast<double>(region.beams)) * sum;
         regions.push_back(std::move(region));
     }
     return regions;
+}
+
+/// A region as a piece of a wall.
+struct WallPiece {
+    Point2 middle, mean;
+    Vec2 axis;
+    double half = 0;  ///< of its length
+};
+
+/// Returns nullopt for a region that is no piece of a wall.
+std::optional<WallPiece> pieceOf(const PlanError& error) {
+    constexpr double kLeastLength = 0.5, kThin = 0.5;
+    const bool is_long = error.length >= error.width;
+    const double length = is_long ? error.length : error.width;
+    if (length < kLeastLength || std::min(error.length, error.width) > kThin * length)
+        return std::nullopt;
+    const Vec2 axis = unitVector(error.heading);
+    return WallPiece{error.center, error.mean, is_long ? axis : perpendicular(axis), 0.5 * length};
+}
+
+/// Returns the move from a gone piece to a new one; nullopt if they are no pair.
+std::optional<PlanMove> moveOf(const WallPiece& gone, const WallPiece& found) {
+    const double parallel = std::cos(Angle::degrees(15).radians());
+    if (std::abs(dot(gone.axis, found.axis)) < parallel) return std::nullopt;
+    const Vec2 across = perpendicular(gone.axis);
+    // Across the surface, beams tell more than cells; along it, its ends do.
+    const double off = dot(found.mean - gone.mean, across);
+    constexpr double kFarthest = 1.5;
+    if (std::abs(off) > kFarthest) return std::nullopt;
+    const double along = dot(found.middle - gone.middle, gone.axis);
+    const double overlap =
+        std::min(gone.half, along + found.half) - std::max(-gone.half, along - found.half);
+    if (overlap < std::min(gone.half, found.half)) return std::nullopt;
+    constexpr double kAlike = 0.1;  // of the length: both ends were seen
+    PlanMove move;
+    move.is_across = std::abs(gone.half - found.half) > kAlike * gone.half;
+    move.shift = off * across + (move.is_across ? 0 : along) * gone.axis;
+    return move;
+}
+
+/// Pairs gone regions with new ones, the nearest first.
+std::vector<PlanMove> movesOf(std::span<const PlanError> errors) {
+    std::vector<PlanMove> candidates;
+    std::vector<std::optional<WallPiece>> pieces;
+    pieces.reserve(errors.size());
+    for (const PlanError& error : errors) pieces.push_back(pieceOf(error));
+    for (std::size_t g = 0; g < errors.size(); ++g) {
+        if (errors[g].kind != PlanError::Kind::Gone || !pieces[g]) continue;
+        for (std::size_t n = 0; n < errors.size(); ++n) {
+            if (errors[n].kind != PlanError::Kind::New || !pieces[n]) continue;
+            auto move = moveOf(*pieces[g], *pieces[n]);
+            if (!move) continue;
+            move->gone = g;
+            move->found = n;
+            move->element = errors[g].element;
+            candidates.push_back(*move);
+        }
+    }
+    std::stable_sort(
+        candidates.begin(), candidates.end(),
+        [](const PlanMove& a, const PlanMove& b) { return length(a.shift) < length(b.shift); });
+    std::vector<bool> used(errors.size(), false);
+    std::vector<PlanMove> moves;
+    for (const PlanMove& one : candidates) {
+        if (used[one.gone] || used[one.found]) continue;
+        used[one.gone] = used[one.found] = true;
+        moves.push_back(one);
+    }
+    std::sort(moves.begin(), moves.end(),
+              [](const PlanMove& a, const PlanMove& b) { return a.gone < b.gone; });
+    return moves;
 }
 
 std::vector<SurfaceOffset> offsetsOf(const LoggedRun& run) {
@@ -231,6 +309,7 @@ PlanErrors findPlanErrors(const LoggedRun& run, double sigma, double cell) {
                         std::make_move_iterator(lost.end()));
     std::stable_sort(found.errors.begin(), found.errors.end(),
                      [](const PlanError& a, const PlanError& b) { return a.beams > b.beams; });
+    found.moves = movesOf(found.errors);
     found.offsets = offsetsOf(run);
     return found;
 }
@@ -239,7 +318,19 @@ std::vector<std::string> recordsOf(const PlanErrors& errors, const Environment& 
     std::vector<std::string> lines;
     const auto metres = [](double value) { return formatDouble(std::round(value * 100) / 100); };
     std::size_t number = 0;
-    for (const PlanError& error : errors.errors) {
+    std::vector<const PlanMove*> of_region(errors.errors.size(), nullptr);
+    for (const PlanMove& move : errors.moves) of_region[move.gone] = of_region[move.found] = &move;
+    for (std::size_t i = 0; i < errors.errors.size(); ++i) {
+        const PlanError& error = errors.errors[i];
+        if (const PlanMove* const move = of_region[i]; move != nullptr && move->element >= 0) {
+            if (move->gone != i) continue;
+            const std::string& id =
+                environment.elements()[static_cast<std::size_t>(move->element)].id;
+            lines.push_back("# " + id + " stands " + metres(length(move->shift)) +
+                            " m beside its position in the plan: envc --move " + id + ':' +
+                            metres(move->shift.x) + ',' + metres(move->shift.y));
+            continue;
+        }
         if (error.kind == PlanError::Kind::New) {
             // Its height is unknown above the sensor.
             const double height = std::max(0.1, std::ceil(error.height * 10 + 1) / 10);

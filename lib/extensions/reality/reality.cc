@@ -117,8 +117,12 @@ class RealityOptions final : public OptionGroup {
     static std::string mapFormat(const std::string& output) {
         if (isStdout(output)) return "";
         std::string suffix = suffixOf(output);
-        if (suffix == "png" || suffix == "svg" || suffix == "pdf") return suffix;
-        throw UsageError("-o: with --against it is the map of the residuals: .png, .svg or .pdf");
+        if (suffix == "png" || suffix == "svg" || suffix == "pdf" || suffix == "gif" ||
+            suffix == "csv")
+            return suffix;
+        throw UsageError(
+            "-o: with --against it is the map of the residuals, .png, .svg or .pdf, or "
+            "a film of the log beside its simulation, .gif, or a table of all beams, .csv");
     }
 
     [[nodiscard]] std::optional<Sensor> modelOf() const {
@@ -136,7 +140,11 @@ class RealityOptions final : public OptionGroup {
                const Scene& scene, const std::string& map) const {
         writeAll("-", json_ ? realityJson(report, scene.environment)
                             : realityText(report, scene.environment));
-        if (!map.empty()) {
+        if (map == "gif") {
+            writeAll(input.common.output, realityFilm(report, logged, scene.environment));
+        } else if (map == "csv") {
+            writeAll(input.common.output, realityTable(logged, scene.environment));
+        } else if (!map.empty()) {
             const Picture picture = realityMap(report, logged, scene.environment);
             writeAll(input.common.output, picture.write(map == "png"   ? PictureFormat::Png
                                                         : map == "svg" ? PictureFormat::Svg

@@ -182,6 +182,17 @@ ReportPage realityPage(const RealityReport& report, const LoggedRun& run,
         errors.blocks.push_back(PageText{"No region of three scans or more differs.", Tone::Good});
     else
         errors.blocks.push_back(std::move(regions));
+    if (!report.errors.moves.empty()) {
+        PageTable moves{"moved surfaces", "lrrr", {"surface", "by", "along x", "along y"}, {}};
+        for (const PlanMove& move : report.errors.moves)
+            moves.rows.push_back(
+                {move.element < 0
+                     ? ""
+                     : environment.elements()[static_cast<std::size_t>(move.element)].id,
+                 formatFixed(length(move.shift), 2) + " m", formatFixed(move.shift.x, 2) + " m",
+                 formatFixed(move.shift.y, 2) + " m"});
+        errors.blocks.push_back(std::move(moves));
+    }
     if (!report.records.empty()) {
         std::string text;
         for (const std::string& record : report.records) text += record + '\n';

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/json_writer.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "env/level.h"
 #include "report/coverage_report.h"
@@ -137,6 +138,14 @@ std::string elementName(std::int32_t element, const Environment& environment) {
     return element < 0 ? "" : environment.elements()[static_cast<std::size_t>(element)].id;
 }
 
+/// Returns a field of CSV, quoted if it has to be (RFC 4180).
+std::string tableField(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string field = "\"";
+    for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return field + '"';
+}
+
 TextRow textRow(const ResidualRow& row) {
     return {row.name, std::to_string(row.beams), percentText(row.inliers, 1),
             centimetres(row.median), centimetres(row.sigma)};
@@ -185,6 +194,18 @@ std::string errorsText(const RealityReport& report, const Environment& environme
         if (report.errors.errors.size() > kWorst)
             text += "and " + std::to_string(report.errors.errors.size() - kWorst) + " more\n";
     }
+    if (!report.errors.moves.empty()) {
+        std::vector<TextRow> rows{{"moved", "by", "along x", "along y", "", "beams"}};
+        for (const PlanMove& move : report.errors.moves) {
+            if (rows.size() > kWorst) break;
+            rows.push_back({elementName(move.element, environment),
+                            formatFixed(length(move.shift), 2) + " m", formatFixed(move.shift.x, 2),
+                            formatFixed(move.shift.y, 2),
+                            move.is_across ? "or more, along itself" : "",
+                            std::to_string(report.errors.errors[move.found].beams)});
+        }
+        text += "\n" + aligned(rows, "lrrrlr");
+    }
     constexpr double kLeast = 0.02;
     std::vector<TextRow> rows{{"surface", "offset", "sigma", "beams", "scans"}};
     for (const SurfaceOffset& offset : report.errors.offsets) {
@@ -226,6 +247,13 @@ void writeErrors(JsonWriter& json, const RealityReport& report, const Environmen
         else
             json.null();
         json.endObject();
+    }
+    json.endArray().key("moves").beginArray();
+    for (const PlanMove& move : report.errors.moves) {
+        json.beginObject().key("element").value(elementName(move.element, environment));
+        json.key("shift").beginArray().value(move.shift.x).value(move.shift.y).endArray();
+        json.key("across").value(move.is_across);
+        json.key("gone").value(move.gone).key("new").value(move.found).endObject();
     }
     json.endArray().key("offsets").beginArray();
     for (const SurfaceOffset& offset : report.errors.offsets) {
@@ -314,7 +342,7 @@ std::string realityText(const RealityReport& report, const Environment& environm
 std::string realityJson(const RealityReport& report, const Environment& environment) {
     const BeamModel& model = report.fit.model;
     JsonWriter json;
-    json.beginObject().key("schema").value("ispace-reality/1");
+    beginReport(json, "ispace-reality/1", "scan");
     json.key("log").value(report.log).key("format").value(report.format);
     json.key("digest").value(environment.digest());
     json.key("scans").value(report.scans).key("left_out").value(report.left_out);
@@ -358,6 +386,32 @@ std::string realityJson(const RealityReport& report, const Environment& environm
     json.endObject();
     writeErrors(json, report, environment);
     return json.endObject().take() + '\n';
+}
+
+std::string realityTable(const LoggedRun& run, const Environment& environment) {
+    std::string text = "sensor,t,scan,beam,measured,expected,cosine,surface,range_max\n";
+    const auto add = [&text](float range) {
+        constexpr double kDigits = 1e5;
+        text += ',';
+        if (range < kNoReturn) text += formatDouble(std::round(double{range} * kDigits) / kDigits);
+    };
+    for (std::size_t i = 0; i < run.scans.size(); ++i) {
+        const MeasuredScan& scan = run.scans[i];
+        const MeasuredSensor& sensor = run.sensors[scan.sensor];
+        const std::string begin =
+            tableField(sensor.id) + ',' + formatDouble(scan.time()) + ',' + std::to_string(i) + ',';
+        const std::span<const MeasuredBeam> beams = run.beamsOf(scan);
+        for (std::size_t k = 0; k < beams.size(); ++k) {
+            text += begin + std::to_string(k);
+            add(beams[k].measured);
+            add(beams[k].expected);
+            text += ',' + formatDouble(roundSignificant(double{beams[k].cosine}, 4)) + ',' +
+                    tableField(elementName(beams[k].surface, environment)) + ',';
+            if (sensor.max_range < 1e5) text += formatDouble(sensor.max_range);
+            text += '\n';
+        }
+    }
+    return text;
 }
 
 RealityRequirement parseRealityRequirement(const std::string& text) {

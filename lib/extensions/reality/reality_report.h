@@ -57,6 +57,12 @@ std::string realityJson(const RealityReport& report, const Environment& environm
 /// and the cells where the plan is wrong.
 Picture realityMap(const RealityReport& report, const LoggedRun& run,
                    const Environment& environment, int width = 1200);
+/// Writes a row for each beam: sensor, t, scan, beam, measured, expected, cosine, surface,
+/// range_max. No return is an empty field. Metres.
+std::string realityTable(const LoggedRun& run, const Environment& environment);
+/// Draws each scan of the log beside the simulated one, up to 300 of them evenly, as GIF.
+std::string realityFilm(const RealityReport& report, const LoggedRun& run,
+                        const Environment& environment, int width = 1200);
 /// Draws the histogram of the residuals, with the fitted density of hits.
 Picture realityHistogram(const RealityReport& report);
 ReportPage realityPage(const RealityReport& report, const LoggedRun& run,
