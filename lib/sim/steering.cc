@@ -110,7 +110,9 @@ double Steering::untilLine(Vec2 velocity, double most) const {
 /// Tests a way against the lines that findLines() would find, of which it reads those near the way.
 bool Steering::isFreeByIndex(const Segment2& way) const {
     const double ahead = speed_ * horizon_ + kGap;
-    if (helm_->clearance > ahead || helm_->index->isClear(way, radius_ + kGap)) return true;
+    if (helm_->clearance > ahead) return true;
+    const ObstacleIndex::Way look = helm_->index->look(way, radius_ + kGap);
+    if (look != ObstacleIndex::Way::Unknown) return look == ObstacleIndex::Way::Clear;
     helm_->index->findIn(bounds(way).expanded(radius_ + kGap), nearby_);
     const double farthest = radius_ + ahead;
     return std::none_of(nearby_.begin(), nearby_.end(), [&](const Segment2& line) {

@@ -150,14 +150,15 @@ ClearanceField::ClearanceField(const Obstacles& obstacles, const Box2& box) : lo
     least_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     // From the centre of a cell, less half its diagonal.
     const double half = side_ * 0.7072;
+    slack_ = 2.001 * half;
     tbb::parallel_for(0, rows_, [&](int row) {
         for (int column = 0; column < columns_; ++column) {
             const Point2 center{low_.x + side_ * (column + 0.5), low_.y + side_ * (row + 0.5)};
-            const double bound = std::max(0.0, obstacles.nearest(center, kFarthest) - half);
+            const double bound = std::max(-half, obstacles.nearest(center, kFarthest) - half);
             // Rounded down.
             least_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                    static_cast<std::size_t>(column)] =
-                std::nextafter(static_cast<float>(bound), 0.0F);
+                std::nextafter(static_cast<float>(bound), -1.0F);
         }
     });
     addLines(obstacles, box);
@@ -219,21 +220,32 @@ double ClearanceField::at(Point2 p) const {
                static_cast<std::size_t>(x)]);
 }
 
-bool ClearanceField::isClear(const Segment2& way, double reach) const {
-    // From circle to circle in which all is clear; narrow ones do not pay.
-    constexpr double kLeastStep = 0.05, kRounding = 1e-9;
+ObstacleIndex::Way ClearanceField::look(const Segment2& way, double reach) const {
+    // From circle to circle in which all is clear; where they are narrow, in short steps that only
+    // look for an obstacle. The margin exceeds those that steering leaves for rounding.
+    constexpr double kLeastStep = 0.05, kShortStep = 0.1, kMargin = 3e-6;
     const Vec2 along = way.b - way.a;
     const double end = std::sqrt(dot(along, along));
-    if (end == 0) return at(way.a) >= reach + kRounding;
+    const auto is_inside = [this](Point2 p) {
+        const double x = (p.x - low_.x) * per_metre_, y = (p.y - low_.y) * per_metre_;
+        return x >= 0 && y >= 0 && x < columns_ && y < rows_;
+    };
+    const double start_room = at(way.a) - reach - kMargin;
+    if (!(start_room >= 0) || !is_inside(way.b)) return Way::Unknown;
+    if (start_room >= end) return Way::Clear;
+    const auto is_blocked = [&](double least) { return least + slack_ < reach - kMargin; };
+    if (is_blocked(at(way.b))) return Way::Blocked;
     const Vec2 unit = 1 / end * along;
-    // Most ways that are not clear meet something at their end.
-    if (at(way.b) < reach + kRounding) return false;
-    for (double gone = 0;;) {
-        const double room = at(way.a + gone * unit) - reach - kRounding;
-        if (room >= end - gone) return true;
-        if (room < kLeastStep) return false;
-        gone += room;
+    bool is_clear = start_room >= kLeastStep;
+    for (double gone = is_clear ? start_room : kShortStep; gone < end;) {
+        const double least = at(way.a + gone * unit);
+        if (is_blocked(least)) return Way::Blocked;
+        const double room = least - reach - kMargin;
+        is_clear = is_clear && room >= kLeastStep;
+        if (is_clear && room >= end - gone) return Way::Clear;
+        gone += is_clear ? room : std::max(room, kShortStep);
     }
+    return is_clear ? Way::Clear : Way::Unknown;
 }
 
 LearningRoom::LearningRoom(Scene scene, const LearningTask& task, std::size_t goals)

@@ -137,7 +137,7 @@ class ClearanceField : public ObstacleIndex {
     ClearanceField(const Obstacles& obstacles, const Box2& box);
     /// Returns a distance that no obstacle is nearer to p than; 0 outside of the box.
     [[nodiscard]] double at(Point2 p) const;
-    [[nodiscard]] bool isClear(const Segment2& way, double reach) const override;
+    [[nodiscard]] Way look(const Segment2& way, double reach) const override;
     void findIn(const Box2& box, std::vector<Segment2>& lines) const override;
 
   private:
@@ -149,6 +149,7 @@ class ClearanceField : public ObstacleIndex {
 
     Point2 low_;
     double side_ = 1, per_metre_ = 1;
+    double slack_ = 0;  // the nearest obstacle is at most so much farther than at()
     int columns_ = 0, rows_ = 0;
     std::vector<float> least_;  // by cell
     int line_columns_ = 0, line_rows_ = 0;

@@ -350,6 +350,12 @@ class VectorEnv(_VectorBase):  # type: ignore[misc]
         return self._worlds.goals
 
     @property
+    def pid(self) -> Optional[int]:
+        """The process of simrun; None once it has ended."""
+        process = self._worlds._process
+        return process.pid if process is not None else None
+
+    @property
     def bytes_of_world(self) -> int:
         """Memory of a world besides what all share, on average."""
         return int(self._worlds.ask("memory"))
