@@ -28,6 +28,9 @@ namespace ispace {
 /// Share of the indoor floor that a change may lose if it saves a sensor or its cost.
 constexpr double kNegligible = 0.01;
 
+/// Share of the indoor floor that a suggestion gains, at least.
+constexpr double kWorthwhile = 1e-3;
+
 /// Rounds square metres to those that overlays of regions resolve.
 inline double withoutNoise(double area) { return std::round(1e6 * area) / 1e6; }
 
@@ -41,6 +44,11 @@ struct MeasuredState {
 inline double coveredShare(const Coverage& coverage) {
     const Metric& metric = coverage.report.coverage;
     return metric.exact.value_or(metric.grid.value_or(0));
+}
+
+/// Returns the indoor floor that no sensor covers, m2.
+inline double uncoveredFloor(const Coverage& coverage) {
+    return (1 - coveredShare(coverage)) * coverage.report.indoor_area;
 }
 
 /// Tries single cameras of a scene at other poses by the rules of SuggestOptions.
@@ -142,11 +150,23 @@ class Adviser {
 
     /// Returns the sight in the first environment that keeps regions; null in others.
     const VisibleArea* sightIn(const Environment& environment);
+    /// Returns the floor that suggestions of this state gain, at least, m2: smaller gains are not
+    /// told unless requirements fall short.
+    [[nodiscard]] static double leastGain(const MeasuredState& now) {
+        return now.missing > 0 ? 0 : kWorthwhile * now.coverage.report.indoor_area;
+    }
+    [[nodiscard]] static double mostAdded(const MeasuredState& now, const Sensor& like);
     /// A displacement of a piece of furniture.
     struct Move {
         std::string id;
         Vec2 by;
     };
+    [[nodiscard]] std::vector<Move> movesOf(const std::vector<std::string>& pieces) const;
+    /// Returns the number of findings about furniture and sensors.
+    [[nodiscard]] static std::size_t findingsOf(const Scene& scene);
+    [[nodiscard]] Scene sceneAfter(const MeasuredState& now, const Move& move) const;
+    std::vector<Move> promisingMoves(const MeasuredState& now,
+                                     const std::vector<std::string>& pieces);
     void keepPromising(const MeasuredState& now, std::vector<Move>& moves);
     std::vector<Suggestion> turnAndShift(const MeasuredState& now);
     void leaveOutNeedless(const MeasuredState& now, std::vector<Suggestion>& steps);

@@ -12,6 +12,7 @@
 #include "arrange/adviser.h"
 #include "arrange/coarse_sight.h"
 #include "arrange/placement_rules.h"
+#include "arrange/suggested_moves.h"
 #include "base/number.h"
 #include "env/element_schemas.h"
 #include "scene/findings/findings.h"
@@ -40,23 +41,30 @@ std::optional<Suggestion> Adviser::furniture(const MeasuredState& now) {
         double hidden;
     };
     std::vector<Piece> pieces;
+    const std::vector<Sensor> sensors = standingSensors(now.scene);
     for (const Element& element : now.scene.environment.elements()) {
         const std::string& keyword = element.record.keyword();
         if (!standsByItself(element.record) || keyword == "pillar" || keyword == "floor") continue;
         const PlacementFrame frame = standingOf(element.record);
         const double radius = std::hypot(frame.length, frame.width) / 2;
         double hidden = 0;
-        for (const Sensor& sensor : standingSensors(now.scene))
+        for (const Sensor& sensor : sensors)
             hidden += hiddenArea(sensor, frame.world_from_body.position, radius);
         if (hidden > 0) pieces.push_back({element.id, hidden});
     }
     std::stable_sort(pieces.begin(), pieces.end(),
                      [](const Piece& a, const Piece& b) { return a.hidden > b.hidden; });
     if (pieces.size() > kMaxPieces) pieces.resize(kMaxPieces);
+    std::vector<std::string> ids;
+    ids.reserve(pieces.size());
+    for (const Piece& piece : pieces) ids.push_back(piece.id);
     std::vector<Move> moves;
-    for (const Piece& piece : pieces)
-        for (const Vec2 by : displacements(kPieceShifts)) moves.push_back({piece.id, by});
-    keepPromising(now, moves);
+    if (MoveTrials::areKnown(now.scene, now.coverage, options_)) {
+        moves = promisingMoves(now, ids);
+    } else {
+        moves = movesOf(ids);
+        keepPromising(now, moves);
+    }
     progress_.begin("best moves of furniture", static_cast<std::int64_t>(moves.size()));
     std::optional<Suggestion> best;
     for (const Move& move : moves) {
@@ -70,11 +78,94 @@ std::optional<Suggestion> Adviser::furniture(const MeasuredState& now) {
     return best;
 }
 
+std::vector<Adviser::Move> Adviser::movesOf(const std::vector<std::string>& pieces) const {
+    std::vector<Move> moves;
+    for (const std::string& piece : pieces)
+        for (const Vec2 by : displacements(kPieceShifts)) moves.push_back({piece, by});
+    return moves;
+}
+
+Scene Adviser::sceneAfter(const MeasuredState& now, const Move& move) const {
+    const std::vector<Edit> edits = {moveOf(move.id, move.by)};
+    return makeScene(edited(now.scene.records, edits, sceneSchemas()), now.scene, devices_);
+}
+
+std::size_t Adviser::findingsOf(const Scene& scene) {
+    return checkScene(scene,
+                      FindingFilter{.checks = {"objects", "outside", "buried", "collisions"}})
+        .size();
+}
+
+namespace {
+
+/// Returns the environment of a scene without one of its elements.
+Environment roomWithout(const Scene& scene, const std::string& id) {
+    std::vector<Record> records;
+    std::vector<std::string> ids;
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        if (scene.ids[i] == id) continue;
+        records.push_back(scene.records[i]);
+        ids.push_back(scene.ids[i]);
+    }
+    return {records, ids, scene.environment};
+}
+
+}  // namespace
+
+/// Returns the moves of these pieces, in order, that may be the best one by cells and add no
+/// findings. No move of a piece shows more floor than the room without it, and findings are checked
+/// only of moves that gain enough, the best first.
+std::vector<Adviser::Move> Adviser::promisingMoves(const MeasuredState& now,
+                                                   const std::vector<std::string>& pieces) {
+    MoveTrials trials(now.scene, now.coverage, options_);
+    const double error = trials.error();
+    const double least = std::max(leastGain(now), 1e-9);
+    std::vector<std::string> hiding;
+    for (const std::string& piece : pieces) {
+        if (isStopped()) return {};
+        const auto most = trials.gainIn(roomWithout(now.scene, piece));
+        if (!most || *most + error >= least) hiding.push_back(piece);
+    }
+    struct Trial {
+        Move move;
+        double most;
+        std::size_t number;
+    };
+    std::vector<Trial> all;
+    const std::vector<Move> moves = movesOf(hiding);
+    progress_.begin("moves of furniture", static_cast<std::int64_t>(moves.size()));
+    for (std::size_t i = 0; i < moves.size() && !isStopped(); ++i) {
+        progress_.advance(1);
+        const std::vector<Edit> edits = {moveOf(moves[i].id, moves[i].by)};
+        const Environment moved(edited(now.scene.records, edits, sceneSchemas()), now.scene.ids,
+                                now.scene.environment);
+        const double most = trials.gainIn(moved).value_or(std::numeric_limits<double>::infinity());
+        if (most + error >= least) all.push_back({moves[i], most, i});
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Trial& a, const Trial& b) { return a.most > b.most; });
+    const std::size_t accepted = all.empty() ? 0 : findingsOf(now.scene);
+    double best = -std::numeric_limits<double>::infinity();
+    std::vector<Trial> kept;
+    for (const Trial& trial : all) {
+        // Without an error equal gains are equal when measured, and the first of them is best.
+        if (isStopped() || trial.most + error < best || (error == 0 && trial.most == best)) break;
+        if (findingsOf(sceneAfter(now, trial.move)) > accepted) continue;
+        best = std::max(best, trial.most);
+        kept.push_back(trial);
+    }
+    std::sort(kept.begin(), kept.end(),
+              [](const Trial& a, const Trial& b) { return a.number < b.number; });
+    std::vector<Move> promising;
+    promising.reserve(kept.size());
+    for (Trial& trial : kept) promising.push_back(std::move(trial.move));
+    return promising;
+}
+
 /// Leaves out moves that add findings, and those that by estimates of cells cannot be the best.
 void Adviser::keepPromising(const MeasuredState& now, std::vector<Move>& moves) {
-    const FindingFilter filter{.checks = {"objects", "outside", "buried", "collisions"}};
-    const std::size_t accepted = checkScene(now.scene, filter).size();
-    const bool estimates = CoarseSight::estimates(now.scene, options_);
+    const std::size_t accepted = findingsOf(now.scene);
+    const bool estimates = CoarseSight::estimates(options_);
     std::vector<Move> kept;
     std::vector<FloorGain> gains;
     double error = 0;
@@ -82,10 +173,8 @@ void Adviser::keepPromising(const MeasuredState& now, std::vector<Move>& moves) 
     for (const Move& move : moves) {
         if (isStopped()) break;
         progress_.advance(1);
-        const std::vector<Edit> edits = {moveOf(move.id, move.by)};
-        const Scene moved =
-            makeScene(edited(now.scene.records, edits, sceneSchemas()), now.scene, devices_);
-        if (checkScene(moved, filter).size() > accepted) continue;
+        const Scene moved = sceneAfter(now, move);
+        if (findingsOf(moved) > accepted) continue;
         kept.push_back(move);
         if (!estimates) continue;
         CoarseSight coarse(moved.environment, options_);

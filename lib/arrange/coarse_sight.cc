@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "arrange/candidate_generator.h"
 #include "coverage/camera_rules.h"
+#include "scene/sensor/ultrasound.h"
 
 namespace ispace {
 
@@ -40,21 +42,36 @@ CoarseSight::CoarseSight(const Environment& environment, const SuggestOptions& o
         private_.push_back({rule.density, privateCells(rule, environment, target_)});
 }
 
-bool CoarseSight::estimates(const Scene& scene, const SuggestOptions& options) {
-    return options.requirements.empty() && options.facing.empty() &&
-           std::none_of(scene.sensors.begin(), scene.sensors.end(),
-                        [](const Sensor& sensor) { return isPartial(sensor.model); });
+bool CoarseSight::estimates(const SuggestOptions& options) {
+    return options.requirements.empty() && options.facing.empty();
 }
 
-void CoarseSight::count(std::span<const Sensor> sensors, const Sensor& moving) {
-    counted_ = target_.indoor;
+void CoarseSight::look(std::span<const Sensor> sensors) {
+    seen_.clear();
+    times_.assign(target_.grid.size(), 0);
+    heard_.assign(target_.grid.size(), 0);
     for (const Sensor& sensor : sensors) {
-        if (sensor.id == moving.id || !kindOf(sensor.model).perceives) continue;
+        if (!kindOf(sensor.model).perceives) continue;
         sight_.prepare(sensor);
-        sight_.cellsOf(target_.grid, sensor).forEach([&](std::size_t cell) {
-            counted_.reset(cell);
-        });
+        CellSet cells = sight_.cellsOf(target_.grid, sensor);
+        std::vector<std::uint32_t>& counts = isPartial(sensor.model) ? heard_ : times_;
+        cells.forEach([&counts](std::size_t cell) { ++counts[cell]; });
+        seen_.insert_or_assign(sensor.id, std::move(cells));
     }
+}
+
+void CoarseSight::count(const Sensor& moving) {
+    const auto own = seen_.find(moving.id);
+    counted_ = target_.indoor;
+    const bool is_partial = isPartial(moving.model);
+    target_.indoor.forEach([&](std::size_t cell) {
+        const std::uint32_t mine = own != seen_.end() && own->second.test(cell) ? 1 : 0;
+        const std::uint32_t times = times_[cell] - (is_partial ? 0 : mine);
+        const std::uint32_t heard = heard_[cell] - (is_partial ? mine : 0);
+        // A receiver covers the floor that is one short of enough.
+        const bool is_open = is_partial ? heard + 1 == kMinReceivers : heard < kMinReceivers;
+        if (times > 0 || !is_open) counted_.reset(cell);
+    });
 }
 
 FloorGain CoarseSight::gainOf(const Sensor& sensor) const {
@@ -88,11 +105,18 @@ std::vector<FloorGain> CoarseSight::at(const Sensor& sensor, std::span<const Pos
 FloorGain CoarseSight::whole(std::span<const Sensor> sensors) {
     FloorGain sum;
     CellSet seen(target_.grid.size());
+    std::vector<std::uint32_t> heard(target_.grid.size());
     for (const Sensor& sensor : sensors) {
         if (!kindOf(sensor.model).perceives) continue;
         sight_.prepare(sensor);
         sum.required += gainOf(sensor).required;
-        seen |= sight_.cellsOf(target_.grid, sensor);
+        const CellSet cells = sight_.cellsOf(target_.grid, sensor);
+        if (!isPartial(sensor.model))
+            seen |= cells;
+        else
+            cells.forEach([&](std::size_t cell) {
+                if (++heard[cell] == kMinReceivers) seen.set(cell);
+            });
     }
     sum.gained = cell_ * static_cast<double>(countCommon(seen, target_.indoor));
     return sum;

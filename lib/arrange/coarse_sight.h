@@ -3,7 +3,11 @@
 // measure.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "arrange/suggestion.h"
@@ -31,13 +35,15 @@ class CoarseSight {
     CoarseSight(const CoarseSight&) = delete;
     CoarseSight& operator=(const CoarseSight&) = delete;
 
-    /// Returns true if the sensors' views have cells, and these options ask for no more than the
-    /// estimates know: no requirements, and no rules of faces.
-    static bool estimates(const Scene& scene, const SuggestOptions& options);
+    /// Returns true if these options ask for no more than the estimates know: no requirements, and
+    /// no rules of faces.
+    static bool estimates(const SuggestOptions& options);
 
-    /// Counts the floor of later estimates: cells indoors that none of these sensors but
-    /// `moving` sees.
-    void count(std::span<const Sensor> sensors, const Sensor& moving);
+    /// Looks once at the floor that each of the sensors sees, for count().
+    void look(std::span<const Sensor> sensors);
+    /// Counts the floor of later estimates: cells indoors that no sensor of look() but `moving`
+    /// sees. O(cells)
+    void count(const Sensor& moving);
     /// Estimates the counted floor that a sensor covers at each pose, and, below 0, the private
     /// floor that it sees.
     [[nodiscard]] std::vector<FloorGain> at(const Sensor& sensor, std::span<const Pose3> poses);
@@ -64,6 +70,8 @@ class CoarseSight {
     double error_ = 0;
     std::vector<Private> private_;
     CellSet counted_;
+    std::map<std::string, CellSet, std::less<>> seen_;  // by the ids of sensors, of look()
+    std::vector<std::uint32_t> times_, heard_;          // that sensors see, receivers hear a cell
 };
 
 }  // namespace ispace

@@ -40,11 +40,12 @@ TEST(CoarseSight, ViewsCoverHardlyMoreThanTheirCells) {
           "laser id=c at=-3,-2 fov=180 range=6\nlaser id=o at=3,3 fov=270 range=4\n"}) {
         const Scene scene = roomWith(sensors);
         const SuggestOptions options;
-        ASSERT_TRUE(CoarseSight::estimates(scene, options));
+        ASSERT_TRUE(CoarseSight::estimates(options));
         const Sensor& moving = scene.sensors.front();
         const std::vector<Pose3> poses = posesAround(moving.pose);
         CoarseSight coarse(scene.environment, options);
-        coarse.count(scene.sensors, moving);
+        coarse.look(scene.sensors);
+        coarse.count(moving);
         const std::vector<FloorGain> estimates = coarse.at(moving, poses);
         Scene others = scene;
         others.sensors.erase(others.sensors.begin());
@@ -65,7 +66,8 @@ TEST(CoarseSight, CountsPrivateFloorAgainstACamera) {
     options.privacy = {parsePrivacy("corner,1")};
     CoarseSight coarse(scene.environment, options);
     const Sensor& camera = scene.sensors.front();
-    coarse.count(scene.sensors, camera);
+    coarse.look(scene.sensors);
+    coarse.count(camera);
     Pose3 away = camera.pose;
     away.heading = Angle::degrees(-135);
     const FloorGain whole = coarse.whole(scene.sensors);
@@ -76,12 +78,35 @@ TEST(CoarseSight, CountsPrivateFloorAgainstACamera) {
 }
 
 TEST(CoarseSight, EstimatesNoRequirements) {
-    const Scene scene = roomWith("camera id=c at=0,0,2.5\n");
-    EXPECT_TRUE(CoarseSight::estimates(scene, {}));
+    EXPECT_TRUE(CoarseSight::estimates({}));
     SuggestOptions options;
     options.facing = {parseFacing("corner,45deg,0=50%")};
-    EXPECT_FALSE(CoarseSight::estimates(scene, options));
-    EXPECT_FALSE(CoarseSight::estimates(roomWith("ultrasound id=r at=0,0,2.5\n"), {}));
+    EXPECT_FALSE(CoarseSight::estimates(options));
+}
+
+TEST(CoarseSight, CountsFloorThatOneReceiverIsShortOf) {
+    const std::string others =
+        "ultrasound id=a at=-2,-1,2.5 range=4\nultrasound id=b at=2,-1,2.5 range=4\n"
+        "ultrasound id=d at=0,2,2.5 range=4\n";
+    const Scene scene = roomWith("ultrasound id=c at=-3,-2,2.5 range=4\n" + others);
+    const Sensor& moving = scene.sensors.front();
+    CoarseSight coarse(scene.environment, {});
+    coarse.look(scene.sensors);
+    coarse.count(moving);
+    const std::vector<Pose3> poses = posesAround(moving.pose);
+    const std::vector<FloorGain> estimates = coarse.at(moving, poses);
+    Scene rest = scene;
+    rest.sensors.erase(rest.sensors.begin());
+    const VisibleArea sight(scene.environment, 0);
+    ExactGain exact(rest, sight, {&moving, 1}, {}, 1);
+    exact.prepareBounds();
+    exact.take(0);
+    for (const Pose3& pose : poses) {
+        const std::size_t i = static_cast<std::size_t>(&pose - poses.data());
+        const double bound = exact.mostMore(pose), gain = exact.gains({&pose, 1})[0];
+        EXPECT_NEAR(gain, estimates[i].gained, 0.05 * gain + 4 * coarse.error()) << i;
+        EXPECT_LE(gain - exact.gains({&moving.pose, 1})[0], bound + 1e-6) << i;
+    }
 }
 
 }  // namespace

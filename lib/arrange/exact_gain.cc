@@ -104,7 +104,6 @@ struct ExactGain::Data {
     /// The selected sensor: the floor that lacks exactly one more sensor, within `near`.
     std::size_t in_hand = 0;
     Box2 near = {};
-    std::vector<Layer> missing = {};  // marks 1 << i: of floors[i]
     /// The floors within a wider box around each sensor; computed on demand.
     struct Surroundings {
         Box2 box;
@@ -128,10 +127,12 @@ struct ExactGain::Data {
             if (!near.empty()) layers.push_back(markLayer(std::move(near), layer.marks));
         }
     };
+    std::vector<Missing> missing = {};  // of the selected sensor; marks 1 << i: of floors[i]
     /// Of prepareAll(), until put(): floor that no sensor sees, and that one of them alone sees.
     bool is_prepared = false;
     std::vector<Missing> unseen = {};
-    std::optional<FloorTiles> unseen_tiles = {};
+    /// Floor that one more sensor covers: any but a receiver, or a receiver.
+    std::optional<FloorTiles> unseen_tiles = {}, unheard_tiles = {};
     std::vector<std::vector<Missing>> alone = {};
 
     [[nodiscard]] View viewOf(const Sensor& sensor) const {
@@ -203,7 +204,7 @@ struct ExactGain::Data {
             std::vector<Curve> curves = overlay.curves([&](const LayerLabel& label) {
                 return label.marks == (mark | kNearMark) && lacksOne(label, is_receiver);
             });
-            if (!curves.empty()) missing.push_back(markLayer(std::move(curves), mark));
+            if (!curves.empty()) missing.emplace_back(markLayer(std::move(curves), mark));
         }
     }
 
@@ -249,10 +250,38 @@ struct ExactGain::Data {
         is_prepared = true;
     }
 
+    /// Computes the tiles alone.
+    void prepareBounds() {
+        std::vector<Layer> layers;
+        addFloors(floors, layers);
+        for (const std::vector<View>* const views : {&standing, &moving})
+            for (const View& view : *views) layers.push_back(view.layer);
+        // Floor to which one more adds nothing is one face.
+        const auto coarse = [this](const LayerLabel& label) {
+            return label.marks == 0 || !lacksOne(label, false) ? LayerLabel() : label;
+        };
+        const Overlay overlay(layers, {},
+                              {.label = coarse, .add_area = [](const LayerLabel&, double) {}});
+        for (const bool is_receiver : {false, true}) {
+            std::optional<FloorTiles>& tiles = is_receiver ? unheard_tiles : unseen_tiles;
+            tiles.emplace(floor_box);
+            for (std::size_t i = 0; i < floors.size(); ++i) {
+                const std::uint64_t mark = std::uint64_t{1} << i;
+                tiles->add(overlay.curves([&](const LayerLabel& label) {
+                    return label.marks == mark && lacksOne(label, is_receiver);
+                }),
+                           floors[i].weight);
+            }
+        }
+    }
+
     /// Returns the layers of floor in a box that lacks exactly the selected sensor.
     [[nodiscard]] std::vector<Layer> missingIn(const Box2& box) const {
-        if (!is_prepared) return missing;
         std::vector<Layer> layers;
+        if (!is_prepared) {
+            for (const Missing& floor : missing) floor.addIn(box, layers);
+            return layers;
+        }
         for (const Missing& floor : unseen) floor.addIn(box, layers);
         for (const Missing& floor : alone[in_hand]) floor.addIn(box, layers);
         return layers;
@@ -327,10 +356,13 @@ bool ExactGain::prepareAll() {
     return true;
 }
 
+void ExactGain::prepareBounds() { data_->prepareBounds(); }
+
 double ExactGain::mostMore(const Pose3& pose) const {
-    if (!data_->is_prepared) return std::numeric_limits<double>::infinity();
     const Sensor& own = data_->sensors[data_->in_hand];
-    const double most = data_->unseen_tiles->mostIn(data_->sight.boxOf({own.id, own.model, pose}));
+    const auto& tiles = isPartial(own.model) ? data_->unheard_tiles : data_->unseen_tiles;
+    if (!tiles) return std::numeric_limits<double>::infinity();
+    const double most = tiles->mostIn(data_->sight.boxOf({own.id, own.model, pose}));
     // What it alone sees at its present pose is all that it may see again.
     constexpr double kNothing = 1e-6, kRounding = 1e-3;  // m2, of overlays
     return most <= kNothing ? 0 : most + kRounding;
@@ -370,6 +402,8 @@ std::vector<double> ExactGain::gains(std::span<const Pose3> poses) {
 
 void ExactGain::put(const Pose3& pose) {
     data_->moving[data_->in_hand] = data_->viewOf(data_->in_hand, pose);
+    data_->unseen_tiles.reset();
+    data_->unheard_tiles.reset();
     if (!std::exchange(data_->is_prepared, false)) return;
     data_->unseen.clear();
     data_->alone.clear();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "geom/polygon.h"
@@ -109,6 +110,35 @@ double FloorTiles::mostIn(const Box2& box) const {
     const double sum =
         sums_[right + top] - sums_[left + top] - sums_[right + bottom] + sums_[left + bottom];
     return std::max(0.0, sum);
+}
+
+double mostWithin(double range, const CellSet& cells, const Grid& grid) {
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    const auto rows = static_cast<std::size_t>(grid.rows);
+    // [x + y * (columns + 1)]: the cells to the left of x and below y.
+    std::vector<std::uint32_t> sums((columns + 1) * (rows + 1));
+    for (std::size_t y = 1; y <= rows; ++y)
+        for (std::size_t x = 1; x <= columns; ++x) {
+            const std::size_t i = x + y * (columns + 1);
+            sums[i] = sums[i - 1] + sums[i - columns - 1] - sums[i - columns - 2] +
+                      (cells.test(x - 1 + (y - 1) * columns) ? 1 : 0);
+        }
+    const auto reach = [range](double edge, std::size_t most) {
+        return static_cast<std::size_t>(
+            std::min(std::ceil(range / edge) + 1, static_cast<double>(most)));
+    };
+    const std::size_t wide = reach(grid.limits.width() / grid.columns, columns);
+    const std::size_t high = reach(grid.limits.depth() / grid.rows, rows);
+    std::uint32_t most = 0;
+    for (std::size_t y = 0; y < rows; ++y)
+        for (std::size_t x = 0; x < columns; ++x) {
+            const std::size_t left = x - std::min(x, wide), right = std::min(columns, x + wide + 1);
+            const std::size_t low = (y - std::min(y, high)) * (columns + 1);
+            const std::size_t top = std::min(rows, y + high + 1) * (columns + 1);
+            most = std::max(
+                most, sums[right + top] - sums[left + top] - sums[right + low] + sums[left + low]);
+        }
+    return most * grid.cellArea();
 }
 
 }  // namespace ispace

@@ -6,8 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "base/cell_set.h"
 #include "geom/curve.h"
 #include "geom/point.h"
+#include "raster/grid.h"
 
 namespace ispace {
 
@@ -35,5 +37,8 @@ class FloorTiles {
     /// [x + y * (kSide + 1)]: the sum over the tiles to the left of x and below y.
     std::vector<double> sums_;
 };
+
+/// Bounds the area of these cells within a range of any point of the grid. O(cells of the grid)
+double mostWithin(double range, const CellSet& cells, const Grid& grid);
 
 }  // namespace ispace

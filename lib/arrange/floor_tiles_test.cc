@@ -44,5 +44,16 @@ TEST(FloorTiles, HoldFloorBeyondChords) {
     EXPECT_EQ(tiles.mostIn(Box2()), 0);
 }
 
+TEST(FloorTiles, BoundCellsInReachOfAnyPoint) {
+    const Grid grid{{{0, 0}, {10, 5}}, 100, 50};
+    CellSet cells(grid.size());
+    EXPECT_EQ(mostWithin(1, cells, grid), 0);
+    for (const int row : {3, 4, 5})
+        for (int column = 0; column < 100; ++column) cells.set(grid.cell(column, row));
+    // At most 2 x 11 columns and one of 0.1 m, three rows high.
+    EXPECT_NEAR(mostWithin(1, cells, grid), 3 * 23 * 0.01, 1e-9);
+    EXPECT_NEAR(mostWithin(20, cells, grid), 3, 1e-9);
+}
+
 }  // namespace
 }  // namespace ispace

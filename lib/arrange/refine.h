@@ -92,9 +92,12 @@ class ExactGain {
     /// of the other sensors'. Returns false, without effect, for receivers and several sensors a
     /// point. O(n log n) in all regions, their crossings and walls.
     bool prepareAll();
+    /// Computes the unseen floor alone, for mostMore(): also of receivers and several sensors a
+    /// point. O(n log n) as prepareAll()
+    void prepareBounds();
     /// Returns a bound of what the selected sensor gains at a pose over its present one, by the
     /// unseen floor in a box about its field of view; +infinity unless prepareAll() returned true
-    /// and no sensor was moved since. Thread-safe.
+    /// or prepareBounds() was called, and no sensor was moved since. Thread-safe.
     [[nodiscard]] double mostMore(const Pose3& pose) const;
     /// Selects the sensor that moves from here on; all others stay.
     void take(std::size_t sensor);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "arrange/adviser.h"
 #include "arrange/arrange.h"
 #include "arrange/coarse_sight.h"
+#include "arrange/floor_tiles.h"
 #include "arrange/placement_rules.h"
 #include "arrange/refine.h"
 #include "base/number.h"
@@ -25,12 +27,11 @@ namespace {
 
 constexpr std::size_t kMaxTypes = 3;     ///< of sensors to add
 constexpr std::size_t kMaxChanges = 8;   ///< of Together
-constexpr double kWorthwhile = 1e-3;     ///< share of the indoor floor
 constexpr double kNearWall = 0.1;        ///< of a sensor on a wall, metres
 constexpr double kMaxLattice = 100'000;  ///< sites in the limits: farther apart in large rooms
 /// Cells that the candidates of a search look at by rays, at most: some seconds. Beyond, sites lie
 /// farther apart, and cells are larger.
-constexpr double kMaxLooks = 4e7;
+constexpr double kMaxLooks = 2e7;
 constexpr double kSearchedCells = 40'000, kLeastCells = 2'500;
 constexpr double kShifts[] = {0.1, 0.25, 0.5, 1};
 constexpr int kDirections = 8;
@@ -123,18 +124,21 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     const VisibleArea own(now.scene.environment, options_.measure.plane);
     const VisibleArea* const known = sightIn(now.scene.environment);
     ExactGain gain(others, known != nullptr ? *known : own, sensors, weightsFor(now), 1);
-    gain.prepareAll();
+    if (!gain.prepareAll()) gain.prepareBounds();
     RuleTrials rules_of_cameras(now, options_, privateFloorOf(now.scene.environment));
     std::optional<CoarseSight> coarse;
-    if (CoarseSight::estimates(now.scene, options_))
+    if (CoarseSight::estimates(options_)) {
         coarse.emplace(now.scene.environment, options_);
+        coarse->look(now.scene.sensors);
+    }
+    const FloorGain worthwhile{0, (1 - kNegligible) * leastGain(now)};
     std::optional<Trial> turn, shift;
     // Measures trials, the most promising ones first, until no other can be the best. The first of
     // several with the same gain is taken.
     const auto attempt = [&](std::vector<Trial> trials, std::optional<Trial>& best) {
         const Sensor& sensor = sensors[trials.front().sensor];
         const double most = rules_of_cameras.mostGain(sensor);
-        const auto least = [&best] { return best ? best->gain : FloorGain(); };
+        const auto least = [&] { return best ? best->gain : worthwhile; };
         std::erase_if(trials, [&](Trial& trial) {
             trial.most = {most, gain.mostMore(poseAfter(sensor.pose, trial))};
             return trial.most <= least();
@@ -175,7 +179,7 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     };
     for (std::size_t i = 0; i < sensors.size() && !isStopped(); ++i) {
         gain.take(i);
-        if (coarse) coarse->count(now.scene.sensors, sensors[i]);
+        if (coarse) coarse->count(sensors[i]);
         std::vector<Trial> trials;
         if (gain.turns(i)) {
             for (int degrees = kTurnStep; degrees < 360; degrees += kTurnStep)
@@ -306,6 +310,19 @@ std::int64_t Adviser::stepsOfMoves(const Scene& scene) const {
                                      examplesIn(scene, options_).size());
 }
 
+/// Bounds the floor that another sensor like this one gains, by the uncovered cells in reach of a
+/// point, and all floor that cells miss; +infinity where they are not known.
+double Adviser::mostAdded(const MeasuredState& now, const Sensor& like) {
+    const Target& target = now.coverage.target;
+    if (target.indoor.size() != target.grid.size() || !now.coverage.report.coverage.grid)
+        return std::numeric_limits<double>::infinity();
+    CellSet uncovered = target.indoor;
+    uncovered -= coveredCells(now.coverage);
+    const double missed = uncoveredFloor(now.coverage) -
+                          static_cast<double>(uncovered.count()) * target.grid.cellArea();
+    return mostWithin(maxRange(like.model), uncovered, target.grid) + std::max(0.0, missed);
+}
+
 std::vector<Suggestion> Adviser::additions(const MeasuredState& now) {
     std::vector<SensorModel> types;
     std::optional<Suggestion> best;
@@ -316,6 +333,7 @@ std::vector<Suggestion> Adviser::additions(const MeasuredState& now) {
             std::find(types.begin(), types.end(), sensor.model) != types.end())
             continue;
         types.push_back(sensor.model);
+        if (mostAdded(now, sensor) < leastGain(now)) continue;
         const auto at = std::find(home->ids.begin(), home->ids.end(), sensor.id);
         if (at == home->ids.end()) continue;
         Record record = home->records[static_cast<std::size_t>(at - home->ids.begin())];
@@ -401,13 +419,18 @@ std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& cover
     const MeasuredState now{
         scene, coverage,
         missingFloor(scene, coverage, options, adviser.privateFloorOf(scene.environment))};
-    progress.begin("poses of sensors", adviser.stepsOfMoves(scene));
-    std::vector<Suggestion> gains = adviser.moves(now);
+    const double least = kWorthwhile * coverage.report.indoor_area;
+    // No change gains more floor than is missing.
+    const bool may_gain = now.missing > 0 || uncoveredFloor(coverage) >= least;
+    std::vector<Suggestion> gains;
+    if (may_gain) {
+        progress.begin("poses of sensors", adviser.stepsOfMoves(scene));
+        gains = adviser.moves(now);
+    }
     std::optional<Suggestion> whole;
     if (now.missing > 0 && !progress.stopped()) whole = adviser.together(now, gains);
-    if (auto piece = progress.stopped() ? std::nullopt : adviser.furniture(now))
-        gains.push_back(std::move(*piece));
-    const double least = kWorthwhile * coverage.report.indoor_area;
+    if (may_gain && !progress.stopped())
+        if (auto piece = adviser.furniture(now)) gains.push_back(std::move(*piece));
     std::erase_if(gains, [&](const Suggestion& suggestion) {
         // Removals are for `whole`.
         return suggestion.kind == Suggestion::Kind::Remove || suggestion.required < 0 ||
