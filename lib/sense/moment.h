@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -15,6 +16,8 @@
 
 namespace ispace {
 
+class UwbFixes;
+
 struct TakerOptions {
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
     double celsius = 20;                           ///< of the air, for the speed of sound
@@ -23,6 +26,8 @@ struct TakerOptions {
     /// Required for cameras; null: no cameras. It outlives the sampler.
     const Photographer* photographer = nullptr;
     MoverVelocities velocities = {};  ///< of the movers whose bodies sensors meet
+    /// Positions that the anchors of one moment share; null: each reading computes its own.
+    std::shared_ptr<UwbFixes> fixes = {};
 };
 
 /// Each kind that is read all at once has a function `VALUE readingOf(const KIND&, const Moment&)`.

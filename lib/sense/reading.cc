@@ -136,7 +136,9 @@ void ReadingSampler::Data::prepare(const Laser& laser, const ReadingJob& job) {
 
 ReadingSampler::ReadingSampler(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
                                const TakerOptions& options)
-    : data_(std::make_unique<Data>(Data{sensors, worlds, bodies, options, {}})) {}
+    : data_(std::make_unique<Data>(Data{sensors, worlds, bodies, options, {}})) {
+    data_->options.fixes = std::make_shared<UwbFixes>();
+}
 ReadingSampler::~ReadingSampler() = default;
 
 void ReadingSampler::prepare(const ReadingJob& job) {

@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <tuple>
+#include <unordered_map>
 #include <vector>
 
 #include "env/point_location.h"
@@ -22,26 +24,37 @@ namespace {
 constexpr double kOffBody = 0.02;  // metres between a tag and the body that carries it
 constexpr double kChest = 0.75;    // height of a person's tag, as a share of the trunk
 
-/// Returns the position of a mover's tag; empty without a body.
-std::optional<Point3> tagOnMover(const RfidTag& tag, const MovingBodies& bodies) {
-    const bool is_person = tag.carrier == RfidTag::Carrier::Person;
-    const auto mover = static_cast<std::uint32_t>(tag.mover);
-    const std::uint32_t owner = is_person ? kFirstPerson + mover : mover;
-    for (const MovingBody& body : bodies.bodies()) {
-        // The trunk is a person's only box.
-        if (body.owner != owner || (is_person && body.radius > 0)) continue;
-        const double ahead = is_person ? body.half_length + kOffBody : 0;
-        const Point2 at = body.pose * Point2{ahead, 0};
-        const double height =
-            is_person ? body.bottom + kChest * (body.top - body.bottom) : body.top + kOffBody;
-        return Point3{at.x, at.y, height};
-    }
-    return std::nullopt;
+/// Returns the position of a tag on the body of its carrier.
+Point3 tagOn(const MovingBody& body, bool is_person) {
+    const Point2 at = body.pose * Point2{is_person ? body.half_length + kOffBody : 0, 0};
+    const double height =
+        is_person ? body.bottom + kChest * (body.top - body.bottom) : body.top + kOffBody;
+    return {at.x, at.y, height};
 }
 
-std::optional<Point3> placeOf(const RfidTag& tag, const Moment& now) {
-    if (tag.carrier == RfidTag::Carrier::Thing) return tag.at;
-    return tagOnMover(tag, now.bodies);
+/// Returns the positions of tags; empty for those of movers without a body. O(tags + bodies)
+std::vector<std::optional<Point3>> placesOf(const SharedList<RfidTag>& tags,
+                                            const MovingBodies& bodies) {
+    const auto is_person = [](std::uint32_t owner) { return owner >= kFirstPerson; };
+    std::unordered_map<std::uint32_t, const MovingBody*> carriers;
+    for (const MovingBody& body : bodies.bodies())
+        // The trunk is a person's only box.
+        if (!is_person(body.owner) || body.radius == 0) carriers.emplace(body.owner, &body);
+    std::vector<std::optional<Point3>> places;
+    places.reserve(tags.size());
+    for (const RfidTag& tag : tags) {
+        if (tag.carrier == RfidTag::Carrier::Thing) {
+            places.emplace_back(tag.at);
+            continue;
+        }
+        const auto mover = static_cast<std::uint32_t>(tag.mover);
+        const bool on_person = tag.carrier == RfidTag::Carrier::Person;
+        const auto carrier = carriers.find(on_person ? kFirstPerson + mover : mover);
+        places.push_back(carrier == carriers.end()
+                             ? std::nullopt
+                             : std::optional(tagOn(*carrier->second, on_person)));
+    }
+    return places;
 }
 
 /// Counts the walls between two points, and all movers as one.
@@ -183,16 +196,68 @@ std::optional<PositionFix> fixOf(const Uwb& uwb, const std::string& tag, Point3 
 
 }  // namespace
 
+bool UwbFixes::Known::isOf(const Uwb& uwb, const Moment& now) const {
+    return frame == now.frame && time == now.time && seed == now.options.noise_seed &&
+           worlds == &now.worlds &&
+           &environment.elements() == &now.worlds.environment().elements() && tags == uwb.tags &&
+           anchors == uwb.anchors && std::ranges::equal(bodies, now.bodies.bodies());
+}
+
+std::shared_ptr<UwbFixes::Tags> UwbFixes::at(const Uwb& uwb, const Moment& now) {
+    // Sensors of two rates, and the threads that read a batch, are at some moments at once.
+    constexpr std::size_t kMost = 8;
+    const auto tags_of = [&] {
+        auto tags = std::make_shared<Tags>();
+        tags->places = placesOf(uwb.tags, now.bodies);
+        tags->fixes.resize(uwb.tags.size());
+        return tags;
+    };
+    const bool is_moved =
+        std::any_of(uwb.anchors.begin(), uwb.anchors.end(), [&](const UwbAnchor& anchor) {
+            return anchor.id == now.sensor.id && anchor.pose != now.pose;
+        });
+    if (is_moved) return tags_of();
+    const std::lock_guard lock(mutex_);
+    for (const Known& known : known_)
+        if (known.isOf(uwb, now)) return known.of;
+    const std::span<const MovingBody> bodies = now.bodies.bodies();
+    known_.push_front({now.frame,
+                       now.time,
+                       now.options.noise_seed,
+                       &now.worlds,
+                       now.worlds.environment(),
+                       uwb.tags,
+                       uwb.anchors,
+                       {bodies.begin(), bodies.end()},
+                       tags_of()});
+    if (known_.size() > kMost) known_.pop_back();
+    return known_.front().of;
+}
+
 UwbRanges readingOf(const Uwb& uwb, const Moment& now) {
     UwbRanges reading{now.time, now.frame, now.pose, {}};
-    for (const RfidTag& tag : uwb.tags) {
-        const auto place = placeOf(tag, now);
+    UwbFixes own;
+    const std::shared_ptr<UwbFixes::Tags> tags =
+        (now.options.fixes != nullptr ? *now.options.fixes : own).at(uwb, now);
+    const auto fix_of = [&](std::size_t i, const std::string& tag, Point3 place) {
+        {
+            const std::lock_guard lock(tags->mutex);
+            if (tags->fixes[i]) return *tags->fixes[i];
+        }
+        const std::optional<PositionFix> fix = fixOf(uwb, tag, place, now);
+        const std::lock_guard lock(tags->mutex);
+        tags->fixes[i] = fix;
+        return fix;
+    };
+    for (std::size_t i = 0; i < uwb.tags.size(); ++i) {
+        const RfidTag& tag = uwb.tags.begin()[i];
+        const std::optional<Point3>& place = tags->places[i];
         if (!place) continue;
         const auto ranging = rangingOf(uwb, now.sensor.id, now.pose.position, carrierOf(now.sensor),
                                        tag.text, *place, now);
         if (!ranging) continue;
         reading.tags.push_back(
-            {tag.text, ranging->range, ranging->blocks > 0, fixOf(uwb, tag.text, *place, now)});
+            {tag.text, ranging->range, ranging->blocks > 0, fix_of(i, tag.text, *place)});
     }
     std::sort(reading.tags.begin(), reading.tags.end(), [](const UwbRange& a, const UwbRange& b) {
         return std::tie(a.tag, a.range) < std::tie(b.tag, b.range);

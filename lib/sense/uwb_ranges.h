@@ -2,6 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +38,39 @@ struct UwbRanges {
     static const ReadingKind kKind;
 };
 
+/// The positions of tags at the last few moments, each of which the anchors of a room compute once
+/// for all. Thread-safe.
+class UwbFixes {
+  public:
+    /// Of one moment: by the index of a tag in Uwb::tags.
+    struct Tags {
+        std::vector<std::optional<Point3>> places;  ///< empty without a body that carries it
+        std::mutex mutex;                           ///< guards `fixes`
+        std::vector<std::optional<std::optional<PositionFix>>> fixes;  ///< computed so far
+    };
+    /// Returns the tags of a moment, the same ones for equal anchors, tags, time and bodies. An
+    /// anchor that is away from its pose in Uwb::anchors has tags alone.
+    std::shared_ptr<Tags> at(const Uwb& uwb, const Moment& now);
+
+  private:
+    /// All that positions depend on.
+    struct Known {
+        int frame;
+        double time;
+        std::optional<std::uint64_t> seed;
+        const Worlds* worlds;
+        Environment environment;  // keeps the address of its elements
+        SharedList<RfidTag> tags;
+        SharedList<UwbAnchor> anchors;
+        std::vector<MovingBody> bodies;
+        std::shared_ptr<Tags> of;
+
+        [[nodiscard]] bool isOf(const Uwb& uwb, const Moment& now) const;
+    };
+    std::mutex mutex_;
+    std::deque<Known> known_;  // the latest first
+};
+
 /// Measures the ranges of the tags that an anchor reaches. The tag of a thing lies above the middle
 /// of its top, that of a robot too; a person wears it on the chest, and is a mover between for
 /// anchors behind. Each wall (see wallsBetween(), sense/walls_between.h) or mover between divides
@@ -45,7 +82,9 @@ struct UwbRanges {
 /// anchor is rejected; if both are possible, the one below or in front of the anchors is taken, and
 /// PositionFix::is_one_of_two is set.
 ///
-/// Noise depends on seed, anchor, tag and frame alone: anchors of one rate compute one position.
+/// Noise depends on seed, anchor, tag and frame alone: anchors of one rate compute one position,
+/// and only once with TakerOptions::fixes: O(tags) rays an anchor, and O(tags * anchors) distances
+/// a moment.
 UwbRanges readingOf(const Uwb& uwb, const Moment& now);
 
 }  // namespace ispace

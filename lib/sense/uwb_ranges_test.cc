@@ -29,6 +29,49 @@ std::vector<UwbRange> tagsIn(const std::string& room, const std::string& layout,
     return rangesIn(room, layout, options, frame).front().tags;
 }
 
+TEST(UwbRanges, OfAMomentShareThePositionsOfTags) {
+    std::string layout = "human at=1,2 tag=anna\nrobot model=pioneer-2dx at=-2,-2 tag=r7\n";
+    for (const char* const at : {"-5,-5,1", "5,-5,2", "5,5,1", "-5,5,2", "0,5,1.5"})
+        layout += std::string("uwb at=") + at + " sigma=0.05\n";
+    const Scene scene = testing::scene(
+        "ispace size=12,12,2.5\nwall from=2,-6 to=2,-1\ncube at=4,0 size=0.4 tag=crate\n", layout);
+    Worlds worlds(scene.environment);
+    worlds.prepareMesh(kindOf(scene.sensors.front().model).stopped_by);
+    const MovingBodies bodies(bodiesOf(scene));
+    const auto ranges_of = [&](const Sensor& sensor, const Pose3& pose, int frame,
+                               const TakerOptions& options) {
+        return readingOf(sensor.as<Uwb>(),
+                         Moment{sensor, pose, frame, 0.1 * frame, worlds, bodies, {}, options});
+    };
+    const TakerOptions alone{.noise_seed = 3};
+    TakerOptions shared = alone;
+    shared.fixes = std::make_shared<UwbFixes>();
+    int fixes = 0;
+    for (const int frame : {0, 1, 0, 20})
+        for (const Sensor& sensor : scene.sensors)
+            for (const Pose3& pose : {sensor.pose, Pose3{{0.5, -0.5, 1}, {}, {}, {}}}) {
+                const auto one = ranges_of(sensor, pose, frame, alone).tags;
+                const auto other = ranges_of(sensor, pose, frame, shared).tags;
+                ASSERT_EQ(one.size(), 3U);
+                ASSERT_EQ(other.size(), 3U);
+                for (std::size_t i = 0; i < one.size(); ++i) {
+                    EXPECT_EQ(one[i].range, other[i].range);
+                    ASSERT_EQ(one[i].fix.has_value(), other[i].fix.has_value());
+                    if (!one[i].fix) continue;
+                    ++fixes;
+                    EXPECT_EQ(one[i].fix->position, other[i].fix->position) << frame << sensor.id;
+                }
+            }
+    EXPECT_GT(fixes, 40);
+    const Sensor& first = scene.sensors.front();
+    const Moment now{first, first.pose, 0, 0, worlds, bodies, {}, shared};
+    const Sensor& last = scene.sensors.back();
+    const Moment same{last, last.pose, 0, 0, worlds, bodies, {}, shared};
+    EXPECT_EQ(shared.fixes->at(first.as<Uwb>(), now), shared.fixes->at(last.as<Uwb>(), same));
+    const Moment later{last, last.pose, 1, 0, worlds, bodies, {}, shared};
+    EXPECT_NE(shared.fixes->at(first.as<Uwb>(), now), shared.fixes->at(last.as<Uwb>(), later));
+}
+
 constexpr const char* kCrate = "cube at=4,0 size=0.4,0.4,0.99 tag=crate\n";  // its tag: 4,0,1
 
 TEST(UwbRanges, AreThoseOfPeopleRobotsAndThings) {

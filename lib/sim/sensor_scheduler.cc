@@ -50,7 +50,7 @@ int SensorReader::frameOf(std::int64_t number) {
 SensorReader::SensorReader(SceneResources& setting, const Options& options)
     : scene_(setting.scene.get()),
       options_{.noise_seed = noiseSeedOf(options)},
-      taking_{.noise_seed = noiseSeedOf(options)},
+      taking_{.noise_seed = noiseSeedOf(options), .fixes = std::make_shared<UwbFixes>()},
       at_rest_{.noise_seed = noiseSeedOf(options)},
       step_(options.step),
       floor_(*scene_),

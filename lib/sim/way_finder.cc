@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace ispace {
 
@@ -68,13 +69,31 @@ void WayFinder::forEachNeighbour(std::size_t cell, Visit visit) const {
 WayFinder WayFinder::around(std::span<const Spot> spots) const {
     WayFinder finder = *this;
     finder.spots_.assign(spots.begin(), spots.end());
+    // Hundreds of people each plan around all others.
+    std::vector<double> x, y;
+    for (int column = 0; column < grid_.columns; ++column) x.push_back(grid_.columnCenter(column));
+    for (int row = 0; row < grid_.rows; ++row) y.push_back(grid_.rowCenter(row));
     for (const Spot& spot : spots) {
         const double apart = reach_ + spot.radius;
-        const Vec2 margin{apart, apart};
-        forEachCellIn({spot.center - margin, spot.center + margin}, [&](std::size_t cell) {
-            const Vec2 way = centerOf(cell) - spot.center;
-            if (dot(way, way) < apart * apart) finder.free_[cell] = 0;
-        });
+        const auto stretch = [apart](const std::vector<double>& centers, double middle) {
+            const auto first =
+                std::lower_bound(centers.begin(), centers.end(), middle - apart) - centers.begin();
+            const auto end =
+                std::upper_bound(centers.begin(), centers.end(), middle + apart) - centers.begin();
+            return std::pair(static_cast<std::size_t>(first), static_cast<std::size_t>(end));
+        };
+        const auto [left, right] = stretch(x, spot.center.x);
+        const auto [bottom, top] = stretch(y, spot.center.y);
+        for (std::size_t row = bottom; row < top; ++row) {
+            const double dy = y[row] - spot.center.y;
+            const auto cells = finder.free_.begin() +
+                               static_cast<std::ptrdiff_t>(cellOf(0, static_cast<int>(row)));
+            for (std::size_t column = left; column < right; ++column) {
+                const double dx = x[column] - spot.center.x;
+                if (dx * dx + dy * dy < apart * apart)
+                    cells[static_cast<std::ptrdiff_t>(column)] = 0;
+            }
+        }
     }
     return finder;
 }

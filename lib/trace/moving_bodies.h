@@ -38,6 +38,7 @@ struct MovingBody {
     /// Computes the distance along the ray to the surface, +infinity if it misses; from inside, to
     /// the exit. \pre direction is a unit vector
     [[nodiscard]] double meet(Point3 origin, Vec3 direction) const;
+    friend bool operator==(const MovingBody&, const MovingBody&) = default;
 };
 
 /// Converts a part of a body with this pose. \param axes of the pose's heading
