@@ -125,6 +125,9 @@ printf '#env 1\nispace size=40,30\n' >hall.env
      fail "$(head -n 20 out)"
  expect_status 0 coverage hall.env lasers.3dm --report page.html
  ! has "no exact figures" <out || fail "$(head -n 20 out)"
+ # Moves of things among hundreds of receivers are counted by the shadows that change, without a limit of time.
+ expect_status 0 coverage hall.env uwb.3dm --suggest 3
+ has '^suggestions' <out || fail "$(tail -n 5 out)"
  # Changes that are tried take the time of the views that they change; flights are looked at with those near them.
  expect_status 0 coverage hall.env far.3dm --suggest 3 --time-limit 2s
  has 'suggest' <out || fail "$(tail -n 5 out)"

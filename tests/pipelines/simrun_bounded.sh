@@ -52,6 +52,13 @@ start "$data/square.env" bounded.3dm --clock real
 heavy motes
 ended 0
 
+# Light meters among lamps, microphones among speakers.
+for kind in lights sounds; do
+    start "$data/square.env" bounded.3dm --clock real
+    heavy $kind
+    ended 0
+done
+
 # Memory of a recorded run does not grow with its steps.
 python3 - "$data/square.env" <<'END' || fail "the memory of a recorded run grows"
 import os

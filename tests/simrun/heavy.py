@@ -157,6 +157,37 @@ def motes():
     term("motes")
 
 
+def pairs(sensor, source):
+    """Sensors at 200 Hz, each of which measures many sources: the world refuses more, or it keeps its pace."""
+    watch, world = Watch(), Client("WORLD")
+    check(world.ask("PAUSE").startswith("OK "), "no pause")
+    added, answer = 0, ""
+    for i in range(300):
+        at = f"at={-2.9 + 0.1 * (i % 58):.2f},{-1.9 + 0.6 * (i // 58):.2f}"
+        for record in (f"{sensor} {at},1 rate=200", f"{source} {at},1.5 on=yes"):
+            answer = world.ask(f"ADD {record}")
+        if not answer.startswith("OK ADD "):
+            break
+        added += 1
+    print(f"{added} pairs, then {answer}")
+    is_refused = answer.startswith("ERR 409 the world would take ")
+    check(added > 0 and (is_refused or answer.startswith("OK ADD ")), f"{added} pairs: {answer}")
+    check(world.ask("RESUME").startswith("OK "), "no way on")
+    reached = pace(world)
+    print(f"the pace is {reached:.2f}")
+    check(is_refused or reached > 0.3, f"{added} pairs at a pace of {reached:.2f}")
+    watch.end(sensor)
+    term(sensor)
+
+
+def lights():
+    pairs("lux", "lamp")
+
+
+def sounds():
+    pairs("microphone", "speaker")
+
+
 def connected(address):
     host, port = address.rsplit(":", 1)
     connection = socket.create_connection((host, int(port)), timeout=60)
@@ -196,4 +227,4 @@ def places():
 
 
 {"globs": globs, "pictures": pictures, "sums": sums, "places": places, "people": people,
- "motes": motes}[KIND]()
+ "motes": motes, "lights": lights, "sounds": sounds}[KIND]()
