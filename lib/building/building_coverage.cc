@@ -157,18 +157,110 @@ BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOp
     return measured;
 }
 
+namespace {
+
+/// Adds up the shares of density classes, of areas.
+class DensitySum {
+  public:
+    void add(const std::vector<Metric>& shares, double area) {
+        if (shares.empty()) {
+            // Without cameras none of the floor has their pixels.
+            empty_ += area;
+            return;
+        }
+        sums_.resize(std::max(sums_.size(), shares.size()));
+        for (std::size_t k = 0; k < shares.size(); ++k) {
+            sums_[k].first.add(areaOf(shares[k].grid, area));
+            sums_[k].second.add(areaOf(shares[k].exact, area));
+        }
+        area_ += area;
+    }
+    [[nodiscard]] std::vector<Metric> shares() const {
+        std::vector<Metric> shares;
+        for (const auto& [grid, exact] : sums_)
+            shares.push_back({grid.shareOf(area_ + empty_), exact.shareOf(area_ + empty_)});
+        return shares;
+    }
+
+  private:
+    std::vector<std::pair<AreaSum, AreaSum>> sums_;
+    double area_ = 0, empty_ = 0;
+};
+
+}  // namespace
+
+CoverageReport sumOfStoreys(const BuildingCoverage& coverage) {
+    CoverageReport sum;
+    sum.indoor_area = coverage.indoor_area;
+    sum.free_area = coverage.free_area;
+    sum.total_effective_area = coverage.total_effective_area;
+    sum.outside = coverage.outside;
+    sum.coverage = coverage.coverage;
+    sum.free_coverage = coverage.free_coverage;
+    sum.redundancy = coverage.redundancy;
+    sum.comparison = coverage.comparison;
+    DensitySum indoor, free;
+    AreaSum seen_grid, seen_exact;
+    for (const Coverage& storey : coverage.storeys) {
+        const CoverageReport& report = storey.report;
+        sum.zones.insert(sum.zones.end(), report.zones.begin(), report.zones.end());
+        indoor.add(report.densities.indoor, report.indoor_area);
+        free.add(report.densities.free, report.free_area);
+        sum.plane = report.plane;
+        sum.density = report.density;
+        if (report.densities.indoor.empty()) continue;
+        seen_grid.add(areaOf(report.densities.seen.grid, report.indoor_area));
+        seen_exact.add(areaOf(report.densities.seen.exact, report.indoor_area));
+    }
+    sum.densities.indoor = indoor.shares();
+    sum.densities.free = free.shares();
+    if (!sum.densities.indoor.empty()) {
+        sum.densities.seen = {seen_grid.shareOf(sum.indoor_area),
+                              seen_exact.shareOf(sum.indoor_area)};
+        // A zone where no camera is has none of the classes.
+        for (ZoneMetrics& zone : sum.zones)
+            if (zone.densities.empty())
+                zone.densities.assign(sum.densities.indoor.size(), {0.0, 0.0});
+    }
+    return sum;
+}
+
+void compareStoreys(BuildingCoverage& coverage, const BuildingCoverage& other,
+                    const std::string& name) {
+    AreaSum gained_grid, gained_exact, lost_grid, lost_exact;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+        Coverage& storey = coverage.storeys[i];
+        compare(storey, other.storeys[i], coverage.floors[i]->environment.indoor(), name);
+        const Comparison& one = *storey.report.comparison;
+        gained_grid.add(one.gained.grid);
+        gained_exact.add(one.gained.exact);
+        lost_grid.add(one.lost.grid);
+        lost_exact.add(one.lost.exact);
+    }
+    coverage.comparison = Comparison{name,
+                                     other.coverage,
+                                     {gained_grid.sum(), gained_exact.sum()},
+                                     {lost_grid.sum(), lost_exact.sum()}};
+}
+
+BuildingParts partsOf(const BuildingRunCoverage& run) {
+    BuildingParts parts;
+    parts.sum.run = &run.sum;
+    for (const RunCoverage& storey : run.storeys) parts.storeys.push_back({.run = &storey});
+    return parts;
+}
+
 std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage,
-                                 const BuildingRunCoverage* run, const Advice* advice) {
+                                 const BuildingParts& parts) {
     JsonWriter json;
     beginReport(json, "ispace-building-coverage/1", "coverage");
     json.key("digest").value(building.document.digest()).key("storeys").beginArray();
     std::string text;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         json.beginObject().key("id").value(building.document.storeys[i].id).key("report");
-        text += json.take() +
-                coverageJson(coverage.storeys[i].report,
-                             {.run = run ? &run->storeys[i] : nullptr,
-                              .rules = coverage.rules.empty() ? nullptr : &coverage.rules[i]});
+        ReportParts own = parts.storeys.empty() ? ReportParts() : parts.storeys[i];
+        if (!coverage.rules.empty()) own.rules = &coverage.rules[i];
+        text += json.take() + coverageJson(coverage.storeys[i].report, own);
         text.pop_back();  // its newline
         json.endObject();
     }
@@ -184,8 +276,8 @@ std::string buildingCoverageJson(const BuildingScene& building, const BuildingCo
     json.key("redundancy").beginArray();
     for (const double share : coverage.redundancy) json.value(roundSignificant(share));
     json.endArray();
-    if (run != nullptr) writeRun(json, run->sum);
-    if (advice != nullptr) writeSuggestions(json, *advice);
+    if (coverage.comparison) writeComparison(json, *coverage.comparison);
+    writeParts(json, parts.sum);
     json.endObject();
     return text + json.take() + '\n';
 }
@@ -213,17 +305,19 @@ std::uint32_t redundancyScale(const BuildingCoverage& coverage) {
 }
 
 std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage,
-                                 const BuildingRunCoverage* run) {
+                                 const BuildingParts& parts) {
     std::string text;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         text += "storey " + building.document.storeys[i].id + '\n' +
-                coverageText(coverage.storeys[i].report) +
-                (coverage.rules.empty() ? "" : cameraRulesText(coverage.rules[i])) + '\n';
-        if (run != nullptr && !run->storeys[i].members.empty())
-            text += runText(run->storeys[i]) + '\n';
+                coverageText(coverage.storeys[i].report);
+        ReportParts own = parts.storeys.empty() ? ReportParts() : parts.storeys[i];
+        if (!coverage.rules.empty()) own.rules = &coverage.rules[i];
+        if (own.run != nullptr && own.run->members.empty()) own.run = nullptr;
+        text += partsText(own) + '\n';
     }
-    return text + aligned(storeyRows(building, coverage), "lr") +
-           (run == nullptr ? "" : '\n' + runText(run->sum));
+    text += aligned(storeyRows(building, coverage), "lr");
+    if (coverage.comparison) text += comparisonText(*coverage.comparison, coverage.coverage);
+    return text + partsText(parts.sum);
 }
 
 }  // namespace ispace

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,13 +24,14 @@ namespace ispace {
 struct BuildingCoverage {
     std::vector<Coverage> storeys;                     ///< with the views from other storeys
     std::vector<std::shared_ptr<const Scene>> floors;  ///< what was measured, Coupling::floors()
-    std::vector<std::size_t> sensors;       ///< number of those that stand in each storey
-    double indoor_area = 0, free_area = 0;  ///< m2
-    Metric total_effective_area;            ///< m2
-    std::optional<double> outside;          ///< see CoverageReport, m2
-    Metric coverage, free_coverage;         ///< shares; empty if that of a storey is unknown
-    std::vector<double> redundancy;         ///< see CoverageReport
-    std::vector<CameraRules> rules = {};    ///< of facing, by storey; empty: none
+    std::vector<std::size_t> sensors;           ///< number of those that stand in each storey
+    double indoor_area = 0, free_area = 0;      ///< m2
+    Metric total_effective_area;                ///< m2
+    std::optional<double> outside;              ///< see CoverageReport, m2
+    Metric coverage, free_coverage;             ///< shares; empty if that of a storey is unknown
+    std::vector<double> redundancy;             ///< see CoverageReport
+    std::optional<Comparison> comparison = {};  ///< with another layout, see compareStoreys()
+    std::vector<CameraRules> rules = {};        ///< of facing, by storey; empty: none
 };
 
 /// Measures the floor of all storeys, without openings in it; those with equal rooms and views
@@ -52,13 +54,27 @@ std::vector<TextRow> storeyRows(const BuildingScene& building, const BuildingCov
 /// Returns the scale of redundancy that the maps of all storeys share, see MapOptions.
 std::uint32_t redundancyScale(const BuildingCoverage& coverage);
 
-/// Writes one JSON object and a newline, schema ispace-building-coverage/1. \param run null:
-/// without \param advice null: without
+/// Returns the figures of the building as those of one floor: sums, shares of all floor, and the
+/// zones of all storeys in their order, with whole ids.
+CoverageReport sumOfStoreys(const BuildingCoverage& coverage);
+
+/// Compares the storeys and their sums with those of another layout of the same building.
+void compareStoreys(BuildingCoverage& coverage, const BuildingCoverage& other,
+                    const std::string& name);
+
+/// Parts of a report besides coverage: those of the building, and those of each storey.
+struct BuildingParts {
+    ReportParts sum = {};
+    std::vector<ReportParts> storeys = {};  ///< empty: none
+};
+/// Returns the parts of a run, which outlives them.
+BuildingParts partsOf(const BuildingRunCoverage& run);
+
+/// Writes one JSON object and a newline, schema ispace-building-coverage/1.
 std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage,
-                                 const BuildingRunCoverage* run = nullptr,
-                                 const Advice* advice = nullptr);
-/// Writes the report of each storey, then a table of all. \param run null: without
+                                 const BuildingParts& parts = {});
+/// Writes the report of each storey, then a table of all, and the parts of the building.
 std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage,
-                                 const BuildingRunCoverage* run = nullptr);
+                                 const BuildingParts& parts = {});
 
 }  // namespace ispace

@@ -133,8 +133,9 @@ std::vector<SharedFloor> exactFloors(const Environment& environment, const Cover
     return floors.take();
 }
 
-std::vector<SharedFloor> floorsOfCells(const Environment& environment, const Coverage& coverage,
-                                       const FloorOfViews& seen, std::size_t most) {
+std::optional<std::vector<SharedFloor>> floorsOfCells(const Environment& environment,
+                                                      const Coverage& coverage,
+                                                      const FloorOfViews& seen, std::size_t most) {
     SharedFloors floors(coverage, most);
     const Grid& grid = coverage.target.grid;
     std::vector<std::uint16_t> whole(grid.size()), partial(grid.size());
@@ -218,17 +219,64 @@ void mustBeFew(std::size_t views, std::size_t count, std::size_t floors) {
                          std::to_string(views) + " sensors: take fewer failures");
 }
 
-/// Returns the area of the cells of a figure's floor.
-double areaByCells(const Scene& scene, const Coverage& coverage, const Requirement& figure) {
-    const Target& target = coverage.target;
-    std::size_t cells = 0;
-    if (figure.of == Requirement::Of::Zone) {
-        const Zone zone = zonesOf(scene.environment)[zoneIndex(figure, coverage.report)];
-        cells = countCommon(cellsWithin(target.grid, std::span(&zone.outline, 1)), target.indoor);
-    } else {
-        cells = (figure.of == Requirement::Of::Free ? target.free : target.indoor).count();
+/// The rooms of a site: their views by number, and where their zones begin among all.
+struct RoomViews {
+    std::vector<std::string> ids;                   ///< of all views
+    std::vector<std::vector<std::size_t>> numbers;  ///< of the views of each room
+    std::vector<std::size_t> first_zones;           ///< one more than rooms
+};
+
+RoomViews viewsOf(std::span<const FailingRoom> rooms) {
+    RoomViews views;
+    views.first_zones.push_back(0);
+    std::map<std::string, std::size_t> known;
+    for (const FailingRoom& room : rooms) {
+        std::vector<std::size_t> numbers;
+        for (const SensorView& view : room.coverage.sensors) {
+            const auto [at, is_new] = known.try_emplace(view.id, views.ids.size());
+            if (is_new) views.ids.push_back(view.id);
+            numbers.push_back(at->second);
+        }
+        views.numbers.push_back(std::move(numbers));
+        views.first_zones.push_back(views.first_zones.back() + room.coverage.report.zones.size());
     }
-    return static_cast<double>(cells) * target.grid.cellArea();
+    return views;
+}
+
+/// Renames views and parts of a room's floor to those of all rooms, and appends it.
+void addFloors(std::vector<SharedFloor> floors, const RoomViews& views, std::size_t room,
+               std::vector<SharedFloor>& all) {
+    for (SharedFloor& floor : floors) {
+        for (auto* const list : {&floor.whole, &floor.partial})
+            for (std::size_t& view : *list) view = views.numbers[room][view];
+        std::vector<double> areas(kFirstZonePart + views.first_zones.back());
+        for (std::size_t part = 0; part < floor.areas.size(); ++part)
+            areas[part < kFirstZonePart ? part : part + views.first_zones[room]] =
+                floor.areas[part];
+        floor.areas = std::move(areas);
+        all.push_back(std::move(floor));
+    }
+}
+
+/// Returns the area of the cells of a figure's floor.
+double areaByCells(std::span<const FailingRoom> rooms, const RoomViews& views,
+                   const Requirement& figure, const CoverageReport& planned) {
+    if (figure.of == Requirement::Of::Zone) {
+        const std::size_t number = zoneIndex(figure, planned);
+        std::size_t room = 0;
+        while (views.first_zones[room + 1] <= number) ++room;
+        const Target& target = rooms[room].coverage.target;
+        const Zone zone = zonesOf(rooms[room].scene.environment)[number - views.first_zones[room]];
+        const CellSet cells = cellsWithin(target.grid, std::span(&zone.outline, 1));
+        return static_cast<double>(countCommon(cells, target.indoor)) * target.grid.cellArea();
+    }
+    double area = 0;
+    for (const FailingRoom& room : rooms) {
+        const Target& target = room.coverage.target;
+        const CellSet& cells = figure.of == Requirement::Of::Free ? target.free : target.indoor;
+        area += static_cast<double>(cells.count()) * target.grid.cellArea();
+    }
+    return area;
 }
 
 /// Returns the areas by exact regions, or nothing if an overlay is not known.
@@ -247,36 +295,55 @@ std::optional<std::vector<SharedFloor>> tryExactFloors(const Environment& enviro
 
 std::vector<FigureLoss> worstFailures(const Scene& scene, const Coverage& coverage, int count,
                                       std::span<const Requirement> requirements) {
-    const CoverageReport& report = coverage.report;
-    const std::size_t views = coverage.sensors.size();
-    const std::size_t failing = std::min(static_cast<std::size_t>(count), views);
+    const FailingRoom room{scene, coverage};
+    return worstFailures({&room, 1}, coverage.report, count, requirements);
+}
+
+std::vector<FigureLoss> worstFailures(std::span<const FailingRoom> rooms,
+                                      const CoverageReport& planned, int count,
+                                      std::span<const Requirement> requirements) {
+    const RoomViews views = viewsOf(rooms);
+    const std::size_t failing = std::min(static_cast<std::size_t>(count), views.ids.size());
     std::map<std::optional<std::size_t>, std::pair<std::vector<WorstSet>, bool>> by_density;
     std::vector<FigureLoss> losses;
-    for (const Requirement& figure : figuresOf(report, requirements)) {
-        RequiredFigure planned = figureOf(figure, report);
+    for (const Requirement& figure : figuresOf(planned, requirements)) {
+        RequiredFigure known = figureOf(figure, planned);
         auto found = by_density.find(figure.density);
         if (found == by_density.end()) {
-            const FloorOfViews seen = floorOfViews(coverage, figure.density);
-            auto floors = tryExactFloors(scene.environment, coverage, seen, failing);
-            const bool is_exact = floors.has_value();
-            if (!floors) floors = floorsOfCells(scene.environment, coverage, seen, failing);
-            mustBeFew(views, failing, floors->size());
+            std::vector<SharedFloor> floors;
+            bool is_exact = true;
+            for (const bool by_regions : {true, false}) {
+                floors.clear();
+                is_exact = by_regions;
+                for (std::size_t i = 0; i < rooms.size(); ++i) {
+                    const auto& [scene, coverage] = rooms[i];
+                    const FloorOfViews seen = floorOfViews(coverage, figure.density);
+                    auto of_room = by_regions
+                                       ? tryExactFloors(scene.environment, coverage, seen, failing)
+                                       : floorsOfCells(scene.environment, coverage, seen, failing);
+                    is_exact &= of_room.has_value();
+                    if (!of_room) break;
+                    addFloors(*std::move(of_room), views, i, floors);
+                }
+                if (is_exact) break;
+            }
+            mustBeFew(views.ids.size(), failing, floors.size());
             found = by_density
                         .emplace(figure.density,
-                                 std::pair(worstSets(*floors, views, failing,
-                                                     kFirstZonePart + report.zones.size()),
+                                 std::pair(worstSets(floors, views.ids.size(), failing,
+                                                     kFirstZonePart + planned.zones.size()),
                                            is_exact))
                         .first;
         }
         const auto& [worst, exact_areas] = found->second;
-        const bool is_exact = exact_areas && planned.share.exact;
-        const std::optional<double> share = is_exact ? planned.share.exact : planned.share.grid;
+        const bool is_exact = exact_areas && known.share.exact;
+        const std::optional<double> share = is_exact ? known.share.exact : known.share.grid;
         if (!share) continue;
-        const WorstSet& set = worst[partOf(figure, report)];
-        const double area = is_exact ? planned.area : areaByCells(scene, coverage, figure);
-        FigureLoss loss{figure, std::move(planned.name), *share, is_exact,
+        const WorstSet& set = worst[partOf(figure, planned)];
+        const double area = is_exact ? known.area : areaByCells(rooms, views, figure, planned);
+        FigureLoss loss{figure, std::move(known.name), *share, is_exact,
                         std::clamp(*share - shareOf(set.lost, area), 0.0, *share)};
-        for (const std::size_t view : set.views) loss.sensors.push_back(coverage.sensors[view].id);
+        for (const std::size_t view : set.views) loss.sensors.push_back(views.ids[view]);
         losses.push_back(std::move(loss));
     }
     return losses;

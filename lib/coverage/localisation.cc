@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene/sensor/field_of_view.h"
 #include "scene/sensor/ultrasound.h"
@@ -35,13 +36,43 @@ Point3 spotFor(const Sensor& sensor, Point2 at, double plane) {
 
 namespace {
 
+/// An error and the area of its cell.
+using CellError = std::pair<double, double>;
+
 /// Returns the value that this share of the floor does not exceed; empty if it is infinite.
-std::optional<double> quantile(const std::vector<double>& ascending, double share) {
-    if (ascending.empty()) return std::nullopt;
-    const auto count = static_cast<double>(ascending.size());
-    const auto rank = static_cast<std::size_t>(std::max(1.0, std::ceil(share * count)));
-    const double value = ascending[rank - 1];
-    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+std::optional<double> quantile(const std::vector<CellError>& ascending, double share, double all) {
+    double area = 0;
+    for (const auto& [error, own] : ascending) {
+        area += own;
+        // Sums of equal areas differ by rounding.
+        if (area >= share * all * (1 - 1e-12))
+            return std::isfinite(error) ? std::optional(error) : std::nullopt;
+    }
+    return std::nullopt;
+}
+
+/// Sets the figures by the errors of all cells.
+void describe(std::vector<CellError> errors, Localisation& result) {
+    if (errors.empty()) return;
+    std::sort(errors.begin(), errors.end());
+    double all = 0, sum = 0, finite = 0, near = 0;
+    for (const auto& [error, area] : errors) {
+        all += area;
+        sum += area * std::min(error, result.within);
+        finite += std::isfinite(error) ? area : 0;
+        near += error <= result.within ? area : 0;
+    }
+    result.localised = finite / all;
+    result.share_within = near / all;
+    result.mean = sum / all;
+    result.median = quantile(errors, 0.5, all);
+    result.most = quantile(errors, 0.95, all);
+}
+
+/// Appends the errors of the indoor cells. \param area of each
+void addErrors(const Localisation& room, const CellSet& indoor, double area,
+               std::vector<CellError>& errors) {
+    indoor.forEach([&](std::size_t cell) { errors.emplace_back(room.errors[cell], area); });
 }
 
 }  // namespace
@@ -50,6 +81,7 @@ Localisation localise(const Scene& scene, const Coverage& coverage, double withi
     const Grid& grid = coverage.target.grid;
     std::vector<SpotInformation> spots(grid.size());
     for (const SensorView& view : coverage.sensors) {
+        if (view.index >= scene.sensors.size()) continue;
         const Sensor& sensor = scene.sensors[view.index];
         view.cells.forEach([&](std::size_t cell) {
             const Point3 spot = spotFor(sensor, grid.center(cell), coverage.report.plane);
@@ -59,24 +91,21 @@ Localisation localise(const Scene& scene, const Coverage& coverage, double withi
     Localisation result{within, {}};
     result.errors.reserve(spots.size());
     for (const SpotInformation& spot : spots) result.errors.push_back(spot.error());
-    std::vector<double> ascending;
-    coverage.target.indoor.forEach(
-        [&](std::size_t cell) { ascending.push_back(result.errors[cell]); });
-    if (ascending.empty()) return result;
-    std::sort(ascending.begin(), ascending.end());
-    double sum = 0;
-    std::size_t finite = 0, near = 0;
-    for (const double error : ascending) {
-        sum += std::min(error, within);
-        finite += std::isfinite(error) ? 1 : 0;
-        near += error <= within ? 1 : 0;
-    }
-    const auto count = static_cast<double>(ascending.size());
-    result.localised = static_cast<double>(finite) / count;
-    result.share_within = static_cast<double>(near) / count;
-    result.mean = sum / count;
-    result.median = quantile(ascending, 0.5);
-    result.most = quantile(ascending, 0.95);
+    std::vector<CellError> errors;
+    // Cells of one room count alike.
+    addErrors(result, coverage.target.indoor, 1, errors);
+    describe(std::move(errors), result);
+    return result;
+}
+
+Localisation localisedOver(std::span<const Localisation> rooms,
+                           std::span<const Coverage> coverages) {
+    Localisation result{rooms.empty() ? 0 : rooms.front().within, {}};
+    std::vector<CellError> errors;
+    for (std::size_t i = 0; i < rooms.size(); ++i)
+        addErrors(rooms[i], coverages[i].target.indoor, coverages[i].target.grid.cellArea(),
+                  errors);
+    describe(std::move(errors), result);
     return result;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "coverage/coverage.h"
@@ -47,7 +48,12 @@ struct Localisation {
 
 /// Computes the errors at the cells' centres from the sensors that see them: the inverse of the sum
 /// of their information (the Cramer-Rao bound of unbiased estimates), one reading of each. Bodies
-/// have no extent. Deterministic for any number of threads. O(cells seen)
+/// have no extent. Sensors of other storeys, whose views have no sensor in `scene`, do not count.
+/// Deterministic for any number of threads. O(cells seen)
 Localisation localise(const Scene& scene, const Coverage& coverage, double within);
+/// Returns the figures over the indoor floor of several rooms, each cell by its area; without
+/// errors by cell. \param rooms results of localise() with the same limit \pre as many coverages
+Localisation localisedOver(std::span<const Localisation> rooms,
+                           std::span<const Coverage> coverages);
 
 }  // namespace ispace

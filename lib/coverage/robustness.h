@@ -92,4 +92,15 @@ struct FigureLoss {
 std::vector<FigureLoss> worstFailures(const Scene& scene, const Coverage& coverage, int count,
                                       std::span<const Requirement> requirements);
 
+/// A room of a site, whose sensors may fail. A sensor that other rooms see, too, has one id.
+struct FailingRoom {
+    const Scene& scene;
+    const Coverage& coverage;
+};
+/// The same over all floor of several rooms. \param planned sums over the rooms, with the zones of
+/// all in their order
+std::vector<FigureLoss> worstFailures(std::span<const FailingRoom> rooms,
+                                      const CoverageReport& planned, int count,
+                                      std::span<const Requirement> requirements);
+
 }  // namespace ispace

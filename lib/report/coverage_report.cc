@@ -6,8 +6,12 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "report/camera_rules_report.h"
+#include "report/objective_report.h"
 #include "report/presence_report.h"
+#include "report/robustness_report.h"
 #include "report/run_report.h"
+#include "report/suggestion_report.h"
 #include "scene/sensor/density_classes.h"
 
 namespace ispace {
@@ -98,15 +102,6 @@ void write(JsonWriter& json, const UncoveredSpot& spot) {
     json.endObject();
 }
 
-void write(JsonWriter& json, const Comparison& comparison) {
-    json.key("comparison").beginObject();
-    json.key("with").value(comparison.name);
-    write(json, "coverage", comparison.coverage);
-    write(json, "gained_area", comparison.gained);
-    write(json, "lost_area", comparison.lost);
-    json.endObject();
-}
-
 template <typename Item>
 void writeList(JsonWriter& json, const char* key, const std::vector<Item>& items) {
     json.key(key).beginArray();
@@ -115,6 +110,24 @@ void writeList(JsonWriter& json, const char* key, const std::vector<Item>& items
 }
 
 }  // namespace
+
+void writeComparison(JsonWriter& json, const Comparison& comparison) {
+    json.key("comparison").beginObject();
+    json.key("with").value(comparison.name);
+    write(json, "coverage", comparison.coverage);
+    write(json, "gained_area", comparison.gained);
+    write(json, "lost_area", comparison.lost);
+    json.endObject();
+}
+
+void writeParts(JsonWriter& json, const ReportParts& parts) {
+    if (parts.rules != nullptr) writeCameraRules(json, *parts.rules);
+    if (parts.objectives != nullptr) writeObjectives(json, *parts.objectives);
+    if (parts.robustness != nullptr) writeRobustness(json, *parts.robustness);
+    if (parts.run != nullptr) writeRun(json, *parts.run);
+    if (parts.presence != nullptr) writePresence(json, *parts.presence);
+    if (parts.advice != nullptr) writeSuggestions(json, *parts.advice);
+}
 
 std::string coverageJson(const CoverageReport& report, const ReportParts& parts) {
     const Box2& limits = report.limits;
@@ -164,13 +177,8 @@ std::string coverageJson(const CoverageReport& report, const ReportParts& parts)
         write(json, "coverage", report.parallax_coverage);
         json.endObject();
     }
-    if (report.comparison) write(json, *report.comparison);
-    if (parts.rules != nullptr) writeCameraRules(json, *parts.rules);
-    if (parts.objectives != nullptr) writeObjectives(json, *parts.objectives);
-    if (parts.robustness != nullptr) writeRobustness(json, *parts.robustness);
-    if (parts.run != nullptr) writeRun(json, *parts.run);
-    if (parts.presence != nullptr) writePresence(json, *parts.presence);
-    if (parts.advice != nullptr) writeSuggestions(json, *parts.advice);
+    if (report.comparison) writeComparison(json, *report.comparison);
+    writeParts(json, parts);
     json.endObject();
     return json.take() + "\n";
 }
@@ -346,23 +354,32 @@ std::string piecesText(const CoverageReport& report) {
     return text;
 }
 
-std::string comparisonText(const CoverageReport& report) {
-    const Comparison& other = *report.comparison;
-    const auto gain = [](const std::optional<double>& now, const std::optional<double>& then) {
-        return now && then ? std::optional(*now - *then) : std::nullopt;
+}  // namespace
+
+std::string comparisonText(const Comparison& other, const Metric& now) {
+    const auto square = [](double metres2) { return area(metres2); };
+    const auto gain = [](const std::optional<double>& mine, const std::optional<double>& theirs) {
+        return mine && theirs ? std::optional(*mine - *theirs) : std::nullopt;
     };
-    const Metric change{.grid = gain(report.coverage.grid, other.coverage.grid),
-                        .exact = gain(report.coverage.exact, other.coverage.exact)};
+    const Metric change{.grid = gain(now.grid, other.coverage.grid),
+                        .exact = gain(now.exact, other.coverage.exact)};
     return "\n" + aligned({{"beside " + printable(other.name), "by cells", "exact", "difference"},
                            row("its coverage", other.coverage, percent),
                            row("change of coverage", change,
                                [](double share) { return withSign(share, percent); }),
-                           row("gained", other.gained, area),
-                           row("lost", other.lost, area)},
+                           row("gained", other.gained, square),
+                           row("lost", other.lost, square)},
                           "lr");
 }
 
-}  // namespace
+std::string partsText(const ReportParts& parts) {
+    return (parts.rules == nullptr ? "" : cameraRulesText(*parts.rules)) +
+           (parts.objectives == nullptr ? "" : objectivesText(*parts.objectives)) +
+           (parts.robustness == nullptr ? "" : robustnessText(*parts.robustness)) +
+           (parts.run == nullptr ? "" : "\n" + runText(*parts.run)) +
+           (parts.presence == nullptr ? "" : "\n" + presenceText(*parts.presence)) +
+           (parts.advice == nullptr ? "" : suggestionsText(*parts.advice));
+}
 
 std::string coverageText(const CoverageReport& report) {
     const Box2& limits = report.limits;
@@ -380,7 +397,7 @@ std::string coverageText(const CoverageReport& report) {
     text += "\n" + metricTable(report);
     if (!report.exact_missing.empty())
         text += "no exact figures of all together: " + printable(report.exact_missing) + "\n";
-    if (report.comparison) text += comparisonText(report);
+    if (report.comparison) text += comparisonText(*report.comparison, report.coverage);
     text += "\n";
     if (report.sensors.empty())
         text += "no sensor that covers floor is placed\n";

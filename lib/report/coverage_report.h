@@ -27,8 +27,17 @@ struct ReportParts {
 
 /// Writes one JSON object and a newline, schema ispace-coverage/1, with a member for each part.
 std::string coverageJson(const CoverageReport& report, const ReportParts& parts = {});
+/// Writes the members of the parts, in the order of coverageJson().
+void writeParts(JsonWriter& json, const ReportParts& parts);
+/// Writes the member `comparison`.
+void writeComparison(JsonWriter& json, const Comparison& comparison);
+
 /// Writes the report as aligned lines of text.
 std::string coverageText(const CoverageReport& report);
+/// Writes the parts as they follow coverageText().
+std::string partsText(const ReportParts& parts);
+/// Writes a table of the comparison, an empty line before it. \param now coverage of this layout
+std::string comparisonText(const Comparison& other, const Metric& now);
 
 /// A row of a table in text.
 using TextRow = std::vector<std::string>;

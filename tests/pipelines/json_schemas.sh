@@ -24,6 +24,8 @@ for scene in "$scenes"/*.env; do
 done
 envc "$data/map.yaml" -q --rooms list --json >map.rooms.json
 envc "$data/drawings/flat.svg" -q --rooms list -o flat.rooms.json
+coverage "$scenes/house/house.env" "$data/house.3dm" -q --failures 1 --perturb 5cm,3deg --crowd 4 --localise 0.5 \
+    --presence wander:2,20 --compare "$data/house.3dm" --json >house.json
 envc --calibrate "$data/turns.tuple" --json >drive.json
 scan "$scenes/ispace.env" "$scenes/ispace.3dm" -q --select l1 -o real.jsonl
 envc "$scenes/ispace.env" "$scenes/ispace.3dm" -q --calibrate real.jsonl --json >poses.json

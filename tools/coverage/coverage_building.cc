@@ -13,6 +13,8 @@
 #include "base/run_files.h"
 #include "building/building_coverage.h"
 #include "building/building_page.h"
+#include "building/building_presence.h"
+#include "building/building_robustness.h"
 #include "building/building_suggestions.h"
 #include "building/coupling.h"
 #include "cli/building_operands.h"
@@ -21,7 +23,11 @@
 #include "cli/run_tool.h"
 #include "coverage/coverage_run.h"
 #include "report/coverage_formats.h"
+#include "report/coverage_report.h"
 #include "report/map/map.h"
+#include "report/objective_report.h"
+#include "report/presence_report.h"
+#include "report/robustness_report.h"
 #include "scene/run/run_reader.h"
 
 namespace ispace {
@@ -43,18 +49,13 @@ std::string fileOf(std::string pattern, const std::string& id) {
 /// \throws UsageError for an option that is about one room
 void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocument& building) {
     std::string option;
-    if (!options.other.empty()) option = "--compare";
     if (!options.run.empty() && recordedBuilding(options.run).empty()) option = "--run of one room";
-    if (options.presence) option = "--presence";
+    if (options.presence && !options.presence->record.empty() &&
+        recordedBuilding(options.presence->record).empty())
+        option = "--presence by the record of one room";
     if (!options.privacy.empty()) option = "--privacy";
-    if (options.perturb) option = "--perturb";
-    if (options.failures > 0) option = "--failures";
-    if (options.crowd) option = "--crowd";
     if (!options.paths.empty()) option = "--path";
-    if (options.localise_to) option = "--localise";
     if (!options.trace.empty()) option = "--trace";
-    for (const Requirement& requirement : options.requirements)
-        if (requirement.density) option = "--require of a density class";
     if (!option.empty())
         throw UsageError(option +
                          " is about one storey of the building: choose it with --storey (" +
@@ -71,10 +72,7 @@ Coverage subjectOf(const Requirement& requirement, const BuildingScene& building
                    const BuildingCoverage& coverage) {
     if (requirement.of != Requirement::Of::Zone) {
         Coverage sum;
-        sum.report.indoor_area = coverage.indoor_area;
-        sum.report.free_area = coverage.free_area;
-        sum.report.coverage = coverage.coverage;
-        sum.report.free_coverage = coverage.free_coverage;
+        sum.report = sumOfStoreys(coverage);
         return sum;
     }
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
@@ -115,13 +113,150 @@ std::optional<BuildingRunCoverage> measureStoreyRuns(const CoverageToolOptions& 
     return run;
 }
 
+/// The parts of a report that were asked for, on each storey and in sum.
+struct BuildingResults {
+    std::optional<BuildingRunCoverage> run;
+    std::optional<Robustness> robustness;
+    std::vector<Presence> presence;
+    std::optional<Presence> presence_sum;
+    std::vector<ObjectiveFigures> objectives;
+    std::optional<ObjectiveFigures> objectives_sum;
+    std::optional<Advice> advice;
+
+    [[nodiscard]] BuildingParts parts() const {
+        BuildingParts parts;
+        if (run) parts = partsOf(*run);
+        parts.storeys.resize(std::max({parts.storeys.size(), presence.size(), objectives.size()}));
+        for (std::size_t i = 0; i < presence.size(); ++i) parts.storeys[i].presence = &presence[i];
+        for (std::size_t i = 0; i < objectives.size(); ++i)
+            parts.storeys[i].objectives = &objectives[i];
+        if (robustness) parts.sum.robustness = &*robustness;
+        if (presence_sum) parts.sum.presence = &*presence_sum;
+        if (objectives_sum) parts.sum.objectives = &*objectives_sum;
+        if (advice) parts.sum.advice = &*advice;
+        return parts;
+    }
+};
+
+/// Measures --presence on each storey: a record's ways, or people who wander on all free floor.
+void measurePresences(const CoverageToolOptions& options, BuildingInput& input,
+                      const BuildingCoverage& coverage, BuildingResults& results) {
+    if (!options.presence) return;
+    const bool wanders = options.presence->record.empty();
+    const std::vector<std::size_t> people =
+        spreadOverStoreys(coverage, static_cast<std::size_t>(options.presence->people));
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+        const Storey& storey = input.building.document.storeys[i];
+        WaysChoice own = *options.presence;
+        own.people = static_cast<int>(people[i]);
+        if (!wanders) {
+            own.record += '/' + storey.id;
+            input.files.push_back(RecordedFiles(own.record).robots);
+        }
+        const Scene& scene = *input.building.scenes[i];
+        const PeopleWays ways = wanders && own.people == 0
+                                    ? PeopleWays()
+                                    : readWays(own, scene, seedOfStorey(options.common.seed, i));
+        Presence presence = measurePresence(*coverage.floors[i], ways, options.measure.plane);
+        nameWholly(storey, wanders, presence);
+        results.presence.push_back(std::move(presence));
+    }
+    results.presence_sum = sumOverStoreys(results.presence);
+}
+
+/// Measures --localise on each storey, and over all.
+void measureObjectives(const CoverageToolOptions& options, const BuildingCoverage& coverage,
+                       BuildingResults& results) {
+    if (!options.localise_to) return;
+    std::vector<Localisation> storeys;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+        storeys.push_back(localise(*coverage.floors[i], coverage.storeys[i], *options.localise_to));
+        results.objectives.push_back({{}, storeys.back()});
+    }
+    results.objectives_sum = ObjectiveFigures{{}, localisedOver(storeys, coverage.storeys)};
+}
+
+constexpr std::size_t kDraws = 100;
+
+/// Returns the crowds of --crowd: by sample, then by storey.
+std::vector<BuildingCrowd> crowdsOf(const CoverageToolOptions& options, const BuildingInput& input,
+                                    const BuildingCoverage& coverage) {
+    const std::size_t storeys = input.building.scenes.size();
+    std::vector<BuildingCrowd> crowds;
+    if (options.crowd->of == Robustness::CrowdOf::Random) {
+        const std::vector<std::size_t> people =
+            spreadOverStoreys(coverage, static_cast<std::size_t>(options.crowd->people));
+        crowds.assign(kDraws, BuildingCrowd(storeys));
+        for (std::size_t i = 0; i < storeys; ++i) {
+            if (people[i] == 0) continue;
+            const CrowdFloor floor(*input.building.scenes[i]);
+            for (std::size_t k = 0; k < kDraws; ++k)
+                crowds[k][i] = floor.draw(
+                    people[i], {.seed = seedOfStorey(options.common.seed, i), .frame = k});
+        }
+        return crowds;
+    }
+    if (options.crowd->of == Robustness::CrowdOf::Scene) {
+        crowds.emplace_back();
+        for (const auto& scene : input.building.scenes) crowds[0].push_back(crowdOf(*scene));
+        return crowds;
+    }
+    // The storeys of a record have the same moments.
+    for (std::size_t i = 0; i < storeys; ++i) {
+        const std::vector<Crowd> of_storey =
+            crowdsOfRun(options.run + '/' + input.building.document.storeys[i].id,
+                        *input.building.scenes[i], kDraws);
+        crowds.resize(i == 0 ? of_storey.size() : std::min(crowds.size(), of_storey.size()),
+                      BuildingCrowd(storeys));
+        for (std::size_t k = 0; k < crowds.size(); ++k) crowds[k][i] = of_storey[k];
+    }
+    return crowds;
+}
+
+std::optional<Robustness> robustnessOf(const CoverageToolOptions& options,
+                                       const BuildingInput& input,
+                                       const BuildingCoverage& coverage) {
+    if (!options.perturb && options.failures == 0 && !options.crowd) return std::nullopt;
+    Robustness robustness{.requirements = options.requirements, .failures = options.failures};
+    if (options.failures > 0)
+        robustness.losses =
+            worstFailuresOfBuilding(coverage, options.failures, options.requirements);
+    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
+    if (options.crowd) {
+        robustness.crowd_of = options.crowd->of;
+        robustness.people = options.crowd->people;
+        robustness.crowd =
+            crowdBuilding(input.building, coverage, options.measure,
+                          crowdsOf(options, input, coverage), options.requirements, *progress);
+    }
+    if (!options.perturb) return robustness;
+    robustness.tolerance = *options.perturb;
+    robustness.mounting = perturbBuilding(input.building, coverage, options.measure,
+                                          *options.perturb, static_cast<int>(kDraws),
+                                          options.common.seed, options.requirements, *progress);
+    return robustness;
+}
+
+/// Measures the other layout of --compare, and compares the storeys with it.
+void compareWithOther(const CoverageToolOptions& options, BuildingInput& input,
+                      BuildingCoverage& coverage) {
+    if (options.other.empty()) return;
+    const auto other =
+        readBuildingInput({{input.environment_operand, options.other}, options.rules, true});
+    if (!other) throw UsageError("--compare: " + options.other + " is no layout of a building");
+    warn(options.common, "coverage", other->warnings);
+    input.files.insert(input.files.end(), other->files.begin(), other->files.end());
+    compareStoreys(coverage, measureBuilding(other->building, options.measure),
+                   baseName(options.other));
+}
+
 const RunCoverage* runOf(const std::optional<BuildingRunCoverage>& run, std::size_t storey) {
     return run && !run->storeys[storey].members.empty() ? &run->storeys[storey] : nullptr;
 }
 
 /// Draws all storeys on one page.
 void writePanels(const CoverageToolOptions& options, const BuildingInput& input,
-                 const BuildingCoverage& coverage, const std::optional<BuildingRunCoverage>& run) {
+                 const BuildingCoverage& coverage, const BuildingResults& results) {
     std::vector<Picture> panels;
     const std::uint32_t scale = redundancyScale(coverage);
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
@@ -129,7 +264,8 @@ void writePanels(const CoverageToolOptions& options, const BuildingInput& input,
         map.format = *options.format->picture;
         map.title = input.building.document.storeys[i].id;
         map.redundancy_scale = scale;
-        map.run = runOf(run, i);
+        map.run = runOf(results.run, i);
+        if (!results.objectives.empty()) map.objectives = &results.objectives[i];
         panels.push_back(coverageMap(*coverage.floors[i], coverage.storeys[i], map));
     }
     Picture page = panelsOf(panels);
@@ -141,14 +277,15 @@ void writePanels(const CoverageToolOptions& options, const BuildingInput& input,
 
 /// Writes a file for each storey.
 void writeFiles(const CoverageToolOptions& options, const BuildingInput& input,
-                const BuildingCoverage& coverage, const std::optional<BuildingRunCoverage>& run) {
+                const BuildingCoverage& coverage, const BuildingResults& results) {
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         const Storey& storey = input.building.document.storeys[i];
         CoverageToolOptions own = options;
         own.common.output = fileOf(options.common.output, storey.id);
         own.map.title = storey.id;
         own.map.redundancy_scale = redundancyScale(coverage);
-        own.map.run = runOf(run, i);
+        own.map.run = runOf(results.run, i);
+        if (!results.objectives.empty()) own.map.objectives = &results.objectives[i];
         claimOutput(own.common.output, "the map of a storey");
         SceneInput room{*coverage.floors[i], *storey.room, input.layout, {}, {}, {}, {}};
         writeProduct(own, room, {coverage.storeys[i], {}});
@@ -181,11 +318,25 @@ std::vector<Diagnostic> findingsOf(const BuildingScene& building) {
 
 /// Returns the bytes of --report.
 std::string buildingReport(const CoverageToolOptions& options, const BuildingInput& input,
-                           const BuildingCoverage& coverage, const BuildingRunCoverage* run,
-                           const Advice* advice, const std::vector<Diagnostic>& findings) {
+                           const BuildingCoverage& coverage, const BuildingResults& results,
+                           const std::vector<Diagnostic>& findings) {
     const std::string suffix = suffixOf(options.report);
-    if (suffix == "json") return buildingCoverageJson(input.building, coverage, run, advice);
-    BuildingPageInput page{input.building, coverage, "", options.history_line, {}, run, advice};
+    const BuildingParts parts = results.parts();
+    if (suffix == "json") return buildingCoverageJson(input.building, coverage, parts);
+    BuildingPageInput page{input.building, coverage, "", options.history_line, {}};
+    page.run = results.run ? &*results.run : nullptr;
+    page.advice = parts.sum.advice;
+    const auto add_text = [&page](const char* id, const char* title, std::string text) {
+        page.more.push_back({id, title, {PageCode{std::move(text)}}});
+    };
+    if (coverage.comparison)
+        add_text("comparison", "Beside another layout",
+                 comparisonText(*coverage.comparison, coverage.coverage));
+    if (parts.sum.objectives != nullptr)
+        add_text("objectives", "Positions", objectivesText(*parts.sum.objectives));
+    if (parts.sum.presence != nullptr)
+        add_text("presence", "Presence", presenceText(*parts.sum.presence));
+    if (results.robustness) page.more.push_back(robustnessSection(*results.robustness));
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     for (const Requirement& requirement : options.requirements) {
         const Verdict verdict =
@@ -227,6 +378,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     const std::vector<Diagnostic> findings = findingsOf(input.building);
     warn(options.common, "coverage", findings);
     BuildingCoverage coverage = measureBuilding(input.building, options.measure);
+    compareWithOther(options, input, coverage);
     if (!options.facing.empty())
         coverage.rules = measureBuildingFacing(input.building, coverage, options.facing);
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
@@ -237,24 +389,28 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     std::vector<JunitCase> verdicts = judgeBuilding(options, input.building, coverage);
     for (JunitCase& verdict : judge(judgedInBuilding(input.building, coverage.rules)))
         verdicts.push_back(std::move(verdict));
-    const std::optional<BuildingRunCoverage> run = measureStoreyRuns(options, input);
+    BuildingResults results;
+    results.run = measureStoreyRuns(options, input);
+    measureObjectives(options, coverage, results);
+    measurePresences(options, input, coverage, results);
+    if (results.presence_sum)
+        for (JunitCase& verdict : judge(options.presence_requirements, *results.presence_sum))
+            verdicts.push_back(std::move(verdict));
     if (options.format != nullptr) {
         if (isPattern(options.common.output))
-            writeFiles(options, input, coverage, run);
+            writeFiles(options, input, coverage, results);
         else
-            writePanels(options, input, coverage, run);
+            writePanels(options, input, coverage, results);
         writeDependencies(options.common, input.files);
     }
-    const BuildingRunCoverage* const of_run = run ? &*run : nullptr;
+    results.robustness = robustnessOf(options, input, coverage);
     int signal = 0;
-    const std::optional<Advice> advice = adviceFor(options, input, coverage, signal);
-    const Advice* const of_advice = advice ? &*advice : nullptr;
+    results.advice = adviceFor(options, input, coverage, signal);
     if (!options.report.empty())
-        writeAll(options.report,
-                 buildingReport(options, input, coverage, of_run, of_advice, findings));
-    writeAll("-", options.json ? buildingCoverageJson(input.building, coverage, of_run, of_advice)
-                               : buildingCoverageText(input.building, coverage, of_run) +
-                                     (advice ? suggestionsText(*advice) : ""));
+        writeAll(options.report, buildingReport(options, input, coverage, results, findings));
+    const BuildingParts parts = results.parts();
+    writeAll("-", options.json ? buildingCoverageJson(input.building, coverage, parts)
+                               : buildingCoverageText(input.building, coverage, parts));
     writeBuildingMaterial(options, input.building);
     if (signal != 0) endBySignal(signal);
     for (const JunitCase& verdict : verdicts)

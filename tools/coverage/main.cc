@@ -77,13 +77,7 @@ void checkRequired(const CoverageToolOptions& options, const SceneInput& input,
 
 std::string reportText(const CoverageToolOptions& options, const CoverageReport& report,
                        const ReportParts& parts) {
-    if (options.json) return coverageJson(report, parts);
-    return coverageText(report) + (parts.rules == nullptr ? "" : cameraRulesText(*parts.rules)) +
-           (parts.objectives == nullptr ? "" : objectivesText(*parts.objectives)) +
-           (parts.robustness == nullptr ? "" : robustnessText(*parts.robustness)) +
-           (parts.run == nullptr ? "" : "\n" + runText(*parts.run)) +
-           (parts.presence == nullptr ? "" : "\n" + presenceText(*parts.presence)) +
-           (parts.advice == nullptr ? "" : suggestionsText(*parts.advice));
+    return options.json ? coverageJson(report, parts) : coverageText(report) + partsText(parts);
 }
 
 /// Frees all but the report, and the target.

@@ -37,7 +37,7 @@ std::string reportFile(const SimrunOptions& options, const BuildingInput& input,
     const BuildingCoverage coverage = measureBuilding(input.building, {});
     const BuildingRunCoverage run = measuredRun(options, input.building);
     const std::string suffix = suffixOf(options.report);
-    if (suffix == "json") return buildingCoverageJson(input.building, coverage, &run);
+    if (suffix == "json") return buildingCoverageJson(input.building, coverage, partsOf(run));
     BuildingPageInput page{input.building, coverage, "", command, {}, &run};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     for (const RunVerdict& verdict : judge.verdicts())

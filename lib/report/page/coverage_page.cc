@@ -359,9 +359,9 @@ void addObjectives(const CoveragePageInput& input, ReportPage& page) {
     page.sections.push_back(std::move(section));
 }
 
-void addRobustness(const CoveragePageInput& input, ReportPage& page) {
-    if (input.parts.robustness == nullptr) return;
-    const Robustness& robustness = *input.parts.robustness;
+}  // namespace
+
+PageSection robustnessSection(const Robustness& robustness) {
     PageSection section{"robustness", "Robustness", {}};
     if (robustness.mounting)
         section.blocks.push_back(tableOf("sensors " + mountingText(robustness) + ", at random",
@@ -375,8 +375,10 @@ void addRobustness(const CoveragePageInput& input, ReportPage& page) {
             tableOf("if " + failuresText(robustness.failures), "lrrl", failureRows(robustness)));
     for (const std::string& sentence : robustRequirements(robustness))
         section.blocks.push_back(PageText{"Required " + sentence + "."});
-    page.sections.push_back(std::move(section));
+    return section;
 }
+
+namespace {
 
 void addRun(const CoveragePageInput& input, ReportPage& page) {
     MapOptions options;
@@ -508,7 +510,8 @@ ReportPage coveragePage(const CoveragePageInput& input) {
     addRequirements(input, page);
     addCameraRules(input, page);
     addObjectives(input, page);
-    addRobustness(input, page);
+    if (input.parts.robustness != nullptr)
+        page.sections.push_back(robustnessSection(*input.parts.robustness));
     if (input.parts.advice != nullptr) page.sections.push_back(adviceSection(*input.parts.advice));
     addInstallation(input, page);
     if (input.parts.run != nullptr) addRun(input, page);

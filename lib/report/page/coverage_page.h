@@ -54,6 +54,8 @@ std::vector<PageBlock> zoneTables(const CoverageReport& report);
 /// Builds the table of the floor that each sensor sees, sees alone, and shares with others.
 /// \param scene whose floor is measured
 PageTable sensorsTable(const Scene& scene, const Coverage& coverage);
+/// Builds the section on errors of mounting, failures and crowds.
+PageSection robustnessSection(const Robustness& robustness);
 /// Builds the section on methods and their limits.
 PageSection methodsSection(const CoverageReport& report);
 /// Returns the records of placed sensors, robots and people as text.
