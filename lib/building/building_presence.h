@@ -8,8 +8,8 @@
 
 namespace ispace {
 
-/// Puts the storey before the ids of sensors. \param of_people also before those of people, who are
-/// others on each storey
+/// Puts the storey before the ids of sensors. \param of_people also before those of people: they
+/// are others on each storey
 void nameWholly(const Storey& storey, bool of_people, Presence& presence);
 
 /// Adds up the presence on all storeys: lengths add up, shares are of all ways. People of one id

@@ -138,7 +138,7 @@ struct BuildingResults {
     }
 };
 
-/// Measures --presence on each storey: a record's ways, or people who wander on all free floor.
+/// Measures --presence on each storey: a record's ways, or wanderers on all free floor.
 void measurePresences(const CoverageToolOptions& options, BuildingInput& input,
                       const BuildingCoverage& coverage, BuildingResults& results) {
     if (!options.presence) return;

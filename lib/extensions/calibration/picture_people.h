@@ -27,7 +27,7 @@ struct PictureBody {
 /// body if its colour differs from the background by brightness or chromaticity; one that is darker
 /// alone is in shadow (Horprasert, Harwood and Davis, A statistical approach for real-time robust
 /// background subtraction and shadow detection, 1999): shadows belong to no body. Neither do bodies
-/// of less than a few dozen pixels. People who stand still for half of the pictures are background.
+/// of less than a few dozen pixels. People at rest in half of the pictures are background.
 ///
 /// O(pixels) a picture, and kBackgrounds pictures in memory.
 /// \param picture returns a picture by its number; called twice for some
