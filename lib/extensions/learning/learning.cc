@@ -93,8 +93,8 @@ class Learning : public OptionGroup {
                    "wandering people in each world (default: those of --task)", Enters::History);
         line.texts("--room", "ENV", rooms_,
                    "a further room for the worlds; each episode draws its room", Enters::Nothing);
-        line.choice("--autoreset", autoreset_, {"next-step", "same-step", "disabled"},
-                    "when a world begins its next episode (default next-step)", Enters::Nothing);
+        line.choice("--autoreset", autoreset_, {"next_step", "same_step", "disabled"},
+                    "when a world begins its next episode (default next_step)", Enters::Nothing);
     }
     [[nodiscard]] bool isAsked() const override { return worlds_.has_value(); }
     [[nodiscard]] std::span<const std::string_view> honours() const override {
@@ -121,7 +121,7 @@ class Learning : public OptionGroup {
         const VectorSegment segment(segment_, setting, worlds, factsOf(setting, worlds));
         LearningBatch batch(std::move(setting), worlds,
                             autoreset_ == "disabled"    ? AutoReset::Disabled
-                            : autoreset_ == "same-step" ? AutoReset::SameStep
+                            : autoreset_ == "same_step" ? AutoReset::SameStep
                                                         : AutoReset::NextStep,
                             segment.arrays());
         // A learner that writes no seeds gets those of --seed.
@@ -267,7 +267,7 @@ class Learning : public OptionGroup {
     }
 
     std::optional<int> worlds_, people_;
-    std::string segment_, task_file_, autoreset_ = "next-step";
+    std::string segment_, task_file_, autoreset_ = "next_step";
     std::vector<std::string> rooms_;
     std::optional<SimTime> step_;
 };

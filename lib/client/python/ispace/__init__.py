@@ -68,8 +68,11 @@ from .uwb import TagRange, TagRanges, Uwb
 from .world import Event, Lift, World
 
 if TYPE_CHECKING:
-    from .check import VectorEnvFaults, check_vector_env
-    from .vector import AutoresetMode, Env, VectorEnv
+    from .check import VectorEnvFaults as VectorEnvFaults
+    from .check import check_vector_env as check_vector_env
+    from .vector import AutoresetMode as AutoresetMode
+    from .vector import Env as Env
+    from .vector import VectorEnv as VectorEnv
 
 
 def __getattr__(name: str) -> Any:
@@ -92,7 +95,6 @@ def __getattr__(name: str) -> Any:
 
 __all__ = [
     "Address",
-    "AutoresetMode",
     "Bumper",
     "Burst",
     "Camera",
@@ -105,7 +107,6 @@ __all__ = [
     "Detection",
     "Detections",
     "End",
-    "Env",
     "Error",
     "Event",
     "Fields",
@@ -161,12 +162,9 @@ __all__ = [
     "ToolError",
     "Ultrasound",
     "Uwb",
-    "VectorEnv",
-    "VectorEnvFaults",
     "World",
     "__version__",
     "arrange",
-    "check_vector_env",
     "coverage",
     "info",
     "scan",

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
-import numpy as np
+np: Any = importlib.import_module("numpy")
+Array = Any  #: numpy.ndarray
 
 
 class VectorEnvFaults(AssertionError):
@@ -45,12 +47,12 @@ class _Run:
     """What an environment returned, as copies; [0] is of reset."""
 
     def __init__(self) -> None:
-        self.observations: List[np.ndarray] = []
-        self.rewards: List[np.ndarray] = []
-        self.terminations: List[np.ndarray] = []
-        self.truncations: List[np.ndarray] = []
+        self.observations: List[Array] = []
+        self.rewards: List[Array] = []
+        self.terminations: List[Array] = []
+        self.truncations: List[Array] = []
 
-    def ended(self, step: int) -> np.ndarray:
+    def ended(self, step: int) -> Array:
         return self.terminations[step] | self.truncations[step]
 
 
@@ -139,7 +141,7 @@ class _Checker:
 
     # Episodes, and what they return.
 
-    def reset(self, seed: Any = None, options: Optional[Dict[str, Any]] = None) -> Tuple[np.ndarray, Dict[str, Any]]:
+    def reset(self, seed: Any = None, options: Optional[Dict[str, Any]] = None) -> Tuple[Array, Dict[str, Any]]:
         given = self.call("reset", lambda: self.env.reset(seed=seed, options=options))
         if not isinstance(given, tuple) or len(given) != 2:
             self.fault("reset does not return observations and infos", stop=True)
@@ -148,7 +150,7 @@ class _Checker:
         self.check_infos(infos, "reset")
         return observations, infos
 
-    def step(self, actions: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Dict[str, Any]]:
+    def step(self, actions: Array) -> Tuple[Array, Array, Array, Array, Dict[str, Any]]:
         given = self.call("step", lambda: self.env.step(actions))
         if not isinstance(given, tuple) or len(given) != 5:
             self.fault(
@@ -168,7 +170,7 @@ class _Checker:
         self.check_infos(infos, "step")
         return observations, rewards, np.asarray(terminations), np.asarray(truncations), infos
 
-    def check_observations(self, observations: Any, where: str, rows: Optional[np.ndarray] = None) -> None:
+    def check_observations(self, observations: Any, where: str, rows: Optional[Array] = None) -> None:
         space, wanted = self.space, (self.count, *self.space.shape)
         if not isinstance(observations, np.ndarray) or observations.shape != wanted:
             shape = getattr(observations, "shape", None)
@@ -198,7 +200,7 @@ class _Checker:
                 self.fault(f"{key} in infos of {where} has no row for each environment")
 
     def episodes(
-        self, seed: Any, actions: np.ndarray, check: bool = False, until: Optional[int] = None, masked: bool = True
+        self, seed: Any, actions: Array, check: bool = False, until: Optional[int] = None, masked: bool = True
     ) -> _Run:
         """Resets with this seed and steps by these actions."""
         run = _Run()

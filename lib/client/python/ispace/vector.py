@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import enum
+import importlib
 import json
 import math
 import mmap
@@ -19,118 +20,111 @@ import subprocess
 import tempfile
 from typing import IO, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
-import numpy as np
-
 from .errors import Error, ToolError
-from .filters import Layout, Option, Placed, Room, arguments_of, last_line, operands, tool
+from .filters import Option, Placed, Room, arguments_of, last_line, operands, tool
 
+np: Any = importlib.import_module("numpy")
+Array = Any  #: numpy.ndarray
+gymnasium: Any
 try:
-    import gymnasium
-    from gymnasium.vector import AutoresetMode as _Autoreset
-    from gymnasium.vector import VectorEnv as _VectorBase
-    from gymnasium.vector.utils import batch_space as _batch_space
-
-    _EnvBase: Any = gymnasium.Env
-    _Box: Any = gymnasium.spaces.Box
+    gymnasium = importlib.import_module("gymnasium")
+    importlib.import_module("gymnasium.vector")
 except ImportError:
     gymnasium = None
 
-    class _Autoreset(enum.Enum):  # type: ignore[no-redef]
-        """When a world begins its next episode: the values of gymnasium.vector.AutoresetMode."""
 
-        NEXT_STEP = "NextStep"
-        SAME_STEP = "SameStep"
-        DISABLED = "Disabled"
+class _PlainMode(enum.Enum):
+    """When a world begins its next episode: the values of gymnasium.vector.AutoresetMode."""
 
-    class _Box:  # type: ignore[no-redef]
-        """An interval for each number of an array: as much of gymnasium.spaces.Box as learners use."""
-
-        def __init__(self, low: Any, high: Any, shape: Optional[Tuple[int, ...]] = None, dtype: Any = np.float32):
-            self.dtype = np.dtype(dtype)
-            self.shape = tuple(shape) if shape is not None else np.shape(low)
-            self.low = np.broadcast_to(np.asarray(low, self.dtype), self.shape).copy()
-            self.high = np.broadcast_to(np.asarray(high, self.dtype), self.shape).copy()
-            self._random = np.random.default_rng()
-
-        def seed(self, seed: Optional[int] = None) -> Optional[int]:
-            self._random = np.random.default_rng(seed)
-            return seed
-
-        def sample(self, mask: None = None, probability: None = None) -> np.ndarray:
-            return self._random.uniform(self.low, self.high, self.shape).astype(self.dtype)
-
-        def is_bounded(self, manner: str = "both") -> bool:
-            below, above = bool(np.all(np.isfinite(self.low))), bool(np.all(np.isfinite(self.high)))
-            return {"both": below and above, "below": below, "above": above}[manner]
-
-        def contains(self, x: Any) -> bool:
-            x = np.asarray(x)
-            return (
-                np.can_cast(x.dtype, self.dtype)
-                and x.shape == self.shape
-                and bool(np.all(x >= self.low) and np.all(x <= self.high))
-            )
-
-        __contains__ = contains
-
-        def __eq__(self, other: object) -> bool:
-            return (
-                isinstance(other, _Box)
-                and self.shape == other.shape
-                and self.dtype == other.dtype
-                and bool(np.array_equal(self.low, other.low) and np.array_equal(self.high, other.high))
-            )
-
-        def __repr__(self) -> str:
-            return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
-
-    class _Interface:
-        """The attributes that gymnasium's base classes have."""
-
-        metadata: Dict[str, Any] = {"render_modes": []}
-        spec = None
-        render_mode = None
-        _np_random: Optional[np.random.Generator] = None
-        _np_random_seed: Optional[int] = None
-
-        @property
-        def unwrapped(self) -> Any:
-            return self
-
-        @property
-        def np_random(self) -> np.random.Generator:
-            if self._np_random is None:
-                self._np_random = np.random.default_rng()
-            return self._np_random
-
-        @property
-        def np_random_seed(self) -> Optional[int]:
-            return self._np_random_seed
-
-        def __enter__(self) -> Any:
-            return self
-
-        def __exit__(self, *_: object) -> None:
-            self.close()
-
-        def close(self) -> None:
-            raise NotImplementedError
-
-    class _VectorBase(_Interface):  # type: ignore[no-redef]
-        pass
-
-    class _EnvBase(_Interface):  # type: ignore[no-redef]
-        pass
-
-    def _batch_space(space: Any, n: int = 1) -> Any:
-        return _Box(np.repeat(space.low[None], n, 0), np.repeat(space.high[None], n, 0), dtype=space.dtype)
+    NEXT_STEP = "NextStep"
+    SAME_STEP = "SameStep"
+    DISABLED = "Disabled"
 
 
-AutoresetMode = _Autoreset
-Box = _Box
+class _PlainBox:
+    """An interval for each number of an array: as much of gymnasium.spaces.Box as learners use."""
+
+    def __init__(self, low: Any, high: Any, shape: Optional[Tuple[int, ...]] = None, dtype: Any = np.float32) -> None:
+        self.dtype = np.dtype(dtype)
+        self.shape: Tuple[int, ...] = tuple(shape) if shape is not None else np.shape(low)
+        self.low: Array = np.broadcast_to(np.asarray(low, self.dtype), self.shape).copy()
+        self.high: Array = np.broadcast_to(np.asarray(high, self.dtype), self.shape).copy()
+        self._random = np.random.default_rng()
+
+    def seed(self, seed: Optional[int] = None) -> Optional[int]:
+        self._random = np.random.default_rng(seed)
+        return seed
+
+    def sample(self, mask: None = None, probability: None = None) -> Array:
+        return self._random.uniform(self.low, self.high, self.shape).astype(self.dtype)
+
+    def is_bounded(self, manner: str = "both") -> bool:
+        below, above = bool(np.all(np.isfinite(self.low))), bool(np.all(np.isfinite(self.high)))
+        return {"both": below and above, "below": below, "above": above}[manner]
+
+    def contains(self, x: Any) -> bool:
+        x = np.asarray(x)
+        if not np.can_cast(x.dtype, self.dtype) or x.shape != self.shape:
+            return False
+        return bool(np.all(x >= self.low) and np.all(x <= self.high))
+
+    __contains__ = contains
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, _PlainBox) or self.shape != other.shape or self.dtype != other.dtype:
+            return False
+        return bool(np.array_equal(self.low, other.low) and np.array_equal(self.high, other.high))
+
+    def __repr__(self) -> str:
+        return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
+
+
+class _Interface:
+    """The attributes that gymnasium's base classes have."""
+
+    metadata: Dict[str, Any] = {"render_modes": []}
+    spec = None
+    render_mode = None
+    _np_random: Any = None
+    _np_random_seed: Optional[int] = None
+
+    @property
+    def unwrapped(self) -> Any:
+        return self
+
+    @property
+    def np_random(self) -> Any:
+        if self._np_random is None:
+            self._np_random = np.random.default_rng()
+        return self._np_random
+
+    @property
+    def np_random_seed(self) -> Optional[int]:
+        return self._np_random_seed
+
+    def __enter__(self) -> Any:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        raise NotImplementedError
+
+
+def _plain_batch(space: Any, n: int = 1) -> Any:
+    return _PlainBox(np.repeat(space.low[None], n, 0), np.repeat(space.high[None], n, 0), dtype=space.dtype)
+
+
+_has = gymnasium is not None
+AutoresetMode: Any = gymnasium.vector.AutoresetMode if _has else _PlainMode
+Box: Any = gymnasium.spaces.Box if _has else _PlainBox
+_VectorBase: Any = gymnasium.vector.VectorEnv if _has else _Interface
+_EnvBase: Any = gymnasium.Env if _has else _Interface
+_batch_space: Any = gymnasium.vector.utils.batch_space if _has else _plain_batch
 Task = Union[None, str, "os.PathLike[str]", Mapping[str, Any]]
 Rooms = Union[Room, Sequence[Room]]
-_WORDS = {"NEXT_STEP": "next-step", "SAME_STEP": "same-step", "DISABLED": "disabled"}
+_WORDS = {"NEXT_STEP": "next_step", "SAME_STEP": "same_step", "DISABLED": "disabled"}
 
 
 def _mode(mode: Any) -> Any:
@@ -183,26 +177,26 @@ class _Worlds:
                 os.close(file)
                 os.unlink(path)  # both have it; no end of either leaves it behind
             for key, array in self.facts["arrays"].items():
-                view = np.ndarray(array["shape"], array["type"], self._memory, array["offset"])
+                view: Array = np.ndarray(array["shape"], array["type"], self._memory, array["offset"])
                 setattr(self, key, view)
         except BaseException:
             self.close()
             raise
 
-    actions: np.ndarray
-    observations: np.ndarray
-    final_observations: np.ndarray
-    rewards: np.ndarray
-    terminations: np.ndarray
-    truncations: np.ndarray
-    successes: np.ndarray
-    collisions: np.ndarray
-    returns: np.ndarray
-    lengths: np.ndarray
-    poses: np.ndarray
-    goals: np.ndarray
-    seeds: np.ndarray
-    masks: np.ndarray
+    actions: Array
+    observations: Array
+    final_observations: Array
+    rewards: Array
+    terminations: Array
+    truncations: Array
+    successes: Array
+    collisions: Array
+    returns: Array
+    lengths: Array
+    poses: Array
+    goals: Array
+    seeds: Array
+    masks: Array
 
     def _task_file(self, task: Task) -> Union[None, str, "os.PathLike[str]"]:
         if not isinstance(task, Mapping):
@@ -330,22 +324,22 @@ class VectorEnv(_VectorBase):  # type: ignore[misc]
         self._same_step = mode.name == "SAME_STEP"
 
     @property
-    def actions(self) -> np.ndarray:
+    def actions(self) -> Array:
         """The shared actions, (num_envs, 2)."""
         return self._worlds.actions
 
     @property
-    def observations(self) -> np.ndarray:
+    def observations(self) -> Array:
         """The shared observations of the last step."""
         return self._worlds.observations[self._half]
 
     @property
-    def poses(self) -> np.ndarray:
+    def poses(self) -> Array:
         """The true poses of the robots: x, y, heading (rad)."""
         return self._worlds.poses
 
     @property
-    def goals(self) -> np.ndarray:
+    def goals(self) -> Array:
         """The goals of the robots: x, y."""
         return self._worlds.goals
 
@@ -365,7 +359,7 @@ class VectorEnv(_VectorBase):  # type: ignore[misc]
         *,
         seed: Union[None, int, Sequence[Optional[int]]] = None,
         options: Optional[Dict[str, Any]] = None,
-    ) -> Tuple[np.ndarray, Dict[str, Any]]:
+    ) -> Tuple[Array, Dict[str, Any]]:
         """Begins episodes: with a seed those of seed, seed + 1, ..., without one the next ones.
 
         ``options={"reset_mask": mask}`` selects rows; worlds reset as a whole.
@@ -405,7 +399,7 @@ class VectorEnv(_VectorBase):  # type: ignore[misc]
 
     def step(
         self, actions: Any
-    ) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Dict[str, Any]]:
+    ) -> Tuple[Array, Array, Array, Array, Dict[str, Any]]:
         """Steps all worlds; what follows an end is up to ``autoreset_mode``."""
         worlds = self._worlds
         if actions is not worlds.actions:
@@ -422,7 +416,7 @@ class VectorEnv(_VectorBase):  # type: ignore[misc]
             self._infos(),
         )
 
-    def _given(self, array: np.ndarray) -> np.ndarray:
+    def _given(self, array: Array) -> Array:
         return array.copy() if self.copy else array
 
     def _infos(self) -> Dict[str, Any]:
@@ -460,6 +454,7 @@ class VectorEnv(_VectorBase):  # type: ignore[misc]
         self._worlds.close()
 
     def close_extras(self, **_: Any) -> None:
+        """As close(), which gymnasium's base class calls."""
         self.close()
 
     def __del__(self) -> None:
@@ -487,7 +482,7 @@ class Env(_EnvBase):  # type: ignore[misc]
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[Dict[str, Any]] = None
-    ) -> Tuple[np.ndarray, Dict[str, Any]]:
+    ) -> Tuple[Array, Dict[str, Any]]:
         """Begins an episode: the first of the seed, or without one the next."""
         if gymnasium is not None:
             super().reset(seed=seed)
@@ -496,7 +491,8 @@ class Env(_EnvBase):  # type: ignore[misc]
         observations, _ = self._batch.reset(seed=seed)
         return observations[0].copy(), {}
 
-    def step(self, action: Any) -> Tuple[np.ndarray, float, bool, bool, Dict[str, Any]]:
+    def step(self, action: Any) -> Tuple[Array, float, bool, bool, Dict[str, Any]]:
+        """Steps the world; after an end it waits for reset()."""
         observations, rewards, terminations, truncations, _ = self._batch.step(np.asarray(action)[None])
         worlds = self._batch._worlds
         info = {"success": bool(worlds.successes[0]), "collision": bool(worlds.collisions[0])}
@@ -511,4 +507,5 @@ class Env(_EnvBase):  # type: ignore[misc]
         return None
 
     def close(self) -> None:
+        """Ends simrun."""
         self._batch.close()
