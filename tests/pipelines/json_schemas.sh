@@ -29,6 +29,9 @@ coverage "$scenes/house/house.env" "$data/house.3dm" -q --failures 1 --perturb 5
 envc --calibrate "$data/turns.tuple" --json >drive.json
 scan "$scenes/ispace.env" "$scenes/ispace.3dm" -q --select l1 -o real.jsonl
 envc "$scenes/ispace.env" "$scenes/ispace.3dm" -q --calibrate real.jsonl --json >poses.json
+printf 'camera id=c1 at=1,1,2 pixels=32,24\n' | cat "$scenes/ispace.3dm" - >eye.3dm
+simrun "$scenes/ispace.env" eye.3dm -q --clock fast --until 1 --record seen >/dev/null
+envc "$scenes/ispace.env" eye.3dm -q --calibrate seen --json >unplaced.json
 scan "$scenes/ispace.env" "$scenes/ispace.3dm" -q --against real.jsonl --json >reality.json
 for layout in ultrasound ranger uwb; do
     scan "$data/square.env" "$data/$layout.3dm" --any-environment -q -o "$layout.jsonl"

@@ -36,6 +36,7 @@ namespace ispace {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kKnees = 0.65;  // metres
 
 /// A fixed laser and its scans in the log.
 struct CalibratedLaser {
@@ -50,6 +51,7 @@ struct CalibratedCamera {
     Record record;
     std::vector<const LogPicture*> pictures = {};
     CameraFit fit = {};
+    std::string refusal = {};  ///< why its pose stays; "" for a camera with a fit
 };
 
 /// Returns true if a source of a log is the sensor: by its id, or by a topic with it, "/l1/scan".
@@ -123,16 +125,33 @@ std::vector<CalibratedLaser> fixedLasers(const Source& source) {
     return lasers;
 }
 
-/// Returns the fixed cameras that the log has pictures of.
+/// Returns the fixed cameras that the log has pictures of. If it has any, warns of cameras without
+/// pictures and of pictures without a camera.
 template <typename Source>
-std::vector<CalibratedCamera> fixedCameras(const Source& source, const Log& log) {
+std::vector<CalibratedCamera> fixedCameras(const TaskInput& task, const Source& source,
+                                           const Log& log) {
+    std::map<std::string, std::vector<const LogPicture*>> pictures;
+    for (const LogPicture& picture : log.pictures) pictures[picture.sensor].push_back(&picture);
     std::vector<CalibratedCamera> cameras;
-    for (auto& [sensor, record] : fixedSensors(source, "camera")) {
-        CalibratedCamera camera{std::move(sensor), std::move(record)};
-        for (const LogPicture& picture : log.pictures)
-            if (isSource(picture.sensor, camera.sensor.id)) camera.pictures.push_back(&picture);
-        if (!camera.pictures.empty()) cameras.push_back(std::move(camera));
+    if (pictures.empty()) return cameras;
+    auto fixed = fixedSensors(source, "camera");
+    // As with lasers, one camera and one source need no common name.
+    const bool is_one = fixed.size() == 1 && pictures.size() == 1;
+    for (auto& [sensor, record] : fixed) {
+        const auto found = std::find_if(
+            pictures.begin(), pictures.end(),
+            [&id = sensor.id, is_one](auto& one) { return is_one || isSource(one.first, id); });
+        if (found == pictures.end()) {
+            warn(task.common, "envc",
+                 "the log has no pictures of " + sensor.id + ": its pose stays");
+            continue;
+        }
+        cameras.push_back({std::move(sensor), std::move(record), std::move(found->second)});
+        pictures.erase(found);
     }
+    for (const auto& [name, unused] : pictures)
+        warn(task.common, "envc",
+             "pictures of " + printable(name) + " are of no fixed camera of the layout");
     return cameras;
 }
 
@@ -400,9 +419,9 @@ std::vector<PictureMoment> momentsOf(const CalibratedCamera& camera,
         if (color.width != model.columns || color.height != model.rows)
             throw FormatError({name, 0, 0,
                                "the picture has " + std::to_string(color.width) + " x " +
-                                   std::to_string(color.height) + " pixels, and the camera " +
-                                   std::to_string(model.columns) + " x " +
-                                   std::to_string(model.rows)});
+                                   std::to_string(color.height) + " pixels, and " +
+                                   camera.sensor.id + " has " + std::to_string(model.columns) +
+                                   " x " + std::to_string(model.rows) + " by its record"});
         return color;
     });
     std::vector<PictureMoment> moments;
@@ -423,53 +442,79 @@ void setPose(const CalibratedCamera& camera, Document& layout) {
     record.set("roll", nineDecimals(wrapped(pose.roll).degrees()));
 }
 
+/// Reports a camera with a fit on stderr.
+void report(const TaskInput& task, const CalibratedCamera& camera) {
+    const CameraFit& fit = camera.fit;
+    const auto sigma = [&fit](std::size_t a, std::size_t b, std::size_t c) {
+        return std::sqrt(fit.covariance[a][a] + fit.covariance[b][b] + fit.covariance[c][c]);
+    };
+    tell(task.common, "envc",
+         camera.sensor.id + ": moved by " +
+             formatFixed(length(fit.pose.position - camera.sensor.pose.position), 3) + " m by " +
+             countText(fit.pictures, "picture") + "; standard deviations " +
+             formatFixed(1000 * sigma(0, 1, 2), 1) + " mm and " +
+             formatFixed(kDegrees * sigma(3, 4, 5), 3) + " deg; outlines of people " +
+             formatFixed(fit.height.mean, 2) + " m high within " + formatFixed(fit.pixels, 1) +
+             " pixels");
+}
+
+/// The line of the layout's history about a camera.
+std::string historyOf(const CalibratedCamera& camera) {
+    std::string line = "calibrated " + camera.sensor.id + " by " +
+                       countText(camera.fit.pictures, "picture") +
+                       ": covariance of x, y, z (m), turn about x, y, z (rad), upper triangle:";
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t j = i; j < 6; ++j)
+            line += ' ' + formatDouble(roundSignificant(camera.fit.covariance[i][j], 4));
+    return line;
+}
+
 /// Estimates the poses of cameras by people that lasers at known poses see, reports them on stderr
-/// and adds them to the layout.
-/// \param lasers at their poses; those that see no legs do not help
+/// and adds them to the layout. Cameras that cannot be placed get a refusal and keep their poses.
+/// \param lasers at their poses, those that see legs
+/// \throws FormatError for pictures that cannot be read or are of another size
 void calibrateCameras(const TaskInput& task, std::span<const WatchingLaser> lasers,
                       const PeopleHeight& height, const Log& log,
                       std::vector<CalibratedCamera>& cameras, Document& layout) {
     if (cameras.empty()) return;
-    std::vector<SeenPerson> people;
-    try {
-        people = peopleSeen(lasers, height.mean);
-        for (CalibratedCamera& camera : cameras) {
+    const std::vector<SeenPerson> people = peopleSeen(lasers, height.mean);
+    for (CalibratedCamera& camera : cameras) {
+        try {
+            if (lasers.empty())
+                throw FormatError({"", 0, 0,
+                                   "no level laser below " + formatFixed(kKnees, 2) +
+                                       " m shows the legs of people, by which " + camera.sensor.id +
+                                       " is placed"});
             camera.fit = fitToPictures(camera.sensor, momentsOf(camera, people, log.name), height);
-            const CameraFit& fit = camera.fit;
-            const Pose3& before = camera.sensor.pose;
-            const auto sigma = [&fit](std::size_t a, std::size_t b, std::size_t c) {
-                return std::sqrt(fit.covariance[a][a] + fit.covariance[b][b] +
-                                 fit.covariance[c][c]);
-            };
-            tell(task.common, "envc",
-                 camera.sensor.id + ": moved by " +
-                     formatFixed(length(fit.pose.position - before.position), 3) + " m by " +
-                     countText(fit.pictures, "picture") + "; standard deviations " +
-                     formatFixed(1000 * sigma(0, 1, 2), 1) + " mm and " +
-                     formatFixed(kDegrees * sigma(3, 4, 5), 3) + " deg; outlines of people " +
-                     formatFixed(fit.height.mean, 2) + " m high within " +
-                     formatFixed(fit.pixels, 1) + " pixels");
-            setPose(camera, layout);
-            std::string line = "calibrated " + camera.sensor.id + " by " +
-                               countText(fit.pictures, "picture") +
-                               ": covariance of x, y, z (m), turn about x, y, z (rad), upper "
-                               "triangle:";
-            for (std::size_t i = 0; i < 6; ++i)
-                for (std::size_t j = i; j < 6; ++j)
-                    line += ' ' + formatDouble(roundSignificant(fit.covariance[i][j], 4));
-            layout.history.push_back(line);
+        } catch (const FormatError& error) {
+            const Diagnostic& first = error.diagnostics().front();
+            if (!first.file.empty()) throw;
+            camera.refusal = first.message;
+            warn(task.common, "envc", camera.refusal + "; its pose stays");
+            continue;
         }
-    } catch (const FormatError& error) {
-        Diagnostic first = error.diagnostics().front();
-        if (first.file.empty()) first.file = displayName(log.name);
-        throw FormatError(first);
+        report(task, camera);
+        setPose(camera, layout);
+        layout.history.push_back(historyOf(camera));
     }
+}
+
+/// Adds the cameras that keep their poses.
+void addRefusals(JsonWriter& json, std::span<const CalibratedCamera> cameras) {
+    json.key("unplaced").beginArray();
+    for (const CalibratedCamera& camera : cameras) {
+        if (camera.refusal.empty()) continue;
+        json.beginObject().key("id").value(camera.sensor.id);
+        json.key("reason").value(camera.refusal).endObject();
+    }
+    json.endArray();
 }
 
 void addCameras(JsonWriter& json, std::span<const CalibratedCamera> cameras) {
     if (cameras.empty()) return;
     json.key("cameras").beginArray();
     for (const CalibratedCamera& camera : cameras) {
+        if (!camera.refusal.empty()) continue;
         const CameraFit& fit = camera.fit;
         json.beginObject().key("id").value(camera.sensor.id);
         addPose(json, fit.pose);
@@ -486,6 +531,7 @@ void addCameras(JsonWriter& json, std::span<const CalibratedCamera> cameras) {
         json.key("height_sigma").value(fit.height.sigma).endObject();
     }
     json.endArray();
+    addRefusals(json, cameras);
 }
 
 std::string folderOf(const std::string& file) {
@@ -573,7 +619,7 @@ class Calibration final : public OptionGroup {
         if (!input.layout) throw UsageError("--calibrate corrects a LAYOUT, and no operand is one");
         Log log = readLog(log_, LogPictures::Keep);
         std::vector<CalibratedLaser> lasers = LaserPairs(task, log).of(fixedLasers(input.scene));
-        std::vector<CalibratedCamera> cameras = fixedCameras(input.scene, log);
+        std::vector<CalibratedCamera> cameras = fixedCameras(task, input.scene, log);
         Document layout = productOf(task, *input.layout, input.layout_operand);
         Diagnostics findings;
         for (CalibratedLaser& laser : lasers) {
@@ -617,7 +663,7 @@ class Calibration final : public OptionGroup {
                              " is none");
         Log log = readLog(log_, target.isPerson() ? LogPictures::Keep : LogPictures::Skip);
         std::vector<CalibratedLaser> lasers = LaserPairs(task, log).of(fixedLasers(read));
-        std::vector<CalibratedCamera> cameras = fixedCameras(read, log);
+        std::vector<CalibratedCamera> cameras = fixedCameras(task, read, log);
         std::vector<WatchingLaser> seen;
         seen.reserve(lasers.size());
         for (const CalibratedLaser& laser : lasers) seen.push_back(laser.seen);
@@ -646,7 +692,6 @@ class Calibration final : public OptionGroup {
         std::span<const CalibratedLaser> lasers) {
         std::vector<WatchingLaser> seeing;
         for (const CalibratedLaser& laser : lasers) {
-            constexpr double kKnees = 0.65;
             if (!scansSlice(laser.seen.sensor) || laser.seen.sensor.pose.position.z > kKnees)
                 continue;
             seeing.push_back(laser.seen);

@@ -288,6 +288,8 @@ class PictureFitter {
             if (const auto ray = camera_.ray({seen.column, row}))
                 rays.emplace_back(pair.place, vectorOf(*ray));
         }
+        constexpr std::size_t kFewestRays = 4;
+        if (rays.size() < kFewestRays) refuseStrange();
         const double plane = shareOf(is_upright) * known_.mean;
         std::mt19937 random(1);
         std::optional<CameraPose> best;

@@ -30,7 +30,8 @@ struct Background {
 
 Background backgroundOf(std::size_t pictures,
                         const std::function<ColorPicture(std::size_t)>& picture) {
-    const std::size_t count = std::min(pictures, kBackgrounds);
+    constexpr std::size_t kMostBytes = std::size_t{1} << 28U, kFewestBackgrounds = 9;
+    std::size_t count = std::min(pictures, kBackgrounds);
     std::vector<std::vector<Rgb8>> samples;
     samples.reserve(count);
     Background background;
@@ -38,6 +39,11 @@ Background backgroundOf(std::size_t pictures,
         const ColorPicture one = picture(i * pictures / count);
         if (i > 0 && (one.width != background.width || one.height != background.height))
             throw FormatError({"", 0, 0, "its pictures have different sizes"});
+        if (i == 0) {
+            const std::size_t bytes = sizeof(Rgb8) * one.rgba.size() / 4;
+            count = std::clamp(kMostBytes / std::max<std::size_t>(bytes, 1),
+                               std::min(count, kFewestBackgrounds), count);
+        }
         background.width = one.width;
         background.height = one.height;
         samples.push_back(colorsOf(one));

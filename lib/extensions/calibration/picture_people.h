@@ -23,13 +23,14 @@ struct PictureBody {
 
 /// The bodies in each picture, the largest first.
 ///
-/// The background is the median of up to kBackgrounds pictures over the whole time. A pixel is of a
+/// The background is the median of up to kBackgrounds pictures over the whole time, of fewer if
+/// they are larger than 3 megapixels. A pixel is of a
 /// body if its colour differs from the background by brightness or chromaticity; one that is darker
 /// alone is in shadow (Horprasert, Harwood and Davis, A statistical approach for real-time robust
 /// background subtraction and shadow detection, 1999): shadows belong to no body. Neither do bodies
 /// of less than a few dozen pixels. People at rest in half of the pictures are background.
 ///
-/// O(pixels) a picture, and kBackgrounds pictures in memory.
+/// O(pixels) a picture; 256 MB of pictures in memory, but nine at least.
 /// \param picture returns a picture by its number; called twice for some
 /// \throws FormatError for pictures of different sizes, and what `picture` throws
 std::vector<std::vector<PictureBody>> bodiesInPictures(

@@ -360,7 +360,11 @@ void finishLog(Log& log) {
     forgetFixed(log.clouds);
     forgetFixed(log.bursts);
     if (log.scans.empty() && log.clouds.empty() && log.bursts.empty())
-        throw FormatError({displayName(log.name), 0, 0, "the log holds no scans and no clouds"});
+        throw FormatError({displayName(log.name), 0, 0,
+                           log.pictures.empty()
+                               ? "the log holds no scans and no clouds"
+                               : "the log holds pictures alone: cameras are placed by the people "
+                                 "that lasers see, too"});
 }
 
 Log readScanLines(std::string_view bytes, const std::string& name, LogPictures pictures) {
