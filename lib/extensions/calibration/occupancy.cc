@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/message.h"
+#include "base/number.h"
 #include "extensions/reality/log.h"
 
 namespace ispace {
@@ -89,8 +90,14 @@ CellMap occupancyOf(std::span<const PosedScan> scans, double resolution, const s
     const double rows = std::ceil((box.high.y - low.y) / resolution) + kMargin;
     constexpr double kMostCells = 1e9;
     if (!(columns * rows <= kMostCells))
-        throw FormatError(
-            Diagnostic{file, 0, 0, "more than 1e9 cells: wanted a --resolution above"});
+        throw FormatError(Diagnostic{
+            file, 0, 0,
+            "the log spans " + formatFixed(columns * resolution, 0) + " x " +
+                formatFixed(rows * resolution, 0) + " m, more than 1e9 cells of " +
+                formatDouble(resolution) + " m: wanted a --resolution above " +
+                formatFixed(
+                    std::ceil(100 * resolution * std::sqrt(columns * rows / kMostCells)) / 100, 2) +
+                " m"});
     const int width = static_cast<int>(columns), height = static_cast<int>(rows);
     checkCellMap(width, height, resolution, file, limit);
 

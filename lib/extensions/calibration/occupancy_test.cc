@@ -161,7 +161,13 @@ TEST(Occupancy, RefusesScansWithoutReturns) {
     EXPECT_THROW(static_cast<void>(occupancyOf(scans, 0.05, "log")), FormatError);
     EXPECT_THROW(static_cast<void>(occupancyOf({}, 0.05, "log")), FormatError);
     const std::vector<PosedScan> far{{{}, {}, Angle::degrees(1), 1e7, {9e5F, 9e5F}}};
-    EXPECT_THROW(static_cast<void>(occupancyOf(far, 0.05, "log")), FormatError);
+    try {
+        static_cast<void>(occupancyOf(far, 0.05, "log"));
+        ADD_FAILURE() << "more cells than fit";
+    } catch (const FormatError& error) {
+        const std::string message = error.what();
+        EXPECT_NE(message.find("wanted a --resolution above 3.7"), std::string::npos) << message;
+    }
 }
 
 TEST(Occupancy, EvenScansOfCsailPredictTheOddOnes) {
