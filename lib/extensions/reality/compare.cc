@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/message.h"
 #include "env/level.h"
 #include "sense/selection.h"
 #include "sense/warnings.h"
@@ -69,19 +70,28 @@ class RunBuilder {
         for (const LogCloud& cloud : log_.clouds) add(cloud, nullptr, &cloud, cloud.max_range);
         if (run_.scans.empty())
             throw FormatError({displayName(log_.name), 0, 0,
-                               "no scan has a pose: the log has neither odometry nor tf, and its "
-                               "sensors have other names than those of LAYOUT"});
+                               "no scan has a pose: one that moves has it by poses, odometry or tf "
+                               "of the log, and one that stands still by the sensor of LAYOUT with "
+                               "its id; the log has " +
+                                   sensorsOfLog()});
         return std::move(run_);
     }
 
   private:
     struct Seen {
         std::size_t index = 0;  // in LoggedRun::sensors
-        bool is_made = false, is_scan = true, moves = false;
+        bool is_made = false, is_scan = true;
+        bool is_placed = false;  // by LAYOUT
     };
 
     void count(const std::string& id, bool is_scan) {
         if (isSelected(id, options_.select)) seen_[id].is_scan = is_scan;
+    }
+
+    [[nodiscard]] std::string sensorsOfLog() const {
+        std::string ids;
+        for (const auto& [id, seen] : seen_) ids += (ids.empty() ? "" : ", ") + printable(id);
+        return ids;
     }
 
     void checkSelection() const {
@@ -104,7 +114,7 @@ class RunBuilder {
         sensor.max_range = std::max(sensor.max_range, max_range);
         if (scan != nullptr) sensor.min_range = std::max(sensor.min_range, scan->min_range);
         std::optional<Pose3> pose = part.poses.best();
-        sensor.stands = !pose && sensor.known && !sensor.known->mount && !options_.model;
+        sensor.stands = !pose && seen.is_placed && !sensor.known->mount;
         if (sensor.stands) pose = sensor.known->pose;
         if (!pose) {
             ++run_.left_out;
@@ -127,10 +137,17 @@ class RunBuilder {
         seen.is_made = true;
         seen.index = run_.sensors.size();
         MeasuredSensor sensor{.id = id};
-        if (options_.model)
-            sensor.known = options_.model;
-        else if (const Sensor* known = knownSensor(id, seen.is_scan, scene_, seen_.size()))
-            sensor.known = *known;
+        sensor.known = options_.model;
+        if (const Sensor* placed = knownSensor(id, seen.is_scan, scene_, seen_.size())) {
+            seen.is_placed = true;
+            if (options_.model) {
+                // The device of --model, where LAYOUT has the sensor.
+                sensor.known->pose = placed->pose;
+                sensor.known->mount = placed->mount;
+            } else {
+                sensor.known = *placed;
+            }
+        }
         if (sensor.known) {
             const auto limits = [&](const auto& model) {
                 sensor.min_range = model.min_range;

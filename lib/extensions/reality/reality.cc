@@ -94,9 +94,14 @@ class RealityOptions final : public OptionGroup {
         RealityReport report = measureReality(log, logged, scene.environment, std::move(alignment));
         report.room = displayName(scene_input.environment_operand);
         write(input, report, logged, scene, map);
-        if (!fit_.empty())
-            writeAll(fit_, fittedLayout(fitSensors(logged), ultrasound, fitOdometry(log), logged,
-                                        scene, input.history_line));
+        if (!fit_.empty()) {
+            const std::vector<SensorFit> fits = fitSensors(logged);
+            if (fits.empty() && ultrasound.empty())
+                warn(input.common, "scan",
+                     "no sensor has beams on the plan: " + displayName(fit_) + " has no records");
+            writeAll(fit_, fittedLayout(fits, ultrasound, fitOdometry(log), logged, scene,
+                                        input.history_line));
+        }
         std::vector<std::string> files = filesOf(scene_input);
         files.insert(files.end(), log.files.begin(), log.files.end());
         writeDependencies(input.common, files);

@@ -297,6 +297,7 @@ RealityReport measureReality(const Log& log, const LoggedRun& run, const Environ
     for (const MeasuredBeam& beam : run.beams) {
         all.add(beam);
         if (!beam.hasBoth()) continue;
+        ++report.residuals;
         const double place = (beam.residual() / kHistogramHalf + 1) * (kBins / 2);
         if (place >= 0 && place < kBins) ++report.histogram[static_cast<std::size_t>(place)];
     }
@@ -440,6 +441,11 @@ std::vector<std::string> unmetRequirements(const RealityReport& report,
                                            const std::vector<RealityRequirement>& requirements) {
     std::vector<std::string> unmet;
     for (const RealityRequirement& each : requirements) {
+        if (report.residuals == 0) {
+            unmet.push_back("no beam returns in both log and simulation: " + each.text +
+                            " is not met");
+            continue;
+        }
         switch (each.of) {
             case RealityRequirement::Of::Inliers:
                 if (report.inliers < each.value)

@@ -34,6 +34,7 @@ constexpr double kInlierDistance = 0.2;
 struct RealityReport {
     std::string log, format, room;
     std::size_t scans = 0, left_out = 0, beams = 0, returns = 0;
+    std::size_t residuals = 0;  ///< beams that return in the log and in the simulation
     double inliers = 0;  ///< share of the beams with a return that are within kInlierDistance
     double sigma = 0;    ///< robust standard deviation of the residuals, metres
     double bias = 0;     ///< median of the residuals, metres

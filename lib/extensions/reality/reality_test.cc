@@ -111,6 +111,7 @@ TEST(Reality, RequirementsCompareTheirFigures) {
     report.inliers = 0.85;
     report.sigma = 0.04;
     report.bias = -0.02;
+    report.residuals = 10;
     const auto unmet = [&](const char* text) {
         return !unmetRequirements(report, {parseRealityRequirement(text)}).empty();
     };
@@ -122,6 +123,23 @@ TEST(Reality, RequirementsCompareTheirFigures) {
     EXPECT_FALSE(unmet("bias=2cm"));
     for (const char* bad : {"inliers", "inliers=90", "sigma=x", "sigma=-1", "hit=3%", ""})
         EXPECT_THROW(static_cast<void>(parseRealityRequirement(bad)), UsageError) << bad;
+}
+
+TEST(Reality, ALogWithoutReturnsMeetsNoRequirement) {
+    const Scene scene = sceneOf(kRoom);
+    LoggedLaser device;
+    Log log = logOf(scene, loopOfPoses(5), device.laser, 1);
+    for (LogScan& scan : log.scans)
+        for (float& range : scan.ranges) range = kNoReturn;
+    Worlds worlds(scene.environment);
+    const LoggedRun run = simulated(log, scene, worlds);
+    const RealityReport report = measureReality(log, run, scene.environment, {});
+    EXPECT_EQ(report.residuals, 0U);
+    for (const char* text : {"inliers=1%", "sigma=1m", "bias=1m"}) {
+        const auto unmet = unmetRequirements(report, {parseRealityRequirement(text)});
+        ASSERT_EQ(unmet.size(), 1U) << text;
+        EXPECT_NE(unmet.front().find(text), std::string::npos) << unmet.front();
+    }
 }
 
 TEST(Reality, PosesAreAlignedToThePlan) {
@@ -221,8 +239,21 @@ TEST(Reality, ASensorThatStandsStillHasThePoseOfTheLayout) {
     const LoggedRun run = simulated(log, scene, worlds);
     EXPECT_TRUE(run.sensors.front().stands);
     for (const MeasuredBeam& beam : run.beams) EXPECT_EQ(beam.measured, beam.expected);
+    // --model is a device: the pose is that of the layout all the same.
+    Sensor model = scene.sensors.front();
+    model.pose = {};
+    const LoggedRun modelled = runOf(log, scene, {.select = {}, .model = model});
+    EXPECT_TRUE(modelled.sensors.front().stands);
+    EXPECT_EQ(modelled.scans.front().pose.position.x, 2);
     const Scene other = sceneOf(kRoom);
-    EXPECT_THROW(static_cast<void>(runOf(log, other, {})), FormatError);
+    try {
+        static_cast<void>(runOf(log, other, {}));
+        ADD_FAILURE() << "a sensor without a pose";
+    } catch (const FormatError& error) {
+        EXPECT_NE(error.diagnostics().front().message.find("the log has " + log.scans[0].sensor),
+                  std::string::npos)
+            << error.diagnostics().front().message;
+    }
 }
 
 TEST(Reality, BeamsOfARobotThatTurnsHaveTheirTimes) {
