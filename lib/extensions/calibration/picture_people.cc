@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "scene/sensor/camera.h"
 
 namespace ispace {
 
@@ -143,14 +144,19 @@ class BodyFinder {
         }
     }
 
+    [[nodiscard]] PixelPoint centreOf(int pixel) const {
+        const int row = pixel / ground_.width, column = pixel % ground_.width;
+        return {.column = static_cast<double>(column), .row = static_cast<double>(row)};
+    }
+
     [[nodiscard]] PictureBody bodyOf(const std::vector<int>& pixels) const {
         PictureBody body{.left = 1e9, .right = -1, .top = 1e9, .bottom = -1};
         for (const int pixel : pixels) {
-            const double row = pixel / ground_.width, column = pixel % ground_.width;
-            body.left = std::min(body.left, column);
-            body.right = std::max(body.right, column);
-            body.top = std::min(body.top, row);
-            body.bottom = std::max(body.bottom, row);
+            const PixelPoint at = centreOf(pixel);
+            body.left = std::min(body.left, at.column);
+            body.right = std::max(body.right, at.column);
+            body.top = std::min(body.top, at.row);
+            body.bottom = std::max(body.bottom, at.row);
         }
         body.pixels = pixels.size();
         body.meets_edge = body.left < 1 || body.top < 1 || body.right > ground_.width - 2 ||
@@ -158,9 +164,9 @@ class BodyFinder {
         double sum = 0, count = 0;
         const double below = body.top + (body.bottom - body.top) / 8;
         for (const int pixel : pixels) {
-            const double row = pixel / ground_.width, column = pixel % ground_.width;
-            if (row > below) continue;
-            sum += column;
+            const PixelPoint at = centreOf(pixel);
+            if (at.row > below) continue;
+            sum += at.column;
             ++count;
         }
         body.head = sum / count;
