@@ -138,12 +138,16 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     const auto attempt = [&](std::vector<Trial> trials, std::optional<Trial>& best) {
         const Sensor& sensor = sensors[trials.front().sensor];
         const double most = rules_of_cameras.mostGain(sensor);
-        const auto least = [&] { return best ? best->gain : worthwhile; };
+        const auto least = [&] { return best ? best->gain : FloorGain(); };
         std::erase_if(trials, [&](Trial& trial) {
             trial.most = {most, gain.mostMore(poseAfter(sensor.pose, trial))};
             return trial.most <= least();
         });
-        if (trials.empty()) return;
+        // Small gains count, too: whole degrees about the best turn may gain more.
+        const bool may_be_worthwhile =
+            std::any_of(trials.begin(), trials.end(),
+                        [&](const Trial& trial) { return trial.most >= worthwhile; });
+        if (!may_be_worthwhile) return;
         for (std::size_t i = 0; i < trials.size(); ++i) trials[i].number = i;
         // Without cells all gains are computed at once: then they are comparable in any case.
         double present = 0;

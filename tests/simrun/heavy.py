@@ -164,7 +164,7 @@ def pairs(sensor, source):
     added, answer = 0, ""
     for i in range(300):
         at = f"at={-2.9 + 0.1 * (i % 58):.2f},{-1.9 + 0.6 * (i // 58):.2f}"
-        for record in (f"{sensor} {at},1 rate=200", f"{source} {at},1.5 on=yes"):
+        for record in (f"{sensor} {at},1 rate=200", f"{source} {at} on=yes"):
             answer = world.ask(f"ADD {record}")
         if not answer.startswith("OK ADD "):
             break
