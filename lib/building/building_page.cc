@@ -113,9 +113,9 @@ void addSensorsOf(const BuildingPageInput& input, const CabledRoom& room, std::s
     section.blocks.push_back(table);
     section.blocks.push_back(installationPlan(room.scene, coverage, installations));
     section.blocks.push_back(wallFacesTable(installations));
-    std::vector<PageFigure> figures = sensorPictures(room.scene, coverage);
+    std::vector<PageFigure> figures = sensorPictures(room.scene, coverage, input.progress);
     if (input.cover.isGiven())
-        for (PageSection& sheet : cameraSheets(room.scene, table, figures)) {
+        for (PageSection& sheet : cameraSheets(room.scene, coverage, table, figures)) {
             sheet.id.insert(0, id + '-');
             sheet.title += " of storey " + own.id;
             sheets.push_back(std::move(sheet));
@@ -158,21 +158,27 @@ ReportPage buildingPage(const BuildingPageInput& input) {
     if (!input.coverage.rules.empty()) page.sections.push_back(facingSection(input));
     std::vector<CabledRoom> rooms;
     std::vector<PageSection> sheets;
+    std::int64_t sensors = 0;
+    for (const Coverage& storey : input.coverage.storeys) sensors += std::ssize(storey.sensors);
+    if (input.progress != nullptr) input.progress->begin("pictures of the report", sensors);
     for (std::size_t i = 0; i < input.coverage.storeys.size(); ++i) {
         const Scene& scene = *input.building.scenes[i];
         rooms.push_back({scene, cablesOf(scene)});
         page.sections.push_back(storeySection(input, i));
         addSensorsOf(input, rooms.back(), i, page, sheets);
     }
+    if (input.progress != nullptr) input.progress->end();
     const std::vector<MaterialItem> material = materialOf(rooms, input.prices);
     if (!material.empty())
         page.sections.push_back({"material", "Material", {materialTable(material)}});
     page.sections.push_back(methodsSection(input.coverage.storeys.front().report));
     for (PageSection& sheet : sheets) page.sections.push_back(std::move(sheet));
     if (input.advice != nullptr) page.sections.push_back(adviceSection(*input.advice));
+    const std::size_t appendix = page.sections.size();
     if (input.advice != nullptr && !input.advice->suggestions.empty())
         page.sections.push_back(adviceCommands(*input.advice));
     page.sections.push_back(recordsOf(input));
+    page.sections[appendix].begins_sheet = input.cover.isGiven();
     return typeset(std::move(page));
 }
 

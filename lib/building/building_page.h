@@ -23,6 +23,7 @@ struct BuildingPageInput {
     PriceList prices = {};
     std::vector<PageSection> more = {};     ///< after the storeys' table
     std::vector<Diagnostic> findings = {};  ///< about sensors, with their storeys
+    Progress* progress = nullptr;           ///< of the pictures; null: silent
 };
 
 /// Builds the report of a building: summary, requirements, figures by storey and in sum; map,

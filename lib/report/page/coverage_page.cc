@@ -253,8 +253,9 @@ PageTable sensorsTable(const Scene& scene, const Coverage& coverage) {
 
 namespace {
 
-void addInstallation(const CoveragePageInput& input, ReportPage& page) {
-    if (input.scene.sensors.empty()) return;
+/// \return the sheets of cameras, with a cover
+std::vector<PageSection> addInstallation(const CoveragePageInput& input, ReportPage& page) {
+    if (input.scene.sensors.empty()) return {};
     const std::vector<Installation> installations = installationsOf(input.scene);
     PageSection section{"installation", "Installation", {}};
     const std::vector<Cable> cables = cablesOf(input.scene);
@@ -263,16 +264,19 @@ void addInstallation(const CoveragePageInput& input, ReportPage& page) {
     section.blocks.push_back(installationPlan(input.scene, input.coverage, installations));
     section.blocks.push_back(wallFacesTable(installations));
     if (!installations.empty()) page.sections.push_back(std::move(section));
-    std::vector<PageFigure> figures = sensorPictures(input.scene, input.coverage);
+    if (input.progress != nullptr)
+        input.progress->begin("pictures of the report", std::ssize(input.coverage.sensors));
+    std::vector<PageFigure> figures = sensorPictures(input.scene, input.coverage, input.progress);
+    if (input.progress != nullptr) input.progress->end();
     std::vector<PageSection> sheets;
-    if (input.cover.isGiven()) sheets = cameraSheets(input.scene, table, figures);
+    if (input.cover.isGiven()) sheets = cameraSheets(input.scene, input.coverage, table, figures);
     PageSection pictures{"sensors", "Sensors", {}};
     pictures.blocks.push_back(sensorsTable(input.scene, input.coverage));
     for (PageFigure& figure : figures) pictures.blocks.push_back(std::move(figure));
     page.sections.push_back(std::move(pictures));
     PageTable material = materialTable(materialOf(input.scene, cables, input.prices));
     page.sections.push_back({"material", "Material", {std::move(material)}});
-    for (PageSection& sheet : sheets) page.sections.push_back(std::move(sheet));
+    return sheets;
 }
 
 }  // namespace
@@ -513,12 +517,15 @@ ReportPage coveragePage(const CoveragePageInput& input) {
     if (input.parts.robustness != nullptr)
         page.sections.push_back(robustnessSection(*input.parts.robustness));
     if (input.parts.advice != nullptr) page.sections.push_back(adviceSection(*input.parts.advice));
-    addInstallation(input, page);
+    std::vector<PageSection> sheets = addInstallation(input, page);
     if (input.parts.run != nullptr) addRun(input, page);
     page.sections.push_back(methodsSection(input.coverage.report));
+    for (PageSection& sheet : sheets) page.sections.push_back(std::move(sheet));
+    const std::size_t appendix = page.sections.size();
     if (input.parts.advice != nullptr && !input.parts.advice->suggestions.empty())
         page.sections.push_back(adviceCommands(*input.parts.advice));
     page.sections.push_back(recordsOf(input));
+    page.sections[appendix].begins_sheet = input.cover.isGiven();
     return typeset(std::move(page));
 }
 

@@ -38,6 +38,7 @@ struct CoveragePageInput {
     Paper paper = Paper::A4;
     PriceList prices = {};
     std::vector<Diagnostic> findings = {};  ///< about sensors, such as one outside of the room
+    Progress* progress = nullptr;           ///< of the pictures; null: silent
 };
 
 /// Tells of collisions and of targets that were given up; empty without any.

@@ -143,8 +143,11 @@ PageTable wallFacesTable(const std::vector<Installation>& installations) {
     return table;
 }
 
-std::vector<PageSection> cameraSheets(const Scene& scene, const PageTable& installation,
+std::vector<PageSection> cameraSheets(const Scene& scene, const Coverage& coverage,
+                                      const PageTable& installation,
                                       std::vector<PageFigure>& pictures) {
+    // Table, picture and floor fit on one sheet of either paper: shares of the column's width.
+    constexpr double kMostHeight = 0.52, kFloor = 0.3;
     std::vector<PageSection> sheets;
     for (const TextRow& row : installation.rows) {
         const auto camera =
@@ -152,8 +155,9 @@ std::vector<PageSection> cameraSheets(const Scene& scene, const PageTable& insta
                 return sensor.id == row.front() && sensor.is<Camera>();
             });
         if (camera == scene.sensors.end()) continue;
-        PageSection sheet{
-            "sheet-" + std::to_string(sheets.size() + 1), "Camera " + row.front(), {}};
+        PageSection sheet{"sheet-" + std::to_string(sheets.size() + 1),
+                          (row.front().starts_with("camera") ? "" : "Camera ") + row.front(),
+                          {}};
         sheet.begins_sheet = true;
         PageTable table{
             "where it is mounted; metres and degrees as in the table of the installation",
@@ -168,9 +172,19 @@ std::vector<PageSection> cameraSheets(const Scene& scene, const PageTable& insta
                 return figure.caption.starts_with(row.front() + ": picture");
             });
         if (picture != pictures.end()) {
-            picture->width = 1;
+            picture->width =
+                std::min(1.0, kMostHeight * picture->picture.width() / picture->picture.height());
             sheet.blocks.push_back(std::move(*picture));
             pictures.erase(picture);
+        }
+        const auto view =
+            std::find_if(coverage.sensors.begin(), coverage.sensors.end(),
+                         [&row](const SensorView& one) { return one.id == row.front(); });
+        if (view != coverage.sensors.end()) {
+            PageFigure floor = floorFigure(
+                scene, coverage, static_cast<std::size_t>(view - coverage.sensors.begin()));
+            floor.width = kFloor;
+            sheet.blocks.emplace_back(std::move(floor));
         }
         sheets.push_back(std::move(sheet));
     }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "coverage/coverage.h"
 #include "report/page/cables.h"
 #include "report/page/page.h"
@@ -35,13 +36,19 @@ double lensDensity(const Sensor& sensor, Point3 place);
 
 /// Draws the picture that a camera takes, or the floor that another sensor sees, for each sensor
 /// that stands still.
-std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& coverage);
+/// \param progress advances by one for each sensor; may be null
+std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& coverage,
+                                       Progress* progress = nullptr);
+
+/// Draws the floor that a sensor sees. \param index in Coverage::sensors
+PageFigure floorFigure(const Scene& scene, const Coverage& coverage, std::size_t index);
 
 /// Builds a section for each camera that stands still, on a new sheet: its row of the
-/// installation, one value a row, the zones that it sees, and its picture as wide as the sheet.
+/// installation, one value a row, the zones that it sees, its picture and the floor that it sees.
 /// \param installation as installationTable() returns it \param pictures as of sensorPictures(), of
 /// which those of cameras are taken out
-std::vector<PageSection> cameraSheets(const Scene& scene, const PageTable& installation,
+std::vector<PageSection> cameraSheets(const Scene& scene, const Coverage& coverage,
+                                      const PageTable& installation,
                                       std::vector<PageFigure>& pictures);
 
 }  // namespace ispace

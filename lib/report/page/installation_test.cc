@@ -263,6 +263,33 @@ TEST(SensorPictures, AreDrawnOfFlatAndTinyPictures) {
     }
 }
 
+TEST(CameraSheets, FitOnOneSheetOfEitherPaper) {
+    const Scene scene = sceneOf(
+        "#env 1\nispace id=hall at=4,3 size=8,8,2.5\n"
+        "camera id=camera1 at=0.2,0.2,2.4 heading=45 tilt=-30 pixels=1920,1080\n"
+        "camera id=c2 at=7.8,0.2,2.4 heading=135 tilt=-30 pixels=640,480\n"
+        "camera id=c3 at=4,3,2.4 projection=fisheye fov=180 tilt=-90 pixels=480,480\n");
+    Worlds worlds(scene.environment);
+    const Coverage coverage = measureCoverage(scene, worlds, {});
+    std::vector<PageFigure> figures = sensorPictures(scene, coverage);
+    const PageTable table = installationTable(scene, coverage, installationsOf(scene), {});
+    ReportPage page{"Hall", "", cameraSheets(scene, coverage, table, figures)};
+    ASSERT_EQ(page.sections.size(), 3U);
+    EXPECT_EQ(page.sections[0].title, "camera1");
+    EXPECT_EQ(page.sections[1].title, "Camera c2");
+    for (const Paper paper : {Paper::A4, Paper::Letter}) {
+        page.paper = paper;
+        const std::vector<Picture> sheets = sheetsOf(page);
+        ASSERT_EQ(sheets.size(), 4U);  // the title's, and one each
+        for (std::size_t i = 1; i < sheets.size(); ++i) {
+            std::size_t captions = 0;
+            for (const DisplayList::Text& text : sheets[i].list().texts)
+                captions += text.text.find("the floor that it sees") != std::string::npos ? 1 : 0;
+            EXPECT_EQ(captions, 1U) << i;
+        }
+    }
+}
+
 TEST(IndoorFloor, EndsAtOpenDoors) {
     // Half of the disc of `door` is outside, behind an open door.
     const Scene scene = sceneOf(

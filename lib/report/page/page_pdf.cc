@@ -286,15 +286,17 @@ class PdfWriter {
         return static_cast<std::size_t>(std::count_if(
             filled_.begin(), filled_.end(), [](double filled) { return filled < kLeastFilled; }));
     }
-    /// Returns the section that would fill a sparse sheet if it began it, and would leave enough on
-    /// the sheet before; empty if there is none. \pre sheets() was called
-    [[nodiscard]] std::optional<std::size_t> sectionToMove() const {
+    /// Returns the sections that may fill a sparse sheet if they began it, and would leave enough
+    /// on the sheet before, the shortest way first. \pre sheets() was called
+    [[nodiscard]] std::vector<std::size_t> sectionsToMove() const {
+        std::vector<std::size_t> sections;
         for (std::size_t sheet = 1; sheet < filled_.size(); ++sheet) {
             if (filled_[sheet] >= kLeastFilled) continue;
             for (std::size_t i = begins_.size(); i-- > 0;)
-                if (begins_[i].sheet + 1 == sheet && begins_[i].above >= kLeastFilled) return i;
+                if (begins_[i].sheet + 1 == sheet && begins_[i].above >= kLeastFilled)
+                    sections.push_back(i);
         }
-        return std::nullopt;
+        return sections;
     }
 
     std::vector<Picture> sheets() {
@@ -544,15 +546,21 @@ std::vector<Picture> sheetsOf(const ReportPage& page) {
     std::vector<bool> begins_sheet(page.sections.size());
     auto writer = std::make_unique<PdfWriter>(page, begins_sheet);
     std::vector<Picture> sheets = writer->sheets();
-    while (const auto moved = writer->sectionToMove()) {
-        std::vector<bool> more = begins_sheet;
-        more[*moved] = true;
-        auto next = std::make_unique<PdfWriter>(page, more);
-        std::vector<Picture> others = next->sheets();
-        if (next->sparseSheets() >= writer->sparseSheets()) break;
-        begins_sheet = more;
-        sheets = std::move(others);
-        writer = std::move(next);
+    const auto fill_one = [&] {
+        for (const std::size_t moved : writer->sectionsToMove()) {
+            std::vector<bool> more = begins_sheet;
+            more[moved] = true;
+            auto next = std::make_unique<PdfWriter>(page, more);
+            std::vector<Picture> others = next->sheets();
+            if (next->sparseSheets() >= writer->sparseSheets()) continue;
+            begins_sheet = more;
+            sheets = std::move(others);
+            writer = std::move(next);
+            return true;
+        }
+        return false;
+    };
+    while (fill_one()) {
     }
     return sheets;
 }

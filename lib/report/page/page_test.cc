@@ -103,6 +103,15 @@ TEST(Page, SheetsArePulledTogether) {
         add(more, false);
         for (const Picture& sheet : sheetsOf(page)) EXPECT_GT(filledOf(sheet), 0.3) << more;
     }
+    // The third section is too short to fill a sheet: the second goes with it.
+    for (const int last : {8, 10, 12, 14}) {
+        page.sections.clear();
+        add(26, false);
+        add(14, false);
+        add(last, false);
+        add(30, true);
+        for (const Picture& sheet : sheetsOf(page)) EXPECT_GT(filledOf(sheet), 0.3) << last;
+    }
 }
 
 TEST(Page, MapTellsTheScriptItsSensors) {

@@ -281,7 +281,12 @@ double lensDensity(const Sensor& sensor, Point3 place) {
     return LensResolution(camera).densityAt(local);
 }
 
-std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& coverage) {
+PageFigure floorFigure(const Scene& scene, const Coverage& coverage, std::size_t index) {
+    return regionOf(scene, coverage, coverage.sensors[index], sensorColors(coverage)[index]);
+}
+
+std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& coverage,
+                                       Progress* progress) {
     const auto cameras =
         std::count_if(coverage.sensors.begin(), coverage.sensors.end(),
                       [](const SensorView& view) { return view.kind == &Camera::kKind; });
@@ -293,6 +298,7 @@ std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& cover
     std::vector<PageFigure> figures;
     for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
         const SensorView& view = coverage.sensors[i];
+        if (progress != nullptr) progress->advance(1);
         if (view.index >= scene.sensors.size()) continue;  // of another storey
         const Sensor& sensor = scene.sensors[view.index];
         if (sensor.mount || sensor.person) continue;
