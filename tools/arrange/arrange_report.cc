@@ -11,6 +11,7 @@
 #include "building/building_coverage.h"
 #include "building/building_page.h"
 #include "cli/common_options.h"
+#include "cli/progress_bar.h"
 #include "report/map/map.h"
 #include "report/page/coverage_page.h"
 #include "trace/ray_world.h"
@@ -216,6 +217,8 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
     input.cover = coverOf(options.page);
     input.paper = paperOf(options.page);
     input.prices = pricesOf(options.page);
+    const auto progress = makeProgress("arrange", options.common.progress, options.common.quiet);
+    input.progress = progress.get();
     return finished(options, buildingPage(input));
 }
 
@@ -244,6 +247,8 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
     page.cover = coverOf(options.page);
     page.paper = paperOf(options.page);
     page.prices = pricesOf(options.page);
+    const auto progress = makeProgress("arrange", options.common.progress, options.common.quiet);
+    page.progress = progress.get();
     return finished(options, coveragePage(page));
 }
 

@@ -348,6 +348,8 @@ std::string buildingReport(const CoverageToolOptions& options, const BuildingInp
     page.cover = coverOf(options.page);
     page.paper = paperOf(options.page);
     page.prices = pricesOf(options.page);
+    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
+    page.progress = progress.get();
     const ReportPage pages = buildingPage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }

@@ -112,6 +112,8 @@ std::string reportFile(const CoverageToolOptions& options, const SceneInput& inp
     page.cover = coverOf(options.page);
     page.paper = paperOf(options.page);
     page.prices = pricesOf(options.page);
+    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
+    page.progress = progress.get();
     const ReportPage pages = coveragePage(page);
     forgetViews(coverage);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);

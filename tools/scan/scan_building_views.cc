@@ -63,20 +63,19 @@ class BuildingViews {
         return found;
     }
 
-    /// Returns the pictures of a frame. \param drawn is called after each
-    std::vector<PictureJob> jobs(const std::function<void()>& drawn) {
+    /// Returns the pictures of a frame.
+    std::vector<PictureJob> jobs() {
         std::vector<PictureJob> jobs;
         for (const StoreyViewSpec& one : views_) {
             const Scene& scene =
                 one.storey ? roomFor(*one.storey, isWithinRoom(one.view)) : *building_.scenes[0];
             jobs.push_back({one.view.name, labelFor(one),
                             pictureSizeOf(one.view, scene, options_.picture_size),
-                            [this, &one, &scene, drawn](PictureSize size) {
-                                Image image = one.storey ? viewPicture(scene, one.view, size,
-                                                                       drawingOf(*one.storey))
-                                                         : drawWhole(one.view, size);
-                                drawn();
-                                return image;
+                            [this, &one, &scene](PictureSize size, const auto& on_progress) {
+                                if (!one.storey) return drawWhole(one.view, size, on_progress);
+                                ViewOptions own = drawingOf(*one.storey);
+                                own.on_progress = on_progress;
+                                return viewPicture(scene, one.view, size, own);
                             }});
         }
         return jobs;
@@ -190,7 +189,8 @@ class BuildingViews {
 
     /// Draws all storeys in their positions, each over those that it hides. Rays that descend meet
     /// the higher storey first, rays that ascend the lower one.
-    [[nodiscard]] Image drawWhole(const ViewSpec& view, PictureSize size) const {
+    [[nodiscard]] Image drawWhole(const ViewSpec& view, PictureSize size,
+                                  const std::function<void(double)>& on_progress) const {
         const std::vector<Storey>& storeys = building_.document.storeys;
         const std::vector<Point3> contents = contentsOf();
         std::vector<std::size_t> order;
@@ -210,6 +210,9 @@ class BuildingViews {
         const bool has_overlay = options_.view.drawing.show != OverlayLayers::None;
         for (const std::size_t i : order) {
             ViewOptions own = drawingOf(i);
+            own.on_progress = [&, part = 1.0 / static_cast<double>(storeys.size())](double share) {
+                on_progress(part * share);
+            };
             for (std::string& id : own.highlight) id = wholeId(storeys[i], id);
             Scene scene = *sceneOfBuilding(building_, i);
             if (auto room = coupling_.opened(i)) scene.environment = *std::move(room);
@@ -290,8 +293,9 @@ void takeBuildingViews(const ScanToolOptions& options, const BuildingInput& inpu
     PictureFiles pictures(options, views.names(), 1);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
     const auto count = static_cast<std::int64_t>(views.names().size());
-    progress->begin("pictures", count);
-    pictures.write(views.jobs([&progress] { progress->advance(1); }), 0);
+    const std::vector<PictureJob> jobs = views.jobs();
+    progress->begin("rows of pictures", rowsOf(jobs));
+    pictures.write(jobs, 0, *progress);
     pictures.finish();
     progress->end();
     std::vector<std::string> files = input.files;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scan/scan_pictures.h"
 
+#include <atomic>
+#include <cmath>
 #include <cstdint>
+#include <memory>
 #include <utility>
 
 #include "base/error.h"
@@ -63,7 +66,28 @@ PictureFiles::PictureFiles(const ScanToolOptions& options, const std::vector<std
     }
 }
 
-void PictureFiles::write(const std::vector<PictureJob>& jobs, int frame) {
+std::function<void(double)> rowsOf(const PictureJob& job, Progress& progress) {
+    // Shares are summed as whole numbers, in any order.
+    constexpr double kParts = 1e9;
+    return [done = std::make_shared<std::atomic<std::int64_t>>(0), &progress,
+            rows = job.shape.rows](double share) {
+        const auto part = static_cast<std::int64_t>(std::llround(kParts * share));
+        const auto row_at = [&](std::int64_t parts) {
+            return static_cast<std::int64_t>(rows * (static_cast<double>(parts) / kParts));
+        };
+        const std::int64_t before = done->fetch_add(part);
+        if (const std::int64_t more = row_at(before + part) - row_at(before); more > 0)
+            progress.advance(more);
+    };
+}
+
+std::int64_t rowsOf(const std::vector<PictureJob>& jobs) {
+    std::int64_t rows = 0;
+    for (const PictureJob& job : jobs) rows += job.shape.rows;
+    return rows;
+}
+
+void PictureFiles::write(const std::vector<PictureJob>& jobs, int frame, Progress& progress) {
     std::vector<PictureSize> sizes;
     sizes.reserve(jobs.size());
     for (const PictureJob& job : jobs) sizes.push_back(job.shape);
@@ -71,7 +95,7 @@ void PictureFiles::write(const std::vector<PictureJob>& jobs, int frame) {
     std::vector<Image> images;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-        Image image = jobs[i].draw(set_ ? sizes[i] : sheet.sizeOf(i));
+        Image image = jobs[i].draw(set_ ? sizes[i] : sheet.sizeOf(i), rowsOf(jobs[i], progress));
         if (set_)
             files_.add(set_->fileOf(jobs[i].name, frame, ending()), std::move(image));
         else

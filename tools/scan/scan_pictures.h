@@ -2,11 +2,13 @@
 // The files of --view.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "cli/outputs.h"
 #include "report/view/film.h"
 #include "report/view/view.h"
@@ -20,7 +22,7 @@ struct PictureJob {
     std::string name;   ///< unique, for file names
     std::string label;  ///< on a sheet
     PictureSize shape;  ///< of the picture alone
-    std::function<Image(PictureSize)> draw;
+    std::function<Image(PictureSize, const std::function<void(double)>& on_progress)> draw;
 };
 
 /// Returns the name of a view on a sheet: a camera's is its id (thesis, fig. 3.15).
@@ -30,12 +32,19 @@ std::string labelOf(const ViewSpec& view);
 PictureSize pictureSizeOf(const ViewSpec& view, const Scene& scene,
                           std::optional<PictureSize> wanted);
 
+/// Returns a function that takes shares of a picture, in any thread, and advances by its rows.
+std::function<void(double)> rowsOf(const PictureJob& job, Progress& progress);
+
+/// Returns the number of rows of all pictures.
+std::int64_t rowsOf(const std::vector<PictureJob>& jobs);
+
 /// Writes pictures to a set of files, or to one file, as a sheet if there are several.
 class PictureFiles {
   public:
     /// \param names of all pictures of a frame \throws UsageError as outputs that cannot hold them
     PictureFiles(const ScanToolOptions& options, const std::vector<std::string>& names, int frames);
-    void write(const std::vector<PictureJob>& jobs, int frame);
+    /// Draws the pictures of a frame; `progress` advances by their rows.
+    void write(const std::vector<PictureJob>& jobs, int frame, Progress& progress);
     /// After the last one.
     void finish() { files_.finish(); }
 

@@ -136,7 +136,6 @@ void takeViews(const ScanCommand& command) {
     PictureFiles pictures(options, names, frames);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
     const std::int64_t count = frames * static_cast<std::int64_t>(views.size());
-    progress->begin("pictures", count);
     for (int frame = 0; frame < frames; ++frame) {
         ViewOptions drawing = options.view.drawing;
         if (run) {
@@ -157,12 +156,13 @@ void takeViews(const ScanCommand& command) {
         for (const ViewSpec& view : views)
             jobs.push_back({view.name, labelOf(view),
                             pictureSizeOf(view, scene, options.picture_size),
-                            [&](PictureSize size) {
-                                Image image = viewPicture(scene, view, size, drawing);
-                                progress->advance(1);
-                                return image;
+                            [&](PictureSize size, const auto& on_progress) {
+                                ViewOptions own = drawing;
+                                own.on_progress = on_progress;
+                                return viewPicture(scene, view, size, own);
                             }});
-        pictures.write(jobs, frame);
+        if (frame == 0) progress->begin("rows of pictures", frames * rowsOf(jobs));
+        pictures.write(jobs, frame, *progress);
     }
     pictures.finish();
     progress->end();

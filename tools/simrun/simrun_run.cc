@@ -22,6 +22,7 @@
 #include "cli/building_operands.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
+#include "cli/progress_bar.h"
 #include "cli/scene_folder.h"
 #include "record/text.h"
 #include "report/view/film.h"
@@ -249,6 +250,14 @@ void readRecord(const SimrunOptions& options, RunPicture& picture,
         warn(options.common, "simrun", "the record ends in the midst of a step, which is left out");
 }
 
+/// Returns the time of the last moment up to --until; 0 without one. Drawing takes far longer.
+double lastMoment(const SimrunOptions& options) {
+    double last = 0;
+    RunReader reader(options.replay);
+    while (reader.next() && reader.time() <= endOf(options)) last = reader.time();
+    return last;
+}
+
 /// Takes the pictures of a film: one each 1/fps s of it, and one of the end.
 std::int64_t takeFilm(const SimrunOptions& options, RunPicture& picture,
                       const std::function<void(const Image&, int)>& write) {
@@ -259,15 +268,22 @@ std::int64_t takeFilm(const SimrunOptions& options, RunPicture& picture,
     const auto time_of = [&](int frame) {
         return seconds(options.from) + frame * film.speed / film.fps;
     };
+    const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
+    const double length = std::max(0.0, lastMoment(options) - seconds(options.from));
+    progress->begin("pictures", 1 + std::llround(length * film.fps / film.speed));
     readRecord(options, picture, [&](double time) {
-        for (; has_moment && time_of(count) < time - kRounding; ++count)
+        for (; has_moment && time_of(count) < time - kRounding; ++count) {
             write(picture.frame(), count);
+            progress->advance(1);
+        }
         has_moment = true;
         last = time;
     });
     if (last < time_of(0) - kRounding)
         throw UsageError("--from: the record ends at t=" + formatDouble(last));
     write(picture.frame(), count);
+    progress->advance(1);
+    progress->end();
     return count + 1;
 }
 

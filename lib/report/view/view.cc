@@ -117,6 +117,7 @@ class ViewDrawer {
         how.depths = true;
         how.hidden = standpoint_.hidden;
         how.hidden_pixels = hidden_pixels;
+        how.on_progress = options_.on_progress;
         how.light = options_.light;
         if (standpoint_.looks_in) {
             how.background = Rgb{1, 1, 1};

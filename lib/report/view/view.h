@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,7 @@ struct ViewOptions {
     /// A picture of the same size that stands for the empty background, where the viewer looks in
     /// from outside; null: white.
     const Image* behind = nullptr;
+    std::function<void(double share)> on_progress = {};  ///< see RenderOptions
 };
 
 /// Renders a picture of a scene for people. Deterministic for any number of threads. \throws

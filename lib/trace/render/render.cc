@@ -462,13 +462,16 @@ class TileWorker {
 template <typename Work>
 void forEachTile(Job& job, Work work) {
     const int tile_rows = (job.out.rows + kTile - 1) / kTile;
-    tbb::parallel_for(tbb::blocked_range<int>(0, tile_rows, 2),
-                      [&](const tbb::blocked_range<int>& rows) {
-                          TileWorker worker(job);
-                          for (int row = rows.begin(); row != rows.end(); ++row)
-                              for (int column = 0; column < job.out.columns; column += kTile)
-                                  work(worker, column, row * kTile);
-                      });
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, tile_rows, 2), [&](const tbb::blocked_range<int>& rows) {
+            TileWorker worker(job);
+            for (int row = rows.begin(); row != rows.end(); ++row)
+                for (int column = 0; column < job.out.columns; column += kTile)
+                    work(worker, column, row * kTile);
+            const int passes = job.options.colors ? 2 : 1;
+            if (job.options.on_progress)
+                job.options.on_progress((1.0 * (rows.end() - rows.begin())) / (passes * tile_rows));
+        });
 }
 
 }  // namespace
@@ -550,6 +553,10 @@ Rendering renderInBands(const RenderScene& scene, const Viewpoint& viewpoint,
             hidden.assign(at(first), at(last));
             own.hidden_pixels = &hidden;
         }
+        if (options.on_progress)
+            own.on_progress = [&options, part = (1.0 * (end - row)) / out.rows](double share) {
+                options.on_progress(part * share);
+            };
         const Rendering band = render(scene, Band(viewpoint, first, last - first), own);
         append(out.radiance, band.radiance, out.columns, row - first, end - first);
         append(out.labels, band.labels, out.columns, row - first, end - first);

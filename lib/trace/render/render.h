@@ -72,6 +72,8 @@ struct RenderOptions {
     /// Marks pixels, row by row, that need not be computed, as a nearer picture hides them: their
     /// values are arbitrary. Null: all are needed.
     const std::vector<bool>* hidden_pixels = nullptr;
+    /// Receives the share of the picture done since the last call, 1 in all, in any thread.
+    std::function<void(double share)> on_progress = {};
 };
 
 /// A picture, row by row from the top.
