@@ -99,7 +99,11 @@ struct CommandLine::Data {
             }
         }
         if (operands->size() > max_operands && !(many != nullptr && *many))
-            usage("too many operands: " + shellQuote((*operands)[max_operands]));
+            usage(
+                "too many operands: " + shellQuote((*operands)[max_operands]) +
+                ((*operands)[max_operands].ends_with(".3dm")
+                     ? ": one layout is read; `envc ENV LAYOUT --add RECORD -o FILE.3dm` adds to it"
+                     : ""));
     }
     [[nodiscard]] std::string hintFor(const std::string& unknown) const {
         if (const auto hint = renamed.find(unknown); hint != renamed.end())

@@ -161,6 +161,8 @@ TEST(CommandLine, UsageErrorsHintAtWhatWasMeant) {
             << Tool().errorOf({word, "100"});
     EXPECT_NE(Tool().errorOf({"--seed", "-1"}), "");
     EXPECT_NE(Tool().errorOf({"a", "b", "c"}).find("too many operands: c"), std::string::npos);
+    EXPECT_NE(Tool().errorOf({"a", "b.3dm", "c.3dm"}).find("one layout is read"),
+              std::string::npos);
     EXPECT_NE(Tool().errorOf({""}), "");
     EXPECT_NE(Tool().errorOf({"-X"}), "");
     EXPECT_EQ(Tool().errorOf({"--height", "0"}), "");

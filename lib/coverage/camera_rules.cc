@@ -18,6 +18,7 @@
 #include "geom/curve_clip.h"
 #include "record/schema.h"
 #include "scene/sensor/camera.h"
+#include "scene/sensor/density_classes.h"
 
 namespace ispace {
 
@@ -140,7 +141,11 @@ void parseDoorPieces(std::span<const std::string_view> pieces, const std::string
         }
     if (pieces.size() > 2) fail("there is too much behind the doors");
     for (const std::string_view piece : pieces)
-        if (!isAngle(piece)) fail('`' + std::string(piece) + "` is no angle");
+        if (!isAngle(piece))
+            fail('`' + std::string(piece) + "` is no angle" +
+                 (findClass(piece)
+                      ? " (pixels a metre are asked for by --density " + std::string(piece) + ')'
+                      : ""));
     rule.zone += ',' + formatDouble(metres);
     rule.within = pieces.empty() ? Angle::degrees(kFaceDegrees) : angleOf(pieces.front());
     rule.is_by_doors = pieces.size() < 2;

@@ -103,6 +103,14 @@ TEST(CameraRules, ParsesFacingAtDoors) {
     EXPECT_EQ(parsed("door:f,2,30"), "door:f,2 30");
     EXPECT_EQ(parsed("door:f,2m,30deg,180"), "door:f,2 30 180");
     EXPECT_EQ(parsed("door:f,30deg,-90"), "door:f,1.5 30 -90");
+    try {
+        parsed("door:*,identify");
+        ADD_FAILURE() << "a density is an angle";
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string(error.what()).find("asked for by --density identify"),
+                  std::string::npos)
+            << error.what();
+    }
     for (const char* text : {"door:f,1.5", "door:f,x", "door:f,1,2,3,4", "door:f,1,0deg"})
         EXPECT_THROW(parsed(text), UsageError) << text;
 }

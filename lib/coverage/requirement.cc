@@ -14,6 +14,11 @@ namespace {
 
 double shareOfText(std::string_view text) {
     if (const auto share = parseShare(text)) return *share;
+    for (const std::string_view rule : {"facing", "privacy"})
+        if (text.starts_with(rule))
+            throw UsageError('`' + std::string(text) + "` is no requirement of floor: give --" +
+                             std::string(rule) +
+                             (rule == "facing" ? " ZONE,DEG=95%" : " ZONE,DENSITY"));
     throw UsageError('`' + std::string(text) +
                      "` is no share: write 95% or 0.95, free:95%, zone:NAME=95%, identify:95%");
 }

@@ -29,6 +29,10 @@ def run_jobs(folder):
     for room in ("ispace.env", "l-room.env"):
         shutil.copy(os.path.join(SCENES, room), folder.path)
     folder.sweep("commands", text=TEXT)
+    folder.sweep("plot", "--x", "count", status=1)
+    same("results that are missing",
+         "ispace-sweep: error: no job is done: run those of `ispace-sweep commands`, or name the parts of "
+         "`ispace-sweep run`\n", folder.talk)
     folder.run("bash", "-euo", "pipefail", "-c", "ispace-sweep commands sweep.yaml | sh")
 
 
