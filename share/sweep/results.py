@@ -53,8 +53,8 @@ class Gaps:
         if self.broken:
             raise DataError(self.broken[:MOST_FINDINGS])
         if self.count and self.count == jobs and not partial:
-            raise DataError(["error: no job is done: run those of `ispace-sweep commands`, or name the parts of "
-                             "`ispace-sweep run`"])
+            raise DataError([self.missing[0], "error: no job is done: run those of `ispace-sweep commands`, or name "
+                                              "the parts of `ispace-sweep run`"])
         if self.count and not partial:
             raise DataError([*self.missing, f"error: {self.count} of {jobs} jobs are not done: `commands --missing` "
                                             "lists them, --partial does without them"])

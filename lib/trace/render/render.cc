@@ -115,7 +115,7 @@ struct Job {
         Full,
     };
     [[nodiscard]] Tile tile(int column, int row) const {
-        return tiles.empty() ? Tile::Full : tiles[tileIndex(column / kTile, row / kTile)];
+        return tiles_.empty() ? Tile::Full : tiles_[tileIndex(column / kTile, row / kTile)];
     }
 
   private:
@@ -128,7 +128,7 @@ struct Job {
     void markTiles();
     [[nodiscard]] bool isNeeded(int column, int row) const;
 
-    std::vector<Tile> tiles;  ///< row by row; empty: all are full
+    std::vector<Tile> tiles_;  ///< row by row; empty: all are full
 };
 
 Illumination chosen(Illumination wanted, const StillSurfaces& still) {
@@ -176,7 +176,7 @@ void Job::markTiles() {
     // Light is smoothed over two pixels, then over two tiles.
     constexpr int kReach = 3;
     const int wide = tileColumns(), high = tileRows();
-    tiles.assign(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high), Tile::Hidden);
+    tiles_.assign(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high), Tile::Hidden);
     PixelBox box{0, 0, out.columns, out.rows};
     if (options.background && even) box = pixelsOf(scene, *even, box);
     const int left = box.left / kTile, right = (box.right + kTile - 1) / kTile;
@@ -184,15 +184,15 @@ void Job::markTiles() {
     for (int row = 0; row < high; ++row)
         for (int column = 0; column < wide; ++column)
             if (column < left || column >= right || row < top || row >= bottom)
-                tiles[tileIndex(column, row)] = Tile::Empty;
+                tiles_[tileIndex(column, row)] = Tile::Empty;
     for (int row = top; row < bottom; ++row)
         for (int column = left; column < right; ++column) {
             if (!isNeeded(column, row)) continue;
-            tiles[tileIndex(column, row)] = Tile::Full;
+            tiles_[tileIndex(column, row)] = Tile::Full;
             for (int y = std::max(top, row - kReach); y < std::min(bottom, row + kReach + 1); ++y)
                 for (int x = std::max(left, column - kReach);
                      x < std::min(right, column + kReach + 1); ++x)
-                    if (Tile& beside = tiles[tileIndex(x, y)]; beside == Tile::Hidden)
+                    if (Tile& beside = tiles_[tileIndex(x, y)]; beside == Tile::Hidden)
                         beside = Tile::Lit;
         }
 }
@@ -319,9 +319,10 @@ class TileWorker {
         }
     }
     [[nodiscard]] const std::optional<PixelRay>& around(PixelPoint place) const {
-        const int x = static_cast<int>(place.column) - around_column_ + 1;
-        const int y = static_cast<int>(place.row) - around_row_ + 1;
-        return around_[static_cast<std::size_t>(y * kAround + x)];
+        const int column = static_cast<int>(place.column) - around_column_ + 1;
+        const int row = static_cast<int>(place.row) - around_row_ + 1;
+        const auto x = static_cast<std::size_t>(column), y = static_cast<std::size_t>(row);
+        return around_[y * kAround + x];
     }
 
     template <typename Visit>
