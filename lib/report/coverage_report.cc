@@ -6,12 +6,8 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "report/camera_rules_report.h"
-#include "report/objective_report.h"
 #include "report/presence_report.h"
-#include "report/robustness_report.h"
 #include "report/run_report.h"
-#include "report/suggestion_report.h"
 #include "scene/sensor/density_classes.h"
 
 namespace ispace {
