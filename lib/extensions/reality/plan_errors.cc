@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include "base/number.h"
 #include "extensions/reality/beam_model.h"
@@ -326,9 +327,12 @@ std::vector<std::string> recordsOf(const PlanErrors& errors, const Environment& 
             if (move->gone != i) continue;
             const std::string& id =
                 environment.elements()[static_cast<std::size_t>(move->element)].id;
-            lines.push_back("# " + id + " stands " + metres(length(move->shift)) +
-                            " m beside its position in the plan: envc --move " + id + ':' +
-                            metres(move->shift.x) + ',' + metres(move->shift.y));
+            std::string line = "# " + id;
+            line.append(" stands ").append(metres(length(move->shift)));
+            line.append(" m beside its position in the plan: envc --move ").append(id);
+            line.append(":").append(metres(move->shift.x));
+            line.append(",").append(metres(move->shift.y));
+            lines.push_back(std::move(line));
             continue;
         }
         if (error.kind == PlanError::Kind::New) {
