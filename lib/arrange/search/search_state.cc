@@ -157,7 +157,7 @@ ISPACE_SIMD_CLONES void setCompleted(const std::uint32_t* loads, std::uint32_t m
                                      std::uint32_t required, const std::uint32_t* weights,
                                      std::uint32_t* gains, std::size_t cells) {
     for (std::size_t i = 0; i < cells; ++i)
-        gains[i] = (loads[i] < required) & (loads[i] + more >= required) ? weights[i] : 0;
+        gains[i] = ((loads[i] < required) & (loads[i] + more >= required)) ? weights[i] : 0;
 }
 
 }  // namespace
