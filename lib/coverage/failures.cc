@@ -133,9 +133,8 @@ std::vector<SharedFloor> exactFloors(const Environment& environment, const Cover
     return floors.take();
 }
 
-std::optional<std::vector<SharedFloor>> floorsOfCells(const Environment& environment,
-                                                      const Coverage& coverage,
-                                                      const FloorOfViews& seen, std::size_t most) {
+std::vector<SharedFloor> floorsOfCells(const Environment& environment, const Coverage& coverage,
+                                       const FloorOfViews& seen, std::size_t most) {
     SharedFloors floors(coverage, most);
     const Grid& grid = coverage.target.grid;
     std::vector<std::uint16_t> whole(grid.size()), partial(grid.size());
@@ -291,6 +290,34 @@ std::optional<std::vector<SharedFloor>> tryExactFloors(const Environment& enviro
     }
 }
 
+/// Returns the floors of all rooms by exact regions; nothing if those of a room are not known.
+std::optional<std::vector<SharedFloor>> tryExactFloors(std::span<const FailingRoom> rooms,
+                                                       const RoomViews& views,
+                                                       const std::optional<std::size_t>& density,
+                                                       std::size_t most) {
+    std::vector<SharedFloor> floors;
+    for (std::size_t i = 0; i < rooms.size(); ++i) {
+        const auto& [scene, coverage] = rooms[i];
+        auto of_room =
+            tryExactFloors(scene.environment, coverage, floorOfViews(coverage, density), most);
+        if (!of_room) return std::nullopt;
+        addFloors(*std::move(of_room), views, i, floors);
+    }
+    return floors;
+}
+
+std::vector<SharedFloor> floorsOfCells(std::span<const FailingRoom> rooms, const RoomViews& views,
+                                       const std::optional<std::size_t>& density,
+                                       std::size_t most) {
+    std::vector<SharedFloor> floors;
+    for (std::size_t i = 0; i < rooms.size(); ++i) {
+        const auto& [scene, coverage] = rooms[i];
+        addFloors(floorsOfCells(scene.environment, coverage, floorOfViews(coverage, density), most),
+                  views, i, floors);
+    }
+    return floors;
+}
+
 }  // namespace
 
 std::vector<FigureLoss> worstFailures(const Scene& scene, const Coverage& coverage, int count,
@@ -310,27 +337,13 @@ std::vector<FigureLoss> worstFailures(std::span<const FailingRoom> rooms,
         RequiredFigure known = figureOf(figure, planned);
         auto found = by_density.find(figure.density);
         if (found == by_density.end()) {
-            std::vector<SharedFloor> floors;
-            bool is_exact = true;
-            for (const bool by_regions : {true, false}) {
-                floors.clear();
-                is_exact = by_regions;
-                for (std::size_t i = 0; i < rooms.size(); ++i) {
-                    const auto& [scene, coverage] = rooms[i];
-                    const FloorOfViews seen = floorOfViews(coverage, figure.density);
-                    auto of_room = by_regions
-                                       ? tryExactFloors(scene.environment, coverage, seen, failing)
-                                       : floorsOfCells(scene.environment, coverage, seen, failing);
-                    is_exact &= of_room.has_value();
-                    if (!of_room) break;
-                    addFloors(*std::move(of_room), views, i, floors);
-                }
-                if (is_exact) break;
-            }
-            mustBeFew(views.ids.size(), failing, floors.size());
+            auto floors = tryExactFloors(rooms, views, figure.density, failing);
+            const bool is_exact = floors.has_value();
+            if (!floors) floors = floorsOfCells(rooms, views, figure.density, failing);
+            mustBeFew(views.ids.size(), failing, floors->size());
             found = by_density
                         .emplace(figure.density,
-                                 std::pair(worstSets(floors, views.ids.size(), failing,
+                                 std::pair(worstSets(*floors, views.ids.size(), failing,
                                                      kFirstZonePart + planned.zones.size()),
                                            is_exact))
                         .first;

@@ -176,8 +176,6 @@ void measureObjectives(const CoverageToolOptions& options, const BuildingCoverag
     results.objectives_sum = ObjectiveFigures{{}, localisedOver(storeys, coverage.storeys)};
 }
 
-constexpr std::size_t kDraws = 100;
-
 /// Returns the crowds of --crowd: by sample, then by storey.
 std::vector<BuildingCrowd> crowdsOf(const CoverageToolOptions& options, const BuildingInput& input,
                                     const BuildingCoverage& coverage) {
@@ -186,11 +184,11 @@ std::vector<BuildingCrowd> crowdsOf(const CoverageToolOptions& options, const Bu
     if (options.crowd->of == Robustness::CrowdOf::Random) {
         const std::vector<std::size_t> people =
             spreadOverStoreys(coverage, static_cast<std::size_t>(options.crowd->people));
-        crowds.assign(kDraws, BuildingCrowd(storeys));
+        crowds.assign(kSamples, BuildingCrowd(storeys));
         for (std::size_t i = 0; i < storeys; ++i) {
             if (people[i] == 0) continue;
             const CrowdFloor floor(*input.building.scenes[i]);
-            for (std::size_t k = 0; k < kDraws; ++k)
+            for (std::size_t k = 0; k < kSamples; ++k)
                 crowds[k][i] = floor.draw(
                     people[i], {.seed = seedOfStorey(options.common.seed, i), .frame = k});
         }
@@ -205,7 +203,7 @@ std::vector<BuildingCrowd> crowdsOf(const CoverageToolOptions& options, const Bu
     for (std::size_t i = 0; i < storeys; ++i) {
         const std::vector<Crowd> of_storey =
             crowdsOfRun(options.run + '/' + input.building.document.storeys[i].id,
-                        *input.building.scenes[i], kDraws);
+                        *input.building.scenes[i], kSamples);
         crowds.resize(i == 0 ? of_storey.size() : std::min(crowds.size(), of_storey.size()),
                       BuildingCrowd(storeys));
         for (std::size_t k = 0; k < crowds.size(); ++k) crowds[k][i] = of_storey[k];
@@ -231,9 +229,9 @@ std::optional<Robustness> robustnessOf(const CoverageToolOptions& options,
     }
     if (!options.perturb) return robustness;
     robustness.tolerance = *options.perturb;
-    robustness.mounting = perturbBuilding(input.building, coverage, options.measure,
-                                          *options.perturb, static_cast<int>(kDraws),
-                                          options.common.seed, options.requirements, *progress);
+    robustness.mounting =
+        perturbBuilding(input.building, coverage, options.measure, *options.perturb, kSamples,
+                        options.common.seed, options.requirements, *progress);
     return robustness;
 }
 

@@ -116,8 +116,6 @@ std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInp
 
 namespace {
 
-constexpr int kSamples = 100;
-
 std::vector<Crowd> crowdsOf(const CoverageToolOptions& options, const Scene& scene) {
     switch (options.crowd->of) {
         case Robustness::CrowdOf::Scene:

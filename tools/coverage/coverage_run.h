@@ -23,6 +23,9 @@
 
 namespace ispace {
 
+/// Random mountings and crowds of --perturb and --crowd.
+constexpr int kSamples = 100;
+
 /// All results, and the comparison if requested.
 struct Measured {
     Coverage coverage;

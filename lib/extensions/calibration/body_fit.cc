@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "extensions/calibration/least_squares.h"
 #include "scene/bodies.h"
 #include "sense/scan.h"
 
@@ -417,16 +418,7 @@ struct BodyFunctor {
         return 0;
     }
     int df(const VectorXd& x, MatrixXd& slopes) const {
-        constexpr double kStep = 1e-5;
-        VectorXd up(rows), down(rows);
-        for (Eigen::Index i = 0; i < x.size(); ++i) {
-            VectorXd at = x;
-            at[i] = x[i] + kStep;
-            (*this)(at, up);
-            at[i] = x[i] - kStep;
-            (*this)(at, down);
-            slopes.col(i) = (up - down) / (2 * kStep);
-        }
+        centralSlopes(*this, x, slopes);
         return 0;
     }
 };
@@ -582,15 +574,9 @@ class BodyFitter {
                             static_cast<double>(count - 2));
             row += count;
         }
-        if (sizes.empty()) return;
-        std::vector<double> sorted = sizes;
-        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-        std::nth_element(sorted.begin(), middle, sorted.end());
         // Half of a squared normal variable, of two degrees, lies below 0.69.
-        const double scale = std::max(*middle / 0.69, 1e-6);
-        constexpr double kCauchy = 2.385;
-        for (std::size_t i = 0; i < groups.size(); ++i)
-            groups[i].weight = 1 / (1 + sizes[i] / (scale * kCauchy * kCauchy));
+        const std::vector<double> weights = cauchyWeights(sizes, 0.69);
+        for (std::size_t i = 0; i < groups.size(); ++i) groups[i].weight = weights[i];
     }
 
     [[nodiscard]] BodyFit described(const VectorXd& x, std::span<const LegGroup> groups) const {

@@ -57,7 +57,7 @@ struct SeenPerson {
     Point2 place;
 };
 /// Returns what lasers at known poses saw, in the order of time. \param height of the people
-/// 	hrows FormatError as fitToBodies() for a laser that sees no legs
+/// \throws FormatError as fitToBodies() for a laser that sees no legs
 std::vector<SeenPerson> peopleSeen(std::span<const WatchingLaser> lasers, double height);
 /// Returns where people were at a time: where they were seen shortly before and after it, each
 /// person once, by a line through these points.

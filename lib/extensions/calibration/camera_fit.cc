@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "extensions/calibration/least_squares.h"
 #include "geom/rotation.h"
 #include "scene/bodies.h"
 
@@ -183,16 +184,7 @@ struct OutlineFunctor {
         return 0;
     }
     int df(const VectorXd& x, MatrixXd& slopes) const {
-        VectorXd up(values()), down(values());
-        for (Eigen::Index i = 0; i < x.size(); ++i) {
-            constexpr double kStep = 1e-5;
-            VectorXd at = x;
-            at[i] = x[i] + kStep;
-            (*this)(at, up);
-            at[i] = x[i] - kStep;
-            (*this)(at, down);
-            slopes.col(i) = (up - down) / (2 * kStep);
-        }
+        centralSlopes(*this, x, slopes);
         return 0;
     }
 };
@@ -364,23 +356,17 @@ class PictureFitter {
         return pose;
     }
 
-    /// Sets robust weights (Cauchy) by the residuals. Returns their median size.
-    double weigh(const OutlineFunctor& functor) {
+    /// Sets robust weights (Cauchy) by the residuals.
+    void weigh(const OutlineFunctor& functor) {
         for (OutlinePair& pair : pairs_) pair.weight = 1;
         VectorXd values(functor.values());
         functor(VectorXd::Zero(OutlineFunctor::kInputs), values);
         std::vector<double> sizes;
         for (std::size_t i = 0; i < pairs_.size(); ++i)
             sizes.push_back(values.segment<3>(3 * static_cast<Eigen::Index>(i)).squaredNorm() / 3);
-        std::vector<double> sorted = sizes;
-        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-        std::nth_element(sorted.begin(), middle, sorted.end());
         // Half of a mean of three squared normal variables lies below 0.79.
-        const double scale = std::max(*middle / 0.79, 1e-6);
-        constexpr double kCauchy = 2.385;
-        for (std::size_t i = 0; i < pairs_.size(); ++i)
-            pairs_[i].weight = 1 / (1 + sizes[i] / (scale * kCauchy * kCauchy));
-        return *middle;
+        const std::vector<double> weights = cauchyWeights(sizes, 0.79);
+        for (std::size_t i = 0; i < pairs_.size(); ++i) pairs_[i].weight = weights[i];
     }
 
     [[nodiscard]] CameraFit described(const CameraPose& pose, double height) {

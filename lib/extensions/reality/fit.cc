@@ -102,12 +102,28 @@ struct VarianceFit {
     Eigen::VectorXd values, errors;
 };
 
+/// Returns the causes that occur.
+std::vector<Eigen::Index> activeOf(const Eigen::MatrixXd& causes) {
+    std::vector<Eigen::Index> active;
+    for (Eigen::Index k = 0; k < causes.cols(); ++k)
+        if (causes.col(k).squaredNorm() > 0) active.push_back(k);
+    return active;
+}
+
+/// Sets the estimates of some causes and their standard errors.
+void setActive(const std::vector<Eigen::Index>& active, const Eigen::VectorXd& found,
+               const Eigen::MatrixXd& covariance, VarianceFit& fit) {
+    for (std::size_t i = 0; i < active.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        fit.values(active[i]) = found(k);
+        fit.errors(active[i]) = std::sqrt(std::max(covariance(k, k), 0.0));
+    }
+}
+
 VarianceFit fitVariance(const Eigen::MatrixXd& causes, const Eigen::VectorXd& squares) {
     const Eigen::Index count = causes.cols();
     VarianceFit fit{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
-    std::vector<Eigen::Index> active;
-    for (Eigen::Index k = 0; k < count; ++k)
-        if (causes.col(k).squaredNorm() > 0) active.push_back(k);
+    std::vector<Eigen::Index> active = activeOf(causes);
     while (!active.empty()) {
         const auto size = static_cast<Eigen::Index>(active.size());
         Eigen::MatrixXd x(causes.rows(), size);
@@ -131,12 +147,7 @@ VarianceFit fitVariance(const Eigen::MatrixXd& causes, const Eigen::VectorXd& sq
             active.erase(active.begin() + lowest);
             continue;
         }
-        const Eigen::MatrixXd covariance = information.inverse();
-        for (Eigen::Index k = 0; k < size; ++k) {
-            fit.values(active[static_cast<std::size_t>(k)]) = found(k);
-            fit.errors(active[static_cast<std::size_t>(k)]) =
-                std::sqrt(std::max(covariance(k, k), 0.0));
-        }
+        setActive(active, found, information.inverse(), fit);
         break;
     }
     return fit;
@@ -147,9 +158,7 @@ VarianceFit fitVariance(const Eigen::MatrixXd& causes, const Eigen::VectorXd& sq
 VarianceFit fitDeviation(const Eigen::MatrixXd& causes, const Eigen::VectorXd& squares) {
     const Eigen::Index count = causes.cols();
     VarianceFit fit{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
-    std::vector<Eigen::Index> active;
-    for (Eigen::Index k = 0; k < count; ++k)
-        if (causes.col(k).squaredNorm() > 0) active.push_back(k);
+    std::vector<Eigen::Index> active = activeOf(causes);
     const double mean = std::max(squares.mean(), 1e-18);
     bool has_rest = true;  // the variance of the corrected poses
     while (!active.empty()) {
@@ -189,12 +198,7 @@ VarianceFit fitDeviation(const Eigen::MatrixXd& causes, const Eigen::VectorXd& s
             active.erase(active.begin() + lowest);
             continue;
         }
-        const Eigen::MatrixXd covariance = information.inverse();
-        for (Eigen::Index k = 0; k < size; ++k) {
-            fit.values(active[static_cast<std::size_t>(k)]) = found(k);
-            fit.errors(active[static_cast<std::size_t>(k)]) =
-                std::sqrt(std::max(covariance(k, k), 0.0));
-        }
+        setActive(active, found, information.inverse(), fit);
         break;
     }
     return fit;
