@@ -12,7 +12,7 @@
 ///     for (float range : laser.scan().ranges) …
 ///
 /// Robot and Person drive; LaserSensor, Camera and similar classes read; World holds the clock,
-/// changes and events. Units are those of the protocol: metres, degrees, simulated seconds; frames
+/// changes and events; Node is a computer of a sensor network. Units are those of the protocol: metres, degrees, simulated seconds; frames
 /// are right-handed and headings counter-clockwise. Functions block until the server has answered,
 /// for at most Options::timeout seconds of wall time; errors are exceptions of
 /// <ispace_client/error.h> with the server's text. In CMake: find_package(ispace_client),
@@ -22,6 +22,7 @@
 
 #include <ispace_client/error.h>
 #include <ispace_client/mote.h>
+#include <ispace_client/node.h>
 #include <ispace_client/pir.h>
 #include <ispace_client/radar.h>
 #include <ispace_client/robot.h>

@@ -345,11 +345,25 @@ std::vector<Schema> deviceSchemas() {
     return schemas;
 }
 
+namespace {
+
+std::vector<Schema>& addedSchemas() {
+    static std::vector<Schema> added;
+    return added;
+}
+
+}  // namespace
+
+void addSceneSchemas(std::vector<Schema> schemas) {
+    std::move(schemas.begin(), schemas.end(), std::back_inserter(addedSchemas()));
+}
+
 const Schemas& sceneSchemas() {
     static const Schemas schemas = [] {
         std::vector<Schema> all = environmentSchemas();
         std::vector<Schema> placements = layoutSchemas();
         std::move(placements.begin(), placements.end(), std::back_inserter(all));
+        std::copy(addedSchemas().begin(), addedSchemas().end(), std::back_inserter(all));
         return Schemas(std::move(all));
     }();
     return schemas;

@@ -21,8 +21,12 @@ std::vector<Schema> layoutSchemas();
 /// record. Model, source and confidence are required; a position is rejected.
 std::vector<Schema> deviceSchemas();
 
-/// Returns the schema of every keyword of `.env` and `.3dm`: environmentSchemas() and
-/// layoutSchemas(). A constant.
+/// Adds keywords of an extension to those of `.3dm`; the program does so before it first calls
+/// sceneSchemas(). Such records are placements, which the core keeps and writes, and no more.
+void addSceneSchemas(std::vector<Schema> schemas);
+
+/// Returns the schema of every keyword of `.env` and `.3dm`: environmentSchemas(), layoutSchemas()
+/// and those of extensions. A constant.
 const Schemas& sceneSchemas();
 
 }  // namespace ispace

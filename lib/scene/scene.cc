@@ -155,7 +155,7 @@ class Resolver {
             out_.placed.push_back({i, onFloor(pose), out_.people.size()});
             out_.people.push_back({ids_[i], record.number("height"), record.number("speed"), pose,
                                    record.place(), courseOf(record)});
-        } else {
+        } else if (record.schema().find("at") != nullptr) {  // some of extensions have no pose
             out_.placed.push_back({i, onFloor(floorPoseOf(record))});
         }
     }

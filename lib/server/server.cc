@@ -89,6 +89,22 @@ void Server::serveMqtt(const MqttOptions& options) {
     data.mqtt.emplace(data.state, std::move(client), options.prefix);
 }
 
+void Server::serveRoles(std::span<const MakeRoleService> services) {
+    Data& data = *data_;
+    std::vector<JoinedRoom> rooms;
+    if (data.rooms.worlds == nullptr)
+        rooms.push_back({"", &data.simulation});
+    else
+        for (const JoinedRoom& room : data.rooms.worlds->rooms())
+            rooms.push_back({room.id, room.simulation});
+    for (const MakeRoleService make : services) {
+        auto service = make(rooms, data.simulation.world().options().seed);
+        if (!service) continue;
+        for (ServerState* const each : data.states()) each->addRoleService(*service);
+        data.roles.push_back(std::move(service));
+    }
+}
+
 FrameTaker Server::frameTaker(std::size_t room) {
     ServerState* const state = data_->states()[room];
     return [state](FrameJob job) { state->takeFrame(std::move(job)); };
@@ -112,7 +128,7 @@ void Server::run() {
         data.state.changeAsScripted();
         // Last before sleeping: pending requests determine the time to wake.
         std::optional<WallTime> next;
-        next = data.state.holdsWorld()
+        next = data.state.holdsWorld() || data.rolesHoldWorld()
                    ? simulation.flushRecord()
                    : simulation.run(std::chrono::steady_clock::now(), data.turn());
         if (simulation.finished()) break;

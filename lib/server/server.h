@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/file.h"
 #include "scene/run/run_marks.h"
 #include "sense/formats/ros_messages.h"
+#include "server/client_role.h"
 #include "server/device/wire_session.h"
 #include "server/mqtt/mqtt_client.h"
 #include "server/network.h"
@@ -128,6 +130,9 @@ class Server {
     /// Publishes the states of the room on a broker of MQTT, and carries out commands from there.
     /// Call before run(). \throws FormatError as connectMqtt()
     void serveMqtt(const MqttOptions& options);
+    /// Adds roles of extensions to the protocol, as far as the scenes ask for them. Call at most
+    /// once, before run(). \throws FormatError as MakeRoleService
+    void serveRoles(std::span<const MakeRoleService> services);
     /// Returns a function that computes frames of a record in the picture thread.
     /// \param room of the joined worlds
     [[nodiscard]] FrameTaker frameTaker(std::size_t room = 0);

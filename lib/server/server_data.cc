@@ -107,6 +107,7 @@ void Server::Data::stepped() {
     constexpr std::size_t kFew = 32;
     const bool may_be_late =
         simulation.clock().kind != Clock::Kind::Real || connections.size() <= kFew;
+    for (const auto& role : roles) role->stepped();
     const WallTime end = steady_clock::now() + kTurn / 4;
     for (const auto& connection : connections)
         connection->stepped(may_be_late || steady_clock::now() < end);
@@ -118,6 +119,13 @@ void Server::Data::stepped() {
     static_cast<void>(hasUpdates());
     has_news = false;
     next_news = steady_clock::now() + kNewsEvery;
+}
+
+/// Returns true while a client keeps the world from its next step; real time does not wait.
+bool Server::Data::rolesHoldWorld() const {
+    return simulation.clock().kind != Clock::Kind::Real &&
+           std::any_of(roles.begin(), roles.end(),
+                       [](const auto& role) { return role->holdsWorld(); });
 }
 
 /// Next time at which a silent client needs service.
@@ -147,6 +155,7 @@ WallTime Server::Data::nextTurn() const {
 std::chrono::nanoseconds Server::Data::turn() const {
     const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay() ||
                           simulation.paused();
+    if (may_hold && !roles.empty() && serving > 0) return std::chrono::nanoseconds(0);
     if (!may_hold || (serving == 0 && webs.empty() && devices.empty() && !node && !log))
         return kTurn;
     const auto has_heavy_sensor = [](Simulation& one) {

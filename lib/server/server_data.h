@@ -56,6 +56,7 @@ struct Server::Data {
     bool makeRoom();
     [[nodiscard]] RosFeed& feedOf(RosScenery scenery);
     void stepped();
+    [[nodiscard]] bool rolesHoldWorld() const;
     [[nodiscard]] WallTime nextTurn() const;
     [[nodiscard]] std::chrono::nanoseconds turn() const;
     void serveClients();
@@ -74,6 +75,7 @@ struct Server::Data {
     ServerState state;  // of the world, or of the first one
     std::list<ServerState> others;
     ServedRooms rooms;
+    std::vector<std::unique_ptr<RoleService>> roles;  // of extensions
     bool has_news = false;  // between steps, not sent to all clients yet
     WallTime next_news{};
     asio::io_context io{1};  // one thread runs it

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -145,6 +146,7 @@ struct Seek {
     std::string failure;  ///< the error that stopped the seek; "": no error
 };
 
+class RoleService;
 class ServerState;
 
 /// The worlds of a run that has several, and the state of each, in the order of their rooms.
@@ -164,6 +166,10 @@ class ServerState {
     [[nodiscard]] const ServedRooms* rooms() const { return rooms_; }
     /// \pre `rooms` outlives this object
     void joinRooms(const ServedRooms& rooms) { rooms_ = &rooms; }
+
+    /// Returns the roles of extensions. \pre they outlive the sessions
+    [[nodiscard]] std::span<RoleService* const> roleServices() const { return role_services_; }
+    void addRoleService(RoleService& service) { role_services_.push_back(&service); }
 
     /// A world of the run, with its id among others.
     struct ServedWorld {
@@ -309,6 +315,7 @@ class ServerState {
 
     Simulation* simulation_;
     const ServedRooms* rooms_ = nullptr;
+    std::vector<RoleService*> role_services_;
     ServerLimits limits_;
     StepQueue steps_;
     std::map<std::string, std::int64_t, std::less<>> held_;

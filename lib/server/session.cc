@@ -114,6 +114,11 @@ std::span<const Session::Request> Session::requests() {
         {"RECORDS", "[room]", Role::World, 0, 1, &C::records},
         {"EVENTS", "[kinds|off]", Role::World, 0, kAny, &C::events},
         {"MARK", "text", Role::World, 1, kAny, &C::mark},
+        {"TRACK", "id [storey/]x,y [t=s] [kind=person|robot]", Role::World, 2, 4, &C::track},
+        {"SCAN", "id", Role::Guest, 1, 1, &C::scanOfGuest},
+        {"STREAM", "id [every=k]", Role::Guest, 1, 2, &C::streamOfGuest},
+        {"STOP", "[id]", Role::Guest, 0, 1, &C::stopOfGuest},
+        {"TRACK", "id [storey/]x,y [t=s] [kind=person|robot]", Role::Guest, 2, 4, &C::track},
         {"SHUTDOWN", "", Role::World, 0, 0, &C::shutdown, true},
         {"HELP", "", std::nullopt, 0, 0, &C::help},
         {"QUIT", "", std::nullopt, 0, 0, &C::quit},
@@ -149,7 +154,13 @@ void Session::request(std::string_view line) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const Request& request) {
         return request.verb == words.front() && request.role.value_or(role_) == role_;
     });
-    if (found == all.end()) return refuse(words.front(), first);
+    if (found == all.end()) {
+        const bool is_open = mayLook() && role_ == Role::None;
+        if (RoleService* const service = is_open ? serviceOf(words.front()) : nullptr)
+            return takeGuestRole(*service, words);
+        if (role_ == Role::Guest && guestRequest(words)) return;
+        return refuse(words.front(), first);
+    }
     if (!mayUse(*found)) return;
     const std::size_t arguments = words.size() - 1;
     if (arguments < found->least)
@@ -182,6 +193,7 @@ void Session::stepped(bool has_room) {
     sendCompletions();
     if (has_room) tellEvents();
     if (every_ > 0) streamSensor();
+    if (guest_) stepGuest(has_room);
     if (seek_ && seek_->is_over) answerSeek();
     if (steps_) {
         state_->steps().settle();
@@ -252,7 +264,7 @@ void Session::finish() {
     stepped();
 }
 
-std::string_view Session::verbOf(Role role) {
+std::string_view Session::verbOf(Role role) const {
     switch (role) {
         case Role::None:
             break;
@@ -266,6 +278,8 @@ std::string_view Session::verbOf(Role role) {
             return "SENSOR";
         case Role::World:
             return "WORLD";
+        case Role::Guest:
+            return guest_verb_;
     }
     return "";
 }
@@ -289,9 +303,15 @@ void Session::refuse(std::string_view verb, bool first) {
     for (const Request& request : requests()) {
         verbs.emplace_back(request.verb);
         if (request.verb != verb) continue;
+        const bool is_guest = request.role == Role::Guest;
+        if (is_guest && state_->roleServices().empty()) continue;
         if (!roles.empty()) roles += " or ";
-        if (request.role) roles += verbOf(*request.role);
+        if (request.role)
+            roles += is_guest ? state_->roleServices().front()->verb() : verbOf(*request.role);
     }
+    for (const RoleService* const each : state_->roleServices()) verbs.emplace_back(each->verb());
+    if (guest_)
+        for (const RoleRequest& row : guest_->requests()) verbs.emplace_back(row.verb);
     if (std::find(verbs.begin(), verbs.end(), verb) == verbs.end()) {
         const std::string hint = didYouMean(upperCase(verb), verbs);
         closing_ = first;
@@ -299,8 +319,12 @@ void Session::refuse(std::string_view verb, bool first) {
                            " HELP lists what there is",
                            first ? "; a first line that is no request ends the connection" : ""});
     }
+    std::string more;
+    for (const RoleService* const each : state_->roleServices())
+        more.append(each->verb()).append(" id, ");
     if (role_ == Role::None)
-        return error(405, {"take a role first: ROBOT id, PERSON id, LASER id, SENSOR id or WORLD"});
+        return error(405, {"take a role first: ROBOT id, PERSON id, LASER id, ", more,
+                           "SENSOR id or WORLD"});
     if (roles.empty())
         return error(405, {"this connection has ", roleText(), ": open another one for ", verb});
     error(405, {verb, " is for the role ", roles, ", this connection has ", roleText(),
@@ -337,7 +361,7 @@ void Session::sync() {
         }
         return state_->holds(id_, hold_) ? world().moverNamed(id_) : std::nullopt;
     };
-    if (role_ == Role::None || role_ == Role::World) return;
+    if (role_ == Role::None || role_ == Role::World || role_ == Role::Guest) return;
     if (const auto index = found()) {
         subject_ = *index;
         is_gone_ = false;
@@ -375,6 +399,8 @@ void Session::leave() {
     backlog_.clear();
     joined_.clear();
     may_go_on_ = nullptr;
+    guest_.reset();
+    guest_streams_.clear();
     role_ = Role::None;
     running_.clear();
     every_ = 0;
@@ -433,6 +459,15 @@ void Session::help(Words /*words*/) {
         if (!request.arguments.empty()) out_.append(" ").append(request.arguments);
         separator = " | ";
     }
+    const auto add = [&](std::string_view verb, std::string_view arguments) {
+        out_.append(separator).append(verb);
+        if (!arguments.empty()) out_.append(" ").append(arguments);
+        separator = " | ";
+    };
+    if (role_ == Role::None)
+        for (const RoleService* const each : state_->roleServices()) add(each->verb(), "id");
+    if (guest_)
+        for (const RoleRequest& row : guest_->requests()) add(row.verb, row.arguments);
     out_ += '\n';
 }
 

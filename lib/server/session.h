@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "geom/pose.h"
+#include "server/client_role.h"
 #include "server/server_state.h"
 
 namespace ispace {
@@ -118,8 +119,8 @@ class Session {
     [[nodiscard]] std::size_t scanBytes() const { return scan_ ? scan_->size() : 0; }
 
   private:
-    enum class Role { None, Robot, Person, Laser, Sensor, World };
-    using Words = std::span<const std::string_view>;  // a request, verb first
+    enum class Role { None, Robot, Person, Laser, Sensor, World, Guest };  // of an extension
+    using Words = std::span<const std::string_view>;                       // a request, verb first
     using Condition = bool (Session::*)() const;
     struct Request;
     static std::span<const Request> requests();
@@ -140,7 +141,7 @@ class Session {
     void answerTrip(std::string_view verb, const TripAnswer& answer);
     [[nodiscard]] std::vector<std::string> idsOfAll(Role role) const;
     [[nodiscard]] std::string whereText() const;
-    static std::string_view verbOf(Role role);
+    [[nodiscard]] std::string_view verbOf(Role role) const;
     [[nodiscard]] std::string roleText() const;
     [[nodiscard]] std::string unknownSensor(std::string_view kind, std::string_view id) const;
     void error(int code, std::initializer_list<std::string_view> text);
@@ -210,6 +211,29 @@ class Session {
     void act(Words words);
     void events(Words words);
     void mark(Words words);
+    void track(Words words);
+
+    /// A sensor that the role of an extension reads; without a state: unknown.
+    struct GuestSensor {
+        ServerState* state = nullptr;
+        std::size_t index = 0;
+    };
+    /// A stream of such a role: its last period.
+    struct GuestStream {
+        std::string name;
+        std::int64_t every = 1, seq = 0;
+    };
+    [[nodiscard]] RoleService* serviceOf(std::string_view verb) const;
+    void takeGuestRole(RoleService& service, Words words);
+    bool guestRequest(Words words);
+    [[nodiscard]] bool guestIsReady() const { return !guest_->waits(); }
+    GuestSensor guestSensor(std::string_view name);
+    void scanOfGuest(Words words);
+    void streamOfGuest(Words words);
+    void stopGuestStream(std::string_view name);
+    void stopOfGuest(Words words);
+    void stepGuest(bool has_room);
+    [[nodiscard]] std::string byGuestClock(const std::string& text) const;
 
     ServerState* state_;
     Role role_ = Role::None;
@@ -241,6 +265,9 @@ class Session {
     std::size_t joins_ = 1;
     EventKinds events_;                      // subscribed events
     std::vector<std::int64_t> next_events_;  // in each world
+    std::unique_ptr<ClientRole> guest_;      // of the role Guest
+    std::string_view guest_verb_;
+    std::vector<GuestStream> guest_streams_;
     std::string peer_;
     bool has_token_ = false;
     int wrong_tokens_ = 0;

@@ -83,7 +83,7 @@ void Session::receiveChange(const ServerState::Asked& change) {
     const std::vector<std::string> joined = std::exchange(joined_, {});
     joins_ = change.is_error ? 1 : std::min(2 * joins_, kMostJoined);
     if (joined.empty() || !change.is_error)
-        out_ += *change.bytes;
+        out_ += guest_ ? byGuestClock(*change.bytes) : *change.bytes;
     else
         backlog_.insert(backlog_.begin(), joined.begin(), joined.end());
 }

@@ -38,14 +38,16 @@ enum File {
     kEvents,
     kStates,
     kActivities,
+    kTracks,
     kTiming,
     kInfo,
     kScene,
     kFiles
 };
 constexpr std::array<const char*, kFiles> kFileNames = {
-    "robots.csv", "odometry.csv", "people.csv",     "scans.jsonl", "sonars.csv", "bumpers.csv",
-    "events.csv", "states.csv",   "activities.csv", "timing.csv",  "info.csv",   "scene.env"};
+    "robots.csv",  "odometry.csv", "people.csv", "scans.jsonl",    "sonars.csv",
+    "bumpers.csv", "events.csv",   "states.csv", "activities.csv", "tracks.csv",
+    "timing.csv",  "info.csv",     "scene.env"};
 constexpr const char* kScenes = "scenes";
 /// The files before this one may be compressed.
 constexpr File kFirstPlain = kBumpers;
@@ -63,9 +65,11 @@ std::int64_t strideOf(double rate, double most) {
 }  // namespace
 
 struct Recorder::Data {
-    Data(const std::string& name, const RecordOptions& how, EventLog* log, SimTime step)
+    Data(const std::string& name, const RecordOptions& how, EventLog* log, const TrackLog* told,
+         SimTime step)
         : options(how),
           events_log(log),
+          track_log(told),
           folder(name),
           lock(madeFolder(folder)),
           robots(growingFile(kRobots)),
@@ -77,6 +81,7 @@ struct Recorder::Data {
           events(pathIn(folder, kFileNames[kEvents])),
           states(pathIn(folder, kFileNames[kStates])),
           activities(pathIn(folder, kFileNames[kActivities])),
+          tracks(pathIn(folder, kFileNames[kTracks])),
           timing(pathIn(folder, kFileNames[kTiming])),
           info(pathIn(folder, kFileNames[kInfo])),
           scene(pathIn(folder, kFileNames[kScene])),
@@ -100,10 +105,11 @@ struct Recorder::Data {
 
     RecordOptions options;
     EventLog* events_log;
+    const TrackLog* track_log;
     std::string folder;
     FolderLock lock;
-    LineFile robots, odometry, people, scans, sonars, bumpers, events, states, activities, timing,
-        info, scene;
+    LineFile robots, odometry, people, scans, sonars, bumpers, events, states, activities, tracks,
+        timing, info, scene;
     TableColumns robot_columns, people_columns;
     std::int64_t stride;  // steps from one recorded moment to the next
     RowTexts robot_texts, odometry_texts, people_texts;
@@ -116,7 +122,7 @@ struct Recorder::Data {
     bool flushed_all = false;  // no record() call since the last flush
     std::uint64_t flushed_size = 0;
     std::exception_ptr ended;  // the error that ended the record early
-    std::int64_t next_event = 0;
+    std::int64_t next_event = 0, next_track = 0;
     ActivityRows activity_rows;
     // Of the world's sensors, rebuilt after a change.
     std::int64_t changes = -1;
@@ -135,11 +141,12 @@ struct Recorder::Data {
 
     /// Returns true if events are newer than the last record.
     [[nodiscard]] bool hasNewEvents() const {
-        return events_log != nullptr && next_event < events_log->next();
+        return (events_log != nullptr && next_event < events_log->next()) ||
+               (track_log != nullptr && next_track < track_log->next());
     }
-    [[nodiscard]] std::array<LineFile*, 9> stepFiles() {
-        return {&robots,  &odometry, &people, &scans,     &sonars,
-                &bumpers, &events,   &states, &activities};
+    [[nodiscard]] std::array<LineFile*, 10> stepFiles() {
+        return {&robots,  &odometry, &people, &scans,      &sonars,
+                &bumpers, &events,   &states, &activities, &tracks};
     }
     /// Returns the last step that all files hold, and behind which all can be cut.
     [[nodiscard]] std::int64_t wholeSteps() {
@@ -180,10 +187,12 @@ void Recorder::Data::begin() {
     if (!events.pending.ends_with('\n')) events.pending += '\n';
     states.pending = kStatesHead;
     activities.pending = kActivitiesHead;
+    tracks.pending = trackTableHead();
     timing.pending = "t,wall,steps\n";
     scene.pending = options.scene;
     scene.flush();
     if (events_log != nullptr) next_event = events_log->next();
+    if (track_log != nullptr) next_track = track_log->next();
 }
 
 void Recorder::Data::remember(const World& world) {
@@ -297,9 +306,11 @@ void Recorder::Data::appendEvents() {
             if (event.kind == EventKind::Activity) activity_rows.append(activities.pending, event);
         }
     }
-    events.endStep(steps);
-    states.endStep(steps);
-    activities.endStep(steps);
+    if (track_log != nullptr)
+        for (next_track = std::max(next_track, track_log->first()); next_track < track_log->next();
+             ++next_track)
+            appendTrackRow(tracks.pending, track_log->at(next_track));
+    for (LineFile* const file : {&events, &states, &activities, &tracks}) file->endStep(steps);
 }
 
 void Recorder::Data::append(World& world) {
@@ -334,8 +345,8 @@ void Recorder::Data::writeInfo() {
 
 std::uint64_t Recorder::Data::size() const {
     return robots.size() + odometry.size() + people.size() + scans.size() + sonars.size() +
-           bumpers.size() + events.size() + states.size() + activities.size() + pictures.size() +
-           depths.size() + scenes.size();
+           bumpers.size() + events.size() + states.size() + activities.size() + tracks.size() +
+           pictures.size() + depths.size() + scenes.size();
 }
 
 void Recorder::Data::writeLines() {
@@ -402,8 +413,8 @@ std::vector<std::string> Recorder::filesIn(const std::string& folder) {
 }
 
 Recorder::Recorder(const std::string& folder, World& world, const RecordOptions& options,
-                   EventLog* events)
-    : data_(std::make_unique<Data>(folder, options, events, world.stepLength())) {
+                   EventLog* events, const TrackLog* tracks)
+    : data_(std::make_unique<Data>(folder, options, events, tracks, world.stepLength())) {
     if (events != nullptr) events->want(allEventKinds());
     data_->begin();
     record(world);

@@ -15,6 +15,7 @@
 #include "base/message.h"
 #include "sim/events.h"
 #include "sim/record_form.h"
+#include "sim/track_log.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -68,6 +69,7 @@ struct RecordOptions {
 /// of
 ///   their period
 /// - events.csv: events, see EventLog
+/// - tracks.csv: what programs told of people and robots, see TrackLog
 /// - scene.env: the scene of the run; scenes/scene-NNNNNN.env: those that clients loaded
 /// - info.csv: dt,control_interval,steps,elapsed,seed,noise; see World::controlInterval; and every,
 ///   the time between moments, if RecordForm::every is not 0
@@ -84,7 +86,7 @@ class Recorder {
     /// \param events null: events.csv has no rows \throws std::system_error naming the file;
     /// FormatError if another run is recorded there, or if a file is a link to one elsewhere
     Recorder(const std::string& folder, World& world, const RecordOptions& options,
-             EventLog* events = nullptr);
+             EventLog* events = nullptr, const TrackLog* tracks = nullptr);
     ~Recorder();
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;

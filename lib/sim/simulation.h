@@ -18,6 +18,7 @@
 #include "sim/pace.h"
 #include "sim/recorder.h"
 #include "sim/replay.h"
+#include "sim/track_log.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -65,6 +66,10 @@ class Simulation {
     /// Returns the events, updated after every step, before it is recorded.
     [[nodiscard]] EventLog& events() { return events_; }
     [[nodiscard]] const EventLog& events() const { return events_; }
+
+    /// Returns what programs have told of people and robots.
+    [[nodiscard]] TrackLog& tracks() { return tracks_; }
+    [[nodiscard]] const TrackLog& tracks() const { return tracks_; }
 
     /// Reports that this request changed the world; a record stores it.
     /// \param scene_text of the changed scene, which the record stores, too; "" if the request is
@@ -213,6 +218,7 @@ class Simulation {
 
     World* world_;
     EventLog events_;
+    TrackLog tracks_;
     std::vector<TimedCommand> script_;
     std::vector<std::string> scripted_;  // ids of the movers that the script commands by index
     std::size_t next_ = 0;               // of script_

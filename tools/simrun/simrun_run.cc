@@ -150,7 +150,8 @@ std::string sceneText(const Scene& scene, const History& history, const std::str
 
 RunningRecord::RunningRecord(const SimrunOptions& options, Simulation& simulation,
                              const RecordOptions& record)
-    : recorder(options.record, simulation.world(), record, &simulation.events()),
+    : recorder(options.record, simulation.world(), record, &simulation.events(),
+               &simulation.tracks()),
       guard(Recorder::growingFilesIn(options.record), recorder.lock()) {}
 
 /// Computes the least size of the record before the run.

@@ -164,6 +164,18 @@ class World {
     /// Writes a line into the records and to all clients that follow events.
     void mark(const std::string& text) { ask("MARK " + text); }
 
+    /// Tells where a tracker sees a person or robot, for the page, the record and topics.
+    /// \param name of the track \param kind "person", "robot" or ""
+    /// \param time of the position, simulated seconds; not a number: now
+    /// \param storey of a building
+    void track(const std::string& name, double x, double y, const std::string& kind = "",
+               double time = std::numeric_limits<double>::quiet_NaN(),
+               const std::string& storey = "") {
+        ask("TRACK " + name + " " + (storey.empty() ? "" : storey + "/") + textOf(x) + "," +
+            textOf(y) + (time == time ? " t=" + textOf(time) : "") +
+            (kind.empty() ? "" : " kind=" + kind));
+    }
+
     /// Subscribes to events of these kinds, or of all kinds.
     void events(const std::vector<std::string>& kinds = std::vector<std::string>()) {
         std::string request = "EVENTS";

@@ -338,4 +338,56 @@ RosPose poseOf(std::string_view message) {
     return out;
 }
 
+namespace {
+
+/// Skips the members of a marker from its lifetime up to its text.
+void skipShapes(CdrReader& in) {
+    in.number<std::int32_t>();  // lifetime
+    in.number<std::uint32_t>();
+    in.number<std::uint8_t>();  // frame_locked
+    constexpr std::size_t kPoint = 3, kColor = 4;
+    const std::size_t points = in.count();
+    in.values(kPoint * points, sizeof(double));
+    const std::size_t colors = in.count();
+    in.values(kColor * colors, sizeof(float));
+    in.text();  // texture_resource
+    readHeader(in);
+    in.text();  // format of the texture
+    in.values(in.count(), 1);
+    const std::size_t coordinates = in.count();
+    in.values(2 * coordinates, sizeof(float));
+}
+
+}  // namespace
+
+std::vector<RosTrack> tracksOf(std::string_view message) {
+    constexpr std::int32_t kText = 9, kAdd = 0;
+    CdrReader in(message);
+    std::vector<RosTrack> tracks;
+    const std::size_t count = in.count();
+    for (std::size_t i = 0; i < count; ++i) {
+        const RosReadHeader header = readHeader(in);
+        RosTrack track;
+        track.frame = header.frame;
+        track.time = header.nanoseconds;
+        const std::string space(in.text());
+        track.name = space.empty() ? "" : space + "/";
+        track.name += std::to_string(in.number<std::int32_t>());
+        const auto type = in.number<std::int32_t>(), action = in.number<std::int32_t>();
+        track.place.x = in.number<double>();
+        track.place.y = in.number<double>();
+        for (int k = 0; k < 8; ++k) in.number<double>();  // height, orientation, scale
+        for (int k = 0; k < 4; ++k) in.number<float>();   // colour
+        skipShapes(in);
+        const std::string_view text = in.text();
+        if (text == "person" || text == "robot") track.kind = text;
+        in.text();  // mesh_resource
+        in.text();  // name of the mesh file
+        in.values(in.count(), 1);
+        in.number<std::uint8_t>();
+        if (type != kText && action == kAdd) tracks.push_back(std::move(track));
+    }
+    return tracks;
+}
+
 }  // namespace ispace

@@ -136,4 +136,15 @@ struct RosPose {
 /// Reads the pose of a PoseWithCovarianceStamped, turned about z alone.
 RosPose poseOf(std::string_view message);
 
+/// A marker that stands for a person or robot: what a tracker tells.
+struct RosTrack {
+    std::string frame;
+    std::uint64_t time = 0;  ///< nanoseconds; 0: unknown
+    std::string name;        ///< "NS/ID", or "ID" without a namespace
+    std::string kind;        ///< "person" or "robot" if its text is that, else ""
+    Point2 place;
+};
+/// Reads the markers of a MarkerArray, but for those that delete or that are text alone.
+std::vector<RosTrack> tracksOf(std::string_view message);
+
 }  // namespace ispace

@@ -8,6 +8,7 @@
 
 #include "base/number.h"
 #include "env/point_location.h"
+#include "record/schema.h"
 #include "sim/odometry.h"
 
 namespace ispace {
@@ -109,12 +110,36 @@ void RosOrders::takeAnswer() {
 
 void RosOrders::obey(const RosChannel& channel, std::string_view message) {
     const RosOrder order = channel.row->decode(channel.type, message);
+    if (const auto* tracks = std::get_if<std::vector<RosTrack>>(&order))
+        return take(*tracks, stateOf(channel.room));
     const World& world = stateOf(channel.room).simulation().world();
     const std::string robot = world.robots()[channel.subject].id;
     if (state_->simulation().isReplay())
         return tell_("this run is a replay: robots go as recorded");
     if (const auto* twist = std::get_if<RosTwist>(&order)) return drive(robot, *twist);
     place(robot, std::get<RosPose>(order));
+}
+
+/// Takes what a tracker tells of a room; times are those of the headers.
+void RosOrders::take(const std::vector<RosTrack>& tracks, ServerState& state) {
+    constexpr double kNanosecond = 1e-9, kFarthest = 1e6;
+    Simulation& simulation = state.simulation();
+    const SimTime now = simulation.world().time();
+    for (const RosTrack& track : tracks) {
+        std::string name = track.name;
+        for (char& letter : name)
+            if (!isWord({&letter, 1})) letter = '_';
+        const auto [x, y] = track.place;
+        if (!(std::abs(x) < kFarthest) || !(std::abs(y) < kFarthest))
+            return tell_("the place of track " + name + " must be numbers");
+        const double time = static_cast<double>(track.time) * kNanosecond;
+        if (!simulation.tracks().tell({.told = now,
+                                       .time = track.time == 0 ? seconds(now) : time,
+                                       .track = name,
+                                       .kind = track.kind,
+                                       .place = track.place}))
+            return tell_("too many tracks are told");
+    }
 }
 
 void RosOrders::drive(const std::string& robot, const RosTwist& twist) {

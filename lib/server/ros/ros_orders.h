@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "server/ros/ros_topics.h"
 #include "server/server_state.h"
@@ -76,6 +77,7 @@ class RosOrders {
     void takeAnswer();
     [[nodiscard]] ServerState& stateOf(std::size_t room);
     [[nodiscard]] ServerState& stateOf(const std::string& robot);
+    void take(const std::vector<RosTrack>& tracks, ServerState& state);
     void drive(const std::string& robot, const RosTwist& twist);
     void release(const std::string& robot, std::int64_t hold);
     void place(const std::string& robot, const RosPose& pose);

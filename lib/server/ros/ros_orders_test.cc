@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "base/error.h"
+#include "sense/formats/ros_messages.h"
+#include "server/ros/ros_topics.h"
 #include "support/test_world.h"
 
 namespace ispace {
@@ -34,6 +39,32 @@ TEST(RosOrders, TellsWhyARequestNeedsAToken) {
     ASSERT_EQ(answers.size(), 3U);
     EXPECT_TRUE(answers[2].starts_with("done: ")) << answers[2];
     EXPECT_TRUE(room.simulation.paused());
+}
+
+TEST(RosOrders, MarkersOfATrackerAreTracks) {
+    testing::TestWorld room({Clock::Kind::Real, 1});
+    ServerState state(room.simulation);
+    std::vector<std::string> told;
+    RosOrders orders(state, [&told](const std::string& error) { told.push_back(error); });
+    std::vector<RosRoom> rooms(1);
+    rooms[0].simulation = &room.simulation;
+    nameFrames(rooms);
+    const std::vector<RosChannel> channels = rosChannels(rooms);
+    const auto tracks = std::find_if(
+        channels.begin(), channels.end(),
+        [](const RosChannel& channel) { return channel.topic == "/tracks" && channel.isInput(); });
+    ASSERT_NE(tracks, channels.end());
+    std::vector<RosPerson> people = {{"ann", {{1, -2}, {}}, 0.25, 1.7}};
+    orders.obey(*tracks, peopleMessage({2'500'000'000, "map"}, people));
+    const auto present = room.simulation.tracks().present(room.world.time());
+    ASSERT_EQ(present.size(), 1U);
+    EXPECT_EQ(present[0]->track, "0");
+    EXPECT_EQ(present[0]->time, 2.5);
+    EXPECT_EQ(present[0]->place, Point2(1, -2));
+    people[0].pose.position.x = std::nan("");
+    orders.obey(*tracks, peopleMessage({3, "map"}, people));
+    EXPECT_EQ(told.size(), 1U);
+    EXPECT_THROW(orders.obey(*tracks, std::string_view("\0\1\0\0\2\0\0\0", 8)), FormatError);
 }
 
 }  // namespace

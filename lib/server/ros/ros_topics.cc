@@ -264,6 +264,7 @@ std::string bumperOf(const RosMoment& moment, std::size_t robot, std::size_t par
 
 RosOrder speedsOf(RosType type, std::string_view message) { return twistOf(type, message); }
 RosOrder placeOf(RosType /*type*/, std::string_view message) { return poseOf(message); }
+RosOrder toldOf(RosType /*type*/, std::string_view message) { return tracksOf(message); }
 
 using Of = RosRow::Of;
 constexpr RosQuality kLatched{.depth = 1, .is_latched = true}, kNewest{.depth = 1},
@@ -277,6 +278,7 @@ constexpr RosRow kRows[] = {
     {"map", RosType::OccupancyGrid, Of::Room, 0, kLatched, mapOf},
     {"room", RosType::MarkerArray, Of::Room, 0, kLatched, roomOf},
     {"people", RosType::MarkerArray, Of::Room, 10, kDefault, peopleOf},
+    {"tracks", RosType::MarkerArray, Of::Room, 0, kDefault, nullptr, toldOf},
     {"diagnostics", RosType::DiagnosticArray, Of::World, 1, kDefault, diagnosticsOf},
     {"odom", RosType::Odometry, Of::Robot, 50, kDefault, odometryOf},
     {"sonar", RosType::Range, Of::Sonar, 10, kSensorData, sonarOf},
@@ -331,7 +333,7 @@ void addOf(const RosRow& row, std::span<const RosRoom> rooms, std::vector<RosCha
         robots += room.world().robots().size();
     }
     // Programs for one robot know no name of it.
-    if (row.decode == nullptr || robots != 1) return;
+    if (row.decode == nullptr || robots != 1 || row.subject != Of::Robot) return;
     const std::size_t room = out.back().room;
     out.push_back(
         {.topic = "/" + std::string(row.name), .type = row.type, .room = room, .row = &row});

@@ -83,8 +83,8 @@ struct RosMoment {
     [[nodiscard]] RosHeader header() const { return {now(), frames().room}; }
 };
 
-/// A message to a robot: its speeds, or its pose in the world.
-using RosOrder = std::variant<RosTwist, RosPose>;
+/// A message to a robot, its speeds or its pose in the world; or tracks in a room.
+using RosOrder = std::variant<RosTwist, RosPose, std::vector<RosTrack>>;
 
 /// One row of the table of topics.
 struct RosRow {

@@ -235,7 +235,8 @@ function drawMap(shown) {
   plan.draw(context, view, shown('names'));
   if (frame) {
     movers.draw(context, view, {
-      scans: shown('scans'), trails: shown('trails'), ways: shown('ways'), names: shown('names'), chosen, selected,
+      scans: shown('scans'), trails: shown('trails'), ways: shown('ways'), tracks: shown('tracks'), names: shown('names'),
+      chosen, selected,
       isOn: id => states.isOn(id), lookOf: kind => layers.of(kind),
     });
     for (const driver of drivers.values()) {
@@ -558,7 +559,7 @@ function panned(dx, dy) {
 }
 
 for (const [id, act] of Object.entries(actions)) part(id).onclick = () => plan && act();
-for (const id of ['scans', 'trails', 'ways', 'names']) part(id).onchange = redraw;
+for (const id of ['scans', 'trails', 'ways', 'tracks', 'names']) part(id).onchange = redraw;
 
 const shortcuts = {' ': 'run', '.': 'step', f: 'follow', g: 'send', m: 'measure', v: 'solid', 0: 'fit', '+': 'closer', '=': 'closer', '-': 'farther'};
 /** Of keys that seek in a record, how many seconds. */

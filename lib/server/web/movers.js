@@ -31,6 +31,7 @@ export class Movers {
     this.nearest = new Map();  // of each scan: the shortest range in metres
     this.ways = new Map();  // by id: the points ahead, and ways that begin behind stairs and lifts
     this.floor = new Map();  // PIR sensors, mats and gates
+    this.tracks = before?.tracks ?? new Map();  // by name: what trackers tell, with its trail
     this.byId = new Map(this.all.map(mover => [mover.id, mover]));
     for (const mover of this.all) {
       const {x, y, heading, speed, rotspeed, stall, phase, trail = []} = before?.byId.get(mover.id) ?? {};
@@ -58,6 +59,7 @@ export class Movers {
       if (way.length + later.length > 0) this.ways.set(id, {way: pointsOf(way), later: later.map(pointsOf)});
       else this.ways.delete(id);
     }
+    this.takeTracks(frame.tracks ?? []);
     for (const reading of frame.readings) {
       if (reading.r) {
         this.scans.set(reading.id, this.pathsOf(reading));
@@ -67,6 +69,21 @@ export class Movers {
         this.scans.set(reading.id, {area: new Path2D(), hits: reading.points.map(part => part / 1000), size: 7});
       else this.floor.set(reading.id, reading);
     }
+  }
+
+  /** Rows [name, x, y] of the tracks that are told now. */
+  takeTracks(rows) {
+    const told = new Set();
+    for (const [name, x, y] of rows) {
+      const track = this.tracks.get(name) ?? {trail: []};
+      Object.assign(track, {x: x / 1000, y: y / 1000});
+      const last = track.trail.at(-1);
+      if (!last || Math.hypot(track.x - last[0], track.y - last[1]) > kTrailStep) track.trail.push([track.x, track.y]);
+      if (track.trail.length > kTrail) track.trail.shift();
+      this.tracks.set(name, track);
+      told.add(name);
+    }
+    for (const name of [...this.tracks.keys()]) if (!told.has(name)) this.tracks.delete(name);
   }
 
   /** A scan as an area seen and the places it hit, in metres. */
@@ -104,13 +121,14 @@ export class Movers {
   }
 
   /** isOn(id): whether something is switched on; lookOf(kind): of sensors, see Layers */
-  draw(context, view, {scans, trails, ways, names, chosen, selected, isOn, lookOf}) {
+  draw(context, view, {scans, trails, ways, tracks, names, chosen, selected, isOn, lookOf}) {
     this.lookOf = lookOf;
     this.drawFloorSensors(context, view);
     this.drawActuators(context, view, isOn);
     if (scans) this.drawScans(context, view, selected);
     if (trails) this.drawTrails(context, view, selected);
     if (ways) this.drawWays(context, view, chosen);
+    if (tracks) this.drawTracks(context, view, names);
     this.drawSensors(context, view);
     for (const mover of this.all) {
       if (mover.x === undefined) continue;
@@ -176,6 +194,31 @@ export class Movers {
     }
     context.setLineDash([]);
     context.globalAlpha = 1;
+  }
+
+  /** What trackers tell, as diamonds with dotted trails, beside the truth. */
+  drawTracks(context, view, names) {
+    const size = 7 / view.scale, color = '#9c0f72';
+    for (const [name, {x, y, trail}] of this.tracks) {
+      view.inMetres(context);
+      context.strokeStyle = color;
+      context.lineWidth = 1.5 / view.scale;
+      context.setLineDash([2 / view.scale, 3 / view.scale]);
+      context.beginPath();
+      for (const point of trail) context.lineTo(...point);
+      context.stroke();
+      context.setLineDash([]);
+      context.lineWidth = 2 / view.scale;
+      context.beginPath();
+      for (const [dx, dy] of [[1, 0], [0, 1], [-1, 0], [0, -1]]) context.lineTo(x + dx * size, y + dy * size);
+      context.closePath();
+      context.stroke();
+      if (!names) continue;
+      const [px, py] = view.toPage(x, y);
+      view.inPixels(context);
+      context.fillStyle = color;
+      context.fillText(name, px + 10, py + 14);
+    }
   }
 
   drawFloorSensors(context, view) {

@@ -278,6 +278,24 @@ std::string wayText(const std::string& mover, const MoverWays& ways) {
     return out += '}';
 }
 
+/// Appends what programs tell of people and robots, if they do.
+void appendTracks(std::string& out, const std::vector<const ToldTrack*>& tracks) {
+    if (tracks.empty()) return;
+    char separator = '[';
+    out += ",\"tracks\":";
+    for (const ToldTrack* const track : tracks) {
+        out += std::exchange(separator, ',');
+        out += '[';
+        appendText(out, track->source.empty() ? track->track : track->source + '/' + track->track);
+        out += ',';
+        append(out, fixed(track->place.x));
+        out += ',';
+        append(out, fixed(track->place.y));
+        out += ']';
+    }
+    out += ']';
+}
+
 /// Appends elements of a list.
 void appendElement(std::string& list, const std::string& element) {
     if (!list.empty()) list += ',';
@@ -392,7 +410,9 @@ std::string WebFrames::stateText() const {
                      fixed(status.pose.heading), fixed(status.speed), fixed(status.rotspeed),
                      status.stall ? 1 : 0, fixed(status.phase)});
     }
-    return out += ']';
+    out += ']';
+    appendTracks(out, simulation_->tracks().present(world.time()));
+    return out;
 }
 
 bool WebFrames::isNew(std::size_t sensor) const {

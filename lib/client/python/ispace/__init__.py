@@ -13,10 +13,10 @@
     report = ispace.coverage("room.env", ispace.arrange("room.env", sensor="urg-04lx:3"))
     print(report.coverage.exact)
 
-Robot and Person drive, LaserSensor, Camera and their kin read, World controls the clock, changes and events; each
-is a separate connection to a running simrun, by its address ``"127.0.0.1:7001"``. Units are those of the protocol:
-metres, degrees, simulated seconds; frames are right-handed and headings counter-clockwise. Failures raise an Error
-with the server's text. The standard library is enough; arrays are numpy's if it is installed.
+Robot and Person drive, LaserSensor, Camera and their kin read, World controls the clock, changes and events, Node is
+a computer of a sensor network; each is a separate connection to a running simrun, by its address
+``"127.0.0.1:7001"``. Units are those of the protocol: metres, degrees, simulated seconds; frames are right-handed and
+headings counter-clockwise. Failures raise an Error with the server's text. The standard library is enough; arrays are numpy's if it is installed.
 
 VectorEnv and Env are worlds for learners, which require numpy; check_vector_env checks such environments of any make.
 """
@@ -38,6 +38,7 @@ from .errors import (
 from .filters import CoverageReport, Figure, Layout, Object, Record, arrange, coverage, info, scan
 from .mote import Mote, MoteReport
 from .movers import Bumper, End, Limits, Motion, Odometry, Person, Robot, Sonar, Status
+from .node import Node, NodeMessage
 from .pir import Pir, Presence
 from .radar import Detection, Detections, Radar
 from .readings import Burst, Cloud, Depths, Fix, Load, Passages, Picture, Reading, Scan
@@ -128,6 +129,8 @@ __all__ = [
     "Mote",
     "MoteReport",
     "Motion",
+    "Node",
+    "NodeMessage",
     "Object",
     "Odometry",
     "Passages",

@@ -15,6 +15,7 @@ from typing import IO, Optional
 from .errors import ToolError
 from .filters import Option, Placed, Room, arguments_of, last_line, operands, tool
 from .movers import Person, Robot
+from .node import Node
 from .sensors import Camera, LaserSensor, Ranger, Sensor
 from .world import World
 
@@ -104,6 +105,10 @@ class Simrun:
     def sensor(self, id: str) -> Sensor:
         """Reads a sensor of any kind."""
         return Sensor(self.address, id)
+
+    def node(self, id: str) -> Node:
+        """Takes a node of its sensor network."""
+        return Node(self.address, id)
 
     def world(self) -> World:
         """Watches and controls the world and its clock."""

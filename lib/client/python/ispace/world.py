@@ -37,6 +37,12 @@ class Lift:
     calls: List[str]  #: storeys, in the order in which it serves them
 
 
+def track_request(prefix: str, name: str, x: float, y: float, kind: str, time: Optional[float]) -> str:
+    """The request TRACK."""
+    at = "" if time is None else f" t={text_of(time)}"
+    return f"TRACK {name} {prefix}{text_of(x)},{text_of(y)}{at}" + (f" kind={kind}" if kind else "")
+
+
 class World(Client):
     """The simulated world and its clock (role WORLD)."""
 
@@ -183,6 +189,15 @@ class World(Client):
     def mark(self, text: str) -> None:
         """Writes a line into the records and to all clients that read events."""
         self._ask(f"MARK {text}")
+
+    def track(
+        self, name: str, x: float, y: float, kind: str = "", time: Optional[float] = None, storey: str = ""
+    ) -> None:
+        """Tells where a tracker sees a person or robot, for the page, the record and topics.
+
+        ``time`` is that of the position, now by default; ``storey`` belongs to buildings.
+        """
+        self._ask(track_request(f"{storey}/" if storey else "", name, x, y, kind, time))
 
     def follow(self, *kinds: str) -> None:
         """Follow events of these kinds from now on, or of all."""

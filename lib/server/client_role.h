@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Roles of the protocol that extensions add to a run: such a role has requests of its own, may read
+// sensors by its own clock, and may make the world wait for its clients.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/joined_worlds.h"
+#include "sim/simulation.h"
+
+namespace ispace {
+
+/// A request of a role, as a row for HELP.
+struct RoleRequest {
+    std::string_view verb, arguments;
+    std::size_t least = 0, most = 0;  ///< number of arguments
+};
+
+/// Answer to a request: a line with its end, or a wait.
+struct RoleAnswer {
+    std::string line;
+    bool waits = false;  ///< asked again, with the same words, once ClientRole::waits() is false
+};
+
+/// One client in a role. SCAN, STREAM, STOP, TRACK, HELP and QUIT are answered by the server.
+class ClientRole {
+  public:
+    virtual ~ClientRole() = default;
+    [[nodiscard]] virtual std::span<const RoleRequest> requests() const = 0;
+    /// \pre words has the verb of a row of requests(), and a permitted number of arguments
+    virtual RoleAnswer request(std::span<const std::string_view> words) = 0;
+    /// Returns true while a request must wait.
+    [[nodiscard]] virtual bool waits() const = 0;
+    /// Returns lines for the client, after each step of the world. \param has_room false: the
+    /// client reads slowly; lines are kept for later, a bounded number of them
+    virtual std::string stepped(bool has_room) = 0;
+    /// Returns the names of the sensors that the role may read, across the run.
+    [[nodiscard]] virtual std::span<const std::string> sensors() const = 0;
+    /// Returns the time on the client's clock, seconds.
+    [[nodiscard]] virtual double clock(SimTime time) const = 0;
+};
+
+/// A kind of role, and what its clients share.
+class RoleService {
+  public:
+    virtual ~RoleService() = default;
+    [[nodiscard]] virtual std::string_view verb() const = 0;  ///< "NODE"
+    /// Takes the role for one client until the result is destroyed. \param answer the line for the
+    /// client \returns null if it is refused
+    virtual std::unique_ptr<ClientRole> take(std::string_view id, std::string& answer) = 0;
+    /// Called after each step of the world, before the clients' turn.
+    virtual void stepped() = 0;
+    /// Returns true while a client keeps the world from its next step.
+    [[nodiscard]] virtual bool holdsWorld() const = 0;
+};
+
+/// Makes the service of an extension for a run; null if the scenes ask for none. \param rooms of
+/// the run; the only one has the id "" \param seed of the run \throws FormatError for records that
+/// contradict each other
+using MakeRoleService = std::unique_ptr<RoleService> (*)(std::span<const JoinedRoom> rooms,
+                                                         std::uint64_t seed);
+
+}  // namespace ispace
