@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/importers.h"
+#include "scene/placement_schemas.h"
 
 #ifdef ISPACE_HAS_CALIBRATION
 #include "extensions/calibration/calibrate.h"
@@ -17,6 +18,9 @@
 #ifdef ISPACE_HAS_LEARNING
 #include "extensions/learning/learning.h"
 #endif
+#ifdef ISPACE_HAS_NODES
+#include "extensions/nodes/nodes.h"
+#endif
 #ifdef ISPACE_HAS_REALITY
 #include "extensions/reality/reality.h"
 #endif
@@ -25,10 +29,13 @@ namespace ispace {
 
 namespace {
 
-/// Adds the formats that extensions read. Returns true.
+/// Adds the formats and records that extensions read. Returns true.
 bool addFormats() {
 #ifdef ISPACE_HAS_CALIBRATION
     addImporters(calibrationImporters());
+#endif
+#ifdef ISPACE_HAS_NODES
+    addSceneSchemas(nodeSchemas());
 #endif
     return true;
 }
@@ -52,6 +59,15 @@ std::span<const ToolExtension> toolExtensions() {
 #endif
     };
     return extensions;
+}
+
+std::span<const MakeRoleService> roleServices() {
+    static const std::vector<MakeRoleService> services = {
+#ifdef ISPACE_HAS_NODES
+        makeNodes,
+#endif
+    };
+    return services;
 }
 
 }  // namespace ispace

@@ -5,11 +5,15 @@
 #include <vector>
 
 #include "cli/extension.h"
+#include "server/client_role.h"
 
 namespace ispace {
 
 /// Returns the extensions that this build has, of all tools. From the first call on their formats
-/// are read, see addImporters().
+/// and records are read, see addImporters() and addSceneSchemas().
 std::span<const ToolExtension> toolExtensions();
+
+/// Returns the roles that extensions add to the protocol of simrun.
+std::span<const MakeRoleService> roleServices();
 
 }  // namespace ispace

@@ -12,6 +12,7 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "cli/common_options.h"
+#include "extensions.h"
 #include "io/exporters.h"
 #include "io/glb/glb_write.h"
 #include "sense/formats/mcap_writer.h"
@@ -143,6 +144,7 @@ RosScenery rosScenery() { return {.map = mapOf, .room = meshOf}; }
 
 ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title,
                            const std::vector<std::string>& replayed) {
+    server.serveRoles(roleServices());
     ServedAddresses out;
     if (options.web)
         out.web = server.serveWeb(

@@ -11,6 +11,9 @@
 
 #include "base/error.h"
 #include "base/number.h"
+#include "sense/formats/mcap_writer.h"
+#include "sense/formats/ros_messages.h"
+#include "sense/formats/ros_types.h"
 
 namespace ispace {
 namespace {
@@ -154,6 +157,45 @@ TEST(TrackFiles, RoundedTimesHaveTheirMeanInterval) {
     EXPECT_DOUBLE_EQ(
         intervalOf(readTracks("t,track,x,y\n0,1,0,0\n0.5,1,0,0\n1.25,1,0,0\n", "f")).value(), 0.5);
     EXPECT_FALSE(intervalOf(readTracks("t,track,x,y\n0,1,0,0\n0,2,0,0\n", "f")));
+}
+
+TEST(TrackFiles, AKindThatChangesIsNone) {
+    const TrackFile file = readTracks(
+        "t,track,x,y,kind\n0,a,0,0,person\n1,a,0,0,robot\n0,b,0,0,robot\n1,b,0,0,robot\n", "f");
+    EXPECT_EQ(file.kinds, (std::vector<std::string>{"", "robot"}));
+}
+
+/// A bag with what two people's markers say, every half second, on this topic.
+std::string bagOf(const std::string& topic) {
+    std::string bag;
+    McapWriter writer([&bag](std::string_view bytes) { bag += bytes; }, "ros2", "cdr", rosSchemas(),
+                      {{static_cast<std::uint16_t>(RosType::MarkerArray), topic}});
+    for (int k = 0; k < 4; ++k) {
+        const auto time = static_cast<std::uint64_t>(k) * 500'000'000;
+        const std::vector<RosPerson> people = {{"a", {{1.5, 0.25 * k}, {}}, 0.25, 1.7},
+                                               {"b", {{-1, -2}, {}}, 0.25, 1.7}};
+        std::string record;
+        appendMcapMessage(record, 0, static_cast<std::uint32_t>(k), time,
+                          peopleMessage({time, "map"}, people));
+        writer.add(record);
+    }
+    writer.finish();
+    return bag;
+}
+
+TEST(TrackFiles, MarkersOfABagAreTracks) {
+    for (const char* const topic : {"/fusion/tracks", "/markers"}) {
+        const TrackFile file = readTracks(bagOf(topic), "bag.mcap");
+        ASSERT_EQ(file.tracks.size(), 2U) << topic;
+        ASSERT_EQ(file.rows.size(), 8U);
+        EXPECT_EQ(file.rows[7].time, 1.5);
+        EXPECT_EQ(file.rows[6].place, Point2(1.5, 0.75));
+        EXPECT_EQ(file.rows[7].place, Point2(-1, -2));
+        EXPECT_EQ(intervalOf(file), 0.5);
+    }
+    std::string cut = bagOf("/tracks");
+    cut.resize(cut.size() / 2);
+    EXPECT_THROW(static_cast<void>(readTracks(cut, "bag.mcap")), FormatError);
 }
 
 TEST(TrackFiles, FaultsNameTheirLine) {

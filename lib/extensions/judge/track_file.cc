@@ -6,11 +6,15 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "base/error.h"
 #include "base/number.h"
+#include "extensions/reality/mcap_messages.h"
 #include "scene/run/run_changes.h"
+#include "sense/formats/ros_messages.h"
+#include "sense/formats/ros_types.h"
 
 namespace ispace {
 
@@ -23,6 +27,17 @@ class TrackReader {
     explicit TrackReader(const std::string& name) : name_(name) {}
 
     TrackFile read(std::string_view bytes) {
+        if (isMcap(bytes))
+            readMarkers(bytes);
+        else
+            readLines(bytes);
+        return finished();
+    }
+
+  private:
+    enum class Form { Unknown, Csv, Json, Mot };
+
+    void readLines(std::string_view bytes) {
         while (!bytes.empty()) {
             const std::size_t end = std::min(bytes.find('\n'), bytes.size());
             std::string_view line = bytes.substr(0, end);
@@ -36,6 +51,41 @@ class TrackReader {
                 fail("the line is longer than " + std::to_string(kMaxLineBytes) + " bytes");
             take(line);
         }
+    }
+
+    /// Reads the markers of the topic that is called /tracks, or of the only one.
+    void readMarkers(std::string_view bytes) {
+        std::set<std::string, std::less<>> topics;
+        const std::string_view type = nameOf(RosType::MarkerArray);
+        readMcap(bytes, name_, [&](const McapMessage& message) {
+            if (message.type == type) topics.emplace(message.topic);
+        });
+        std::string topic;
+        for (const std::string& one : topics)
+            if (one.ends_with("/tracks")) topic = topic.empty() ? one : topic;
+        if (topic.empty() && topics.size() == 1) topic = *topics.begin();
+        if (topic.empty()) {
+            std::string all;
+            for (const std::string& one : topics) all.append(all.empty() ? "" : ", ").append(one);
+            throw FormatError({name_, 0, 0,
+                               topics.empty() ? "no topic with markers (" + std::string(type) + ")"
+                                              : "no topic /tracks; markers are in " + all});
+        }
+        constexpr double kNanosecond = 1e-9;
+        readMcap(bytes, name_, [&](const McapMessage& message) {
+            if (message.topic != topic || message.type != type) return;
+            ++line_;
+            for (const RosTrack& track : tracksOf(message.bytes)) {
+                const auto time = track.time == 0 ? message.time : track.time;
+                if (!(std::abs(track.place.x) <= kMostMetres) ||
+                    !(std::abs(track.place.y) <= kMostMetres))
+                    throw FormatError({"", 0, 0, "the place of a marker is no number in range"});
+                add(static_cast<double>(time) * kNanosecond, track.name, track.place, track.kind);
+            }
+        });
+    }
+
+    TrackFile finished() {
         if (file_.rows.empty())
             throw FormatError(
                 {name_, 0, 0, "no tracks: wanted lines of t, track, x, y", Severity::Error});
@@ -51,11 +101,9 @@ class TrackReader {
             line_ = std::max(twice->line, std::next(twice)->line);
             fail("track " + printable(file_.tracks[twice->track]) + " is told twice at this time");
         }
+        for (const std::size_t track : changing_) file_.kinds[track].clear();
         return std::move(file_);
     }
-
-  private:
-    enum class Form { Unknown, Csv, Json, Mot };
 
     [[noreturn]] void fail(const std::string& what) const {
         throw FormatError({name_, line_, 0, what, Severity::Error});
@@ -161,14 +209,14 @@ class TrackReader {
             file_.tracks.push_back(track);
             file_.kinds.emplace_back(kind);
         }
-        std::string& its = file_.kinds[known->second];
-        if (its != kind) fail("track " + printable(track) + " changes its kind");
+        if (file_.kinds[known->second] != kind) changing_.insert(known->second);
         file_.rows.push_back({time, known->second, place, line_});
     }
 
     const std::string& name_;
     TrackFile file_;
     std::map<std::string, std::size_t> index_;  // of file_.tracks
+    std::set<std::size_t> changing_;            // tracks with rows of several kinds
     Form form_ = Form::Unknown;
     std::array<std::size_t, 5> columns_{};  // of t, track, x, y, kind
     std::vector<std::string_view> fields_;

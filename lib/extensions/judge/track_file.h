@@ -16,13 +16,13 @@ struct TrackRow {
     double time = 0;        ///< seconds; of MOT files the number of the frame
     std::size_t track = 0;  ///< index in TrackFile::tracks
     Point2 place;
-    int line = 0;  ///< of the file
+    int line = 0;  ///< of the file; of MCAP the number of the message
 };
 
 /// What a tracker told of a run.
 struct TrackFile {
     std::vector<std::string> tracks;  ///< names, in the order of their first rows
-    /// "person" or "robot" if all rows of the track say so, by "kind"; "" if none does.
+    /// "person" or "robot" if all rows of the track say so, by "kind"; else "".
     std::vector<std::string> kinds;
     std::vector<TrackRow> rows;  ///< by time, then by track
     bool counts_frames = false;  ///< a MOT file: times are numbers of frames, from 1 on
@@ -32,8 +32,11 @@ struct TrackFile {
 /// - CSV with a line of heads: t, track, x, y and perhaps kind, in any order, beside other columns;
 /// - JSONL, an object a line with these keys; `track` is a text or a number;
 /// - MOT, 9 or 10 numbers a line without heads: frame, track, four of a box, confidence, x, y[, z]
-/// in metres. Empty lines and those that begin with # are skipped. \throws FormatError with the
-/// line: missing columns, bad numbers, a track twice at one time, no row
+/// in metres;
+/// - MCAP, markers (visualization_msgs/MarkerArray) of a topic /tracks, or of the only one of this
+/// type: NS/ID is the track, the stamp its time, a text `person` or `robot` its kind.
+/// Empty lines and those that begin with # are skipped. \throws FormatError with the line or byte:
+/// missing columns, bad numbers, a track twice at one time, no row
 TrackFile readTracks(std::string_view bytes, const std::string& name);
 
 /// Returns the interval from row to row of a track: the smallest one of all, or the mean of all if

@@ -10,6 +10,7 @@
 
 #include "base/number.h"
 #include "extensions/reality/log_parts.h"
+#include "extensions/reality/mcap_messages.h"
 
 namespace ispace {
 
@@ -58,7 +59,7 @@ enum McapOpcode : std::uint8_t {
 
 class McapRecords {
   public:
-    McapRecords(const std::string& name, RosLogBuilder& builder) : name_(name), builder_(builder) {}
+    McapRecords(const std::string& name, const McapUse& use) : name_(name), use_(use) {}
 
     void read(std::string_view bytes) {
         if (!bytes.starts_with(kMcapMagic))
@@ -143,13 +144,12 @@ class McapRecords {
     void readMessage(McapBytes in, const std::string& place) {
         const auto id = in.number<std::uint16_t>();
         static_cast<void>(in.number<std::uint32_t>());
-        static_cast<void>(in.number<std::uint64_t>());
+        const auto time = in.number<std::uint64_t>();
         static_cast<void>(in.number<std::uint64_t>());
         const auto channel = channels_.find(id);
         if (channel == channels_.end())
             refuseBytes("a message of channel " + std::to_string(id) + ", which the file lacks");
-        if (builder_.reads(channel->second.type))
-            builder_.add(channel->second.topic, channel->second.type, in.rest(), name_, place);
+        use_({channel->second.topic, channel->second.type, time, in.rest(), place});
     }
 
     void readChunk(McapBytes in) {
@@ -173,7 +173,7 @@ class McapRecords {
     }
 
     const std::string& name_;
-    RosLogBuilder& builder_;
+    const McapUse& use_;
     std::map<std::uint16_t, std::string> schemas_;
     std::map<std::uint16_t, Channel> channels_;
     std::string chunk_place_;
@@ -223,8 +223,17 @@ std::string unpackedChunk(std::string_view compression, std::string_view packed,
     return out;
 }
 
+bool isMcap(std::string_view bytes) { return bytes.starts_with(kMcapMagic); }
+
+void readMcap(std::string_view bytes, const std::string& name, const McapUse& use) {
+    McapRecords(name, use).read(bytes);
+}
+
 void addMcap(std::string_view bytes, const std::string& name, RosLogBuilder& builder) {
-    McapRecords(name, builder).read(bytes);
+    readMcap(bytes, name, [&](const McapMessage& message) {
+        if (builder.reads(message.type))
+            builder.add(message.topic, message.type, message.bytes, name, message.place);
+    });
 }
 
 }  // namespace ispace
