@@ -18,6 +18,9 @@
 #ifdef ISPACE_HAS_LEARNING
 #include "extensions/learning/learning.h"
 #endif
+#ifdef ISPACE_HAS_NAVIGATION
+#include "extensions/navigation/navigation.h"
+#endif
 #ifdef ISPACE_HAS_NODES
 #include "extensions/nodes/nodes.h"
 #endif
@@ -53,6 +56,9 @@ std::span<const ToolExtension> toolExtensions() {
 #endif
 #ifdef ISPACE_HAS_LEARNING
         {"learning", "simrun", makeLearning},
+#endif
+#ifdef ISPACE_HAS_NAVIGATION
+        {"navigation", "coverage", makeNavigationJudge},
 #endif
 #ifdef ISPACE_HAS_REALITY
         {"reality", "scan", makeRealityOptions},
