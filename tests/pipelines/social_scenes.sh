@@ -54,6 +54,23 @@ ros="/usr/bin/python3 $bench/ros_planner.py {ros} {robot} {goal}"
 social --only frontal --seeds 1 --baselines none --clock real:2 --planner "ros=$ros" -o ros >summary || fail "$(cat err)"
 grep -q '"success": true' ros/results.jsonl || fail "$(cat ros/results.jsonl)"
 
+# As worlds for learning: people go their ways from the starts of the scene, and an episode is judged as any run.
+social --write rooms --seeds 2 || fail "$(cat err)"
+[ "$(ls rooms | wc -l)" -eq 37 ] || fail "not 18 rooms of two seeds and a task: $(ls rooms)"
+others=$(ls rooms/*.env | grep -v 'crossing-1' | sed 's/^/--room /')
+# shellcheck disable=SC2086
+{ echo reset; printf 'step\n%.0s' {1..80}; echo export 0 episode; echo quit; } |
+    simrun rooms/crossing-1.env $others --vector 40 --shm "social-$$" --task rooms/task.yaml --seed 1 >replies ||
+    fail "worlds for learning"
+rm -f "/dev/shm/social-$$"
+cd episode
+$(sed -n '1s/^# //p' script.txt) --record run -q >addresses
+expect_status 3 coverage --run run --goal goal --require success
+grep -q 'the goal is not reached' err || fail "$(cat err)"
+coverage --run run --goal goal --json >figures
+grep -q '"duration":8,' figures || fail "$(cat figures)"
+cd ..
+
 # A planner that fails is named, with its last words; one that stands still fails the scene alone.
 expect_status 1 /usr/bin/python3 "$bench/run.py" --build "$binary_dir" --only frontal --seeds 1 --baselines none \
     --planner 'bad=sh -c "echo no map >&2; exit 1"' -o bad

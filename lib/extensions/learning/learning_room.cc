@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cli/common_options.h"
+#include "env/body.h"
 #include "env/point_location.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -285,6 +286,7 @@ LearningRoom::LearningRoom(Scene scene, const LearningTask& task, std::size_t go
     }
     for (std::size_t i = robots(); i < movers_.size(); ++i)
         vicinities_.push_back(&shared_.at(stops_[i]));
+    if (task.starts_in_scene) checkStart(scene_, movers_, obstacles_);
     addLasers();
     findFloor();
     findGoals(task, goals);
@@ -413,9 +415,44 @@ std::optional<Pose2> LearningRoom::dockNear(std::size_t cell) const {
     return Pose2{at, directionOf(unit.x, unit.y)};
 }
 
+/// Returns the middle of the task's zone as a goal, with the ways from the whole floor.
+RoomGoal LearningRoom::goalInZone(const LearningTask& task) const {
+    const auto& elements = scene_.environment.elements();
+    const auto zone = std::find_if(elements.begin(), elements.end(), [&](const Element& one) {
+        return one.record.keyword() == "zone" && one.id == task.zone;
+    });
+    if (zone == elements.end())
+        throw FormatError(
+            Diagnostic{"", 0, 0, "the room has no zone " + task.zone + ", the goal of the task"});
+    const Point2 at = bounds(zoneOutline(zone->record)).center();
+    const auto nearer = [&](std::uint32_t a, std::uint32_t b) {
+        return distance(cells_.center(a), at) < distance(cells_.center(b), at);
+    };
+    const std::uint32_t cell = *std::min_element(robot_cells_.begin(), robot_cells_.end(), nearer);
+    if (distance(cells_.center(cell), at) > FloorCells::kSide)
+        throw FormatError(
+            Diagnostic{"", 0, 0, "the robots have no room in the middle of the zone " + task.zone});
+    constexpr double kDetours = 4;
+    RoomGoal goal{at, {}, WaysTo(cells_, free_, cell, kDetours * longest_), {}};
+    goal.ways.forEachCell(cells_, [&](std::size_t start, double) {
+        if (distance(cells_.center(start), at) > task.reach + FloorCells::kSide)
+            goal.starts.push_back(static_cast<std::uint32_t>(start));
+    });
+    if (goal.starts.empty())
+        throw FormatError(Diagnostic{"", 0, 0, "no way leads to the zone " + task.zone});
+    return goal;
+}
+
 void LearningRoom::findGoals(const LearningTask& task, std::size_t count) {
     if (robot_cells_.empty())
         throw FormatError(Diagnostic{"", 0, 0, "no floor of the room is free for the robots"});
+    if (!task.zone.empty()) {
+        if (task.kind != LearningTask::Kind::Goal)
+            throw FormatError(
+                Diagnostic{"", 0, 0, "goal: zone is for the task goal, not for other kinds"});
+        goals_.push_back(goalInZone(task));
+        return;
+    }
     if (task.kind == LearningTask::Kind::Patrol || task.kind == LearningTask::Kind::Follow) return;
     // Spread by a stride that has no divisor in common with the number of cells.
     EpisodeRandom random(1);

@@ -173,8 +173,8 @@ class LearningRoom {
     static constexpr std::size_t kGoals = 192, kFewGoals = 48;
 
     /// \param scene with robots, each with a level laser, and as many people as a world has at most
-    /// \throws FormatError if a robot has no such laser, or no two points of the floor suit the
-    /// task
+    /// \throws FormatError if a robot has no such laser, no two points of the floor suit the task,
+    /// or the scene lacks its zone; as checkStart() if it has the starts
     LearningRoom(Scene scene, const LearningTask& task, std::size_t goals = kGoals);
     LearningRoom(const LearningRoom&) = delete;
     LearningRoom& operator=(const LearningRoom&) = delete;
@@ -221,6 +221,7 @@ class LearningRoom {
     void addLasers();
     void findFloor();
     void findGoals(const LearningTask& task, std::size_t count);
+    [[nodiscard]] RoomGoal goalInZone(const LearningTask& task) const;
     [[nodiscard]] std::optional<Pose2> dockNear(std::size_t cell) const;
 
     Scene scene_;

@@ -20,6 +20,7 @@ namespace {
 constexpr std::array<std::string_view, kTaskSignals> kSignalNames = {
     "step",  "steps", "reached", "collision", "progress", "way_progress", "distance", "clearance",
     "speed", "turn",  "change",  "new_floor", "floor",    "gap",          "aim"};
+constexpr std::array<std::string_view, 2> kStartNames = {"drawn", "scene"};
 constexpr std::array<std::string_view, 4> kKindNames = {"goal", "follow", "patrol", "dock"};
 
 }  // namespace
@@ -95,6 +96,11 @@ class TaskReader {
             fail(node, excerpt(node.scalar) + " is no number from " + formatDouble(least) + " to " +
                            formatDouble(most));
         return *value;
+    }
+    [[nodiscard]] std::string name(const YamlNode& node, const std::string& what) const {
+        if (node.kind != YamlNode::Kind::Scalar || node.scalar.empty())
+            fail(node, "the id of a " + what + " is a word");
+        return std::string(node.scalar);
     }
     /// Reads `[low, high]`, or one number for both.
     [[nodiscard]] TaskRange range(const YamlNode& node, double least, double most) const {
@@ -231,7 +237,14 @@ LearningTask readTask(std::string_view bytes, const std::string& name) {
               reader.readMap(node, "goal",
                              {{"distance", range_of(task.distance, 0, kFar)},
                               {"detour", number_of(task.detour, 1, kFactor)},
-                              {"radius", number_of(task.reach, kLeast, kFar)}});
+                              {"radius", number_of(task.reach, kLeast, kFar)},
+                              {"zone", [&](const YamlNode& value) {
+                                   task.zone = reader.name(value, "zone");
+                               }}});
+          }},
+         {"starts",
+          [&](const YamlNode& node) {
+              task.starts_in_scene = reader.word(node, kStartNames, "kind of starts") == 1;
           }},
          {"follow",
           [&](const YamlNode& node) {

@@ -85,6 +85,10 @@ struct LearningTask {
     TaskRange distance{3, 8};  ///< of the goal at the start, metres along a straight line
     double detour = 1.5;       ///< most metres of way for a metre of straight line
     double reach = 0.3;        ///< metres from the goal at which it is reached
+    std::string zone = {};     ///< whose middle is the goal, of Kind::Goal; "": goals are drawn
+    /// Robots and people begin where the scene has them, and all of its people are there; else
+    /// their starts are drawn.
+    bool starts_in_scene = false;
     TaskRange band{0.8, 1.5};  ///< of distances to follow at, metres between centres
     double near = 1;           ///< metres within which patrolled floor counts
     std::vector<TaskRow> rewards, ends, truncations;
@@ -102,7 +106,8 @@ LearningTask defaultTask(LearningTask::Kind kind);
 
 /// Reads a task file, YAML with the keys `task`, `step`, `robots`, `people`, `goal`, `follow`,
 /// `patrol`, `rewards`, `ends`, `truncations` and `randomise`; keys that are left out keep the
-/// defaults of the kind. \throws FormatError at the line of an unknown key, word or bad number
+/// defaults of the kind; `starts: scene` for starts_in_scene. \throws FormatError at the line of an
+/// unknown key, word or bad number
 LearningTask readTask(std::string_view bytes, const std::string& name);
 
 }  // namespace ispace

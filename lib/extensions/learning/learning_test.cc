@@ -277,6 +277,36 @@ TEST(LearningWorld, RepeatsWithSeveralRobots) {
     for (std::uint64_t seed = 0; seed < 3; ++seed) expectSameRun(setting, seed, 150);
 }
 
+TEST(LearningWorld, RepeatsFromTheStartsOfTheScene) {
+    const Scene scene =
+        sceneOf(std::string(kOffice) + "zone id=end at=6,3.5 size=1,1\n",
+                "robot id=r1 at=-6,0 heading=30 radius=0.2 height=0.4 speed=1 max_speed=1 accel=2\n"
+                "laser id=l1 on=r1 at=0,0,0.2 range=6 fov=180 step=2 rate=10\n"
+                "human id=ann at=-2,0 heading=180 speed=0.9 path=-6,0.5;-6,3 pause=1 loop=yes\n"
+                "human id=bob at=-3,-3 walk=wander\n"
+                "human id=cat at=4,3\n");
+    const LearningTask task =
+        taskOf("starts: scene\ngoal: {zone: end, radius: 0.5}\ntruncations: []\nends: []\n");
+    const LearningSetting setting = settingOf(task, scene);
+    LearningWorld world;
+    world.start(setting);
+    EXPECT_EQ(world.people(), 3U);
+    EXPECT_EQ(world.pose(0), (Pose2{{-6, 0}, Angle::degrees(30)}));
+    EXPECT_EQ(world.goal(setting, 0), (Point2{6, 3.5}));
+    for (std::uint64_t seed = 0; seed < 3; ++seed) expectSameRun(setting, seed, 150);
+}
+
+TEST(LearningRoom, RefusesScenesWithoutTheZoneOrWithOverlaps) {
+    const LearningTask zone = taskOf("goal: {zone: end}\n");
+    EXPECT_THROW(settingOf(zone), FormatError);
+    EXPECT_THROW(settingOf(taskOf("task: dock\ngoal: {zone: end}\n")), FormatError);
+    const Scene scene = sceneOf(kOffice,
+                                "robot id=r1 at=-6,0 radius=0.2\nlaser on=r1 at=0,0,0.2\n"
+                                "human at=-6,0.3\n");
+    EXPECT_NO_THROW(settingOf(taskOf(), scene));
+    EXPECT_THROW(settingOf(taskOf("starts: scene\n"), scene), FormatError);
+}
+
 TEST(LearningBatch, IsTheSameForAnyNumberOrderAndThreads) {
     const LearningTask task = taskOf("people: 3\ntruncations: [{signal: steps, above: 39}]\n");
     Batch alone(settingOf(task), 1), many(settingOf(task), 70);

@@ -94,7 +94,11 @@ void LearningWorld::place(const LearningSetting& setting) {
     };
     starts_.clear();
     goals_.clear();
-    for (std::size_t i = 0; i < room.robots(); ++i) {
+    if (task.starts_in_scene)
+        for (const Mover& mover : room.movers()) starts_.push_back(mover.pose);
+    for (std::size_t i = 0; i < room.robots() && task.starts_in_scene && !room.goals().empty(); ++i)
+        goals_.push_back(random_.below(room.goals().size()));
+    for (std::size_t i = starts_.size(); i < room.robots(); ++i) {
         Point2 at;
         for (int draw = 0; draw < kManyDraws; ++draw) {
             if (room.goals().empty()) {
@@ -113,8 +117,8 @@ void LearningWorld::place(const LearningSetting& setting) {
     const auto people = static_cast<std::size_t>(std::lround(random_.within(task.people)));
     // No person stands right before a robot.
     constexpr double kClear = 0.8, kNear = 1, kFar = 3;
-    for (std::size_t i = 0; i < std::min(people, room.people()) && !room.personCells().empty();
-         ++i) {
+    const std::size_t drawn = task.starts_in_scene ? 0 : std::min(people, room.people());
+    for (std::size_t i = 0; i < drawn && !room.personCells().empty(); ++i) {
         const Mover& person = room.movers()[room.robots() + i];
         const bool is_led = i == 0 && task.kind == LearningTask::Kind::Follow;
         bool is_placed = false;

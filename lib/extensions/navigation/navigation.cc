@@ -178,7 +178,7 @@ class NavigationJudge : public OptionGroup {
     }
 
     /// Judges a run through the rooms of a building, which are folders of its record.
-    NavigationJudgement judgeBuilding(const TaskInput& input) const {
+    [[nodiscard]] NavigationJudgement judgeBuilding(const TaskInput& input) const {
         if (!input.operands.empty())
             throw UsageError("--goal: the record of a building has its rooms: leave out " +
                              displayName(input.operands.front()));
@@ -209,8 +209,9 @@ class NavigationJudge : public OptionGroup {
         return judged(input, recordedNavigation(std::move(records), robot_, radii), goal);
     }
 
-    NavigationJudgement judged(const TaskInput& input, const RecordedNavigation& recorded,
-                               const NavigationGoal& goal) const {
+    [[nodiscard]] NavigationJudgement judged(const TaskInput& input,
+                                             const RecordedNavigation& recorded,
+                                             const NavigationGoal& goal) const {
         if (recorded.is_cut)
             warn(input.common, "coverage",
                  "the record ends in the midst of a step, which is left out");

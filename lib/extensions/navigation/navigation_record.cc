@@ -116,8 +116,10 @@ RecordedNavigation recordedNavigation(std::vector<RoomRecord> records, const std
             const bool is_robots = hit.id == recorded.robot || hit.other == recorded.robot;
             if (!is_robots && !(isPerson(moment, hit.id) && isPerson(moment, hit.other))) continue;
             const auto [first, second] = std::minmax(hit.id, hit.other);
-            recorded.run.contacts.push_back(
-                {moment.time, kindOf(moment, recorded.robot, hit), first + ' ' + second});
+            NavigationContact& one = recorded.run.contacts.emplace_back();
+            one.time = moment.time;
+            one.kind = kindOf(moment, recorded.robot, hit);
+            one.pair.append(first).append(1, ' ').append(second);
         }
         const auto self = moment.movers.find(recorded.robot);
         if (self == moment.movers.end()) continue;

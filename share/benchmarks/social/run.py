@@ -110,6 +110,22 @@ def write_scene(scene, seed, folder):
     return [target] if kind == "file" else [os.path.join(HERE, scene["file"]), target]
 
 
+def write_rooms(scenes, seeds, folder):
+    """Writes rooms NAME-SEED.env and task.yaml for simrun --vector; leaves out buildings and scripts."""
+    os.makedirs(folder, exist_ok=True)
+    limit = max(scene["limit"] for scene in scenes)
+    for scene in scenes:
+        if "layout" in scene or "script" in scene:
+            continue
+        with open(os.path.join(HERE, scene["file"]), encoding="utf-8") as file:
+            text = file.read()
+        for seed in range(1, seeds + 1):
+            write(folder, f"{scene['name']}-{seed}.env", varied(text, scene, seed))
+    write(folder, "task.yaml", "# The scenes of the social benchmark as worlds for learning.\n"
+          f"starts: scene\ngoal: {{zone: goal, radius: {REACH}}}\ntruncations:\n"
+          f"  - {{signal: steps, above: {10 * limit - 1}}}\n")
+
+
 def last_line(text):
     lines = text.strip().splitlines()
     return lines[-1] if lines else "no message"
@@ -294,6 +310,8 @@ def arguments():
                         "for nodes of ROS 2")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at a time")
     parser.add_argument("--keep", action="store_true", help="keep scenes and records below runs/")
+    parser.add_argument("--write", metavar="DIR", help="write the rooms of the seeds and task.yaml for simrun --vector, "
+                        "and exit")
     parser.add_argument("--list", action="store_true", help="list the scenes and exit")
     return parser.parse_args()
 
@@ -311,6 +329,9 @@ def main():
             print(f"run.py: no scene {name}; there are {', '.join(names)}", file=sys.stderr)
             return 2
     scenes = [scene for scene in scenes if not args.only or scene["name"] in args.only]
+    if args.write:
+        write_rooms(scenes, args.seeds, args.write)
+        return 0
     bench = Bench(args)
     planners = {}
     for name in [] if args.baselines == "none" else args.baselines.split(","):
