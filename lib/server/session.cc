@@ -155,9 +155,11 @@ void Session::request(std::string_view line) {
         return request.verb == words.front() && request.role.value_or(role_) == role_;
     });
     if (found == all.end()) {
-        const bool is_open = mayLook() && role_ == Role::None;
-        if (RoleService* const service = is_open ? serviceOf(words.front()) : nullptr)
-            return takeGuestRole(*service, words);
+        RoleService* const service = role_ == Role::None ? serviceOf(words.front()) : nullptr;
+        if (service != nullptr && !mayLook())
+            return error(401,
+                         {words.front(), " needs the token of this run: TOKEN x comes before it"});
+        if (service != nullptr) return takeGuestRole(*service, words);
         if (role_ == Role::Guest && guestRequest(words)) return;
         return refuse(words.front(), first);
     }

@@ -387,8 +387,8 @@ TEST(Session, ShutdownMayBeRefused) {
     EXPECT_EQ(talk.ask(world, "HELP"),
               "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | STATE [id] | RECORDS "
               "[room] | EVENTS "
-              "[kinds|off] | MARK "
-              "text | HELP | QUIT\n");
+              "[kinds|off] | MARK text | "
+              "TRACK id [storey/]x,y [t=s] [kind=person|robot] | HELP | QUIT\n");
 }
 
 }  // namespace

@@ -157,8 +157,8 @@ TEST(Session, Help) {
               "OK HELP SCAN | STREAM [every=k] | STOP | BINARY on|off | HELP | QUIT\n");
     EXPECT_EQ(talk.ask(talk.client("WORLD"), "HELP"),
               "OK HELP LIST | TIME | POSES | PAUSE | RESUME | STEP [n] | STATE [id] | RECORDS "
-              "[room] | EVENTS [kinds|off] | MARK "
-              "text | SHUTDOWN | HELP | QUIT\n");
+              "[room] | EVENTS [kinds|off] | MARK text | "
+              "TRACK id [storey/]x,y [t=s] [kind=person|robot] | SHUTDOWN | HELP | QUIT\n");
 }
 
 TEST(Session, TooLongCloses) {

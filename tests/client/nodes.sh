@@ -52,6 +52,40 @@ expect_status 1 "$examples/tracker_node" 1 network.3dm n1
 expect_status 2 "$examples/tracker_fusion" 1
 expect_status 1 "$examples/tracker_fusion" 1 hub
 
+# The client of Python, two nodes in one program.
+grep -v '^node' network.3dm >python.3dm
+cat >>python.3dm <<'END'
+node id=n1 sensors=l1 delay=20ms skew=1000ppm lockstep=yes
+node id=hub lockstep=yes
+END
+cat >nodes.py <<'END'
+import concurrent.futures
+
+import ispace
+
+with ispace.simrun("ispace.env", "python.3dm", clock="fast", until=2) as run:
+    with run.node("n1") as node, run.node("hub") as hub, run.world() as world:
+        assert node.sensors == ["l1"] and node.lockstep and hub.sensors == []
+        hub.hear("n1")
+        scan = node.scan("l1", ispace.Scan)
+        assert len(scan.ranges) == 181, len(scan.ranges)
+        assert node.send("two  words") == 1
+        with concurrent.futures.ThreadPoolExecutor() as pool:  # each waits for the other
+            times = list(pool.map(lambda one: one.await_time(0.5), (node, hub)))
+        assert 0.5 <= times[0] < 0.51 and 0.5 <= times[1] < 0.51, times
+        message = hub.receive(1)
+        assert (message.sender, message.number, message.text) == ("n1", 1, "two  words")
+        assert abs(message.time - 0.02) < 1e-9, message
+        node.track("a", 1, 2, 0.5, "person")
+        world.track("b", -1, 0.5)
+        try:
+            node.scan("l2", ispace.Scan)
+            raise AssertionError("l2 is no sensor of n1")
+        except ispace.Refused as refused:
+            assert refused.code == 404
+END
+PYTHONPATH=$source_dir/lib/client/python python3 -B nodes.py || fail "the client of Python"
+
 # A node of a sensor that is not there.
 printf 'node id=n9 sensors=l7\n' | cat network.3dm - >wrong.3dm
 expect_status 1 simrun ispace.env wrong.3dm --clock fast --until 1

@@ -58,7 +58,7 @@ TEST(RosOrders, MarkersOfATrackerAreTracks) {
     orders.obey(*tracks, peopleMessage({2'500'000'000, "map"}, people));
     const auto present = room.simulation.tracks().present(room.world.time());
     ASSERT_EQ(present.size(), 1U);
-    EXPECT_EQ(present[0]->track, "0");
+    EXPECT_EQ(present[0]->track, "ispace/0");
     EXPECT_EQ(present[0]->time, 2.5);
     EXPECT_EQ(present[0]->place, Point2(1, -2));
     people[0].pose.position.x = std::nan("");

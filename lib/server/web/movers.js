@@ -128,7 +128,6 @@ export class Movers {
     if (scans) this.drawScans(context, view, selected);
     if (trails) this.drawTrails(context, view, selected);
     if (ways) this.drawWays(context, view, chosen);
-    if (tracks) this.drawTracks(context, view, names);
     this.drawSensors(context, view);
     for (const mover of this.all) {
       if (mover.x === undefined) continue;
@@ -139,6 +138,7 @@ export class Movers {
       else this.drawPerson(context, view, mover);
       if (mover === selected) this.ring(context, view, mover);
     }
+    if (tracks) this.drawTracks(context, view, names);
     view.inPixels(context);
     if (names) this.drawNames(context, view);
   }
@@ -198,7 +198,7 @@ export class Movers {
 
   /** What trackers tell, as diamonds with dotted trails, beside the truth. */
   drawTracks(context, view, names) {
-    const size = 7 / view.scale, color = '#9c0f72';
+    const size = 8 / view.scale, color = '#d6008f';
     for (const [name, {x, y, trail}] of this.tracks) {
       view.inMetres(context);
       context.strokeStyle = color;
@@ -216,8 +216,11 @@ export class Movers {
       if (!names) continue;
       const [px, py] = view.toPage(x, y);
       view.inPixels(context);
+      context.strokeStyle = '#ffffff';
+      context.lineWidth = 3;
+      context.strokeText(name, px + 14, py - 12);
       context.fillStyle = color;
-      context.fillText(name, px + 10, py + 14);
+      context.fillText(name, px + 14, py - 12);
     }
   }
 
