@@ -355,7 +355,10 @@ def main():
         with concurrent.futures.ThreadPoolExecutor(max(1, args.jobs)) as pool:
             rows = list(pool.map(lambda job: bench.run(*job), jobs))
     except (RunFailed, OSError) as error:
-        print(f"run.py: {error}", file=sys.stderr)
+        hint = ""
+        if isinstance(error, FileNotFoundError):
+            hint = f" (--build names a build; social_planner is made by `cmake -S {HERE} -B planners` and `cmake --build`)"
+        print(f"run.py: {error}{hint}", file=sys.stderr)
         return 1
     lines = "".join(json.dumps(row) + "\n" for row in rows)
     digest = "sha256:" + hashlib.sha256(lines.encode()).hexdigest()
