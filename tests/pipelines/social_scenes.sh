@@ -12,7 +12,16 @@ social() { /usr/bin/python3 "$bench/run.py" --build "$binary_dir" "$@" 2>err; }
 
 [ "$(social --list | wc -l)" -eq 20 ] || fail "not twenty scenes"
 social --list | awk '{ if ($2 < 1 || NF < 10) exit 1 }' || fail "a scene without a version or a question"
-# Every scene is sound, and simrun's own GOTO, which knows all places, solves it.
+# Each file says what the list says, and is sound.
+while IFS=$'\t' read -r asks file layout; do
+    grep -qxF "# $asks" "$bench/$file" || fail "$file does not say: $asks"
+    envc "$bench/$file" ${layout:+"$bench/$layout"} --check >said 2>&1 || fail "$(cat said)"
+    [ ! -s said ] || fail "$file: $(cat said)"
+done < <(/usr/bin/python3 -c "
+import json
+for scene in json.load(open('$bench/scenes.json'))['scenes']:
+    print(scene['asks'], scene['file'], scene.get('layout', ''), sep='\t')")
+# simrun's own GOTO, which knows all places, solves each of them.
 social --baselines simrun --seeds 1 --jobs 2 -o solved >summary || fail "$(cat err)"
 ! grep '"success": false' solved/results.jsonl || fail "a scene that simrun does not solve"
 
