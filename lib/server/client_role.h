@@ -11,10 +11,15 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
 
 namespace ispace {
+
+/// A world of the run, with its name among others ("" of the only one).
+struct RunRoom {
+    std::string id;
+    Simulation* simulation = nullptr;
+};
 
 /// A request of a role, as a row for HELP.
 struct RoleRequest {
@@ -58,12 +63,14 @@ class RoleService {
     virtual void stepped() = 0;
     /// Returns true while a client keeps the world from its next step.
     [[nodiscard]] virtual bool holdsWorld() const = 0;
+    /// Names the clients that the world will wait for; "" if it waits for no client.
+    [[nodiscard]] virtual std::string waitsFor() const = 0;
 };
 
 /// Makes the service of an extension for a run; null if the scenes ask for none. \param rooms of
-/// the run; the only one has the id "" \param seed of the run \throws FormatError for records that
+/// the run; \param seed of the run \throws FormatError for records that
 /// contradict each other
-using MakeRoleService = std::unique_ptr<RoleService> (*)(std::span<const JoinedRoom> rooms,
+using MakeRoleService = std::unique_ptr<RoleService> (*)(std::span<const RunRoom> rooms,
                                                          std::uint64_t seed);
 
 }  // namespace ispace

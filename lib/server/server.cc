@@ -89,9 +89,11 @@ void Server::serveMqtt(const MqttOptions& options) {
     data.mqtt.emplace(data.state, std::move(client), options.prefix);
 }
 
-void Server::serveRoles(std::span<const MakeRoleService> services) {
+std::vector<std::string> Server::serveRoles(std::span<const MakeRoleService> services) {
     Data& data = *data_;
-    std::vector<JoinedRoom> rooms;
+    const bool may_wait = data.simulation.clock().kind != Clock::Kind::Real;
+    std::vector<std::string> notes;
+    std::vector<RunRoom> rooms;
     if (data.rooms.worlds == nullptr)
         rooms.push_back({"", &data.simulation});
     else
@@ -100,9 +102,12 @@ void Server::serveRoles(std::span<const MakeRoleService> services) {
     for (const MakeRoleService make : services) {
         auto service = make(rooms, data.simulation.world().options().seed);
         if (!service) continue;
+        if (const std::string clients = service->waitsFor(); may_wait && !clients.empty())
+            notes.push_back("the world waits for " + clients);
         for (ServerState* const each : data.states()) each->addRoleService(*service);
         data.roles.push_back(std::move(service));
     }
+    return notes;
 }
 
 FrameTaker Server::frameTaker(std::size_t room) {

@@ -131,8 +131,9 @@ class Server {
     /// Call before run(). \throws FormatError as connectMqtt()
     void serveMqtt(const MqttOptions& options);
     /// Adds roles of extensions to the protocol, as far as the scenes ask for them. Call at most
-    /// once, before run(). \throws FormatError as MakeRoleService
-    void serveRoles(std::span<const MakeRoleService> services);
+    /// once, before run(). \returns notes on clients that the world waits for
+    /// \throws FormatError as MakeRoleService
+    std::vector<std::string> serveRoles(std::span<const MakeRoleService> services);
     /// Returns a function that computes frames of a record in the picture thread.
     /// \param room of the joined worlds
     [[nodiscard]] FrameTaker frameTaker(std::size_t room = 0);

@@ -76,7 +76,7 @@ struct Server::Data {
     std::list<ServerState> others;
     ServedRooms rooms;
     std::vector<std::unique_ptr<RoleService>> roles;  // of extensions
-    bool has_news = false;  // between steps, not sent to all clients yet
+    bool has_news = false;                            // between steps, not sent to all clients yet
     WallTime next_news{};
     asio::io_context io{1};  // one thread runs it
     Acceptor acceptor;

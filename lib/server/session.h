@@ -212,6 +212,7 @@ class Session {
     void events(Words words);
     void mark(Words words);
     void track(Words words);
+    [[nodiscard]] Simulation* simulationOf(std::string_view room) const;
 
     /// A sensor that the role of an extension reads; without a state: unknown.
     struct GuestSensor {

@@ -12,7 +12,6 @@
 #include "record/schema.h"
 #include "server/client_role.h"
 #include "server/session.h"
-#include "sim/joined_worlds.h"
 
 namespace ispace {
 
@@ -151,14 +150,13 @@ void Session::track(Words words) {
         return error(400,
                      {excerpt(words[1]), " is no name of a track: letters, digits and _-./+:@"});
     std::string_view place = words[2];
-    if (const std::size_t slash = place.find('/'); rooms() != nullptr) {
-        const auto all = rooms()->worlds->rooms();
-        const auto found = std::find_if(all.begin(), all.end(), [&](const JoinedRoom& room) {
-            return slash != std::string_view::npos && room.id == place.substr(0, slash);
-        });
-        if (found == all.end())
-            return error(400, {"a place in a building has a room, as in ", all.front().id, "/1,2"});
-        simulation = found->simulation;
+    if (rooms() != nullptr) {
+        const std::size_t slash = place.find('/');
+        simulation =
+            slash == std::string_view::npos ? nullptr : simulationOf(place.substr(0, slash));
+        if (simulation == nullptr)
+            return error(400, {"a place in a building has a storey, as in ground/1,2; found ",
+                               excerpt(words[2])});
         place.remove_prefix(slash + 1);
     }
     const std::size_t comma = place.find(',');

@@ -63,6 +63,13 @@ std::string Session::whereText() const {
     return ' ' + rooms()->worlds->whereText(static_cast<std::size_t>(room));
 }
 
+/// Returns the simulation of a room of several; null for other names.
+Simulation* Session::simulationOf(std::string_view room) const {
+    for (const JoinedRoom& each : rooms()->worlds->rooms())
+        if (each.id == room) return each.simulation;
+    return nullptr;
+}
+
 void Session::posesOfAll() {
     std::string robots, people, rooms_of_robots, rooms_of_people;
     std::size_t count = 0;

@@ -144,7 +144,8 @@ RosScenery rosScenery() { return {.map = mapOf, .room = meshOf}; }
 
 ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title,
                            const std::vector<std::string>& replayed) {
-    server.serveRoles(roleServices());
+    for (const std::string& note : server.serveRoles(roleServices()))
+        tell(options.common, "simrun", note);
     ServedAddresses out;
     if (options.web)
         out.web = server.serveWeb(

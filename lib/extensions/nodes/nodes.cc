@@ -191,6 +191,13 @@ class Nodes : public RoleService {
         return false;
     }
 
+    [[nodiscard]] std::string waitsFor() const override {
+        std::vector<std::string> ids;
+        for (const Node& node : run_.network.nodes())
+            if (node.lockstep) ids.push_back(node.id);
+        return ids.empty() ? "" : "the programs of nodes in lockstep: " + joined(ids);
+    }
+
   private:
     static std::string joined(const std::vector<std::string>& words) {
         std::string text;
@@ -203,9 +210,9 @@ class Nodes : public RoleService {
 
 }  // namespace
 
-std::unique_ptr<RoleService> makeNodes(std::span<const JoinedRoom> rooms, std::uint64_t seed) {
+std::unique_ptr<RoleService> makeNodes(std::span<const RunRoom> rooms, std::uint64_t seed) {
     std::vector<Node> nodes;
-    for (const JoinedRoom& room : rooms) {
+    for (const RunRoom& room : rooms) {
         std::vector<Node> its =
             nodesOf(room.simulation->world().scene(), room.id.empty() ? "" : room.id + "/");
         std::move(its.begin(), its.end(), std::back_inserter(nodes));

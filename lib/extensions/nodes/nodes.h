@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/extensions/nodes: computers with sensors, clocks and lossy lines: the role NODE of simrun.
+// Uses server and below.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +19,6 @@ namespace ispace {
 /// takes no step before the node's program has asked for a time beyond it, from the start until
 /// that program leaves. In real time the world goes on.
 /// \throws FormatError as nodesOf()
-std::unique_ptr<RoleService> makeNodes(std::span<const JoinedRoom> rooms, std::uint64_t seed);
+std::unique_ptr<RoleService> makeNodes(std::span<const RunRoom> rooms, std::uint64_t seed);
 
 }  // namespace ispace

@@ -195,7 +195,7 @@ class NodesTest : public ::testing::Test {
     World world_;
     Simulation simulation_;
     ServerState state_;
-    JoinedRoom room_;
+    RunRoom room_;
     std::unique_ptr<RoleService> service_;
 };
 
@@ -243,6 +243,7 @@ TEST_F(NodesTest, MessagesArriveAfterTheirDelay) {
 
 TEST_F(NodesTest, AwaitAnswersInTimeAndLockstepHoldsTheWorld) {
     EXPECT_TRUE(service_->holdsWorld());  // before its program has come
+    EXPECT_EQ(service_->waitsFor(), "the programs of nodes in lockstep: hub");
     auto hub = std::make_unique<Session>(state_);
     ask(*hub, "NODE hub");
     EXPECT_TRUE(service_->holdsWorld());
