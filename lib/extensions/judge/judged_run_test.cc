@@ -189,8 +189,8 @@ TEST(TrackFiles, MarkersOfABagAreTracks) {
         ASSERT_EQ(file.tracks.size(), 2U) << topic;
         ASSERT_EQ(file.rows.size(), 8U);
         EXPECT_EQ(file.rows[7].time, 1.5);
-        EXPECT_EQ(file.rows[6].place, Point2(1.5, 0.75));
-        EXPECT_EQ(file.rows[7].place, Point2(-1, -2));
+        EXPECT_EQ(file.rows[6].place, (Point2{1.5, 0.75}));
+        EXPECT_EQ(file.rows[7].place, (Point2{-1, -2}));
         EXPECT_EQ(intervalOf(file), 0.5);
     }
     std::string cut = bagOf("/tracks");
@@ -199,7 +199,7 @@ TEST(TrackFiles, MarkersOfABagAreTracks) {
 }
 
 TEST(TrackFiles, FaultsNameTheirLine) {
-    const auto errorOf = [](const std::string& text) -> std::string {
+    const auto error_of = [](const std::string& text) -> std::string {
         try {
             static_cast<void>(readTracks(text, "f"));
         } catch (const FormatError& error) {
@@ -207,20 +207,20 @@ TEST(TrackFiles, FaultsNameTheirLine) {
         }
         return "";
     };
-    EXPECT_EQ(errorOf(""), "f: error: no tracks: wanted lines of t, track, x, y");
-    EXPECT_EQ(errorOf("t,track,x\n0,1,0\n"),
+    EXPECT_EQ(error_of(""), "f: error: no tracks: wanted lines of t, track, x, y");
+    EXPECT_EQ(error_of("t,track,x\n0,1,0\n"),
               "f:1: error: no column y: wanted heads t,track,x,y[,kind], lines of JSON, or MOT's 9 "
               "or 10 numbers");
-    EXPECT_EQ(errorOf("t,track,x,y\n0,1,0,0\n0,1,1,1\n"),
+    EXPECT_EQ(error_of("t,track,x,y\n0,1,0,0\n0,1,1,1\n"),
               "f:3: error: track 1 is told twice at this time");
-    EXPECT_EQ(errorOf("t,track,x,y\n-1,1,0,0\n"), "f:2: error: t is below 0");
-    EXPECT_EQ(errorOf("t,track,x,y\n0,1,nan,0\n"), "f:2: error: x: `nan` is no number in range");
-    EXPECT_EQ(errorOf("{\"t\":0,\"track\":1.5,\"x\":0,\"y\":0}\n"),
+    EXPECT_EQ(error_of("t,track,x,y\n-1,1,0,0\n"), "f:2: error: t is below 0");
+    EXPECT_EQ(error_of("t,track,x,y\n0,1,nan,0\n"), "f:2: error: x: `nan` is no number in range");
+    EXPECT_EQ(error_of("{\"t\":0,\"track\":1.5,\"x\":0,\"y\":0}\n"),
               "f:1: error: \"track\" is neither a text nor a whole number");
-    EXPECT_EQ(errorOf("{\"t\":0,\n"), "f:1: error: the line is no object of JSON");
-    EXPECT_EQ(errorOf("0.5,1,0,0,0,0,1,2,3\n"),
+    EXPECT_EQ(error_of("{\"t\":0,\n"), "f:1: error: the line is no object of JSON");
+    EXPECT_EQ(error_of("0.5,1,0,0,0,0,1,2,3\n"),
               "f:1: error: frames of MOT files are numbers from 1 on");
-    EXPECT_EQ(errorOf("1,1,2,3\n"),
+    EXPECT_EQ(error_of("1,1,2,3\n"),
               "f:1: error: a line of a MOT file has 9 or 10 numbers, x and y in metres as the 8th "
               "and 9th; this has 4");
 }

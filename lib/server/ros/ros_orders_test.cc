@@ -60,7 +60,7 @@ TEST(RosOrders, MarkersOfATrackerAreTracks) {
     ASSERT_EQ(present.size(), 1U);
     EXPECT_EQ(present[0]->track, "ispace/0");
     EXPECT_EQ(present[0]->time, 2.5);
-    EXPECT_EQ(present[0]->place, Point2(1, -2));
+    EXPECT_EQ(present[0]->place, (Point2{1, -2}));
     people[0].pose.position.x = std::nan("");
     orders.obey(*tracks, peopleMessage({3, "map"}, people));
     EXPECT_EQ(told.size(), 1U);
