@@ -14,10 +14,20 @@ class CellSet {
     explicit CellSet(std::size_t cells = 0) : words_((cells + 63) / 64), cells_(cells) {}
     [[nodiscard]] std::size_t size() const { return cells_; }
     [[nodiscard]] bool test(std::size_t cell) const {
-        return (words_[cell / 64] >> (cell % 64)) & 1U;
+        const std::size_t word = cell / 64 - first_;
+        return word < words_.size() && ((words_[word] >> (cell % 64)) & 1U) != 0;
     }
-    void set(std::size_t cell) { words_[cell / 64] |= std::uint64_t{1} << (cell % 64); }
-    void reset(std::size_t cell) { words_[cell / 64] &= ~(std::uint64_t{1} << (cell % 64)); }
+    void set(std::size_t cell) {
+        if (cell / 64 - first_ >= words_.size()) widen();
+        words_[cell / 64 - first_] |= std::uint64_t{1} << (cell % 64);
+    }
+    void reset(std::size_t cell) {
+        const std::size_t word = cell / 64 - first_;
+        if (word < words_.size()) words_[word] &= ~(std::uint64_t{1} << (cell % 64));
+    }
+    /// Frees the memory of all words before the first and after the last cell of the set. Does not
+    /// change the set; a later set() or addBits() of cells beyond allocates all words again.
+    void crop();
     /// Adds the cells first + i for which bit i is set. \pre all of them are < size()
     void addBits(std::size_t first, std::uint64_t bits);
     [[nodiscard]] std::size_t count() const;
@@ -29,12 +39,30 @@ class CellSet {
     /// Calls visit(std::size_t) for each cell of the set, in order.
     template <typename Visit>
     void forEach(Visit visit) const;
-    friend bool operator==(const CellSet&, const CellSet&) = default;
+    friend bool operator==(const CellSet& a, const CellSet& b);
     /// Number of cells in both sets.
     friend std::size_t countCommon(const CellSet& a, const CellSet& b);
 
   private:
-    std::vector<std::uint64_t> words_;
+    /// Numbers of words from `begin` to before `end`.
+    struct Words {
+        std::size_t begin, end;
+    };
+    /// Returns the words that both store.
+    static Words commonWords(const CellSet& a, const CellSet& b);
+    /// Stores all words.
+    void widen();
+    [[nodiscard]] std::size_t end() const { return first_ + words_.size(); }
+    /// Iterator of a word by its number. \pre first_ <= word <= end()
+    [[nodiscard]] auto at(std::size_t word) const {
+        return words_.begin() + static_cast<std::ptrdiff_t>(word - first_);
+    }
+    [[nodiscard]] auto at(std::size_t word) {
+        return words_.begin() + static_cast<std::ptrdiff_t>(word - first_);
+    }
+
+    std::vector<std::uint64_t> words_;  // from first_ on; the others are 0
+    std::size_t first_ = 0;
     std::size_t cells_ = 0;
 };
 std::size_t countCommon(const CellSet& a, const CellSet& b);
@@ -43,7 +71,7 @@ template <typename Visit>
 void CellSet::forEach(Visit visit) const {
     for (std::size_t i = 0; i < words_.size(); ++i)
         for (std::uint64_t word = words_[i]; word != 0; word &= word - 1)
-            visit(i * 64 + static_cast<std::size_t>(std::countr_zero(word)));
+            visit((first_ + i) * 64 + static_cast<std::size_t>(std::countr_zero(word)));
 }
 
 /// Consecutive cells of a grid: first, first + 1, ..., end - 1. A run may continue from the end of

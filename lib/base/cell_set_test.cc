@@ -41,6 +41,51 @@ TEST(CellSet, AgreesWithPlainBits) {
     }
 }
 
+TEST(CellSet, CroppedSetsAreEqual) {
+    std::mt19937_64 random(7);
+    constexpr std::size_t kSize = 700;
+    for (int round = 0; round < 200; ++round) {
+        const auto some = [&random] {
+            CellSet set(kSize);
+            const std::size_t low = random() % kSize, high = low + random() % (kSize - low);
+            for (std::size_t i = low; i < high; ++i)
+                if (random() % 2 == 0) set.set(i);
+            return set;
+        };
+        const CellSet x = some(), y = some();
+        CellSet a = x, b = y;
+        if (round % 3 != 1) a.crop();
+        if (round % 3 != 2) b.crop();
+        EXPECT_EQ(a, x);
+        EXPECT_EQ(a.count(), x.count());
+        EXPECT_EQ(a.empty(), x.empty());
+        EXPECT_EQ(a == b, x == y);
+        EXPECT_EQ(countCommon(a, b), countCommon(x, y));
+        EXPECT_EQ(partOf(a).runs, partOf(x).runs);
+        CellSet both = a, either = a, only = a, more = a, fewer = a, marked = a;
+        both &= b;
+        either |= b;
+        only -= b;
+        const std::size_t cell = random() % kSize, first = random() % (kSize - 64);
+        const std::uint64_t bits = random();
+        more.set(cell);
+        fewer.reset(cell);
+        marked.addBits(first, bits);
+        for (std::size_t i = 0; i < kSize; ++i) {
+            const bool in_x = x.test(i), in_y = y.test(i);
+            EXPECT_EQ(a.test(i), in_x);
+            EXPECT_EQ(both.test(i), in_x && in_y);
+            EXPECT_EQ(either.test(i), in_x || in_y);
+            EXPECT_EQ(only.test(i), in_x && !in_y);
+            EXPECT_EQ(more.test(i), in_x || i == cell);
+            EXPECT_EQ(fewer.test(i), in_x && i != cell);
+            const bool is_marked =
+                i >= first && i < first + 64 && ((bits >> (i - first)) & 1U) != 0;
+            EXPECT_EQ(marked.test(i), in_x || is_marked);
+        }
+    }
+}
+
 TEST(PartOf, RunsOfASet) {
     CellSet set(200);
     for (const std::size_t cell : {0, 1, 2, 63, 64, 65, 130, 199}) set.set(cell);

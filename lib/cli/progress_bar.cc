@@ -45,9 +45,9 @@ void ProgressBar::begin(std::string_view phase, std::int64_t total) {
     note_.clear();
     total_ = std::max<std::int64_t>(total, 0);
     done_ = 0;
-    next_draw_ = 0;
+    next_draw_ = std::llround(quick_ * 1e6);
     start_ = Clock::now();
-    draw(0, false);
+    if (quick_ == 0) draw(0, false);
 }
 
 void ProgressBar::advance(std::int64_t count) {
@@ -97,10 +97,10 @@ void ProgressBar::end() {
 }
 
 std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bool> wanted,
-                                       bool quiet) {
+                                       bool quiet, double quick) {
     const bool show = wanted.value_or(!quiet && ::isatty(STDERR_FILENO) != 0);
     if (!show) return std::make_unique<SilentProgress>();
-    return std::make_unique<ProgressBar>(tool);
+    return std::make_unique<ProgressBar>(tool, wanted ? 0 : quick);
 }
 
 SearchWatch::SearchWatch(std::unique_ptr<Progress> shown, std::optional<double> limit,

@@ -17,7 +17,9 @@ namespace ispace {
 /// times a second and left at its last state at the end of a phase.
 class ProgressBar final : public Progress {
   public:
-    explicit ProgressBar(std::string tool) : tool_(std::move(tool)) {}
+    /// \param quick seconds; shorter phases are not drawn
+    explicit ProgressBar(std::string tool, double quick = 0)
+        : tool_(std::move(tool)), quick_(quick) {}
     ~ProgressBar() override;
     void begin(std::string_view phase, std::int64_t total) override;
     void advance(std::int64_t count) override;
@@ -29,6 +31,7 @@ class ProgressBar final : public Progress {
 
     using Clock = std::chrono::steady_clock;
     std::string tool_, phase_, note_;
+    double quick_;
     std::int64_t total_ = 0;
     std::atomic<std::int64_t> done_{0};
     std::atomic<std::int64_t> next_draw_{0};  // microseconds after start_
@@ -38,8 +41,10 @@ class ProgressBar final : public Progress {
 };
 
 /// Creates a ProgressBar if `wanted`, or by default if stderr is a terminal; else a silent one.
+/// \param quick seconds; shorter phases are drawn only if `wanted`: those of work that is mostly
+///        done at once
 std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bool> wanted,
-                                       bool quiet);
+                                       bool quiet, double quick = 0);
 
 /// Progress of a search that ends early at TERM, INT or a time limit, with the best result so far.
 class SearchWatch final : public Progress {

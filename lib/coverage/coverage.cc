@@ -68,7 +68,7 @@ std::vector<Region> seenBy(const Coverage& coverage, std::uint32_t times,
 
 void setRegion(std::optional<std::vector<Curve>> region, const Box2& limits, SensorView& view) {
     view.region.reset();
-    view.beyond.clear();
+    view.beyond = {};
     if (!region) return;
     CutCurves cut = cutAlong(*region, limits);
     view.region = std::move(cut.inside);
@@ -183,8 +183,11 @@ class Viewer {
                 before_.emplace(view.id, KnownView{&before.scene->sensors[view.index], &view});
     }
 
-    std::vector<SensorView> run() {
+    /// \param progress receives each view; null: none
+    std::vector<SensorView> run(Progress* progress = nullptr) {
         makeViews();
+        if (progress != nullptr)
+            progress->begin("views of sensors", static_cast<std::int64_t>(views_.size()));
         // Sorted by height, so that each level is built once.
         std::map<double, std::vector<std::size_t>> at_height;
         for (std::size_t i = 0; i < views_.size(); ++i)
@@ -200,13 +203,14 @@ class Viewer {
                 const auto level = sight_.levelAt(groups[k].first);
                 tbb::parallel_for(std::size_t{0}, groups[k].second.size(), [&](std::size_t i) {
                     tbb::this_task_arena::isolate([&] { look(views_[groups[k].second[i]]); });
+                    if (progress != nullptr) progress->advance(1);
                 });
             });
         });
         if (hasTooManyEdges())
             for (SensorView& view : views_) {
                 view.region.reset();
-                view.beyond.clear();
+                view.beyond = {};
             }
         tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t i) {
             const Sensor& sensor = sensorOf(views_[i]);
@@ -291,6 +295,7 @@ class Viewer {
         view.cells = by_beams && (scansSlice(sensor) || !isInsideSolid(sensor))
                          ? cellsAmongBeams(grid_, sensor, view.beams)
                          : sight_.cellsOf(grid_, sensor);
+        view.cells.crop();
         if (options_.exact) addRegion(view, sensor);
     }
 
@@ -517,7 +522,7 @@ void addOutside(std::span<const std::shared_ptr<const OutsideView>> outside, std
 Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
                  const CoverageOptions& options,
                  std::span<const std::shared_ptr<const OutsideView>> outside,
-                 const MeasuredScene& before = {}) {
+                 const MeasuredScene& before = {}, Progress* progress = nullptr) {
     const Environment& environment = scene.environment;
     Coverage coverage;
     const Grid grid = gridOver(environment.limits(), options.cells);
@@ -530,7 +535,7 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
         [&] {
             const std::size_t most_edges = mostEdges(most_crossings);
             Viewer viewer(own, worlds, grid, options, most_edges, false, nullptr, before);
-            coverage.sensors = viewer.run();
+            coverage.sensors = viewer.run(progress);
             if (viewer.hasTooManyEdges())
                 report.exact_missing = "outlines of views have more than " +
                                        std::to_string(most_edges) + " edges (`--max-work " +
@@ -543,8 +548,15 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
                 holes.emplace(environment.indoor(), level->freeFloor(), level->slice().sheets);
             static_cast<void>(scene.digest());  // cached, in parallel with the views
         });
+    // Steps of about the same cost with many sensors.
+    constexpr std::int64_t kSteps = 4;
+    if (progress != nullptr) progress->begin("areas of views", kSteps);
+    const auto step = [progress] {
+        if (progress != nullptr) progress->advance(1);
+    };
     addOutside(outside, own.sensors.size(), options, coverage, grid, scene);
     coverage.sets = setsOf(coverage.sensors, grid, most_crossings);
+    step();
 
     report.digest = scene.digest();
     report.limits = environment.limits();
@@ -559,18 +571,23 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
     const std::vector<Zone> zones = zonesOf(environment);
     report.zones = zoneMetricsOf(environment, zones);
     if (options.exact) report.outside = outsideOf(coverage.sensors, most_crossings);
+    step();
     if (holes)
         tryExactMetrics(coverage, environment, *holes, zones, options.keep_depths, most_crossings);
+    step();
     addCellMetrics(coverage, zones);
     addDensities(coverage, environment, level->freeFloor(), zones, options.whole_densities);
     if (options.parallax) addParallax(coverage, environment, *options.parallax);
+    step();
+    if (progress != nullptr) progress->end();
     return coverage;
 }
 
 }  // namespace
 
-Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options) {
-    return measure(scene, scene, worlds, options, {});
+Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+                         Progress* progress) {
+    return measure(scene, scene, worlds, options, {}, {}, progress);
 }
 
 Coverage measureChanged(const Scene& scene, Worlds& worlds, const CoverageOptions& options,

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "coverage/target.h"
 #include "geom/overlay/overlay.h"
 #include "raster/grid.h"
@@ -152,7 +153,7 @@ struct CoverageReport {
 /// ultrasonic receivers hear a tag.
 struct CoveredSet {
     CellSet cells = CellSet();
-    std::optional<std::vector<Curve>> region = {};
+    std::optional<SharedCurves> region = {};
 };
 
 /// The view of one sensor.
@@ -165,9 +166,9 @@ struct SensorView {
     CellSet cells = CellSet();
     /// Exact region within the limits: disjoint curves with the seen floor on their left, up to
     /// edges that cancel out (cutAlong()); empty if unknown.
-    std::optional<std::vector<Curve>> region = {};
-    std::vector<Curve> beyond = {};  ///< the rest of the exact region
-    std::vector<float> beams = {};   ///< of a laser, as castBeams returns them
+    std::optional<SharedCurves> region = {};
+    SharedCurves beyond = {};       ///< the rest of the exact region
+    std::vector<float> beams = {};  ///< of a laser, as castBeams returns them
     /// Of a camera: the floor within the limits seen with the pixels of each of densityClasses().
     std::vector<CoveredSet> classes = {};
 
@@ -208,7 +209,9 @@ constexpr std::uint64_t densityZoneMark(std::size_t zone) {
 
 /// Computes the coverage of all placed lasers, rangers, cameras and ultrasonic receivers of a
 /// scene. Deterministic for any number of threads. \throws UsageError as makeTarget
-Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options);
+/// \param progress receives the views, then steps of the areas; null: none
+Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+                         Progress* progress = nullptr);
 
 /// Sets report.comparison of `coverage`. \pre both were measured with the same options in the room
 /// with this indoor region

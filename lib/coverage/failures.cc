@@ -82,7 +82,7 @@ class SharedFloors {
 /// The floor of each view: all that it sees, or with the pixels of a class.
 struct FloorOfViews {
     std::vector<const CellSet*> cells;  ///< null: none
-    std::vector<const std::vector<Curve>*> regions;
+    std::vector<const SharedCurves*> regions;
     bool is_exact = true;
 };
 

@@ -17,7 +17,7 @@
 
 namespace ispace {
 
-Layer markLayer(std::vector<Curve> curves, std::uint64_t marks) {
+Layer markLayer(SharedCurves curves, std::uint64_t marks) {
     return {.curves = std::move(curves), .counts = false, .marks = marks};
 }
 

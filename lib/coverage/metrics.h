@@ -17,7 +17,7 @@
 namespace ispace {
 
 /// Returns a layer that sets bits of `marks` and is not counted.
-Layer markLayer(std::vector<Curve> curves, std::uint64_t marks);
+Layer markLayer(SharedCurves curves, std::uint64_t marks);
 /// Sets the exact region of a view, cut along the limits of the room.
 void setRegion(std::optional<std::vector<Curve>> region, const Box2& limits, SensorView& view);
 /// Returns the region heard by at least kMinReceivers of these receivers; empty if unknown.

@@ -80,6 +80,7 @@ SensorView sensorViewOf(const OutsideView& view, std::size_t index, const Grid& 
         return view.cells ? view.cells(grid, density) : cellsInside(region, grid);
     };
     out.cells = cells(view.region, options.density);
+    out.cells.crop();
     if (options.exact) setRegion(view.region, limits, out);
     if (const Camera* const camera = sensor.tryAs<Camera>()) {
         CoveredSet whole{options.density > 0 ? cells(view.whole, 0) : out.cells, {}};

@@ -189,6 +189,7 @@ std::vector<CoveredSet> classesOf(const FloorDensity& density, const Grid& grid,
         for (std::size_t i = 0; i < classes.size(); ++i)
             if (pixels >= classes[i].pixels_per_metre) sets[i].cells.set(cell);
     });
+    for (CoveredSet& set : sets) set.cells.crop();
     if (!view.region) return sets;
     for (CoveredSet& set : sets) set.region.emplace();
     Box2 box = boundsOfAll(*view.region);
@@ -294,9 +295,9 @@ class SeenBoxes {
         constexpr double kMargin = 1e-3;  // above the rounding of an overlay
         std::vector<Box2> boxes;
         for (const SensorView* view : cameras) {
-            std::vector<const std::vector<Curve>*> regions = {&*view->region};
+            std::vector<const SharedCurves*> regions = {&*view->region};
             for (const CoveredSet& set : view->classes) regions.push_back(&*set.region);
-            for (const std::vector<Curve>* region : regions) {
+            for (const SharedCurves* region : regions) {
                 const Box2 box = boundsOfAll(*region);
                 if (!box.empty()) boxes.push_back(box.expanded(kMargin));
             }
@@ -317,7 +318,7 @@ class SeenBoxes {
 /// one area are the same, and share a layer.
 void addNested(const SensorView& view, std::vector<Layer>& layers) {
     std::vector<std::pair<double, std::size_t>> known;  // area, layer
-    const auto add = [&](const std::vector<Curve>& region, std::uint64_t mark) {
+    const auto add = [&](const SharedCurves& region, std::uint64_t mark) {
         if (region.empty()) return;
         const double area = signedArea(region);
         for (const auto& [other, layer] : known)

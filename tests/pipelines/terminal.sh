@@ -28,6 +28,8 @@ arrange="arrange '$data/room.env' --sensor laser --strategy grid -X 9 -Y 9 -o be
 on_terminal 0 "$arrange"
 grep -q '100 %' said || fail "no progress on a terminal"
 on_terminal 0 "coverage '$data/room.env' best.3dm --suggest -q --progress"
+grep -q 'views of sensors .*100 %' said && grep -q 'areas of views .*100 %' said ||
+    fail "no progress of a measurement: $(cat said)"
 grep -q 'poses of sensors .*100 %' said || fail "no progress of suggestions: $(cat said)"
 on_terminal 0 "arrange '$data/room.env' --sensor laser:3 --curve curve.csv -o best3.3dm"
 grep -q 'curve .*100 %' said || fail "no progress of the curve: $(cat said)"

@@ -57,15 +57,20 @@ Document documentOf(const CoverageToolOptions& options, const SceneInput& input)
     return document;
 }
 
+/// Seconds; most layouts are measured in less.
+constexpr double kQuick = 0.5;
+
 }  // namespace
 
 Measured measure(const CoverageToolOptions& options, const Scene& scene, const Scene* other) {
     Worlds worlds(scene.environment);
-    Measured measured{measureCoverage(scene, worlds, options.measure), {}};
+    const auto progress =
+        makeProgress("coverage", options.common.progress, options.common.quiet, kQuick);
+    Measured measured{measureCoverage(scene, worlds, options.measure, progress.get()), {}};
     if (other == nullptr) return measured;
     mustBeSameRoom(scene.environment, other->environment, options.other);
     Worlds other_worlds(other->environment);
-    measured.other = measureCoverage(*other, other_worlds, options.measure);
+    measured.other = measureCoverage(*other, other_worlds, options.measure, progress.get());
     compare(measured.coverage, *measured.other, scene.environment.indoor(),
             options.other == "-" ? displayName("-") : baseName(options.other));
     return measured;

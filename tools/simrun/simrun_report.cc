@@ -40,7 +40,8 @@ std::string reportFile(const SimrunOptions& options, const SceneInput& input,
     for (const std::string& file : Recorder::filesIn(options.record)) completeOutput(file);
     const Scene& scene = input.scene;
     Worlds worlds(scene.environment);
-    const Coverage coverage = measureCoverage(scene, worlds, {});
+    const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
+    const Coverage coverage = measureCoverage(scene, worlds, {}, progress.get());
     std::optional<RunCoverage> run = recordedRun(options, scene);
     if (run) run->name = baseName(options.record);
     CoveragePageInput page{scene, coverage, "", command};
@@ -48,6 +49,7 @@ std::string reportFile(const SimrunOptions& options, const SceneInput& input,
     for (const RunVerdict& verdict : judge.verdicts())
         page.requirements.push_back({verdict.expectation, verdict.is_met, verdict.reason});
     page.parts.run = run ? &*run : nullptr;
+    page.progress = progress.get();
     const std::string suffix = suffixOf(options.report);
     if (suffix == "json") return coverageJson(coverage.report, {.run = page.parts.run});
     const ReportPage pages = coveragePage(page);
@@ -71,7 +73,7 @@ std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options, const Sce
     SuggestOptions wanted;
     wanted.most = 7;  // one of each kind
     Worlds worlds(scene.environment);
-    const Coverage coverage = measureCoverage(scene, worlds, wanted.measure);
+    const Coverage coverage = measureCoverage(scene, worlds, wanted.measure, progress.get());
     std::vector<RunSuggestion> found;
     for (Suggestion& change :
          suggestChanges(scene, coverage, wanted, shippedDevices(), *progress)) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geom/curve.h"
+#include "geom/shared_curves.h"
 
 namespace ispace {
 
@@ -24,7 +25,7 @@ struct LayerLabel {
 /// A point set to overlay with others: the points to the left of its curves, the outlines and holes
 /// of one or more disjoint regions, which may touch.
 struct Layer {
-    std::vector<Curve> curves;
+    SharedCurves curves;
     /// If true it adds 1 to `count` and its number to `numbers`, else it sets bits of `marks`.
     bool counts = true;
     std::int64_t number = 0;

@@ -238,9 +238,10 @@ constexpr double kTouch = 0.01;       // and between a column and the wall it be
 constexpr double kSameCorner = 1e-5;  // exporters round ends of walls that should meet
 
 Layer layerOf(std::span<const Polygon> curves) {
-    Layer layer;
-    for (const Polygon& curve : curves) layer.curves.push_back(curveOf(curve));
-    return layer;
+    std::vector<Curve> all;
+    all.reserve(curves.size());
+    for (const Polygon& curve : curves) all.push_back(curveOf(curve));
+    return {.curves = std::move(all)};
 }
 
 std::vector<Region> united(std::span<const Layer> layers) {
