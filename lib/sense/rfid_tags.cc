@@ -50,11 +50,11 @@ RfidTags readingOf(const Rfid& rfid, const Moment& now) {
                  return std::binary_search(owners.begin(), owners.end(), owner);
              }))
             seen.push_back(sighting.body->owner);
+    std::sort(seen.begin(), seen.end());
     for (const RfidTag& tag : rfid.tags) {
-        const bool is_in_field =
-            tag.carrier == RfidTag::Carrier::Thing
-                ? isInField(tag.at, observer, now)
-                : std::find(seen.begin(), seen.end(), ownerOf(tag)) != seen.end();
+        const bool is_in_field = tag.carrier == RfidTag::Carrier::Thing
+                                     ? isInField(tag.at, observer, now)
+                                     : std::binary_search(seen.begin(), seen.end(), ownerOf(tag));
         if (is_in_field && isRead(tag.text, rfid.read, now)) reading.tags.push_back(tag.text);
     }
     std::sort(reading.tags.begin(), reading.tags.end());

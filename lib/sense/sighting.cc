@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/sighting.h"
 
-#include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <span>
 
@@ -13,20 +13,27 @@ constexpr double kUnseen = std::numeric_limits<double>::infinity();
 
 class Looker {
   public:
-    Looker(const Observer& observer, const RayWorld& mesh, std::span<const MovingBody> bodies)
+    Looker(const Observer& observer, const RayWorld& mesh, const MovingBodies& bodies)
         : observer_(observer), mesh_(mesh), bodies_(bodies), origin_(observer.view.frame.origin) {}
 
-    /// Returns the nearest sighting of the bodies from `begin` to before `end`, of one mover.
-    [[nodiscard]] Sighting nearest(std::size_t begin, std::size_t end) const {
+    /// Returns the numbers, ascending, of the bodies that may be in view.
+    [[nodiscard]] std::vector<std::uint32_t> bodiesAround() const {
+        constexpr double kMargin = 1e-6;  // above the rounding of ranges to float32
+        return bodies_.bodiesNear(origin_.onFloor(),
+                                  observer_.view.farthest() * (1 + kMargin) + kMargin);
+    }
+
+    /// Returns the nearest sighting of these bodies, of one mover.
+    [[nodiscard]] Sighting nearest(std::span<const std::uint32_t> numbers) const {
         Sighting best{.range = kUnseen, .direction = {}};
-        for (std::size_t i = begin; i < end; ++i) {
-            const MovingBody& body = bodies_[i];
+        for (const std::uint32_t i : numbers) {
+            const MovingBody& body = bodies_.bodies()[i];
             const Point2 foot = body.pose.position;
             const Vec3 way = Point3{foot.x, foot.y, body.middle()} - origin_;
             const double distance = length(way);
             if (distance == 0) continue;
             const Vec3 direction = (1 / distance) * way;
-            const double range = body.meet(origin_, direction);
+            const double range = bodies_.meet(i, origin_, direction);
             // From inside, the ray meets the surface behind the centre.
             if (range > distance || range >= best.range || !isInView(range, direction) ||
                 !isFree(range, direction, body.owner))
@@ -44,13 +51,13 @@ class Looker {
 
     [[nodiscard]] bool isFree(double range, Vec3 direction, std::uint32_t owner) const {
         if (range == 0) return true;
-        const bool is_hidden =
-            std::any_of(bodies_.begin(), bodies_.end(), [&](const MovingBody& body) {
-                return body.owner != observer_.carrier && body.owner != owner &&
-                       body.meet(origin_, direction) < range;
-            });
-        if (is_hidden) return false;
         const Point3 at = origin_ + range * direction;
+        const bool is_hidden = bodies_.anyAlong(origin_, at, [&](std::size_t i) {
+            const std::uint32_t other = bodies_.bodies()[i].owner;
+            return other != observer_.carrier && other != owner &&
+                   bodies_.meet(i, origin_, direction) < range;
+        });
+        if (is_hidden) return false;
         std::uint8_t seen = 0;
         mesh_.query(origin_, std::span(&at, 1), std::span(&seen, 1));
         return seen != 0;
@@ -58,7 +65,7 @@ class Looker {
 
     const Observer& observer_;
     const RayWorld& mesh_;
-    std::span<const MovingBody> bodies_;
+    const MovingBodies& bodies_;
     Point3 origin_;
 };
 
@@ -67,16 +74,15 @@ class Looker {
 std::vector<Sighting> sightingsOf(const Observer& observer, const RayWorld& mesh,
                                   const MovingBodies& bodies,
                                   const std::function<bool(std::uint32_t owner)>& is_meant) {
-    const std::span<const MovingBody> all = bodies.bodies();
-    const Looker looker(observer, mesh, all);
+    const Looker looker(observer, mesh, bodies);
+    const std::vector<std::uint32_t> around = looker.bodiesAround();
     std::vector<Sighting> sightings;
-    std::size_t number = 0;
-    // The bodies of a mover follow one another.
-    for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end, ++number) {
-        const std::uint32_t owner = all[begin].owner;
-        while (end < all.size() && all[end].owner == owner) ++end;
+    for (std::size_t begin = 0, end = 0; begin < around.size(); begin = end) {
+        const std::size_t number = bodies.moverOf(around[begin]);
+        while (end < around.size() && bodies.moverOf(around[end]) == number) ++end;
+        const std::uint32_t owner = bodies.bodies()[around[begin]].owner;
         if (owner == observer.carrier || !is_meant(owner)) continue;
-        Sighting seen = looker.nearest(begin, end);
+        Sighting seen = looker.nearest(std::span(around).subspan(begin, end - begin));
         if (seen.range == kUnseen) continue;
         seen.number = number;
         sightings.push_back(seen);

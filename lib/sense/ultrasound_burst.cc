@@ -38,9 +38,10 @@ bool isBodyBetween(const MovingBodies& bodies, Point3 a, Point3 b, std::uint32_t
     // Robots rarely hear each other.
     const double distance = length(b - a);
     const Vec3 direction = (1 / distance) * (b - a);
-    return std::any_of(bodies.bodies().begin(), bodies.bodies().end(), [&](const auto& body) {
-        return body.owner != carrier_of_a && body.owner != carrier_of_b &&
-               body.meet(a, direction) < distance;
+    return bodies.anyAlong(a, b, [&](std::size_t i) {
+        const std::uint32_t owner = bodies.bodies()[i].owner;
+        return owner != carrier_of_a && owner != carrier_of_b &&
+               bodies.meet(i, a, direction) < distance;
     });
 }
 

@@ -57,14 +57,18 @@ std::vector<std::optional<Point3>> placesOf(const SharedList<RfidTag>& tags,
     return places;
 }
 
-/// Counts the walls between two points, and all movers as one.
+/// Counts the walls between two points, and all movers as one. \param is_free whether no wall is
+/// between, if known
 int blocksBetween(Point3 from, Point3 to, std::uint32_t carrier, const Moment& now,
-                  bool with_movers = true) {
+                  bool with_movers = true, std::optional<bool> is_free = {}) {
     if (from == to) return 0;
-    std::uint8_t is_free = 0;
-    now.mesh().query(from, std::span(&to, 1), std::span(&is_free, 1));
+    if (!is_free) {
+        std::uint8_t free = 0;
+        now.mesh().query(from, std::span(&to, 1), std::span(&free, 1));
+        is_free = free != 0;
+    }
     // A surface that ends touch is none between.
-    const int walls = is_free != 0 ? 0 : std::max(1, wallsBetween(from, to, now.mesh()));
+    const int walls = *is_free ? 0 : std::max(1, wallsBetween(from, to, now.mesh()));
     return walls + (with_movers && now.bodies.between(from, to, carrier) ? 1 : 0);
 }
 
@@ -97,15 +101,16 @@ std::optional<double> withNoise(double distance, int blocks, const UwbRadio& rad
     return std::max(0.0, measured);
 }
 
-/// Measures the range of a tag; empty if the anchor does not reach it.
+/// Measures the range of a tag; empty if the anchor does not reach it. \param is_free as of
+/// blocksBetween()
 std::optional<Ranging> rangingOf(const UwbRadio& radio, const std::string& anchor, Point3 at,
                                  std::uint32_t carrier, const std::string& tag, Point3 place,
-                                 const Moment& now) {
+                                 const Moment& now, std::optional<bool> is_free = {}) {
     const double distance = length(place - at);
     if (static_cast<float>(distance) < static_cast<float>(radio.min_range) ||
         !withinRange(distance, radio.max_range))
         return std::nullopt;
-    const int blocks = blocksBetween(at, place, carrier, now);
+    const int blocks = blocksBetween(at, place, carrier, now, true, is_free);
     constexpr double kDecibels = 20;
     if (blocks > 0 &&
         !withinRange(distance, radio.max_range / std::pow(10.0, blocks * radio.loss / kDecibels)))
@@ -234,6 +239,30 @@ std::shared_ptr<UwbFixes::Tags> UwbFixes::at(const Uwb& uwb, const Moment& now) 
     return known_.front().of;
 }
 
+namespace {
+
+/// Finds the tags in range of an anchor that no wall hides, by rays side by side: empty for tags
+/// out of range, at the anchor, and without a place.
+std::vector<std::optional<bool>> tagsInSight(const Uwb& uwb, Point3 at,
+                                             const std::vector<std::optional<Point3>>& places,
+                                             const Moment& now) {
+    std::vector<Point3> near;
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (!places[i] || *places[i] == at || !withinRange(length(*places[i] - at), uwb.max_range))
+            continue;
+        near.push_back(*places[i]);
+        numbers.push_back(i);
+    }
+    std::vector<std::uint8_t> free(near.size());
+    now.mesh().query(at, near, free);
+    std::vector<std::optional<bool>> in_sight(places.size());
+    for (std::size_t k = 0; k < numbers.size(); ++k) in_sight[numbers[k]] = free[k] != 0;
+    return in_sight;
+}
+
+}  // namespace
+
 UwbRanges readingOf(const Uwb& uwb, const Moment& now) {
     UwbRanges reading{now.time, now.frame, now.pose, {}};
     UwbFixes own;
@@ -249,12 +278,14 @@ UwbRanges readingOf(const Uwb& uwb, const Moment& now) {
         tags->fixes[i] = fix;
         return fix;
     };
+    const std::vector<std::optional<bool>> in_sight =
+        tagsInSight(uwb, now.pose.position, tags->places, now);
     for (std::size_t i = 0; i < uwb.tags.size(); ++i) {
         const RfidTag& tag = uwb.tags.begin()[i];
         const std::optional<Point3>& place = tags->places[i];
         if (!place) continue;
         const auto ranging = rangingOf(uwb, now.sensor.id, now.pose.position, carrierOf(now.sensor),
-                                       tag.text, *place, now);
+                                       tag.text, *place, now, in_sight[i]);
         if (!ranging) continue;
         reading.tags.push_back(
             {tag.text, ranging->range, ranging->blocks > 0, fix_of(i, tag.text, *place)});

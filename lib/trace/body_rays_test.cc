@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace ispace {
@@ -222,6 +225,58 @@ TEST(MovingBodies, Between) {
     EXPECT_TRUE(bodies.between({3, 0, 0.4}, {3, 0.1, 0.5}, kNoOwner));
     EXPECT_TRUE(bodies.between({0, 0, 0.5}, {0, 9, 0.5}, 4));
     EXPECT_FALSE(MovingBodies().between({0, 0, 0}, {1, 0, 0}, kNoOwner));
+}
+
+TEST(MovingBodies, BetweenAsEachBodyAlone) {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> place(-9, 9), height(0, 2), turn(0, 6);
+    for (int round = 0; round < 20; ++round) {
+        std::vector<MovingBody> all;
+        for (int i = 0; i < 8 * round; ++i) {
+            const Point2 at{place(random), place(random)};
+            all.push_back(i % 2 == 0 ? cylinder(at, 0.1, 0, height(random))
+                                     : box(at, turn(random), 0.3, 0.1, 0, height(random)));
+            all.back().owner = static_cast<std::uint32_t>(i / 3);
+        }
+        const MovingBodies bodies(all);
+        for (int k = 0; k < 200; ++k) {
+            const Point3 a{place(random), place(random), height(random)};
+            // Some along an axis, some beyond all bodies.
+            const double far = k % 5 == 0 ? 3 : 1;
+            const Point3 b{k % 7 == 0 ? a.x : far * place(random),
+                           k % 7 == 1 ? a.y : far * place(random), height(random)};
+            const auto own = static_cast<std::uint32_t>(k % 4);
+            const bool is_between = std::any_of(all.begin(), all.end(), [&](const MovingBody& one) {
+                return MovingBodies({one}).between(a, b, own);
+            });
+            EXPECT_EQ(bodies.between(a, b, own), is_between) << round << ' ' << k;
+        }
+    }
+}
+
+TEST(MovingBodies, VisitsOnlyBodiesAlongASegment) {
+    std::vector<MovingBody> all;
+    for (int i = 0; i < 10'000; ++i)
+        all.push_back(cylinder({i % 100 + 0.5, i / 100 + 0.5}, 0.1, 0, 1));
+    const MovingBodies bodies(all);
+    for (const auto& [a, b] : {std::pair<Point3, Point3>{{0, 0, 0.5}, {100, 100, 0.5}},
+                               {{100, 3, 0.5}, {0, 4, 0.5}},
+                               {{7, 100, 0.5}, {7, 0, 0.5}}}) {
+        std::size_t visited = 0;
+        EXPECT_FALSE(bodies.anyAlong(a, b, [&visited](std::size_t /*i*/) {
+            ++visited;
+            return false;
+        }));
+        EXPECT_GT(visited, 90U);
+        EXPECT_LT(visited, 700U);
+        std::size_t first = 0;
+        EXPECT_TRUE(bodies.anyAlong(a, b, [&first](std::size_t /*i*/) { return ++first > 0; }));
+        EXPECT_EQ(first, 1U);
+    }
+    const std::vector<std::uint32_t> near = bodies.bodiesNear({50, 50}, 3);
+    EXPECT_GE(near.size(), 36U);
+    EXPECT_LE(near.size(), 100U);
+    EXPECT_TRUE(std::is_sorted(near.begin(), near.end()));
 }
 
 }  // namespace

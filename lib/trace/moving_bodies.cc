@@ -111,6 +111,24 @@ FloorGrid::Cells FloorGrid::cellsAbout(const Box2& box) const {
             cellOf(low.y - box_.low.y, rows_), cellOf(high.y - box_.low.y, rows_)};
 }
 
+Box2 FloorGrid::partInRow(Point2 a, Point2 b, std::size_t row) const {
+    // Rounding is far less than this.
+    const double around = reach_ + kContactTolerance * (1 + size_);
+    const double low = box_.low.y + static_cast<double>(row) * size_ - around;
+    const double high = low + size_ + 2 * around;
+    double from = 0, to = 1;
+    if (const double climb = b.y - a.y; climb != 0) {
+        const double at_low = (low - a.y) / climb, at_high = (high - a.y) / climb;
+        from = std::max(from, std::min(at_low, at_high));
+        to = std::min(to, std::max(at_low, at_high));
+    }
+    Box2 part;
+    if (from > to) return part;
+    part.add(a + from * (b - a));
+    part.add(a + to * (b - a));
+    return part;
+}
+
 std::size_t FloorGrid::cellOf(double offset, std::size_t count) const {
     const double cell = offset / size_;
     if (!(cell > 0)) return 0;
@@ -130,14 +148,21 @@ void MovingBodies::index() {
     extents_.clear();
     extents_.reserve(bodies_.size());
     double reach = 0;
+    bottom_ = std::numeric_limits<double>::infinity();
+    top_ = -bottom_;
     for (const MovingBody& body : bodies_) {
+        bottom_ = std::min(bottom_, body.bottom - kContactTolerance);
+        top_ = std::max(top_, body.top + kContactTolerance);
         places_.push_back(body.pose.position);
         // The parts of a person have the same heading.
         const bool is_alike =
             !extents_.empty() && body.pose.heading == bodies_[extents_.size() - 1].pose.heading;
+        const bool is_same = !extents_.empty() && body.owner == bodies_[extents_.size() - 1].owner;
+        const std::uint32_t mover =
+            extents_.empty() ? 0 : extents_.back().mover + (is_same ? 0 : 1);
         const double own = body.reach();
-        extents_.push_back(
-            {is_alike ? extents_.back().axes : cosSin(body.pose.heading), own, own + body.sway()});
+        extents_.push_back({is_alike ? extents_.back().axes : cosSin(body.pose.heading), own,
+                            own + body.sway(), mover});
         reach = std::max(reach, extents_.back().whole);
     }
     grid_.rebuild(places_, reach);
@@ -187,17 +212,43 @@ void MovingBodies::shorten(Point3 origin, const RayGrid& grid, double most, std:
     });
 }
 
+bool MovingBodies::clipToHeights(Point3& a, Point3& b) const {
+    double from = 0, to = 1;
+    if (const double climb = b.z - a.z; climb != 0) {
+        const double at_bottom = (bottom_ - a.z) / climb, at_top = (top_ - a.z) / climb;
+        from = std::max(from, std::min(at_bottom, at_top));
+        to = std::min(to, std::max(at_bottom, at_top));
+    } else if (a.z < bottom_ || a.z > top_) {
+        return false;
+    }
+    if (!(from <= to)) return false;
+    const Vec3 way = b - a;
+    b = a + to * way;
+    a = a + from * way;
+    return true;
+}
+
 bool MovingBodies::between(Point3 a, Point3 b, std::uint32_t own) const {
-    Box2 box;
-    box.add(a.onFloor());
-    box.add(b.onFloor());
-    bool is_between = false;
-    grid_.forEachNear(box, [&](std::size_t i) {
-        if (is_between || bodies_[i].owner == own) return;
+    return anyAlong(a, b, [&](std::size_t i) {
+        if (bodies_[i].owner == own) return false;
         const RayInterval inside = BodyFrame(bodies_[i], extents_[i].axes, a).within(b - a);
-        is_between = inside.enter <= inside.exit && inside.enter <= 1 && inside.exit >= 0;
+        return inside.enter <= inside.exit && inside.enter <= 1 && inside.exit >= 0;
     });
-    return is_between;
+}
+
+std::vector<std::uint32_t> MovingBodies::bodiesNear(Point2 place, double reach) const {
+    std::vector<std::uint32_t> near;
+    const Vec2 around{reach, reach};
+    grid_.forEachRun({place - around, place + around}, {}, [&](std::size_t begin, std::size_t end) {
+        const std::span<const std::uint32_t> run = grid_.order().subspan(begin, end - begin);
+        near.insert(near.end(), run.begin(), run.end());
+    });
+    std::sort(near.begin(), near.end());
+    return near;
+}
+
+double MovingBodies::meet(std::size_t i, Point3 origin, Vec3 direction) const {
+    return BodyFrame(bodies_[i], extents_[i].axes, origin).meet(direction).multiple;
 }
 
 }  // namespace ispace

@@ -46,9 +46,10 @@ MovingBody movingBody(const BodyPart& part, const Pose2& pose, CosSin axes, std:
 
 /// Values of a body shared by all rays.
 struct BodyExtent {
-    CosSin axes;       ///< of its heading
-    double reach = 0;  ///< MovingBody::reach()
-    double whole = 0;  ///< radius of a circle about its middle that contains all level cuts
+    CosSin axes;              ///< of its heading
+    double reach = 0;         ///< MovingBody::reach()
+    double whole = 0;         ///< radius of a circle about its middle that contains all level cuts
+    std::uint32_t mover = 0;  ///< number of the mover, whose bodies follow one another
 };
 
 /// Finds neighbours on the floor: a uniform grid over the positions of movers, rebuilt by counting
@@ -64,6 +65,10 @@ class FloorGrid {
     /// The same in runs of order(), excluding the cells of another box: calls visit(begin, end).
     template <typename Visit>
     void forEachRun(const Box2& box, const Box2& without, Visit visit) const;
+    /// Returns true if `is_met(index)` does for a mover that may meet the segment. Calls it for
+    /// those in the cells along the segment only, roughly from `a` on, until it returns true.
+    template <typename IsMet>
+    [[nodiscard]] bool anyAlong(Point2 a, Point2 b, IsMet is_met) const;
     /// Side of a cell.
     [[nodiscard]] double cellSize() const { return size_; }
     [[nodiscard]] bool empty() const { return indices_.empty(); }
@@ -76,6 +81,9 @@ class FloorGrid {
         std::size_t left = 1, right = 0, low = 1, high = 0;
     };
     [[nodiscard]] Cells cellsAbout(const Box2& box) const;
+    /// Returns the box of the part of a segment that movers in a row of cells may meet; empty
+    /// without one.
+    [[nodiscard]] Box2 partInRow(Point2 a, Point2 b, std::size_t row) const;
     [[nodiscard]] std::size_t cellOf(double offset, std::size_t count) const;
 
     Box2 box_;
@@ -112,16 +120,33 @@ class MovingBodies {
                  std::span<float> multiples, std::span<float> cosines = {}) const;
     /// True if a body separates two points or contains one of them. \pre they differ
     [[nodiscard]] bool between(Point3 a, Point3 b, std::uint32_t own) const;
+    /// Returns true if `is_met(i)` does for bodies()[i], a body that may meet the segment. Visits
+    /// only bodies near the segment, until it returns true.
+    template <typename IsMet>
+    [[nodiscard]] bool anyAlong(Point3 a, Point3 b, IsMet is_met) const {
+        return clipToHeights(a, b) && grid_.anyAlong(a.onFloor(), b.onFloor(), is_met);
+    }
+    /// Returns the numbers, ascending, of all bodies that may lie less than `reach` from a point in
+    /// plan, and others near them.
+    [[nodiscard]] std::vector<std::uint32_t> bodiesNear(Point2 place, double reach) const;
+    /// Returns bodies()[i].meet(), without the trigonometry.
+    [[nodiscard]] double meet(std::size_t i, Point3 origin, Vec3 direction) const;
+    /// Returns the number of the mover of bodies()[i]: bodies of one owner that follow one another
+    /// are of one mover.
+    [[nodiscard]] std::size_t moverOf(std::size_t i) const { return extents_[i].mover; }
 
   private:
     void index();
+    /// Cuts a segment to the heights of all bodies. Returns false if it passes over or under them.
+    [[nodiscard]] bool clipToHeights(Point3& a, Point3& b) const;
     void shortenInBlocks(std::span<const Point3> origins, const Directions& directions,
                          std::size_t begin, std::size_t end, double max_range, std::uint32_t own,
                          std::span<float> ranges, std::span<float> cosines) const;
 
     std::vector<MovingBody> bodies_;
     std::vector<BodyExtent> extents_;
-    std::vector<Point2> places_;  // of the bodies; kept to reuse its memory
+    std::vector<Point2> places_;   // of the bodies; kept to reuse its memory
+    double bottom_ = 0, top_ = 0;  // of all bodies, with a margin
     FloorGrid grid_;
 };
 
@@ -150,6 +175,27 @@ void FloorGrid::forEachRun(const Box2& box, const Box2& without, Visit visit) co
                 run(row, std::max(cells.left, done.right + 1), cells.right + 1);
         }
     }
+}
+
+template <typename IsMet>
+bool FloorGrid::anyAlong(Point2 a, Point2 b, IsMet is_met) const {
+    if (indices_.empty()) return false;
+    Box2 whole;
+    whole.add(a);
+    whole.add(b);
+    const Cells rows = cellsAbout(whole);
+    const bool is_up = a.y <= b.y, is_right = a.x <= b.x;
+    for (std::size_t k = rows.low; k <= rows.high; ++k) {
+        const std::size_t row = is_up ? k : rows.high - (k - rows.low);
+        const Box2 part = partInRow(a, b, row);
+        if (part.empty()) continue;
+        const Cells cells = cellsAbout(part);
+        const std::size_t begin = first_[row * columns_ + cells.left],
+                          end = first_[row * columns_ + cells.right + 1];
+        for (std::size_t i = begin; i < end; ++i)
+            if (is_met(std::size_t{indices_[is_right ? i : end - 1 - (i - begin)]})) return true;
+    }
+    return false;
 }
 
 }  // namespace ispace
