@@ -145,8 +145,9 @@ TEST(Overlay, turningMovingReorderingChangeRoundingOnly) {
             return Point2{c * p.x - s * p.y + 17.3, s * p.x + c * p.y - 100.1};
         };
         for (Layer& layer : others) {
-            for (CurveEdge& e : layer.curves[0])
-                e = {move(e.from), move(e.to), e.radius, move(e.center)};
+            Curve curve = layer.curves[0];
+            for (CurveEdge& e : curve) e = {move(e.from), move(e.to), e.radius, move(e.center)};
+            layer.curves = {std::move(curve)};
         }
         const auto got = depths(Overlay(others), layers.size());
         for (std::size_t k = 0; k < got.size(); ++k) EXPECT_NEAR(got[k], wanted[k], 4e-7);

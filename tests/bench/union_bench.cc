@@ -212,7 +212,7 @@ void write(const Case& test, const std::string& folder) {
     std::string outlines;
     for (const Layer& layer : test.chord_layers) {
         std::string numbers;
-        for (const CurveEdge& edge : layer.curves.front())
+        for (const CurveEdge& edge : layer.curves[0])
             numbers += (numbers.empty() ? "" : ",") + formatDouble(edge.from.x) + ',' +
                        formatDouble(edge.from.y);
         outlines += (outlines.empty() ? "[" : ",\n[") + numbers + ']';

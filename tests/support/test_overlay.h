@@ -28,10 +28,10 @@ inline Curve straight(const Polygon& polygon) {
 }
 
 inline Layer layerOf(const std::vector<Polygon>& polygons, std::int64_t number = 0) {
-    Layer layer;
-    for (const Polygon& polygon : polygons) layer.curves.push_back(straight(polygon));
-    layer.number = number;
-    return layer;
+    std::vector<Curve> curves;
+    curves.reserve(polygons.size());
+    for (const Polygon& polygon : polygons) curves.push_back(straight(polygon));
+    return {.curves = std::move(curves), .number = number};
 }
 
 inline Layer marking(const Polygon& polygon, std::uint64_t marks) {
@@ -58,10 +58,7 @@ inline Curve disc(Point2 center, double radius, double from = 0) {
 }
 
 inline Layer curveLayer(const Curve& curve, std::int64_t number = 0) {
-    Layer layer;
-    layer.curves.push_back(curve);
-    layer.number = number;
-    return layer;
+    return {.curves = {curve}, .number = number};
 }
 
 /// Returns areas by label, without the outside.
