@@ -60,7 +60,7 @@ class ByClipper {
     explicit ByClipper(const Case& test) {
         for (const Layer& layer : test.chord_layers) {
             ClipperLib::Path path;
-            for (const CurveEdge& edge : layer.curves.front())
+            for (const CurveEdge& edge : layer.curves[0])
                 path.emplace_back(std::llround(edge.from.x / kStep),
                                   std::llround(edge.from.y / kStep));
             paths_.push_back(std::move(path));
