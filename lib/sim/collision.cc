@@ -28,6 +28,14 @@ std::vector<Segment2> linesOf(const Slice& band) {
     return lines;
 }
 
+/// Returns a square that squaredDistance() of a line as near as this does not exceed, rounded in
+/// any way: lines beyond it need no distance(), which takes longer.
+double squareAbove(double distance) {
+    constexpr double kRounding = 1e-9;
+    const double more = distance * (1 + kRounding) + kRounding;
+    return more * more;
+}
+
 /// The relative motion of a point past the origin.
 struct RelativeWay {
     Vec2 from, to;
@@ -138,9 +146,11 @@ std::optional<std::size_t> Obstacles::overlap(Point2 center, double radius) cons
 }
 
 double Obstacles::nearest(Point2 p, double farthest) const {
-    double nearest = farthest;
+    double nearest = farthest, square = squareAbove(farthest);
     const auto visit = [&](const Segment2& line, std::size_t) {
+        if (squaredDistance(p, line) > square) return;
         nearest = std::min(nearest, distance(p, line));
+        square = squareAbove(nearest);
     };
     search(p, visit, [&](double seen) { return seen >= nearest; });
     return nearest;
@@ -163,11 +173,11 @@ void Obstacles::findAbout(Point2 p, double reach, std::vector<Segment2>& lines) 
 }
 
 bool Obstacles::near(const Segment2& way, double distance) const {
-    const double reach = distance + ispace::distance(way.a, way.b);
+    const double reach = distance + ispace::distance(way.a, way.b), square = squareAbove(reach);
     bool is_near = false;
     const auto visit = [&](const Segment2& line, std::size_t) {
-        is_near = is_near ||
-                  (ispace::distance(way.a, line) < reach && ispace::distance(way, line) < distance);
+        if (is_near || squaredDistance(way.a, line) > square) return;
+        is_near = (ispace::distance(way.a, line) < reach && ispace::distance(way, line) < distance);
     };
     search(way.a, visit, [&](double seen) { return is_near || seen >= reach; });
     return is_near;

@@ -24,7 +24,9 @@ double degreesOff(Angle a, Angle b) { return wrapped(a - b).degrees(); }
 }  // namespace
 
 Navigator::Navigator(const Mover& mover, std::uint64_t seed)
-    : model_(mover.model), seed_(seed), id_(hashOf(mover.id)) {}
+    : model_{mover.model.drive, mover.model.accel, mover.model.max_sidespeed},
+      seed_(seed),
+      id_(hashOf(mover.id)) {}
 
 void Navigator::follow(const MotionPlan& course, double speed, bool commanded, bool is_attempt) {
     const bool goes = course.wander || !course.path.empty();

@@ -92,8 +92,14 @@ class Navigator {
     [[nodiscard]] double horizon(double speed) const;
     double random();
 
+    /// What it needs of a RobotModel, of which each of many worlds would hold a copy.
+    struct Drives {
+        Drive drive = Drive::Differential;
+        double accel = 0, max_sidespeed = 0;
+    };
+
     MotionPlan course_;
-    RobotModel model_;
+    Drives model_;
     std::uint64_t seed_ = 0, id_ = 0, draws_ = 0;
     double speed_ = 0;
     State state_ = State::Off;

@@ -2,7 +2,10 @@
 // Free headings for autonomous movers.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +36,24 @@ class ObstacleIndex {
     [[nodiscard]] virtual Way look(const Segment2& way, double reach) const = 0;
     /// Replaces `lines` by those whose bounds meet the box, and possibly others, some repeated.
     virtual void findIn(const Box2& box, std::vector<Segment2>& lines) const = 0;
+
+    /// An obstacle as numbers that many tests need.
+    struct Line {
+        Point2 begin;
+        Vec2 along;
+        double per_square = 0;  ///< inverse of the squared length, 0 without one
+    };
+    /// Some of the lines, by index.
+    struct Some {
+        std::span<const Line> all;
+        std::span<const std::uint32_t> which;
+    };
+    /// Lines nearer than this, metres, are those of near().
+    static constexpr double kNear = 1;
+    /// Returns the lines nearer to p than kNear, once each, and possibly others; empty if unknown.
+    [[nodiscard]] virtual std::optional<Some> near(Point2 p) const = 0;
+    /// Returns a distance from p within which an obstacle lies; infinite if unknown.
+    [[nodiscard]] virtual double most(Point2 p) const = 0;
 };
 
 /// Pose and surroundings of a mover that is steered.
@@ -44,6 +65,17 @@ struct SteeringState {
     double clearance = 0;  ///< no obstacle is nearer to the mover's circle
     SimTime time{}, step{};
     const ObstacleIndex* index = nullptr;  ///< of the obstacles; may be null
+};
+
+/// Lines about a point, relative to it, in lanes of equal length.
+struct LineLanes {
+    static constexpr std::size_t kLanes = 8, kMost = 6 * kLanes;
+    using Lane = std::array<double, kMost>;
+
+    Lane ax, ay, dx, dy;    ///< beginning and extent
+    Lane per_square;        ///< inverse of the squared length
+    Lane reach_square;      ///< of the distance at which a way comes near
+    std::size_t count = 0;  ///< of lines; lanes up to a multiple of kLanes are set
 };
 
 /// A direction, and the seconds for which it is free.
@@ -64,7 +96,7 @@ class Steering {
 
     /// Returns the seconds until an obstacle or a mover blocks the direction, at most `horizon`;
     /// for obstacles in steps of a half, a quarter, an eighth of it.
-    [[nodiscard]] double freeTime(Angle direction) const { return freeTime(direction, 1); }
+    [[nodiscard]] double freeTime(Angle direction) const;
     /// Returns the desired direction if it is free for `needed` seconds; else the nearest one that
     /// is, up to slightly more than 90 degrees; else the one that is free longest, with a penalty
     /// for its angle. A mover that turns aside to pass another turns back in time: obstacles count
@@ -81,17 +113,21 @@ class Steering {
         Vec2 offset, velocity;
         double reach;  // of both circles and the gap
     };
-    void findNeighbours(const Surroundings& around, std::size_t mover);
-    void findLines() const;
-    [[nodiscard]] double untilNeighbour(Vec2 velocity) const;
-    [[nodiscard]] double untilLine(Vec2 velocity, double most) const;
-    [[nodiscard]] bool isFreeByIndex(const Segment2& way) const;
-    [[nodiscard]] double freeTime(Angle direction, double share) const;
-
     struct Line {
         Segment2 line;
         double reach;
     };
+    void findNeighbours(const Surroundings& around, std::size_t mover);
+    void findLines() const;
+    [[nodiscard]] bool fillLanes() const;
+    [[nodiscard]] double reachOfLanes() const;
+    [[nodiscard]] bool fillFromIndex(Point2 p, double farthest, LineLanes& lanes) const;
+    [[nodiscard]] std::optional<bool> isFreeByLanes(Vec2 velocity, double share) const;
+    [[nodiscard]] double untilNeighbour(Vec2 velocity) const;
+    [[nodiscard]] double untilLine(Vec2 velocity, double most, double needed) const;
+    [[nodiscard]] bool isFreeOfLines(Vec2 velocity, double share) const;
+    [[nodiscard]] bool isFreeByIndex(const Segment2& way) const;
+
     Point2 place_;
     double radius_, speed_, horizon_;
     std::vector<Neighbour> neighbours_;
@@ -99,6 +135,10 @@ class Steering {
     mutable std::vector<Line> lines_;
     mutable bool has_lines_ = false;        // lines_ are found
     mutable std::vector<Segment2> nearby_;  // of an index, for one way
+    mutable bool has_lanes_ = false;        // fillLanes() was called
+    mutable bool are_in_lanes_ = false;     // its result
+    mutable bool is_apart_ = true;          // no line of the lanes is as near as others are passed
+    mutable LineLanes lanes_;
 };
 
 }  // namespace ispace

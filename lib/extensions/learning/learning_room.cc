@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <unordered_set>
 #include <utility>
 
@@ -165,38 +166,79 @@ ClearanceField::ClearanceField(const Obstacles& obstacles, const Box2& box) : lo
     addLines(obstacles, box);
 }
 
-/// Calls visit(cell) for the cells of lines that a box meets.
+/// Calls visit(cell) for the cells that a box meets.
 template <typename Visit>
-void ClearanceField::forEachLineCell(const Box2& box, Visit visit) const {
-    const auto within = [](double at, int count) {
-        return static_cast<int>(std::clamp(std::floor(at), 0.0, count - 1.0));
+void ClearanceField::forEachCell(const Cells& cells, const Box2& box, Visit visit) const {
+    const auto within = [&](double at, int count) {
+        return static_cast<int>(std::clamp(std::floor(at / cells.side), 0.0, count - 1.0));
     };
-    const int left = within((box.low.x - low_.x) / kLineSide, line_columns_);
-    const int right = within((box.high.x - low_.x) / kLineSide, line_columns_);
-    const int bottom = within((box.low.y - low_.y) / kLineSide, line_rows_);
-    const int top = within((box.high.y - low_.y) / kLineSide, line_rows_);
+    const int left = within(box.low.x - low_.x, cells.columns);
+    const int right = within(box.high.x - low_.x, cells.columns);
+    const int bottom = within(box.low.y - low_.y, cells.rows);
+    const int top = within(box.high.y - low_.y, cells.rows);
     for (int row = bottom; row <= top; ++row)
         for (int column = left; column <= right; ++column)
-            visit(static_cast<std::size_t>(row) * static_cast<std::size_t>(line_columns_) +
+            visit(static_cast<std::size_t>(row) * static_cast<std::size_t>(cells.columns) +
                   static_cast<std::size_t>(column));
 }
 
 /// Stores each line in all cells that its bounds meet.
 void ClearanceField::addLines(const Obstacles& obstacles, const Box2& box) {
-    line_columns_ = static_cast<int>(std::ceil(box.width() / kLineSide)) + 1;
-    line_rows_ = static_cast<int>(std::ceil(box.depth() / kLineSide)) + 1;
+    constexpr double kLineSide = 0.5, kNearSide = 0.25;  // metres
+    line_cells_ = Cells(kLineSide, box);
+    near_cells_ = Cells(kNearSide, box);
     std::vector<Segment2> lines;
     const Point2 middle{(box.low.x + box.high.x) / 2, (box.low.y + box.high.y) / 2};
     obstacles.findAbout(middle, std::hypot(box.width(), box.depth()), lines);
-    first_.assign(
-        static_cast<std::size_t>(line_columns_) * static_cast<std::size_t>(line_rows_) + 1, 0);
+    first_.assign(line_cells_.count() + 1, 0);
     for (const Segment2& line : lines)
-        forEachLineCell(bounds(line), [this](std::size_t cell) { ++first_[cell]; });
+        forEachCell(line_cells_, bounds(line), [this](std::size_t cell) { ++first_[cell]; });
     std::uint32_t end = 0;
     for (std::uint32_t& entry : first_) entry = end += entry;
     lines_.resize(end);
     for (const Segment2& line : lines)
-        forEachLineCell(bounds(line), [&](std::size_t cell) { lines_[--first_[cell]] = line; });
+        forEachCell(line_cells_, bounds(line),
+                    [&](std::size_t cell) { lines_[--first_[cell]] = line; });
+    addNear(lines);
+}
+
+/// Stores in each cell the lines nearer than kNear to a point of it.
+void ClearanceField::addNear(const std::vector<Segment2>& lines) {
+    each_.reserve(lines.size());
+    for (const Segment2& line : lines) {
+        const Vec2 along = line.b - line.a;
+        const double square = dot(along, along);
+        each_.push_back({line.a, along, square > 0 ? 1 / square : 0});
+    }
+    const double side = near_cells_.side, reach = kNear + side * 0.7072;
+    const auto for_each_entry = [&](auto visit) {
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            forEachCell(near_cells_, bounds(lines[i]).expanded(kNear), [&](std::size_t cell) {
+                const auto wide = static_cast<std::size_t>(near_cells_.columns);
+                const std::size_t row = cell / wide, column = cell % wide;
+                const Point2 center{low_.x + side * (static_cast<double>(column) + 0.5),
+                                    low_.y + side * (static_cast<double>(row) + 0.5)};
+                if (squaredDistance(center, lines[i]) < reach * reach)
+                    visit(cell, static_cast<std::uint32_t>(i));
+            });
+    };
+    near_first_.assign(near_cells_.count() + 1, 0);
+    for_each_entry([this](std::size_t cell, std::uint32_t) { ++near_first_[cell]; });
+    std::uint32_t end = 0;
+    for (std::uint32_t& entry : near_first_) entry = end += entry;
+    near_.resize(end);
+    for_each_entry(
+        [this](std::size_t cell, std::uint32_t line) { near_[--near_first_[cell]] = line; });
+}
+
+std::optional<ObstacleIndex::Some> ClearanceField::near(Point2 p) const {
+    const double x = (p.x - low_.x) / near_cells_.side, y = (p.y - low_.y) / near_cells_.side;
+    if (!(x >= 0 && y >= 0 && x < near_cells_.columns && y < near_cells_.rows)) return std::nullopt;
+    const std::size_t cell =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(near_cells_.columns) +
+        static_cast<std::size_t>(x);
+    return Some{each_, std::span(near_).subspan(near_first_[cell],
+                                                near_first_[cell + 1] - near_first_[cell])};
 }
 
 void ClearanceField::findIn(const Box2& box, std::vector<Segment2>& lines) const {
@@ -204,13 +246,51 @@ void ClearanceField::findIn(const Box2& box, std::vector<Segment2>& lines) const
     const auto apart = [](double a, double b, double low, double high) {
         return std::max(a, b) < low || std::min(a, b) > high;
     };
-    forEachLineCell(box, [&](std::size_t cell) {
+    forEachCell(line_cells_, box, [&](std::size_t cell) {
         for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i)
             if (const Segment2& line = lines_[i];
                 !apart(line.a.x, line.b.x, box.low.x, box.high.x) &&
                 !apart(line.a.y, line.b.y, box.low.y, box.high.y))
                 lines.push_back(line);
     });
+}
+
+double ClearanceField::most(Point2 p) const {
+    const double x = (p.x - low_.x) * per_metre_, y = (p.y - low_.y) * per_metre_;
+    if (!(x >= 0 && y >= 0 && x < columns_ && y < rows_))
+        return std::numeric_limits<double>::infinity();
+    return at(p) + slack_;
+}
+
+double ClearanceField::clearanceAt(Point2 p) const {
+    constexpr double kRounding = 1e-9;
+    const auto some = near(p);
+    if (!some) return 0;
+    double least = kNear * kNear;
+    for (const std::uint32_t i : some->which) {
+        const Line& line = some->all[i];
+        const Vec2 begin = line.begin - p;
+        const double share = std::clamp(-dot(begin, line.along) * line.per_square, 0.0, 1.0);
+        const Vec2 foot = begin + share * line.along;
+        least = std::min(least, dot(foot, foot));
+    }
+    return std::max(0.0, std::sqrt(least) - kRounding);
+}
+
+bool ClearanceField::isClear(const Segment2& way, double reach) const {
+    constexpr double kRounding = 1e-9;
+    const double end = distance(way.a, way.b), allowed = reach + kRounding;
+    // A shorter way crosses no line whose ends, and the way's, are apart.
+    if (!(end < reach && allowed + end < kNear)) return false;
+    const auto some = near(way.a);
+    return some && std::none_of(some->which.begin(), some->which.end(), [&](std::uint32_t i) {
+               const Line& line = some->all[i];
+               const Segment2 wall{line.begin, line.begin + line.along};
+               const double start = squaredDistance(way.a, wall);
+               if (start > (allowed + end) * (allowed + end)) return false;
+               return std::min({start, squaredDistance(way.b, wall), squaredDistance(wall.a, way),
+                                squaredDistance(wall.b, way)}) <= allowed * allowed;
+           });
 }
 
 double ClearanceField::at(Point2 p) const {

@@ -3,6 +3,7 @@
 // robot can stand on, and goals with the ways to them. Immutable once built, and so thread-safe.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -139,22 +140,44 @@ class ClearanceField : public ObstacleIndex {
     [[nodiscard]] double at(Point2 p) const;
     [[nodiscard]] Way look(const Segment2& way, double reach) const override;
     void findIn(const Box2& box, std::vector<Segment2>& lines) const override;
+    [[nodiscard]] std::optional<Some> near(Point2 p) const override;
+    [[nodiscard]] double most(Point2 p) const override;
+    /// Returns a distance that no obstacle is nearer to p than, at most kNear: the distance to the
+    /// nearest but for rounding; 0 outside of the box.
+    [[nodiscard]] double clearanceAt(Point2 p) const;
+    /// Returns true only if no obstacle comes nearer to the way than `reach`.
+    [[nodiscard]] bool isClear(const Segment2& way, double reach) const;
 
   private:
-    static constexpr double kLineSide = 0.5;  // of the cells of lines, metres
+    /// Square cells over the box.
+    struct Cells {
+        double side = 1;  // metres
+        int columns = 0, rows = 0;
 
+        Cells() = default;
+        Cells(double cell_side, const Box2& box)
+            : side(cell_side),
+              columns(static_cast<int>(std::ceil(box.width() / side)) + 1),
+              rows(static_cast<int>(std::ceil(box.depth() / side)) + 1) {}
+        [[nodiscard]] std::size_t count() const {
+            return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+        }
+    };
     template <typename Visit>
-    void forEachLineCell(const Box2& box, Visit visit) const;
+    void forEachCell(const Cells& cells, const Box2& box, Visit visit) const;
     void addLines(const Obstacles& obstacles, const Box2& box);
+    void addNear(const std::vector<Segment2>& lines);
 
     Point2 low_;
     double side_ = 1, per_metre_ = 1;
     double slack_ = 0;  // the nearest obstacle is at most so much farther than at()
     int columns_ = 0, rows_ = 0;
     std::vector<float> least_;  // by cell
-    int line_columns_ = 0, line_rows_ = 0;
-    std::vector<std::uint32_t> first_;  // of each cell of lines, and the end
-    std::vector<Segment2> lines_;       // of all cells, one after another
+    Cells line_cells_, near_cells_;
+    std::vector<std::uint32_t> first_;              // of each cell of lines, and the end
+    std::vector<Segment2> lines_;                   // of all cells, one after another
+    std::vector<Line> each_;                        // of these, once
+    std::vector<std::uint32_t> near_first_, near_;  // likewise, of lines about a cell
 };
 
 /// A laser on a robot, and the slice that it sees.

@@ -16,8 +16,6 @@ namespace ispace {
 
 namespace {
 
-/// Metres around a mover within which obstacles are measured, as World has it.
-constexpr double kLookout = 1;
 constexpr int kManyDraws = 200;
 
 /// Rounds to millimetres, so that positions print short and read as the same number.
@@ -258,11 +256,11 @@ void LearningWorld::propose(const LearningSetting& setting, LearningScratch& scr
         if (clearance < move.to.path)
             clearance = room.clearanceOf(i).at(move.start()) - move.radius - kContactTolerance;
         if (clearance < move.to.path) {
-            const Obstacles& obstacles = room.obstaclesOf(i);
-            clearance = obstacles.nearest(move.start(), move.radius + kLookout) - move.radius -
-                        kContactTolerance;
-            if (clearance < move.to.path) {
-                scratch.blocked[i] = collides(move, obstacles);
+            const ClearanceField& field = room.clearanceOf(i);
+            clearance = field.clearanceAt(move.start()) - move.radius - kContactTolerance;
+            const double reach = move.radius - kContactTolerance + move.to.bulge;
+            if (clearance < move.to.path && !field.isClear(move.chord(), reach)) {
+                scratch.blocked[i] = collides(move, room.obstaclesOf(i));
                 if (scratch.blocked[i]) continue;
             }
         }
@@ -275,11 +273,28 @@ void LearningWorld::settle(LearningScratch& scratch) {
     const std::size_t count = motions_.size();
     const std::vector<std::size_t>& order = room.order(count);
     scratch.next.resize(count);
+    // Pairs that are farther apart than both can come do not collide.
+    scratch.reaches.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Move& move = scratch.moves[i];
+        scratch.reaches[i] = {move.start().x, move.start().y,
+                              move.radius + move.to.lag + move.to.path};
+    }
+    scratch.meets.assign(count, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        constexpr double kMore = 1 + 1e-9;
+        const auto& [x, y, reach] = scratch.reaches[i];
+        for (std::size_t k = 0; k < i; ++k) {
+            const auto& [other_x, other_y, other_reach] = scratch.reaches[k];
+            const double far = (reach + other_reach) * kMore, dx = x - other_x, dy = y - other_y;
+            if (dx * dx + dy * dy <= far * far) scratch.meets[i] = scratch.meets[k] = 1;
+        }
+    }
     for (std::size_t rank = 0; rank < count; ++rank) {
         const std::size_t i = order[rank];
         Move& move = scratch.moves[i];
         bool is_hit = scratch.blocked[i].has_value();
-        for (std::size_t k = 0; k < count && !is_hit && count > 1; ++k)
+        for (std::size_t k = 0; k < count && !is_hit && scratch.meets[i] != 0; ++k)
             if (k != rank) is_hit = collides(move, scratch.moves[order[k]], k < rank);
         if (is_hit) {
             move.cancel();

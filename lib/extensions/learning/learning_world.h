@@ -43,6 +43,8 @@ struct LearningScratch {
     std::vector<Move> moves;
     std::vector<MotionLimits> limits;
     std::vector<std::optional<std::size_t>> blocked;
+    std::vector<std::array<double, 3>> reaches;  // x, y, and how far a move comes
+    std::vector<std::uint8_t> meets;             // 1: it may come as far as another
     std::vector<MovingBody> bodies;
     MovingBodies moving;
     Vicinity vicinity;  // outside of the shared ones
