@@ -88,7 +88,7 @@ TEST(CellSet, CroppedSetsAreEqual) {
 
 TEST(PartOf, RunsOfASet) {
     CellSet set(200);
-    for (const std::size_t cell : {0, 1, 2, 63, 64, 65, 130, 199}) set.set(cell);
+    for (const std::size_t cell : {0U, 1U, 2U, 63U, 64U, 65U, 130U, 199U}) set.set(cell);
     const CellParts parts = partOf(set);
     EXPECT_EQ(parts.runs, (std::vector<CellRun>{{0, 3}, {63, 66}, {130, 131}, {199, 200}}));
     EXPECT_EQ(parts.first, (std::vector<std::uint32_t>{0, 4}));

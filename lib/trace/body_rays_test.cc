@@ -195,7 +195,8 @@ TEST(MovingBodies, OriginsOfEachRay) {
             origins.push_back({0.01 * static_cast<double>(k), 0.3, 0.5});
         }
         std::vector<float> ranges(100, kNoReturn), cosines(100, 1);
-        const std::size_t begin = round % 3, end = 100 - begin;
+        const auto begin = static_cast<std::size_t>(round % 3);
+        const std::size_t end = 100 - begin;
         bodies.shorten(origins, directions, begin, end, 4, kNoOwner, ranges, cosines);
         for (std::size_t k = begin; k < end; ++k) {
             float range = kNoReturn, cosine = 1;
@@ -256,8 +257,10 @@ TEST(MovingBodies, BetweenAsEachBodyAlone) {
 
 TEST(MovingBodies, VisitsOnlyBodiesAlongASegment) {
     std::vector<MovingBody> all;
-    for (int i = 0; i < 10'000; ++i)
-        all.push_back(cylinder({i % 100 + 0.5, i / 100 + 0.5}, 0.1, 0, 1));
+    all.reserve(10'000);
+    for (int row = 0; row < 100; ++row)
+        for (int column = 0; column < 100; ++column)
+            all.push_back(cylinder({column + 0.5, row + 0.5}, 0.1, 0, 1));
     const MovingBodies bodies(all);
     for (const auto& [a, b] : {std::pair<Point3, Point3>{{0, 0, 0.5}, {100, 100, 0.5}},
                                {{100, 3, 0.5}, {0, 4, 0.5}},

@@ -57,7 +57,8 @@ struct PixelMap {
 
     [[nodiscard]] bool at(int x, int y) const {
         return x >= 0 && y >= 0 && x < columns && y < rows &&
-               free[static_cast<std::size_t>(y * columns + x)];
+               free[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+                    static_cast<std::size_t>(x)];
     }
     /// Returns the unit edges between free and occupied pixels, the free ones on the left.
     [[nodiscard]] std::vector<Segment2> boundary() const {
