@@ -12,11 +12,11 @@
 ///     for (float range : laser.scan().ranges) …
 ///
 /// Robot and Person drive; LaserSensor, Camera and similar classes read; World holds the clock,
-/// changes and events; Node is a computer of a sensor network. Units are those of the protocol: metres, degrees, simulated seconds; frames
-/// are right-handed and headings counter-clockwise. Functions block until the server has answered,
-/// for at most Options::timeout seconds of wall time; errors are exceptions of
-/// <ispace_client/error.h> with the server's text. In CMake: find_package(ispace_client),
-/// ispace::client.
+/// changes and events; Node is a computer of a sensor network. Units are those of the protocol:
+/// metres, degrees, simulated seconds; frames are right-handed and headings counter-clockwise.
+/// Functions block until the server has answered, for at most Options::timeout seconds of wall
+/// time; errors are exceptions of <ispace_client/error.h> with the server's text. In CMake:
+/// find_package(ispace_client), ispace::client.
 #ifndef ISPACE_CLIENT_H
 #define ISPACE_CLIENT_H
 

@@ -19,9 +19,9 @@ struct ServedAddresses {
     std::optional<int> ros_domain;  ///< of DDS
     DeviceAddresses devices;
 };
-/// Opens the ports that options ask for, and adds the roles of extensions to the protocol. \param title of the room or the record
-/// \param replayed folders of the records that are replayed
-/// \throws std::system_error, UsageError naming the option
+/// Opens the ports that options ask for, and adds the roles of extensions to the protocol. \param
+/// title of the room or the record \param replayed folders of the records that are replayed \throws
+/// std::system_error, UsageError naming the option
 ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title,
                            const std::vector<std::string>& replayed);
 

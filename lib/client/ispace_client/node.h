@@ -49,8 +49,7 @@ class Node {
     /// Waits until the clock shows this; returns the time then. Of a node in lockstep, the world
     /// waits there for the next call. \throws Refused if the run ends before
     double await(double time) {
-        return connection_
-            .ask("AWAIT " + textOf(time), std::numeric_limits<double>::infinity())
+        return connection_.ask("AWAIT " + textOf(time), std::numeric_limits<double>::infinity())
             .fields.number("t");
     }
 
