@@ -251,7 +251,7 @@ void Session::silent() {
 void Session::finish() {
     sync();
     if (!running_.empty()) world().command(subject_, {Verb::Stop, 0});
-    if (role_ == Role::World) abandonRequests();
+    if (role_ == Role::World || (role_ == Role::Guest && !held_.empty())) abandonRequests();
     // Now it may wait: for frames due before the request, and for the requested one.
     while (wanted_ || coming_) {
         if (!state_->await()) {

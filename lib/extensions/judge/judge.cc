@@ -46,7 +46,7 @@ class TrackJudge : public OptionGroup {
         line.group("Trackers judged by a recorded run");
         line.file("--tracks", "FILE", tracks_,
                   "judge the tracks in FILE (CSV or lines of JSON with t, track, x, y[, kind]; "
-                  "MOT) by the "
+                  "MOT; markers in MCAP) by the "
                   "robots and people of --run: MOTA, MOTP, IDF1, HOTA, OSPA(2), where and why "
                   "tracks were "
                   "lost; -o is the map of it",

@@ -259,6 +259,9 @@ TEST_F(NodesTest, AwaitAnswersInTimeAndLockstepHoldsTheWorld) {
     EXPECT_EQ(ask(*hub, "AWAIT 0.01"), "OK AWAIT t=0.015000\n");
     EXPECT_TRUE(service_->holdsWorld());
     EXPECT_EQ(ask(*hub, "AWAIT soon").substr(0, 8), "ERR 416 ");
+    EXPECT_EQ(ask(*hub, "AWAIT 9"), "");
+    hub->finish();
+    EXPECT_EQ(hub->take(), "ERR 405 the run has ended\n");
     hub.reset();
     EXPECT_FALSE(service_->holdsWorld());
 }
