@@ -287,7 +287,8 @@ FreeHeading Steering::choose(Angle desired, double needed) const {
         const Angle direction = desired + Angle::degrees(kTurns[i]);
         const Vec2 velocity = speed_ * unitVector(direction);
         most[i] = std::min(horizon_, untilNeighbour(velocity));
-        if (most[i] == 0 || most[i] < needed) continue;
+        if (most[i] < needed) continue;
+        if (most[i] == 0) return {direction, 0};  // as long as needed: no time at all
         const double share = share_of(kTurns[i]);
         const double time = std::min(most[i], untilLine(velocity, share, needed));
         if (time >= needed) return {direction, time};
