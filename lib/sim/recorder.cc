@@ -189,6 +189,8 @@ void Recorder::Data::begin() {
     activities.pending = kActivitiesHead;
     tracks.pending = trackTableHead();
     timing.pending = "t,wall,steps\n";
+    // Its place on the disk is taken first: it tells how a record ends whose disk gets full.
+    writeInfo();
     scene.pending = options.scene;
     scene.flush();
     if (events_log != nullptr) next_event = events_log->next();
@@ -416,6 +418,7 @@ Recorder::Recorder(const std::string& folder, World& world, const RecordOptions&
                    EventLog* events, const TrackLog* tracks)
     : data_(std::make_unique<Data>(folder, options, events, tracks, world.stepLength())) {
     if (events != nullptr) events->want(allEventKinds());
+    data_->remember(world);
     data_->begin();
     record(world);
     // Reports write errors before the run.
