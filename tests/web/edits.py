@@ -69,7 +69,11 @@ def edits(run, page):
         eventually(what, lambda: holds(record(run, "desk1")))
     page.click("edit-undo")
     eventually("no desk", lambda: not record(run, "desk1"))
-    check(not page.part("edit-undo").is_enabled(), "there is more to undo")
+    eventually("no more to undo", lambda: not page.part("edit-undo").is_enabled())
+
+
+def undo(page):
+    ActionChains(page.browser).key_down(Keys.CONTROL).send_keys("z").key_up(Keys.CONTROL).perform()
 
 
 def places(run, page):
@@ -87,8 +91,18 @@ def places(run, page):
     eventually("a laser on it", lambda: "on=robot1" in record(run, "laser1"))
     press(page, (5.2, 6), (5.2, 4))
     eventually("the robot was moved", lambda: abs(float(record(run, "robot1").split(" at=")[1].split()[0].split(",")[1]) - 4) < 0.05)
-    ActionChains(page.browser).key_down(Keys.CONTROL).send_keys("z").key_up(Keys.CONTROL).perform()
+    undo(page)
     eventually("and back", lambda: abs(float(record(run, "robot1").split(" at=")[1].split()[0].split(",")[1]) - 6) < 0.05)
+    # What is taken back is the last change, also before it is answered.
+    eventually("the page sees it", lambda: "SET robot1.at=5.2,6" in page.log())
+    page.settle()
+    page.browser.execute_script("WebSocket.prototype.send = (send => function(text) { setTimeout(() => send.call(this, text), 200); })"
+                                "(WebSocket.prototype.send)")
+    press(page, (5.2, 6), (5.2, 4))
+    undo(page)
+    eventually("both changes", lambda: page.log().count("SET robot1.at=") == 4)
+    eventually("back again", lambda: abs(float(record(run, "robot1").split(" at=")[1].split()[0].split(",")[1]) - 6) < 0.05)
+    check(record(run, "laser1"), "an older change was taken back")
 
 
 def saves(page):

@@ -122,7 +122,9 @@ export class Editor {
   // Requests. Each that succeeds keeps the one that takes it back.
 
   async ask(request, back) {
-    const answer = await this.link.ask(request);
+    const asked = this.link.ask(request);
+    this.asked = asked;
+    const answer = await asked;
     if (!answer.startsWith('OK')) {
       this.tellPeople(complaint(answer), true);
       return null;
@@ -135,7 +137,9 @@ export class Editor {
     return answer;
   }
 
-  undo() {
+  /** Takes back the last change, also one whose answer is still on its way. */
+  async undo() {
+    await this.asked;
     const back = this.undone.pop();
     if (back) this.ask(back);
   }
