@@ -4,6 +4,7 @@
 
 import importlib.util
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -124,10 +125,21 @@ class Worlds(unittest.TestCase):
             ispace.VectorEnv("nowhere.env")
         with self.assertRaisesRegex(ispace.ToolError, "task.yaml:1"):
             ispace.VectorEnv(OFFICE, task={"pepole": 3})
+        for count in (0, -1, 1_000_001):
+            with self.assertRaisesRegex(ispace.ToolError, "whole number from 1"):
+                ispace.VectorEnv(OFFICE, num_envs=count)
+        for count in (None, 2.5, "2"):
+            with self.assertRaises(TypeError):
+                ispace.VectorEnv(OFFICE, num_envs=count)
         env = self.make(OFFICE, num_envs=2)
+        with self.assertRaisesRegex(ispace.Error, "reset it before"):
+            env.step(np.zeros((2, 2), np.float32))
         env.reset(seed=1)
         with self.assertRaises(ValueError):
             env.step(np.zeros((3, 2), np.float32))
+        for kind in (complex, str, object):
+            with self.assertRaises(TypeError):
+                env.step(np.zeros((2, 2), kind))
         with self.assertRaisesRegex(ispace.Error, "row 1 is not finite"):
             env.step(np.array([[0, 0], [0, np.nan]], np.float32))
         with self.assertRaises(ValueError):
@@ -143,6 +155,47 @@ class Worlds(unittest.TestCase):
         env._worlds._process.kill()
         with self.assertRaises(ispace.ToolError):
             env.reset()
+
+    def test_an_interrupted_wait_mixes_no_replies(self):
+        class Interrupt(Exception):
+            pass
+
+        def interrupt(*_):
+            raise Interrupt
+
+        env, other = (self.make(OFFICE, num_envs=64, people=8) for _ in range(2))
+        other.reset(seed=1)
+        actions = actions_of(64, 3)
+        for step in range(3):
+            other.step(actions[step])
+        env.reset(seed=1)
+        os.kill(env.pid, signal.SIGSTOP)  # so that the wait is long
+        before = signal.signal(signal.SIGALRM, interrupt)
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with self.assertRaises(Interrupt):
+            env.step(actions[0])
+        signal.signal(signal.SIGALRM, before)
+        os.kill(env.pid, signal.SIGCONT)
+        for step in range(1, 3):
+            observations = env.step(actions[step])[0]
+        np.testing.assert_array_equal(observations, other.observations)
+        self.assertGreater(env.bytes_of_world, 0)
+
+    def test_names_of_folders(self):
+        env = self.make(OFFICE)
+        env.reset(seed=1)
+        with tempfile.TemporaryDirectory() as folder:
+            here = os.getcwd()
+            os.chdir(folder)  # simrun is in another
+            try:
+                env.export(0, "a folder")
+                env.export(0, b"b")
+            finally:
+                os.chdir(here)
+            self.assertEqual(sorted(os.listdir(folder)), ["a folder", "b"])
+            with self.assertRaisesRegex(ValueError, "one line"):
+                env.export(0, folder + "/c\nquit")
+            self.assertEqual(env.step(np.zeros((1, 2)))[0].shape, (1, 185))
 
     def test_an_episode_repeats_in_simrun(self):
         env = self.make(OFFICE, num_envs=3, people=5, task={"ends": []})

@@ -14,6 +14,7 @@ import importlib
 import json
 import math
 import mmap
+import operator
 import os
 import secrets
 import subprocess
@@ -157,7 +158,7 @@ class _Worlds:
             if not several:
                 raise ValueError("VectorEnv wants a room, or a list of rooms")
             words = self._context.enter_context(operands(several[0], layout))
-            words += arguments_of({"vector": worlds, "shm": name, "autoreset": _WORDS[mode.name]})
+            words += arguments_of({"vector": operator.index(worlds), "shm": name, "autoreset": _WORDS[mode.name]})
             words += arguments_of({"room": several[1:], "task": self._task_file(task), **options})
             self._process = subprocess.Popen(
                 [tool("simrun"), *words],
@@ -168,6 +169,7 @@ class _Worlds:
                 bufsize=0,
             )
             self._rest = b""
+            self._owed = False  # a reply
             self.facts: Dict[str, Any] = json.loads(self._line())
             path = f"/dev/shm/{name}"
             file = os.open(path, os.O_RDWR)
@@ -220,15 +222,26 @@ class _Worlds:
         line, _, self._rest = self._rest.partition(b"\n")
         return line.decode()
 
+    def finish(self) -> None:
+        """Waits for the reply of a request if an exception, of a signal, ended the wait for it."""
+        if self._process is not None and self._owed:
+            self._line()
+            self._owed = False
+
     def ask(self, request: str) -> str:
         """Sends a request, and waits for what follows ``ok`` of its reply."""
+        self.finish()
         if self._process is None or self._process.stdin is None:
             raise Error("the environment is closed")
+        if "\n" in request:
+            raise ValueError(f"a request is one line, not {request!r}")
         try:
-            os.write(self._process.stdin.fileno(), request.encode() + b"\n")
+            os.write(self._process.stdin.fileno(), os.fsencode(request) + b"\n")
         except BrokenPipeError:
             pass  # its last words say why
+        self._owed = True
         line = self._line()
+        self._owed = False
         if line.startswith("ok"):
             return line[3:]
         raise Error(line[len("error ") :] if line.startswith("error ") else line)
@@ -384,6 +397,7 @@ class VectorEnv(_VectorBase):  # type: ignore[misc]
             self._np_random_seed = first
         self._is_seeded = True
         worlds = self._worlds
+        worlds.finish()
         worlds.masks[:] = [1 if one is None else 2 for one in seeds]
         worlds.seeds[:] = np.array([(one or 0) % 2**64 for one in seeds], np.uint64)
         mask = (options or {}).get("reset_mask")
@@ -402,6 +416,7 @@ class VectorEnv(_VectorBase):  # type: ignore[misc]
     ) -> Tuple[Array, Array, Array, Array, Dict[str, Any]]:
         """Steps all worlds; what follows an end is up to ``autoreset_mode``."""
         worlds = self._worlds
+        worlds.finish()
         if actions is not worlds.actions:
             given = np.asarray(actions)
             if given.shape != worlds.actions.shape:
@@ -442,7 +457,7 @@ class VectorEnv(_VectorBase):  # type: ignore[misc]
 
         Returns the command of simrun that repeats it there, to which ``--record`` adds a record.
         """
-        return self._worlds.ask(f"export {int(row)} {os.fspath(folder)}")
+        return self._worlds.ask(f"export {int(row)} {os.path.abspath(os.fsdecode(folder))}")
 
     def render(self) -> None:
         """No picture: export() an episode and film it."""
