@@ -87,6 +87,21 @@ class Learn(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("reached after", done.stdout)
 
+    def test_films_a_policy(self):
+        steer_policy(os.path.join(self.folder, "policy.npz"))
+        rooms = [OFFICE]
+        if data := os.environ.get("ISPACE_TEST_DATA"):
+            rooms.append(os.path.join(data, "turtlebot3.yaml"))
+        for room in rooms:
+            done = self.run_example("film.py", "policy.npz", room, "film.gif", "--people", "2", "--fps", "4", "--width", "200")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, "^[1-9][0-9]* of 40 robots reached their goals")
+            with open(os.path.join(self.folder, "film.gif"), "rb") as file:
+                film = file.read()
+            self.assertEqual(film[:6], b"GIF89a")
+            self.assertGreater(film.count(b"\x21\xf9\x04"), 8)  # pictures
+            os.remove(os.path.join(self.folder, "film.gif"))
+
     @unittest.skipUnless(importlib.util.find_spec("torch"), "torch is not installed")
     def test_trains_and_tests(self):
         trained = self.run_example("ppo.py", "train", "policy.npz", "--minutes", "0.1", "--rooms", "2")
