@@ -67,6 +67,11 @@ std::span<const ToolExtension> toolExtensions() {
     return extensions;
 }
 
+std::span<const MakeObjective> arrangeObjectives() {
+    static const std::vector<MakeObjective> objectives = {};
+    return objectives;
+}
+
 std::span<const MakeRoleService> roleServices() {
     static const std::vector<MakeRoleService> services = {
 #ifdef ISPACE_HAS_NODES

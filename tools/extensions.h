@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/extension.h"
+#include "cli/objective_extension.h"
 #include "server/client_role.h"
 
 namespace ispace {
@@ -12,6 +13,9 @@ namespace ispace {
 /// Returns the extensions that this build has, of all tools. From the first call on their formats
 /// and records are read, see addImporters() and addSceneSchemas().
 std::span<const ToolExtension> toolExtensions();
+
+/// Returns the objectives that extensions add to arrange.
+std::span<const MakeObjective> arrangeObjectives();
 
 /// Returns the roles that extensions add to the protocol of simrun.
 std::span<const MakeRoleService> roleServices();

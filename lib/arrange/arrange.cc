@@ -31,7 +31,7 @@ std::string needsOneRoom(const ArrangeOptions& options) {
     if (options.over_poses) return "--proof poses";
     if (options.objective.of == ObjectiveChoice::Of::Path) return "--objective path";
     if (options.objective.of == ObjectiveChoice::Of::Localise) return "--objective localise";
-    if (options.ways) return "--presence";
+    if (options.demand) return options.demand->option();
     if (options.robust.of == Robust::Rooms) return "--robust rooms";
     if (options.robust.of == Robust::Mounting) return "--robust mounting";
     if (options.robust.of == Robust::Crowd) return "--crowd";
@@ -171,7 +171,7 @@ void measure(Arrangement& result, CoverageModel& model) {
     const ArrangeOptions& options = model.options();
     const bool is_whole_floor = options.target && options.weights.isUniform() &&
                                 !options.robust.isAsked() && options.redundancy == 1 &&
-                                options.judges_inside && !options.beam_step && !options.ways;
+                                options.judges_inside && !options.beam_step && !options.demand;
     const CoverageOptions usual{.plane = options.plane, .exact = is_whole_floor};
     const Measured measured = model.site().isOneRoom() ? measuredRoom(result, model, usual)
                                                        : measuredSite(result, model, usual);
@@ -191,7 +191,7 @@ void measure(Arrangement& result, CoverageModel& model) {
     result.is_value_by_cells = result.value && options.judges_inside && !options.beam_step &&
                                options.weights.isUniform() && options.redundancy == 1 &&
                                !options.robust.isAsked() && options.facing.empty() &&
-                               !options.ways && options.objective.isCoverage();
+                               !options.demand && options.objective.isCoverage();
     for (const Objective& row : objectives())
         if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
     if (options.beam_step) result.value = result.candidate_value;
@@ -382,7 +382,6 @@ Arrangement arrangeLimited(const ArrangeSite& site, const std::vector<SensorGrou
     result.bytes = model.bytes();
     if (site.isOneRoom()) result.grid = model.only().target().grid;
     result.cells = problem.cells();
-    if (options.ways) result.pieces = problem.cells();
     if (!options.target && !options.budget) result.unplaced = problem.order.size() - chosen.size();
     result.candidate_value = model.shareOf(chosen, found.best.value);
     result.rounding = model.rounding();

@@ -13,18 +13,19 @@
 #include <string_view>
 #include <vector>
 
+#include "arrange/demand.h"
 #include "arrange/placement_rules.h"
 #include "arrange/robust.h"
 #include "arrange/search/search.h"
 #include "arrange/sensor_group.h"
 #include "arrange/site.h"
 #include "arrange/tried_pose.h"
+#include "base/cell_set.h"
 #include "base/error.h"
 #include "base/message.h"
 #include "coverage/camera_rules.h"
 #include "coverage/least_seen_way.h"
 #include "coverage/target.h"
-#include "scene/run/people_ways.h"
 #include "scene/scene.h"
 
 namespace ispace {
@@ -117,9 +118,8 @@ struct ArrangeOptions {
     std::vector<PrivacyRule> privacy;
     /// In these zones floor counts only where a camera sees faces. Headings are known.
     std::vector<FacingRule> facing;
-    /// Ways of people: their share on which motion is detected counts instead of the floor; the
-    /// zones, weights and cells above then do not.
-    std::shared_ptr<const PeopleWays> ways;
+    /// Counts instead of the floor; the zones, weights and cells above then do not. Null: none.
+    std::shared_ptr<const Demand> demand;
     std::optional<double> target;  ///< share to reach at minimum cost
     /// Prove over all poses: the number of sensors with a target, else their coverage.
     bool over_poses = false;
@@ -208,8 +208,8 @@ struct Arrangement {
     std::size_t candidates = 0, bytes = 0;            ///< of all kinds
     Grid grid;                                        ///< the cells while searching one room
     std::size_t cells = 0;                            ///< number of those of all rooms
-    std::size_t pieces = 0;                           ///< of ways, instead of these cells
-    bool is_complete = true;                          ///< false: cut by time or a signal
+    CellSet served = CellSet();  ///< elements of ArrangeOptions::demand, if any
+    bool is_complete = true;     ///< false: cut by time or a signal
 
     /// Number of sensors left unplaced, for lack of candidates or of candidates that keep coverage
     /// connected.

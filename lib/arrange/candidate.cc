@@ -16,13 +16,13 @@
 #include "arrange/beam_cells.h"
 #include "arrange/case_room.h"
 #include "arrange/counted_cells.h"
+#include "arrange/demand.h"
 #include "arrange/facing_cells.h"
 #include "arrange/sensor_group.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/packed.h"
 #include "coverage/plane_cells.h"
-#include "coverage/presence.h"
 #include "coverage/sector_cells.h"
 
 namespace ispace {
@@ -123,7 +123,8 @@ struct CandidateViews::Data {
     const RayWorld* beam_world = nullptr;  // of lasers that see by beams; else null
     const SiteErrors* errors = nullptr;    // of mounting; null: none
     const FacingCells* facing = nullptr;   // null: none
-    const PresenceView* ways = nullptr;    // null: its cells are those of the grid
+    const Demand* demand = nullptr;        // null: its cells are those of the grid
+    const Worlds* worlds = nullptr;        // of the demand
     SiteSights* sights = nullptr;          // null: of this tilt alone
 
     [[nodiscard]] std::size_t headingsOf(const Site& site) const {
@@ -151,13 +152,12 @@ struct CandidateViews::Data {
         cellsBySector(grid, *level, pose.position.onFloor(), range, sorted, seen);
         inOrderOf(turned, sorted, seen, parts);
     }
-    /// Computes the pieces of way of each heading, like lookAtPlane().
-    void lookAtWays(const Site& site, CellParts& parts) const {
+    /// Computes the elements that each heading serves, like lookAtPlane().
+    void lookAtDemand(const Site& site, CellParts& parts) const {
         parts.first.resize(1);
-        const std::vector<std::uint8_t> unhidden =
-            ways->unhidden(sight.meshFor(device), at(site, 0));
+        const std::vector<std::uint8_t> shared = demand->sightOf(at(site, 0), *worlds);
         for (std::size_t k = 0; k < headingsOf(site); ++k) {
-            const CellParts seen = partOf(ways->detected(at(site, k), unhidden));
+            const CellParts seen = partOf(demand->servedBy(at(site, k), shared));
             parts.runs.insert(parts.runs.end(), seen.runs.begin(), seen.runs.end());
             parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
         }
@@ -166,7 +166,7 @@ struct CandidateViews::Data {
     /// Returns a table for the headings that most sites share, if it is worth building.
     [[nodiscard]] std::optional<TurnedViews> turnedFor(std::span<const Site> sites) const {
         constexpr std::ptrdiff_t kWorthwhile = 24;  // sites
-        if (is_round || errors != nullptr || ways != nullptr || looks_in_slice || sites.empty())
+        if (is_round || errors != nullptr || demand != nullptr || looks_in_slice || sites.empty())
             return std::nullopt;
         const std::vector<Angle>& headings = sites[sites.size() / 2].headings;
         if (std::count_if(sites.begin(), sites.end(), [&](const Site& site) {
@@ -184,7 +184,7 @@ struct CandidateViews::Data {
         parts.runs.clear();
         parts.first.assign(headings + 2, 0);
         if (level->isInsideSolid(site.place)) return;
-        if (ways != nullptr) return lookAtWays(site, parts);
+        if (demand != nullptr) return lookAtDemand(site, parts);
         std::vector<FieldOfView> fields;
         for (std::size_t k = 0; k < headings; ++k)
             if (const auto field = fieldOfView(at(site, k))) fields.push_back(*field);
@@ -232,7 +232,11 @@ CandidateViews::CandidateViews(const VisibleArea& sight, const Grid& grid,
 
 CandidateViews::~CandidateViews() = default;
 
-void CandidateViews::lookAtWays(const PresenceView& ways) { data_->ways = &ways; }
+void CandidateViews::serve(const Demand& demand, const Worlds& worlds) {
+    data_->demand = &demand;
+    data_->worlds = &worlds;
+    data_->looks_in_slice = false;
+}
 
 void CandidateViews::share(SiteSights& sights) {
     if (data_->errors == nullptr) data_->sights = &sights;
@@ -459,8 +463,8 @@ class Scanner {
 bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<const Site> sites,
                    std::size_t max_bytes, Progress& progress, std::size_t least,
                    const SearchShare& share, StopGrace* grace) {
-    assert(set.cells() == (views.data().ways != nullptr ? views.data().ways->ways().pieces.size()
-                                                        : views.data().grid.size()));
+    assert(set.cells() == (views.data().demand != nullptr ? views.data().demand->weights().size()
+                                                          : views.data().grid.size()));
     const StackedViews one{&views};
     return addCandidates(set, std::span(&one, 1), sites, max_bytes, progress, least, share, grace);
 }

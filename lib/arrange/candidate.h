@@ -67,8 +67,8 @@ class PosedCandidates : public CandidateSet {
     std::vector<Angle> headings_;  // by candidate
 };
 
+class Demand;
 class FacingCells;
-class PresenceView;
 class SiteErrors;
 struct KnownSight;
 
@@ -134,9 +134,10 @@ class CandidateViews {
     CandidateViews(const CandidateViews&) = delete;
     CandidateViews& operator=(const CandidateViews&) = delete;
 
-    /// Makes its cells the pieces of these ways on which a sensor detects people, instead of those
-    /// of the grid. Stores the reference. \pre detectsMotion(device), and `counted` is null
-    void lookAtWays(const PresenceView& ways);
+    /// Makes its cells the elements of a demand that a sensor serves, instead of those of the grid.
+    /// Stores the references.
+    /// \pre the demand accepts the device, `counted` is null, the world of the mount is prepared
+    void serve(const Demand& demand, const Worlds& worlds);
 
     /// Keeps the sight of each site for views of the same height and device. Stores the reference.
     void share(SiteSights& sights);

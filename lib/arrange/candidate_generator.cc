@@ -82,7 +82,7 @@ struct CandidatePool::Data {
     Progress& progress;
     CaseRooms rooms;
     const FacingCells* facing;
-    const PresenceView* ways;
+    const Demand* demand;
     VisibleArea sight;
     std::map<double, std::unique_ptr<SiteValidity>> validities = {};
     std::map<double, std::vector<std::unique_ptr<SiteValidity>>> other_validities = {};
@@ -284,9 +284,9 @@ struct CandidatePool::Data {
                 if (options.beam_step)
                     by_beams.emplace(CandidateViews::ByBeams{worlds, *options.beam_step});
                 CandidateViews views(sight, target.grid, kind.model, mount,
-                                     ways == nullptr ? &weights.counted : nullptr, by_beams,
+                                     demand == nullptr ? &weights.counted : nullptr, by_beams,
                                      nullptr, facing);
-                if (ways != nullptr) views.lookAtWays(*ways);
+                if (demand != nullptr) views.serve(*demand, worlds);
                 if (sights) views.share(*sights);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
                 const std::vector<Site> sites = allowedSites(kind, mount, level.sites);
@@ -399,7 +399,7 @@ struct CandidatePool::Data {
 CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
                              CandidateWeights weights, const ArrangeOptions& options,
                              Progress& progress, CaseRooms rooms, const FacingCells* facing,
-                             const PresenceView* ways)
+                             const Demand* demand)
     : data_(new Data{environment,
                      worlds,
                      target,
@@ -408,7 +408,7 @@ CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, con
                      progress,
                      rooms,
                      facing,
-                     ways,
+                     demand,
                      {environment, options.plane, &worlds}}) {}
 
 CandidatePool::~CandidatePool() = default;

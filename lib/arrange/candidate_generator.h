@@ -16,7 +16,7 @@ namespace ispace {
 
 /// Cell weights that guide candidate generation.
 struct CandidateWeights {
-    CellSet counted;                  ///< cells with weight, of the target's grid or of ways
+    CellSet counted;                  ///< cells with weight, of the target's grid or of a demand
     std::vector<std::uint32_t> left;  ///< weights of the cells not covered yet, else 0
 };
 
@@ -35,7 +35,7 @@ class CandidatePool {
     CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
                   CandidateWeights weights, const ArrangeOptions& options, Progress& progress,
                   CaseRooms rooms = {}, const FacingCells* facing = nullptr,
-                  const PresenceView* ways = nullptr);
+                  const Demand* demand = nullptr);
     ~CandidatePool();
     CandidatePool(const CandidatePool&) = delete;
     CandidatePool& operator=(const CandidatePool&) = delete;

@@ -148,8 +148,7 @@ void CoverageModel::addRooms() {
     }
     total_ = problem_.totalWeight();
     if (total_ == 0)
-        throw UnmetError(options_.ways ? "nothing to detect: nobody walks in the ways of --presence"
-                                       : nothingText());
+        throw UnmetError(options_.demand ? options_.demand->nothingText() : nothingText());
     problem_.standing = CellSet(problem_.cells());
     for (const Room& room : rooms_)
         if (room.model != nullptr)
@@ -584,13 +583,19 @@ std::vector<CountedView> CoverageModel::viewsOf(std::span<const Placement> place
     return viewsOf(std::span<const SiteSensor>(sensors));
 }
 
-std::uint64_t CoverageModel::valueOf(std::span<const CountedView> views) const {
+CellSet CoverageModel::servedBy(std::span<const CountedView> views) const {
     std::vector<int> met(problem_.achieved.begin(), problem_.achieved.end());
     for (const CountedView& view : views)
         view.cells.forEach([&](std::size_t cell) { met[cell] += view.multiplicity; });
-    std::uint64_t value = 0;
+    CellSet served(met.size());
     for (std::size_t i = 0; i < met.size(); ++i)
-        if (met[i] >= problem_.required) value += problem_.weights[i];
+        if (met[i] >= problem_.required && problem_.weights[i] > 0) served.set(i);
+    return served;
+}
+
+std::uint64_t CoverageModel::valueOf(std::span<const CountedView> views) const {
+    std::uint64_t value = 0;
+    servedBy(views).forEach([&](std::size_t cell) { value += problem_.weights[cell]; });
     return value;
 }
 

@@ -145,6 +145,9 @@ class CoverageModel {
     [[nodiscard]] std::vector<CountedView> viewsOf(std::span<const Placement> placements) const;
     /// As valueOf() of the sensors with these views.
     [[nodiscard]] std::uint64_t valueOf(std::span<const CountedView> views) const;
+    /// Returns the cells of weight that these views and standing sensors serve as often as
+    /// required.
+    [[nodiscard]] CellSet servedBy(std::span<const CountedView> views) const;
     /// Returns true if these views and the standing coverage, which counts as one part, are
     /// connected, see Problem::is_connected. O(views^2 * cells / 64)
     [[nodiscard]] bool isConnected(std::span<const CountedView> views) const;

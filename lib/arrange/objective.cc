@@ -35,6 +35,12 @@ void reportShare(const CoverageModel& model, std::span<const CountedView> views,
     result.value = model.shareOf(views);
 }
 
+void reportServed(const CoverageModel& model, std::span<const CountedView> views,
+                  Arrangement& result) {
+    result.served = model.servedBy(views);
+    result.value = model.shareOf(views);
+}
+
 void reportRobust(const CoverageModel& model, std::span<const CountedView> views,
                   Arrangement& result) {
     result.robust = model.robustValuesOf(views, result.sensors);
@@ -93,10 +99,10 @@ constexpr Objective kObjectives[] = {
      .option = "--facing",
      .is_asked = [](Options options) { return !options.facing.empty(); },
      .report = reportShare},
-    {.name = "presence",
-     .option = "--presence",
-     .is_asked = [](Options options) { return options.ways != nullptr; },
-     .report = reportShare},
+    {.name = "demand",
+     .option = "",
+     .is_asked = [](Options options) { return options.demand != nullptr; },
+     .report = reportServed},
     {.name = "robust",
      .option = "--robust",
      .is_asked = [](Options options) { return options.robust.isAsked(); },

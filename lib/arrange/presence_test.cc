@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests the search for sensors that detect people on their ways.
-#include "coverage/presence.h"
+#include "arrange/presence_demand.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
+#include "coverage/presence.h"
 #include "support/test_arrange.h"
 
 namespace ispace {
@@ -15,39 +16,39 @@ namespace {
 constexpr const char* kTwoRooms = "#env 1\nispace size=8,6,2.5\nwall from=0,-3 to=0,2.9\n";
 
 /// A person walks through the left half, and another one a third as far in the right half.
-std::shared_ptr<const PeopleWays> waysInBoth() {
+PeopleWays waysInBoth() {
     WayCutter cutter;
     for (int i = 0; i <= 30; ++i) {
         cutter.add("left", i * kWayStep, {-3, -2.5 + 0.15 * i});
         cutter.add("right", i * kWayStep, {3, -2.5 + 0.05 * i});
     }
-    return std::make_shared<PeopleWays>(cutter.finish());
+    return cutter.finish();
 }
 
 double presenceOf(const Scene& scene, const std::vector<SensorGroup>& groups,
                   const Arrangement& arrangement, const ArrangeOptions& options) {
     const Scene whole = withPlaced(scene, groups, arrangement.sensors);
-    return measurePresence(whole, *options.ways, options.plane).all.share;
+    return measurePresence(whole, waysInBoth(), options.plane).all.share;
 }
 
 TEST(ArrangePresence, ValueIsTheShareThatCoverageMeasures) {
     const Scene scene = roomScene(kTwoRooms);
     const auto groups = groupsOf(scene, {"pir,range=2"});
     ArrangeOptions options = coarse(Optimizer::Exact);
-    options.ways = waysInBoth();
+    options.demand = presenceDemand(std::make_shared<PeopleWays>(waysInBoth()), 0);
     const Arrangement one = arranged(scene, groups, options);
     ASSERT_TRUE(one.value);
     EXPECT_NEAR(*one.value, presenceOf(scene, groups, one, options), 1e-6);
     EXPECT_NEAR(*one.value, one.bound, 1e-9) << "the search is exact";
     EXPECT_LT(one.sensors.at(0).pose.position.x, 0) << "the way on the left is longer";
-    EXPECT_EQ(one.pieces, 60U);
+    EXPECT_EQ(one.cells, 60U);
 }
 
 TEST(ArrangePresence, ATargetIsReachedWithTheFewestInEveryRoom) {
     const Scene scene = roomScene(kTwoRooms);
     const auto groups = groupsOf(scene, {"pir"}, true);
     ArrangeOptions options = coarse(Optimizer::Exact);
-    options.ways = waysInBoth();
+    options.demand = presenceDemand(std::make_shared<PeopleWays>(waysInBoth()), 0);
     options.target = 0.95;
     const Arrangement few = arranged(scene, groups, options);
     EXPECT_TRUE(few.is_reached);
@@ -61,7 +62,7 @@ TEST(ArrangePresence, CountsSensorsThatStand) {
     const Scene scene = roomScene(kTwoRooms, &layout);
     const auto groups = groupsOf(scene, {"pir"});
     ArrangeOptions options = coarse(Optimizer::Exact);
-    options.ways = waysInBoth();
+    options.demand = presenceDemand(std::make_shared<PeopleWays>(waysInBoth()), 0);
     const Arrangement other = arranged(scene, groups, options);
     EXPECT_GT(other.sensors.at(0).pose.position.x, 0) << "m1 watches the left";
     EXPECT_NEAR(*other.value, presenceOf(scene, groups, other, options), 1e-6);
@@ -70,9 +71,9 @@ TEST(ArrangePresence, CountsSensorsThatStand) {
 TEST(ArrangePresence, RefusesSensorsWithoutSenseOfMotionAndWaysOfNobody) {
     const Scene scene = roomScene(kTwoRooms);
     ArrangeOptions options = coarse();
-    options.ways = waysInBoth();
+    options.demand = presenceDemand(std::make_shared<PeopleWays>(waysInBoth()), 0);
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UsageError);
-    options.ways = std::make_shared<PeopleWays>();
+    options.demand = presenceDemand(std::make_shared<PeopleWays>(), 0);
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"pir"}), options), UnmetError);
 }
 

@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "arrange/objective.h"
-#include "base/number.h"
-#include "sense/motion_sense.h"
 
 namespace ispace {
 
@@ -56,7 +54,7 @@ RoomModel::RoomModel(const SiteRoom& room, const ArrangeOptions& options,
     countStanding(standing.sensors, 0, achieved_);
     standing_ = CellSet(target_.grid.size());
     for (const SensorView& view : standing.sensors) standing_ |= view.cells;
-    if (options_.ways) countWays(kinds);
+    if (options_.demand) countDemand(kinds);
 }
 
 void RoomModel::makeCases() { cases_ = caseRoomsOf(*scene_, options_); }
@@ -84,35 +82,33 @@ void RoomModel::countStanding(const std::vector<SensorView>& views, std::size_t 
     }
 }
 
-void RoomModel::countWays(std::span<const SensorClass> kinds) {
-    for (const SensorClass& kind : kinds)
-        if (!detectsMotion(kind.model))
-            throw UsageError("--presence: " + kind.id +
-                             " detects no motion: give PIR sensors or "
-                             "radars");
-    const PresenceView& view = ways_.emplace(*options_.ways, options_.plane);
-    weights_.clear();
-    for (const WayPiece& piece : options_.ways->pieces) weights_.push_back(piece.length);
+void RoomModel::countDemand(std::span<const SensorClass> kinds) {
+    const Demand& demand = *options_.demand;
+    for (const SensorClass& kind : kinds) demand.mustServe(kind.model, kind.id);
+    weights_ = demand.weights();
+    counted_ = CellSet(weights_.size());
     achieved_.assign(weights_.size(), 0);
     standing_ = CellSet(weights_.size());
     for (const Sensor& sensor : scene_->sensors) {
-        if (!detectsMotion(sensor.model)) continue;
-        sight_.prepare(sensor);
-        const CellSet pieces = view.detected(sensor, worlds_);
-        standing_ |= pieces;
-        pieces.forEach([&](std::size_t i) {
-            achieved_[i] = static_cast<std::uint16_t>(std::min(achieved_[i] + unit_, 0xffff));
+        if (!demand.isServedBy(sensor)) continue;
+        prepare(sensor);
+        const int part = isPartial(sensor.model) ? 1 : unit_;
+        const CellSet served = demand.servedBy(sensor, worlds_);
+        standing_ |= served;
+        served.forEach([&](std::size_t i) {
+            achieved_[i] = static_cast<std::uint16_t>(std::min(achieved_[i] + part, 0xffff));
         });
     }
 }
 
-void RoomModel::prepare(const Sensor& sensor) const {
+void RoomModel::prepare(const Sensor& sensor) {
     sight_.prepare(sensor);
+    if (options_.demand) worlds_.prepare(sensor.pose);
     for (const auto& room : cases_) room->sight.prepare(room->mounted(sensor));
 }
 
 CellSet RoomModel::cellsOf(const Sensor& sensor, std::size_t all) const {
-    CellSet cells = ways_            ? ways_->detected(sensor, worlds_)
+    CellSet cells = options_.demand  ? options_.demand->servedBy(sensor, worlds_)
                     : cases_.empty() ? sight_.cellsOf(target_.grid, sensor)
                                      : CellSet(all);
     for (const auto& room : cases_)
@@ -128,7 +124,7 @@ void RoomModel::withoutFaces(CellParts& parts) const {
 void RoomModel::makePool(std::vector<std::uint32_t> left, Progress& progress) {
     pool_ = std::make_unique<CandidatePool>(
         scene_->environment, worlds_, target_, CandidateWeights{counted_, std::move(left)},
-        options_, progress, cases_, facing_ ? &*facing_ : nullptr, ways_ ? &*ways_ : nullptr);
+        options_, progress, cases_, facing_ ? &*facing_ : nullptr, options_.demand.get());
 }
 
 }  // namespace ispace

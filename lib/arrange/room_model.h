@@ -18,7 +18,6 @@
 #include "base/cell_set.h"
 #include "base/error.h"
 #include "coverage/coverage.h"
-#include "coverage/presence.h"
 #include "coverage/target.h"
 #include "coverage/visible_area.h"
 #include "scene/scene.h"
@@ -32,12 +31,12 @@ ArrangeOptions optionsOf(const RoomGoals& goals, ArrangeOptions options);
 RoomGoals goalsOf(const ArrangeOptions& options);
 
 /// A room of a CoverageModel: weights and multiplicities of its cells, the views of sensors in it,
-/// and its candidates. Its cells are those of a grid, or the pieces of ways of people; of a robust
+/// and its candidates. Its cells are those of a grid, or the elements of a demand; of a robust
 /// search those of all cases, one after another.
 class RoomModel {
   public:
     /// Stores the references. \param unit multiplicity of sensors other than receivers
-    /// \throws UsageError as FacingCells and for kinds that detect no motion among ways
+    /// \throws UsageError as FacingCells and Demand::mustServe()
     RoomModel(const SiteRoom& room, const ArrangeOptions& options,
               std::span<const SensorClass> kinds, int unit);
 
@@ -66,7 +65,7 @@ class RoomModel {
                        std::vector<std::uint16_t>& achieved) const;
 
     /// Prepares to see with a sensor: afterwards cellsOf() is thread-safe.
-    void prepare(const Sensor& sensor) const;
+    void prepare(const Sensor& sensor);
     /// Computes the cells that a sensor of the room sees. \param all number of cells of all cases
     [[nodiscard]] CellSet cellsOf(const Sensor& sensor, std::size_t all) const;
     /// Removes the cells of rules of faces, as for a sensor outside of the room.
@@ -78,7 +77,7 @@ class RoomModel {
     [[nodiscard]] CandidatePool& pool() { return *pool_; }
 
   private:
-    void countWays(std::span<const SensorClass> kinds);
+    void countDemand(std::span<const SensorClass> kinds);
 
     std::shared_ptr<const Scene> scene_;
     ArrangeOptions options_;
@@ -91,7 +90,6 @@ class RoomModel {
     std::vector<std::uint16_t> achieved_;
     CellSet standing_;
     std::optional<FacingCells> facing_;
-    std::optional<PresenceView> ways_;
     std::vector<std::unique_ptr<CaseRoom>> cases_;
     std::unique_ptr<CandidatePool> pool_;
 };

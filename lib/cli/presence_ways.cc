@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "arrange/presence_demand.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "cli/common_options.h"
@@ -42,7 +43,8 @@ std::vector<Record> recordsWith(const Crowd& crowd, const Scene& scene) {
     return records;
 }
 
-PeopleWays wanderedWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed) {
+void visitWanderers(const WaysChoice& choice, const Scene& scene, std::uint64_t seed,
+                    const PersonVisit& visit) {
     constexpr SimTime kStep = std::chrono::milliseconds(20);
     const Crowd crowd =
         CrowdFloor(scene).draw(static_cast<std::size_t>(choice.people), {.seed = seed});
@@ -51,19 +53,17 @@ PeopleWays wanderedWays(const WaysChoice& choice, const Scene& scene, std::uint6
     const DeviceCatalogue& devices = devicesFor({&rest});
     const Scene crowded = makeScene(std::move(rest.records), scene, devices);
     World world(crowded, kStep, {.seed = seed});
-    WayCutter cutter;
     const auto add = [&] {
         const std::size_t first = world.robots().size();
         for (std::size_t i = 0; i < world.people().size(); ++i)
-            cutter.add(world.people()[i].id, seconds(world.time()),
-                       world.status(first + i).pose.position);
+            visit(world.people()[i].id, seconds(world.time()),
+                  world.status(first + i).pose.position);
     };
     add();
     while (world.time() < choice.duration) {
         world.step();
         add();
     }
-    return cutter.finish();
 }
 
 }  // namespace
@@ -87,10 +87,24 @@ WaysChoice parseWays(const std::string& text) {
     return choice;
 }
 
-PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed) {
-    if (choice.record.empty()) return wanderedWays(choice, scene, seed);
+void visitWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed,
+               const PersonVisit& visit) {
+    if (choice.record.empty()) return visitWanderers(choice, scene, seed, visit);
     RunReader reader(choice.record);
-    return waysOfRun(reader);
+    visitPeople(reader, visit);
+}
+
+PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed) {
+    WayCutter cutter;
+    visitWays(choice, scene, seed, [&cutter](const std::string& id, double time, Point2 place) {
+        cutter.add(id, time, place);
+    });
+    return cutter.finish();
+}
+
+std::shared_ptr<const Demand> demandOfPresence(const WaysChoice& choice, const Scene& scene,
+                                               std::uint64_t seed, double plane) {
+    return presenceDemand(std::make_shared<PeopleWays>(readWays(choice, scene, seed)), plane);
 }
 
 }  // namespace ispace

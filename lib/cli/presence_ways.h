@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "scene/run/people_ways.h"
@@ -10,6 +11,8 @@
 #include "sim/sim_time.h"
 
 namespace ispace {
+
+class Demand;
 
 /// The ways of people that `--presence` counts.
 struct WaysChoice {
@@ -21,9 +24,16 @@ struct WaysChoice {
 /// Parses `DIR` or `wander:N[,TIME]`. \throws UsageError
 WaysChoice parseWays(const std::string& text);
 
-/// Reads the ways of a recorded run; or simulates that many people, wandering from random positions
-/// instead of the scene's, with its robots. Deterministic for a seed.
-/// \throws as RunReader, UnmetError as CrowdFloor::draw()
+/// Visits all people at each moment of a recorded run, or of a simulation of that many people,
+/// wandering from random positions instead of the scene's, with its robots. Deterministic for a
+/// seed. \throws as RunReader, UnmetError as CrowdFloor::draw()
+void visitWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed,
+               const PersonVisit& visit);
+
+/// Cuts the ways of visitWays() into pieces.
 PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed);
+/// Returns presenceDemand() of these ways.
+std::shared_ptr<const Demand> demandOfPresence(const WaysChoice& choice, const Scene& scene,
+                                               std::uint64_t seed, double plane);
 
 }  // namespace ispace

@@ -30,18 +30,7 @@ std::string_view prefixOf(Shared what) {
     return "proof/";
 }
 
-/// Returns the ways of people as text, "" without.
-std::string waysText(const ArrangeOptions& how) {
-    std::string text;
-    if (how.ways)
-        for (const WayPiece& piece : how.ways->pieces)
-            for (const double part : {static_cast<double>(piece.person), piece.time, piece.place.x,
-                                      piece.place.y, piece.velocity.x, piece.velocity.y})
-                text.append(formatDouble(part)) += ' ';
-    return text;
-}
-
-/// Returns the job of the command. \param places the text of --places and of ways, "" without
+/// Returns the job of the command. \param places the text of --places and of a demand, "" without
 JobId arrangeJob(const ArrangeCommand& command, const SiteInput& input, const std::string& places) {
     const ArrangeToolOptions& options = command.options();
     JobId job;
@@ -88,7 +77,8 @@ std::unique_ptr<JobResults> resultsOf(const ArrangeCommand& command, const Arran
                                       std::unique_ptr<JobResults> parts, bool& is_done) {
     const ArrangeToolOptions& options = command.options();
     const BatchOptions& batch = options.batch;
-    JobId job = arrangeJob(command, work.input, work.places + waysText(work.how));
+    const std::string demand = work.how.demand ? work.how.demand->content() : "";
+    JobId job = arrangeJob(command, work.input, work.places + demand);
     if (parts) {
         const JobId& made = parts->head().job;
         job.form = made.form;

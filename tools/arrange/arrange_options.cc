@@ -112,8 +112,8 @@ RobustChoice readRobust(const std::string& text, std::vector<std::string>& rooms
     throw UsageError('`' + text + "` is not rooms:FILE[,FILE...], failures:K or mounting:M,DEG");
 }
 
-/// Parses `coverage`, `path:FROM,TO`, `localise` and `localise:M`.
-ObjectiveChoice readObjective(const std::string& text) {
+/// Parses `coverage`, `path:FROM,TO`, `localise` and `localise:M`. \param more further words
+ObjectiveChoice readObjective(const std::string& text, const std::string& more) {
     const auto colon = text.find(':');
     const std::string word = text.substr(0, colon);
     const std::string rest = colon == std::string::npos ? "" : text.substr(colon + 1);
@@ -130,7 +130,7 @@ ObjectiveChoice readObjective(const std::string& text) {
             objective.within = numbers(rest, Unit::Length, 1, 1, kMinErrorLimit, kMaxErrorLimit)[0];
         return objective;
     }
-    throw UsageError('`' + text + "` is not coverage, path:FROM,TO or localise[:M]");
+    throw UsageError('`' + text + "` is not coverage, path:FROM,TO, localise[:M]" + more);
 }
 
 template <typename Value, std::size_t kCount>
@@ -155,7 +155,8 @@ std::pair<std::string, double> splitWeight(const std::string& text) {
 ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     : ToolCommand("arrange", "[ENV] [LAYOUT]",
                   "Compute poses for sensors in a room: those of LAYOUT without one, and those of "
-                  "--sensor. Writes a layout (.3dm) and reports an upper bound on coverage.") {
+                  "--sensor. Writes a layout (.3dm) and reports an upper bound on coverage."),
+      objectives_(arrangeObjectives()) {
     line_.example("arrange room.env --sensor urg-04lx:3 -o layout.3dm",
                   "poses of three laser scanners that cover most of the room");
     line_.example("arrange room.env --sensor urg-04lx:9 --target 95% -o few.3dm",
@@ -180,6 +181,7 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     addMountOptions();
     line_.group("Goals");
     addGoalOptions();
+    objectives_.declare(line_);
     line_.group("Robustness");
     addRobustOptions();
     line_.group("Search");
@@ -280,10 +282,15 @@ void ArrangeCommand::addGoalOptions() {
     ArrangeOptions& how = options_.how;
     line_.parsed(
         "--objective", "WHAT",
-        [&how](const std::string& text) { how.objective = readObjective(text); },
+        [this](const std::string& text) {
+            options_.objective = objectives_.find(text);
+            options_.how.objective =
+                options_.objective ? ObjectiveChoice() : readObjective(text, objectives_.words());
+        },
         "quantity that the layout maximises: coverage (default); path:FROM,TO, the length for "
         "which an intruder between two zones is seen on the way that is seen least; localise[:M], "
-        "small errors of positions of tags and people, none of which counts above M (default 1)",
+        "small errors of positions of tags and people, none of which counts above M (default 1)" +
+            objectives_.help(),
         Enters::History);
     line_.texts("--zone", "ZONE", options_.zones.targets,
                 "cover only this part of the floor: the id of a zone, rect:X,Y,X,Y, "

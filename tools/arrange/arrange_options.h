@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "cli/extension.h"
+#include "cli/objective_extension.h"
 #include "cli/presence_ways.h"
 #include "cli/report_options.h"
 
@@ -31,7 +33,8 @@ struct ArrangeToolOptions {
     std::vector<std::string> fixed;    ///< globs of ids; empty: all placed sensors stay
     ArrangeOptions how;
     ZoneWords zones;
-    std::optional<WaysChoice> presence;  ///< ways that count instead of the floor
+    std::optional<WaysChoice> presence;               ///< ways that count instead of the floor
+    std::shared_ptr<const ObjectiveGroup> objective;  ///< of an extension; null: none
     std::string places_file;
     std::vector<std::string> robust_rooms;  ///< of --robust rooms:
     std::string trace_file, curve_file, mps_file, report_file, heat_file, certificate_file;
@@ -68,7 +71,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void settleRobust();
     void settleObjective();
     void settleCameraRules();
-    void settlePresence() const;
+    void settleDemand() const;
     void settleProofOfCoverage();
     void settleCertificate();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
@@ -81,6 +84,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
         CellWords cells;
     };
     Words words_;
+    ObjectiveExtensions objectives_;
 };
 
 /// Parses `--weight ZONE=W`. \throws UsageError

@@ -163,7 +163,8 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     work.how = options.how;
     SiteInput& input = work.input;
     warnOfImport(options.common, "arrange", input);
-    mustBeOneRoom(input, options.presence               ? "--presence"
+    mustBeOneRoom(input, options.objective ? "--objective " + std::string(options.objective->word())
+                         : options.presence             ? "--presence"
                          : !options.places_file.empty() ? "--places"
                                                         : needsOneRoom(options.how));
     if (!options.fixed.empty()) {
@@ -193,11 +194,14 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     takeZones(options, room, work.how);
     takeRooms(options, work);
     if (options.presence) {
-        work.how.ways = std::make_shared<PeopleWays>(
-            readWays(*options.presence, input.only(), options.common.seed));
+        work.how.demand =
+            demandOfPresence(*options.presence, input.only(), options.common.seed, work.how.plane);
         if (!options.presence->record.empty())
             work.files.push_back(RecordedFiles(options.presence->record).robots);
     }
+    if (options.objective)
+        work.how.demand =
+            options.objective->demandIn(input.only(), work.how, options.common, work.files);
     if (work.how.objective.of == ObjectiveChoice::Of::Path)
         for (const std::string* zone : {&work.how.objective.way.from, &work.how.objective.way.to})
             static_cast<void>(ofOption("--objective", [&] { return readZone(*zone, room); }));

@@ -79,7 +79,7 @@ void ArrangeCommand::settle() {
     settleRobust();
     settleObjective();
     settleCameraRules();
-    settlePresence();
+    settleDemand();
     how.wants_curve = !options_.curve_file.empty();
     how.wants_trace = !options_.trace_file.empty();
     how.wants_gains = !options_.heat_file.empty();
@@ -223,15 +223,20 @@ void ArrangeCommand::settleCameraRules() {
         throw UsageError("--privacy is about one room: leave out --robust rooms");
 }
 
-void ArrangeCommand::settlePresence() const {
-    if (!options_.presence) return;
+void ArrangeCommand::settleDemand() const {
+    objectives_.check(line_, options_.objective.get());
+    if (!options_.presence && !options_.objective) return;
+    const std::string name = options_.objective
+                                 ? "--objective " + std::string(options_.objective->word())
+                                 : "--presence";
+    if (options_.presence && options_.objective)
+        throw UsageError(name + " and --presence count different ways: leave out one");
     constexpr const char* kOfFloor[] = {"--zone",  "--weight",   "--facing", "--robust",
                                         "--crowd", "--refine",   "--proof",  "--judge",
                                         "--reso",  "--connected"};
     for (const char* option : kOfFloor)
         if (line_.given(option))
-            throw UsageError("--presence counts ways of people instead of floor: leave out " +
-                             std::string(option));
+            throw UsageError(name + " counts ways of people instead of floor: leave out " + option);
 }
 
 void ArrangeCommand::checkStrategyOption(const StrategyRow& row,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "arrange/arrange_run.h"
 #include "arrange/gallery/gallery.h"
@@ -19,8 +20,8 @@ namespace {
 
 constexpr double kProven = 1e-9;  // sums of areas differ by less
 
-std::string counted(std::size_t count, const char* one, const char* many) {
-    return std::to_string(count) + ' ' + (count == 1 ? one : many);
+std::string counted(std::size_t count, std::string_view one, std::string_view many) {
+    return std::to_string(count).append(1, ' ').append(count == 1 ? one : many);
 }
 
 /// Returns true if all cells are covered, but not all of the exact area between their centres.
@@ -36,7 +37,7 @@ std::string unfinishedText(const ArrangeOptions& how) {
 std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) {
     return "over " + counted(arrangement.candidates, "candidate", "candidates") + " (" +
            std::string(nameOf(how.strategy)) + ", " + formatBytes(arrangement.bytes) + ") on " +
-           (arrangement.pieces > 0 ? counted(arrangement.pieces, "piece of way", "pieces of way")
+           (how.demand ? counted(arrangement.cells, how.demand->one(), how.demand->many())
             : arrangement.rooms.empty() ? cellsText(arrangement.grid)
                                         : counted(arrangement.cells, "cell", "cells"));
 }
@@ -202,6 +203,11 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
     }
     if (arrangement.robust) text += robustText(how, arrangement);
     if (arrangement.whole) text += objectiveText(how, arrangement);
+    if (how.demand)
+        if (const std::string finding =
+                how.demand->finding(arrangement.served, arrangement.candidate_bound);
+            !finding.empty())
+            text += "arrange: " + finding + '\n';
     if (how.budget)
         text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
                 formatDouble(*how.budget) + '\n';

@@ -42,7 +42,7 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
         input.digest(),
         work.how.over_poses ? "poses" : std::string(nameOf(work.how.strategy)),
         std::string(nameOf(work.how.over_poses ? Optimizer::Exact : work.how.search.optimizer)),
-        std::string(work.how.objective.name())};
+        std::string(work.how.demand ? work.how.demand->name() : work.how.objective.name())};
     parts.history.push_back(command.historyLine(input.named));
     const auto document = [&](const Arrangement& found) {
         return input.building ? buildingLayout(parts, *input.building, before, work.groups, found)

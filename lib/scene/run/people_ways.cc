@@ -59,13 +59,11 @@ PeopleWays WayCutter::finish() {
     return ways;
 }
 
-PeopleWays waysOfRun(RunReader& reader) {
-    WayCutter cutter;
+void visitPeople(RunReader& reader, const PersonVisit& visit) {
     while (reader.next())
         for (const RunState& state : reader.states())
             if (const RunMember& member = reader.members()[state.member]; member.is_person)
-                cutter.add(member.id, reader.time(), state.pose.position);
-    return cutter.finish();
+                visit(member.id, reader.time(), state.pose.position);
 }
 
 }  // namespace ispace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -56,7 +57,10 @@ class WayCutter {
     std::size_t pieces_ = 0;  // of all ways
 };
 
-/// Reads the ways of all people of a recorded run, from the next moment on. \throws as the reader
-PeopleWays waysOfRun(RunReader& reader);
+/// Receives a person at a moment, all people of a moment after another.
+using PersonVisit = std::function<void(const std::string& id, double time, Point2 place)>;
+
+/// Visits the people of a recorded run from the next moment on. \throws as the reader
+void visitPeople(RunReader& reader, const PersonVisit& visit);
 
 }  // namespace ispace

@@ -34,7 +34,11 @@ TEST(WayCutter, LeavesOutRestAndJumps) {
 TEST(WayCutter, ReadsTheRecordOfARun) {
     RunReader reader("t,id,x,y,heading_deg\n0,r1,0,0,0\n0.1,r1,1,0,0\n0.3,r1,2,0,0\n",
                      "t,id,x,y,heading_deg\n0,p1,1,1,0\n0.1,p1,1.1,1,0\n0.3,p1,1.3,1,0\n");
-    const PeopleWays ways = waysOfRun(reader);
+    WayCutter cutter;
+    visitPeople(reader, [&cutter](const std::string& id, double time, Point2 place) {
+        cutter.add(id, time, place);
+    });
+    const PeopleWays ways = cutter.finish();
     ASSERT_EQ(ways.people, std::vector<std::string>{"p1"});
     ASSERT_EQ(ways.pieces.size(), 1U);
     EXPECT_NEAR(ways.pieces[0].length, 0.3, 1e-12);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/cell_set.h"
+#include "scene/sensor/sensor.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+/// The demand of a covering problem in place of the floor: weighted elements, each with a rule by
+/// which a sensor serves it (demand points, Church and ReVelle 1974).
+///
+/// arrange() maximises the weight of the elements that as many sensors serve as are required, and
+/// proves its bound over the candidates, whatever the rule: it must depend on one sensor at a time.
+/// An objective of an extension implements this class, see cli/objective_extension.h.
+///
+/// Constant while arrange() runs; const functions are thread-safe.
+class Demand {
+  public:
+    virtual ~Demand() = default;
+
+    /// Returns the option that asks for it, for messages ("--presence").
+    [[nodiscard]] virtual std::string option() const = 0;
+    /// Returns its word in results; "" for none.
+    [[nodiscard]] virtual std::string_view name() const { return ""; }
+    /// Returns what one element and several are called.
+    [[nodiscard]] virtual std::string_view one() const = 0;
+    [[nodiscard]] virtual std::string_view many() const = 0;
+    /// Returns the weights of the elements, finite and not negative.
+    [[nodiscard]] virtual const std::vector<double>& weights() const = 0;
+    /// Says why all weights are 0, if they are.
+    [[nodiscard]] virtual std::string nothingText() const = 0;
+    /// Returns all that views depend on besides room and sensors, as text, for stored results.
+    [[nodiscard]] virtual std::string content() const = 0;
+    /// Says what a layout that serves these elements achieves, in units of its own, and the best
+    /// that a bound allows; "" if the share of the weight says it. \param bound share
+    [[nodiscard]] virtual std::string finding(const CellSet& served, double bound) const;
+
+    /// Checks a sensor that is to be placed. \throws UsageError if none of its kind serves any
+    virtual void mustServe(const SensorModel& model, const std::string& id) const = 0;
+    /// Returns true if a sensor that stands in the room serves elements; false for those on movers.
+    [[nodiscard]] virtual bool isServedBy(const Sensor& sensor) const = 0;
+
+    /// Finds what sensors with any heading at one position, height, tilt and roll share: 1 for each
+    /// element that no surface hides. \pre `worlds` are prepared for the pose and the kind
+    [[nodiscard]] virtual std::vector<std::uint8_t> sightOf(const Sensor& sensor,
+                                                            const Worlds& worlds) const = 0;
+    /// Finds the elements that a sensor serves. \pre isServedBy(sensor), `sight` is that of its
+    /// position, outside of solids
+    [[nodiscard]] virtual CellSet servedBy(const Sensor& sensor,
+                                           const std::vector<std::uint8_t>& sight) const = 0;
+    /// The same for a sensor of the scene, empty unless isServedBy(sensor) and outside of solids.
+    /// \pre as sightOf()
+    [[nodiscard]] CellSet servedBy(const Sensor& sensor, const Worlds& worlds) const;
+
+  protected:
+    Demand() = default;
+    Demand(const Demand&) = default;
+    Demand& operator=(const Demand&) = default;
+};
+
+}  // namespace ispace

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "arrange/demand.h"
+#include "scene/run/people_ways.h"
+
+namespace ispace {
+
+/// Returns the demand of `--presence`: the pieces of these ways, by length, each served by a sensor
+/// that detects the person there within kPresenceDelay, see PresenceView.
+/// \param plane height at which people are detected
+std::shared_ptr<const Demand> presenceDemand(std::shared_ptr<const PeopleWays> ways, double plane);
+
+}  // namespace ispace

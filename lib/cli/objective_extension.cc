@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/objective_extension.h"
+
+#include <cstddef>
+
+#include "base/error.h"
+
+namespace ispace {
+
+ObjectiveExtensions::ObjectiveExtensions(std::span<const MakeObjective> rows) {
+    members_.reserve(rows.size());
+    for (const MakeObjective make : rows) members_.push_back({make()});
+}
+
+std::string ObjectiveExtensions::help() const {
+    std::string text;
+    for (const Member& member : members_)
+        text.append("; ").append(member.group->word()).append(", ").append(member.group->help());
+    return text;
+}
+
+std::string ObjectiveExtensions::words() const {
+    std::string text;
+    for (const Member& member : members_) text.append(", ").append(member.group->word());
+    return text;
+}
+
+void ObjectiveExtensions::declare(CommandLine& line) {
+    for (Member& member : members_) {
+        const std::size_t before = line.names().size();
+        member.group->declare(line);
+        const std::vector<std::string> names = line.names();
+        member.options.assign(names.begin() + static_cast<std::ptrdiff_t>(before), names.end());
+    }
+}
+
+std::shared_ptr<const ObjectiveGroup> ObjectiveExtensions::find(std::string_view word) const {
+    for (const Member& member : members_)
+        if (member.group->word() == word) return member.group;
+    return nullptr;
+}
+
+void ObjectiveExtensions::check(const CommandLine& line, const ObjectiveGroup* asked) const {
+    for (const Member& member : members_)
+        for (const std::string& name : member.options)
+            if (member.group.get() != asked && line.given(name))
+                throw UsageError(name + " goes with --objective " +
+                                 std::string(member.group->word()));
+}
+
+}  // namespace ispace
