@@ -27,6 +27,9 @@
 #ifdef ISPACE_HAS_REALITY
 #include "extensions/reality/reality.h"
 #endif
+#ifdef ISPACE_HAS_TRACKING
+#include "extensions/tracking/track_objective.h"
+#endif
 
 namespace ispace {
 
@@ -68,7 +71,11 @@ std::span<const ToolExtension> toolExtensions() {
 }
 
 std::span<const MakeObjective> arrangeObjectives() {
-    static const std::vector<MakeObjective> objectives = {};
+    static const std::vector<MakeObjective> objectives = {
+#ifdef ISPACE_HAS_TRACKING
+        makeTrackObjective,
+#endif
+    };
     return objectives;
 }
 

@@ -297,7 +297,7 @@ Schema resultSchema() {
             {.name = "objective",
              .type = KeyType::Word,
              .help = "subject of `value`: path (seen share of the shortest way), localise (1 "
-                     "less the mean error); floor without it"},
+                     "less the mean error), track (1 less the share of the loss); floor without it"},
             share("bound",
                   "upper bound on the value, or on the coverage without a value: of layouts of the "
                   "candidates or, after refinement, of any poses"),

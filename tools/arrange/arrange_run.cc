@@ -268,6 +268,9 @@ std::string reasonForNothing(const ArrangeWork& work, const Arrangement& arrange
     if (times > 1 && together < times)
         return "nothing counts: floor has to be seen by " + std::to_string(times) +
                " sensors, and there are " + std::to_string(together);
+    if (work.how.demand && arrangement.value == 0.0 && !arrangement.sensors.empty())
+        return "the sensors see none of the " + std::string(work.how.demand->many()) +
+               ": look at their heights, tilts and ranges";
     if (arrangement.coverage > 0 || arrangement.sensors.empty()) return "";
     if (!work.how.judges_inside && arrangement.candidate_value > 0) return "";
     if (std::string text = reasonOfDensity(work); !text.empty()) return text;
