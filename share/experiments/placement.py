@@ -8,7 +8,7 @@ import statistics
 from lab import Port
 
 TITLE = "Lasers placed for area and for trackers"
-SOURCE = "section 5.3.2, section 4.4, fig. 5.14"
+SOURCE = "section 5.3.2, fig. 5.14, with the lasers of chapter 4"
 SECONDS = 90
 
 UNTIL = 120      # seconds of a run; a third of it in quick experiments

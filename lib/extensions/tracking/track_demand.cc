@@ -120,15 +120,17 @@ bool TrackDemand::isHidden(std::size_t place, Point3 from, double height) const 
     const PersonMoment& target = moments_.places[place];
     const Point2 foot = from.onFloor();
     const Vec2 way = target.place - foot;
-    const double square = dot(way, way);
+    const double square = dot(way, way), widest = humanRadius(kUsualHeight);
     const std::vector<std::size_t>& present = by_moment_[target.moment];
     return std::any_of(present.begin(), present.end(), [&](std::size_t i) {
         if (i == place) return false;
         const Vec2 to = moments_.places[i].place - foot;
         const double share = square > 0 ? std::clamp(dot(to, way) / square, 0.0, 1.0) : 0;
-        const double radius = bodyRadiusAt(from.z + share * (height - from.z));
         const Vec2 off = to - share * way;
-        return dot(off, off) < radius * radius;
+        const double square_off = dot(off, off);
+        if (square_off >= widest * widest) return false;
+        const double radius = bodyRadiusAt(from.z + share * (height - from.z));
+        return square_off < radius * radius;
     });
 }
 

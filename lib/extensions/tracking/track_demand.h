@@ -36,8 +36,8 @@ struct LossFigures {
 ///
 /// A sensor sees a person as DetectionMonitor does, whose point lies in its region, unless another
 /// person stands in the line of sight: a figure of kUsualHeight whose level cuts are circles about
-/// its middle, as wide as the body there. Lasers see people in level slices below their heads, and
-/// not otherwise; sensors on movers see none.
+/// its middle, as wide as the body there. Lasers see people in level slices below their heads, if
+/// the whole figure is within range, and not otherwise; sensors on movers see none.
 class TrackDemand : public Demand {
   public:
     TrackDemand(PeopleMoments moments, const LossRule& loss);
