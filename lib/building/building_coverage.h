@@ -31,20 +31,23 @@ struct BuildingCoverage {
     Metric coverage, free_coverage;             ///< shares; empty if that of a storey is unknown
     std::vector<double> redundancy;             ///< see CoverageReport
     std::optional<Comparison> comparison = {};  ///< with another layout, see compareStoreys()
-    std::vector<CameraRules> rules = {};        ///< of facing, by storey; empty: none
+    std::vector<CameraRules> rules = {};        ///< by storey; empty: none
 };
 
 /// Measures the floor of all storeys, without openings in it; those with equal rooms and views
 /// once. Rangers and cameras see through shafts and over stairs, see viewsBetweenStoreys().
 BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options);
 
-/// Measures rules of facing in the storeys that have their doors or zones; a rule `GLOB/ZONE` or
-/// `GLOB/door:...` only in storeys with matching ids. Cameras of other storeys count, as for the
-/// floor. Returns the results by storey.
+/// Measures rules of facing and of privacy in the storeys that have their doors or zones; a rule
+/// `GLOB/ZONE` or `GLOB/door:...` only in storeys with matching ids. Cameras of other storeys
+/// count, as for the floor. Returns the results by storey. Measures the building once for each
+/// density of privacy that differs from that of the coverage. \param options of the coverage
 /// \throws UsageError for a rule that no storey has, with the doors or zones of all storeys
-std::vector<CameraRules> measureBuildingFacing(const BuildingScene& building,
-                                               const BuildingCoverage& coverage,
-                                               std::span<const FacingRule> rules);
+std::vector<CameraRules> measureBuildingRules(const BuildingScene& building,
+                                              const BuildingCoverage& coverage,
+                                              const CoverageOptions& options,
+                                              std::span<const FacingRule> facing,
+                                              std::span<const PrivacyRule> privacy);
 /// Returns the rules of all storeys, with the storey before each.
 std::vector<JudgedRule> judgedInBuilding(const BuildingScene& building,
                                          std::span<const CameraRules> rules);

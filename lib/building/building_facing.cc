@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rules of facing of building_coverage.h.
+// Rules of cameras of building_coverage.h.
 #include <cstddef>
+#include <functional>
 #include <iterator>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -14,6 +16,8 @@
 namespace ispace {
 
 namespace {
+
+constexpr const char* kFacing = "--facing";
 
 bool hasZone(const Environment& room, const std::string& zone) {
     if (zone.starts_with(kDoorPrefix)) {
@@ -30,7 +34,7 @@ bool hasZone(const Environment& room, const std::string& zone) {
 
 /// Lists the doors of all storeys, or the zones, for a rule that no storey has.
 /// \param own the rule's zone without its storeys
-std::string unknownRule(const std::string& zone, const std::string& own,
+std::string unknownRule(const std::string& option, const std::string& zone, const std::string& own,
                         const BuildingScene& building) {
     const bool is_of_doors = own.starts_with(kDoorPrefix);
     std::string list, doors_named;
@@ -42,7 +46,7 @@ std::string unknownRule(const std::string& zone, const std::string& own,
                 list += (list.empty() ? "" : ", ") + doors;
             continue;
         }
-        if (hasZone(room, std::string(kDoorPrefix) + own + ",1"))
+        if (option == kFacing && hasZone(room, std::string(kDoorPrefix) + own + ",1"))
             doors_named = "; doors have this name: " + zone.substr(0, zone.size() - own.size()) +
                           std::string(kDoorPrefix) + own;
         for (const Element& element : room.elements())
@@ -50,34 +54,73 @@ std::string unknownRule(const std::string& zone, const std::string& own,
                 list += (list.empty() ? "" : ", ") + wholeId(storey, element.id);
     }
     const std::string kind = is_of_doors ? "door" : "zone";
-    return "--facing: " + excerpt(zone) + " meets no " + kind + doors_named +
+    return option + ": " + excerpt(zone) + " meets no " + kind + doors_named +
            (list.empty() ? ": the building has none"
                          : "; the " + kind + "s of the building: " + list);
 }
 
 }  // namespace
 
-std::vector<CameraRules> measureBuildingFacing(const BuildingScene& building,
-                                               const BuildingCoverage& coverage,
-                                               std::span<const FacingRule> rules) {
-    std::vector<CameraRules> measured(building.scenes.size());
-    for (const FacingRule& rule : rules) {
-        const auto [storeys, zone] = splitStoreys(building.document, "--facing", rule.zone);
-        bool is_met = false;
-        for (const std::size_t i : storeys) {
-            const Scene& floor = *coverage.floors[i];
-            if (!hasZone(floor.environment, zone)) continue;
-            is_met = true;
-            FacingRule own = rule;
-            own.zone = zone;
-            std::vector<FacingResult> results =
-                measureFacing(floor, coverage.storeys[i], {&own, 1});
-            measured[i].facing.insert(measured[i].facing.end(),
-                                      std::make_move_iterator(results.begin()),
-                                      std::make_move_iterator(results.end()));
-        }
-        if (!is_met) throw UsageError(unknownRule(rule.zone, zone, building));
+namespace {
+
+/// Calls measure(storey, zone) for the storeys that have the zone of a rule.
+/// \throws UsageError if none has it
+void forEachStoreyOf(const BuildingScene& building, const BuildingCoverage& coverage,
+                     const std::string& option, const std::string& text,
+                     const std::function<void(std::size_t, const std::string&)>& measure) {
+    const auto [storeys, zone] = splitStoreys(building.document, option, text);
+    bool is_met = false;
+    for (const std::size_t i : storeys) {
+        if (!hasZone(coverage.floors[i]->environment, zone)) continue;
+        is_met = true;
+        measure(i, zone);
     }
+    if (!is_met) throw UsageError(unknownRule(option, text, zone, building));
+}
+
+template <typename Result>
+void append(std::vector<Result> results, std::vector<Result>& all) {
+    all.insert(all.end(), std::make_move_iterator(results.begin()),
+               std::make_move_iterator(results.end()));
+}
+
+}  // namespace
+
+std::vector<CameraRules> measureBuildingRules(const BuildingScene& building,
+                                              const BuildingCoverage& coverage,
+                                              const CoverageOptions& options,
+                                              std::span<const FacingRule> facing,
+                                              std::span<const PrivacyRule> privacy) {
+    std::vector<CameraRules> measured(building.scenes.size());
+    for (const FacingRule& rule : facing)
+        forEachStoreyOf(
+            building, coverage, kFacing, rule.zone, [&](std::size_t i, const std::string& zone) {
+                FacingRule own = rule;
+                own.zone = zone;
+                append(measureFacing(*coverage.floors[i], coverage.storeys[i], {&own, 1}),
+                       measured[i].facing);
+            });
+    std::map<double, BuildingCoverage> at_density;
+    const auto coverage_at = [&](double density) -> const BuildingCoverage& {
+        if (density == options.density && options.exact) return coverage;
+        const auto [known, is_new] = at_density.try_emplace(density);
+        if (is_new) {
+            CoverageOptions own = options;
+            own.density = density;
+            own.exact = true;
+            known->second = measureBuilding(building, own);
+        }
+        return known->second;
+    };
+    for (const PrivacyRule& rule : privacy)
+        forEachStoreyOf(building, coverage, "--privacy", rule.zones,
+                        [&](std::size_t i, const std::string& zones) {
+                            PrivacyRule own = rule;
+                            own.zones = zones;
+                            append(measurePrivacy(*coverage.floors[i],
+                                                  coverage_at(rule.density).storeys[i], own),
+                                   measured[i].privacy);
+                        });
     return measured;
 }
 

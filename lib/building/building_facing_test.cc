@@ -26,8 +26,18 @@ std::string rulesIn(const BuildingScene& building, const std::string& text) {
     const FacingRule rule = parseFacing(text);
     std::string all;
     for (const JudgedRule& one :
-         judgedInBuilding(building, measureBuildingFacing(building, coverage, {&rule, 1})))
+         judgedInBuilding(building, measureBuildingRules(building, coverage, {}, {&rule, 1}, {})))
         all += one.rule + (one.is_met ? " met\n" : " not met\n");
+    return all;
+}
+
+std::string privacyIn(const BuildingScene& building, const std::string& text) {
+    const BuildingCoverage coverage = measureBuilding(building, {});
+    const PrivacyRule rule = parsePrivacy(text);
+    std::string all;
+    for (const JudgedRule& one :
+         judgedInBuilding(building, measureBuildingRules(building, coverage, {}, {}, {&rule, 1})))
+        all += one.rule + ": " + one.finding + '\n';
     return all;
 }
 
@@ -40,6 +50,53 @@ TEST(BuildingFacing, IsByStoreyAndDoor) {
               "g: facing door:front,1.5 within 45 degrees of 90 met\n");
     EXPECT_EQ(rulesIn(building, "g/hall,60deg,90=50%"),
               "g: facing hall within 60 degrees of 90 met\n");
+}
+
+TEST(BuildingPrivacy, IsThatOfTheRoomsAlone) {
+    const BuildingScene building = houseWithDoors();
+    for (const char* const text : {"hall", "hall,90", "g/hall,400", "hall,4000"}) {
+        std::string zone = text;
+        if (zone.starts_with("g/")) zone.erase(0, 2);
+        const PrivacyRule rule = parsePrivacy(zone);
+        const std::vector<PrivacyResult> alone = measurePrivacy(*building.scenes[0], 0, {&rule, 1});
+        ASSERT_EQ(alone.size(), 1U);
+        const std::vector<PrivacyRule> rules{parsePrivacy(text)};
+        const BuildingCoverage coverage = measureBuilding(building, {});
+        const std::vector<CameraRules> found =
+            measureBuildingRules(building, coverage, {}, {}, rules);
+        ASSERT_EQ(found[0].privacy.size(), 1U) << text;
+        EXPECT_TRUE(found[1].privacy.empty());
+        EXPECT_NEAR(found[0].privacy[0].seen.value(), alone[0].seen.value(), 1e-9) << text;
+        EXPECT_EQ(isMet(found[0].privacy[0]), isMet(alone[0]));
+    }
+    EXPECT_EQ(privacyIn(building, "hall"), "g: privacy of hall: 2.38 of 4.00 m2 is seen by g/c\n");
+    EXPECT_EQ(privacyIn(building, "hall,4000"),
+              "g: privacy of hall from 4000 pixels a metre: is kept\n");
+}
+
+TEST(BuildingPrivacy, CountsCamerasOfOtherStoreys) {
+    // A shaft of 4 m x 4 m, over a zone below, and a camera on the upper floor at its rim.
+    const BuildingScene building = makeBuildingScene(
+        readBuilding("- storey: {id: g, height: 3, records: [{ispace: {size: 10 x 8}}, "
+                     "{zone: {id: till, at: [0, 0], size: 1 x 1}}]}\n"
+                     "- storey: {id: u, z: 3, height: 3, records: [{ispace: {size: 10 x 8}}, "
+                     "{camera: {id: c, at: [-2.5, 0, 2.5], heading: 0, tilt: -60, fov: 90}}]}\n"
+                     "- shaft: {storeys: 'g,u', path: '-2,-2;2,-2;2,2;-2,2'}\n",
+                     "atrium.yaml", {}),
+        {}, {});
+    EXPECT_EQ(privacyIn(building, "till"), "g: privacy of till: 1.00 of 1.00 m2 is seen by u/c\n");
+    EXPECT_EQ(privacyIn(building, "g/till,5000"),
+              "g: privacy of till from 5000 pixels a metre: is kept\n");
+}
+
+TEST(BuildingPrivacy, UnknownZonesListThoseOfAllStoreys) {
+    try {
+        privacyIn(houseWithDoors(), "u/hall");
+        ADD_FAILURE();
+    } catch (const UsageError& error) {
+        EXPECT_STREQ(error.what(),
+                     "--privacy: `u/hall` meets no zone; the zones of the building: g/hall");
+    }
 }
 
 TEST(BuildingFacing, UnknownDoorsListThoseOfAllStoreys) {

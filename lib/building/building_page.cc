@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "building/coupling.h"
 #include "report/coverage_report.h"
 #include "report/map/map.h"
 #include "report/page/cables.h"
@@ -59,6 +60,25 @@ PageSection storeysSection(const BuildingPageInput& input) {
     return section;
 }
 
+PageText storeySummary(const Coverage& coverage) {
+    const CoverageReport& report = coverage.report;
+    const std::size_t sensors = coverage.sensors.size();
+    PageText text{"The storey has " + squareMetres(report.indoor_area) + " of indoor floor, " +
+                  squareMetres(report.free_area) + " of it free at " +
+                  formatFixed(report.height, 2) + " m; " +
+                  (sensors == 0   ? "no sensor sees it."
+                   : sensors == 1 ? "one sensor sees it."
+                                  : std::to_string(sensors) + " sensors see it.")};
+    if (sensors > 0) text.text += ' ' + sightText(report, sensors).text;
+    return text;
+}
+
+/// Returns true for a storey without floor and sensors, such as a roof: a row of the storeys' table
+/// says all.
+bool isEmpty(const Coverage& coverage) {
+    return coverage.report.indoor_area <= kNoFloor && coverage.sensors.empty();
+}
+
 PageSection storeySection(const BuildingPageInput& input, std::size_t storey) {
     const Storey& own = input.building.document.storeys[storey];
     const Coverage& coverage = input.coverage.storeys[storey];
@@ -75,21 +95,23 @@ PageSection storeySection(const BuildingPageInput& input, std::size_t storey) {
             options.passages.push_back(
                 {passage.id, passage.record.keyword(), footprintOf(passage, own)});
     PageSection section{"storey" + std::to_string(storey + 1), "Storey " + own.id, {}};
+    constexpr double kUnseen = 0.5;  // of the column's width
+    section.blocks.push_back(storeySummary(coverage));
     section.blocks.push_back(PageFigure{
         run == nullptr ? "Floor by the number of sensors that see it; coordinates in metres."
                        : "Ways of robots and people by the number of sensors that saw them.",
-        coverageMap(*input.coverage.floors[storey], coverage, options)});
+        coverageMap(*input.coverage.floors[storey], coverage, options),
+        coverage.sensors.empty() && run == nullptr ? kUnseen : 1});
     for (PageBlock& table : zoneTables(coverage.report)) section.blocks.push_back(std::move(table));
-    section.blocks.push_back(PageCode{coverageText(coverage.report)});
     if (run != nullptr) section.blocks.push_back(PageCode{runText(*run)});
     return section;
 }
 
-/// Lists the rules of facing of all storeys.
-PageSection facingSection(const BuildingPageInput& input) {
+/// Lists the rules of cameras of all storeys.
+PageSection rulesSection(const BuildingPageInput& input) {
     return {"rules",
-            "Faces",
-            {rulesTable("directions of faces, by storey",
+            "Faces and privacy",
+            {rulesTable("directions of faces, and zones that cameras must not see, by storey",
                         judgedInBuilding(input.building, input.coverage.rules))}};
 }
 
@@ -155,7 +177,7 @@ ReportPage buildingPage(const BuildingPageInput& input) {
     page.sections.push_back(buildingSummary(input));
     page.sections.push_back(storeysSection(input));
     for (const PageSection& section : input.more) page.sections.push_back(section);
-    if (!input.coverage.rules.empty()) page.sections.push_back(facingSection(input));
+    if (!input.coverage.rules.empty()) page.sections.push_back(rulesSection(input));
     std::vector<CabledRoom> rooms;
     std::vector<PageSection> sheets;
     std::int64_t sensors = 0;
@@ -164,6 +186,7 @@ ReportPage buildingPage(const BuildingPageInput& input) {
     for (std::size_t i = 0; i < input.coverage.storeys.size(); ++i) {
         const Scene& scene = *input.building.scenes[i];
         rooms.push_back({scene, cablesOf(scene)});
+        if (isEmpty(input.coverage.storeys[i])) continue;
         page.sections.push_back(storeySection(input, i));
         addSensorsOf(input, rooms.back(), i, page, sheets);
     }

@@ -297,10 +297,8 @@ std::vector<std::size_t> storeysWithDoors(const std::string& text, const StoreyT
                                           const BuildingScene& building) {
     const std::string& doors = split.text;
     const std::size_t comma = doors.rfind(',');
-    // Without a distance it is no zone, as its reader says.
-    const Glob wanted(comma == std::string::npos
-                          ? "*"
-                          : doors.substr(kDoorPrefix.size(), comma - kDoorPrefix.size()));
+    const Glob wanted(doors.substr(
+        kDoorPrefix.size(), comma == std::string::npos ? comma : comma - kDoorPrefix.size()));
     std::vector<std::size_t> storeys;
     for (const std::size_t storey : split.storeys) {
         const std::vector<Doorway> all = doorwaysOf(building.scenes[storey]->environment);

@@ -105,8 +105,8 @@ std::vector<Curve> facedPart(const std::vector<Curve>& view, const Polygon& wedg
 
 namespace {
 
-/// Metres from doors, and degrees, unless given.
-constexpr double kFromDoor = 1.5, kFaceDegrees = 45;
+/// Unless given.
+constexpr double kFaceDegrees = 45;
 
 std::optional<double> metresOf(std::string_view text) {
     const KeySpec key{.name = "distance",
@@ -155,8 +155,9 @@ void parseDoorPieces(std::span<const std::string_view> pieces, const std::string
 }  // namespace
 
 FacingRule parseFacing(std::string_view text) {
-    const std::string wanted = '`' + std::string(text) +
-                               "` is not ZONE,DEG[,HEADING][=SHARE], as in entrance,45deg,180=90%";
+    const std::string wanted =
+        '`' + std::string(text) +
+        "` is not ZONE[,DEG[,HEADING]][=SHARE], as in entrance,45deg,180=90%";
     FacingRule rule;
     std::string_view rest = withoutPrefix(text);
     if (const auto equals = rest.rfind('='); equals != std::string_view::npos) {
@@ -187,7 +188,13 @@ FacingRule parseFacing(std::string_view text) {
         return rule;
     }
     const auto last = rest.rfind(',');
-    if (last == std::string_view::npos || rest.front() == ',') throw UsageError(wanted);
+    if (rest.empty() || rest.front() == ',') throw UsageError(wanted);
+    if (last == std::string_view::npos) {
+        rule.zone = rest;
+        rule.within = Angle::degrees(kFaceDegrees);
+        rule.is_by_doors = true;
+        return rule;
+    }
     const auto first = rest.rfind(',', last - 1);
     // `a,45deg` ends with an angle after a name, `a,45deg,180` with two angles.
     rule.is_by_doors =
@@ -381,35 +388,64 @@ std::vector<FacingResult> measureFacing(const Scene& scene, const Coverage& cove
     return results;
 }
 
+namespace {
+
+/// The view of a camera; without a region if that is unknown.
+struct CameraView {
+    std::string id;
+    std::optional<std::vector<Curve>> region;
+};
+
+/// Adds the results of a rule for the views at its density.
+void addPrivacy(const Environment& environment, const PrivacyRule& rule,
+                std::span<const CameraView> views, std::vector<PrivacyResult>& results) {
+    for (const Zone& zone : matchingZones(rule.zones, environment)) {
+        PrivacyResult result{zone.id, rule.density};
+        std::vector<std::vector<Curve>> all;
+        bool is_known = true;
+        for (const auto& [id, region] : views) {
+            is_known &= region.has_value();
+            if (!region) continue;
+            if (areasIn(environment, zone.outline, {*region}).seen > kMinPiece)
+                result.cameras.push_back(id);
+            all.push_back(*region);
+        }
+        const AreaInZone areas = areasIn(environment, zone.outline, all);
+        result.area = areas.zone;
+        if (is_known) result.seen = areas.seen;
+        results.push_back(std::move(result));
+    }
+}
+
+}  // namespace
+
 std::vector<PrivacyResult> measurePrivacy(const Scene& scene, double plane,
                                           std::span<const PrivacyRule> rules) {
     const VisibleArea sight(scene.environment, plane);
     std::vector<PrivacyResult> results;
     for (const PrivacyRule& rule : rules) {
-        std::vector<std::pair<std::string, std::optional<std::vector<Curve>>>> views;
+        std::vector<CameraView> views;
         for (Sensor sensor : scene.sensors) {
             auto* const camera = std::get_if<Camera>(&sensor.model);
             if (camera == nullptr) continue;
             *camera = withDensity(*camera, rule.density);
-            views.emplace_back(sensor.id, sight.regionOf(sensor));
+            views.push_back({sensor.id, sight.regionOf(sensor)});
         }
-        for (const Zone& zone : matchingZones(rule.zones, scene.environment)) {
-            PrivacyResult result{zone.id, rule.density};
-            std::vector<std::vector<Curve>> all;
-            bool is_known = true;
-            for (const auto& [id, region] : views) {
-                is_known &= region.has_value();
-                if (!region) continue;
-                if (areasIn(scene.environment, zone.outline, {*region}).seen > kMinPiece)
-                    result.cameras.push_back(id);
-                all.push_back(*region);
-            }
-            const AreaInZone areas = areasIn(scene.environment, zone.outline, all);
-            result.area = areas.zone;
-            if (is_known) result.seen = areas.seen;
-            results.push_back(std::move(result));
-        }
+        addPrivacy(scene.environment, rule, views, results);
     }
+    return results;
+}
+
+std::vector<PrivacyResult> measurePrivacy(const Scene& scene, const Coverage& coverage,
+                                          const PrivacyRule& rule) {
+    std::vector<CameraView> views;
+    for (const SensorView& view : coverage.sensors) {
+        if (view.kind != &Camera::kKind) continue;
+        CameraView& camera = views.emplace_back(CameraView{view.id, std::nullopt});
+        if (view.region) camera.region.emplace(*view.region);
+    }
+    std::vector<PrivacyResult> results;
+    addPrivacy(scene.environment, rule, views, results);
     return results;
 }
 

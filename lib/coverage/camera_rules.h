@@ -86,6 +86,11 @@ std::vector<FacingResult> measureFacing(const Scene& scene, const Coverage& cove
 std::vector<PrivacyResult> measurePrivacy(const Scene& scene, double plane,
                                           std::span<const PrivacyRule> rules);
 
+/// Measures the same of one rule by the views of cameras in `coverage`, which counts their pixels
+/// at the density of the rule: also of cameras in other rooms.
+std::vector<PrivacyResult> measurePrivacy(const Scene& scene, const Coverage& coverage,
+                                          const PrivacyRule& rule);
+
 /// Returns true if the required share is seen, within rounding; true without one.
 bool isMet(const FacingResult& result);
 /// Returns true unless more than kMinPiece is seen, or the area seen is unknown.

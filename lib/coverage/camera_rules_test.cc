@@ -52,8 +52,13 @@ TEST(CameraRules, ParseFacingAndPrivacy) {
     EXPECT_NEAR(by_doors.within.degrees(), 45, 1e-12);
     EXPECT_TRUE(by_doors.is_by_doors);
     for (const char* text :
-         {"", "a", "a,x", ",45deg", ",45deg,0", "a,0deg,0", "a,181deg,0", "a,x,0", "a,45deg,0=x"})
+         {"", "a,x", ",45deg", ",45deg,0", "a,0deg,0", "a,181deg,0", "a,x,0", "a,45deg,0=x"})
         EXPECT_ANY_THROW(parseFacing(text)) << text;
+    const FacingRule plain = parseFacing("entrance=90%");
+    EXPECT_EQ(plain.zone, "entrance");
+    EXPECT_NEAR(plain.within.degrees(), 45, 1e-12);
+    EXPECT_TRUE(plain.is_by_doors);
+    EXPECT_EQ(plain.required, 0.9);
     EXPECT_EQ(parsePrivacy("zone:desk*").zones, "desk*");
     EXPECT_EQ(parsePrivacy("desk*").density, 0);
     EXPECT_EQ(parsePrivacy("desk*,recognise").density, 125);

@@ -56,13 +56,20 @@ TEST(DoorZones, OneForEachDoor) {
     EXPECT_EQ(readZones("rect:0,0,1,1", room()).size(), 1U);
 }
 
+TEST(DoorZones, ReachOneAndAHalfMetresUnlessTheyTellOtherwise) {
+    const std::vector<NamedZone> zones = readZones("door:*", room());
+    ASSERT_EQ(zones.size(), 2U);
+    EXPECT_EQ(zones[0].name, "door:front,1.5");
+    EXPECT_EQ(zones[0].outline, readZones("door:front,1.5", room())[0].outline);
+    EXPECT_EQ(zones[1].name, "door:back,1.5");
+}
+
 TEST(DoorZones, RefusesWhatIsNone) {
     EXPECT_EQ(
         refusal("door:frond,1"),
         "the room has no door `frond`, did you mean `front`?; its doors: front (1.00 m), back "
         "(0.90 m)");
-    EXPECT_EQ(refusal("door:front"),
-              "`door:front` is no zone: wanted door:GLOB,M, such as door:*,0.8");
+    EXPECT_EQ(refusal("door:"), "`door:` is no zone: wanted door:GLOB[,M], such as door:*,0.8");
     for (const char* text : {"door:*,", "door:*,0", "door:*,-1", "door:*,nan", "door:*,x"})
         EXPECT_NE(refusal(text).find("is no zone: "), std::string::npos) << text << refusal(text);
     const Document empty = readRecordText("#env 1\nispace size=8,6\n", "room.env", schemas());

@@ -142,7 +142,7 @@ NamedZone readZone(std::string_view text, const Environment& environment) {
     if (text.starts_with(kRectangle) || text.starts_with(kPolygon))
         return namedZone(text, parsedOutline(text));
     throw UsageError(unknownZoneText(text, environment) +
-                     "; write the id of a zone, rect:X,Y,X,Y, poly:X,Y;X,Y;X,Y or door:GLOB,M");
+                     "; write the id of a zone, rect:X,Y,X,Y, poly:X,Y;X,Y;X,Y or door:GLOB[,M]");
 }
 
 NamedZone namedZone(std::string_view text, Polygon outline) {
@@ -243,8 +243,9 @@ std::pair<std::string, double> parsedDoors(std::string_view text) {
                       .upper = kMaxDistance};
     const std::string_view words = text.substr(kDoorPrefix.size());
     const std::size_t comma = words.rfind(',');
-    if (comma == std::string_view::npos || comma == 0)
-        throw UsageError(excerpt(text) + " is no zone: wanted door:GLOB,M, such as door:*,0.8");
+    if (words.empty() || comma == 0)
+        throw UsageError(excerpt(text) + " is no zone: wanted door:GLOB[,M], such as door:*,0.8");
+    if (comma == std::string_view::npos) return {std::string(words), kFromDoor};
     try {
         return {std::string(words.substr(0, comma)),
                 std::get<double>(parseValue(key, words.substr(comma + 1)))};

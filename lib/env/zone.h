@@ -31,7 +31,7 @@ NamedZone namedZone(std::string_view text, Polygon outline);
 /// Returns "the room has no zone `x`, did you mean …; its zones: a, b".
 std::string unknownZoneText(std::string_view text, const Environment& environment);
 
-/// Reads all zones of a text: `door:GLOB,M` means one zone for each door with a matching id: the
+/// Reads all zones of a text: `door:GLOB[,M]` means one zone for each door with a matching id: the
 /// floor within M of its opening, walls ignored. Any other text is one zone, as of readZone().
 /// Rounded ends have 16 chords per quarter circle.
 /// \throws UsageError as readZone(), for a bad distance, and if no door matches
@@ -47,6 +47,8 @@ struct Doorway {
 std::vector<Doorway> doorwaysOf(const Environment& environment);
 /// Begins a zone of doors.
 constexpr std::string_view kDoorPrefix = "door:";
+/// Metres of floor at doors, unless given.
+constexpr double kFromDoor = 1.5;
 /// Returns the doors whose ids match. \param text that is about them, for messages
 /// \throws UsageError with doorList() if there are none
 std::vector<Doorway> doorsNamed(const std::string& glob, std::string_view text,

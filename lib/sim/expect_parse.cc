@@ -135,7 +135,7 @@ class SentenceReader {
         } else if (take("in")) {
             if (!take("zone")) want("`zone`", {"zone"});
             result_.state = State::InZone;
-            result_.name = word("the zone's id, rect:X,Y,X,Y, poly:X,Y;X,Y;X,Y or door:GLOB,M");
+            result_.name = word("the zone's id, rect:X,Y,X,Y, poly:X,Y;X,Y;X,Y or door:GLOB[,M]");
         } else if (take("seen")) {
             readSeen();
         } else if (take("unseen")) {

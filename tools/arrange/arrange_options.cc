@@ -294,7 +294,7 @@ void ArrangeCommand::addGoalOptions() {
         Enters::History);
     line_.texts("--zone", "ZONE", options_.zones.targets,
                 "cover only this part of the floor: the id of a zone, rect:X,Y,X,Y, "
-                "poly:X,Y;X,Y;..., or door:GLOB,M within M of doors",
+                "poly:X,Y;X,Y;..., or door:GLOB[,M] within M of doors (1.5m)",
                 Enters::History);
     line_.texts("--weight", "ZONE=W", options_.zones.weights,
                 "floor there counts W times (elsewhere once)", Enters::History);
@@ -321,11 +321,12 @@ void ArrangeCommand::addGoalOptions() {
         },
         "spend at most this, at cost= per sensor (default 1); COUNT is then a maximum",
         Enters::History);
-    line_.texts("--facing", "ZONE,DEG[,HEADING]", options_.zones.facing,
-                "floor of this zone counts only where a camera sees faces: within this angle of "
-                "the heading in which people walk there, by default through the doors on its "
-                "border; door:GLOB[,M][,DEG] is the floor within M of doors (1.5m, 45deg)",
-                Enters::History);
+    line_.texts(
+        "--facing", "ZONE[,DEG[,HEADING]]", options_.zones.facing,
+        "floor of this zone counts only where a camera sees faces: within this angle (45deg) "
+        "of the heading in which people walk there, by default through the doors on its "
+        "border; door:GLOB[,M][,DEG] is the floor within M of doors (1.5m, 45deg)",
+        Enters::History);
     line_.texts("--privacy", "ZONE[,D]", options_.zones.privacy,
                 "no camera may see these zones (globs allowed), or see them with at least D pixels "
                 "a metre, a number or a density class",

@@ -22,7 +22,7 @@ namespace ispace {
 struct ZoneWords {
     std::vector<std::string> targets, keep_out, keep_in;
     std::vector<std::string> weights;  ///< ZONE=W
-    std::vector<std::string> facing;   ///< ZONE,DEG[,HEADING]
+    std::vector<std::string> facing;   ///< ZONE[,DEG[,HEADING]]
     std::vector<std::string> privacy;  ///< ZONE[,D]
 };
 

@@ -147,6 +147,22 @@ void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
 
 }  // namespace
 
+namespace {
+
+/// Tells that a target counts the floor without rules of facing, too.
+void noteWholeFloor(const ArrangeToolOptions& options) {
+    if (!options.how.target || options.how.facing.empty() || !options.zones.targets.empty()) return;
+    const std::string& zone = options.how.facing.front().zone;
+    const bool is_zone = zone.find(kDoorPrefix) != std::string::npos ||
+                         zone.find_first_of("*?[") == std::string::npos;
+    tell(options.common, "arrange",
+         "--target is of all floor: faces count in the zones of --facing, plain sight elsewhere; "
+         "to count those zones alone, add --zone " +
+             (is_zone ? '\'' + printable(zone) + '\'' : "ZONE"));
+}
+
+}  // namespace
+
 ArrangeWork readWork(const ArrangeToolOptions& options) {
     std::vector<std::string> streams = options.operands;
     streams.push_back(options.places_file);
@@ -176,8 +192,11 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     std::vector<const Scene*> scenes;
     for (const auto& room : input.rooms) scenes.push_back(room.get());
     work.groups = groupsToPlace(scenes, added, devices, open);
+    noteWholeFloor(options);
     if (work.groups.empty())
-        throw UsageError("nothing to place: give --sensor, or a LAYOUT with a sensor without `at`");
+        throw UsageError(
+            "nothing to place: give --sensor MODEL[:COUNT], such as dome-2.8-1080p:4, or a LAYOUT "
+            "with a sensor without `at`");
     work.files = input.files;
     if (input.building) {
         for (const SensorGroup& group : work.groups)

@@ -53,7 +53,6 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
     if (options.presence && !options.presence->record.empty() &&
         recordedBuilding(options.presence->record).empty())
         option = "--presence by the record of one room";
-    if (!options.privacy.empty()) option = "--privacy";
     if (!options.paths.empty()) option = "--path";
     if (!options.trace.empty()) option = "--trace";
     if (!option.empty())
@@ -379,8 +378,9 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     warn(options.common, "coverage", findings);
     BuildingCoverage coverage = measureBuilding(input.building, options.measure);
     compareWithOther(options, input, coverage);
-    if (!options.facing.empty())
-        coverage.rules = measureBuildingFacing(input.building, coverage, options.facing);
+    if (!options.facing.empty() || !options.privacy.empty())
+        coverage.rules = measureBuildingRules(input.building, coverage, options.measure,
+                                              options.facing, options.privacy);
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
         if (const std::string text =
                 largeCellsText(options.measure, coverage.storeys[i].report.grid);

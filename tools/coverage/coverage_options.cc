@@ -189,7 +189,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     addMeasureOptions(line, o.measure, words);
     line.texts("--zone", "ZONE", o.zones,
                "report this part of the floor, too, as a zone: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
-               "door:GLOB,M within M of doors, named DOOR-zone",
+               "door:GLOB[,M] within M of doors (1.5m), named DOOR-zone",
                Enters::History);
     line.group("Requirements, comparison, advice");
     line.texts("--require", "SHARE", words.requirements,
@@ -198,12 +198,13 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                "identify:95%, discern:NAME=95%; of the ways of --presence presence:95%, "
                "presence:PERSON=95%",
                Enters::History);
-    line.texts("--facing", "ZONE,DEG[,HEADING][=SHARE]", words.facing,
-               "report the share of a zone where cameras see faces: within this angle of the "
-               "heading in which people walk there, by default through the doors on its border; "
-               "door:GLOB[,M][,DEG] is the floor within M of doors (1.5m, 45deg); exit with 3 if "
-               "less than SHARE",
-               Enters::History);
+    line.texts(
+        "--facing", "ZONE[,DEG[,HEADING]][=SHARE]", words.facing,
+        "report the share of a zone where cameras see faces: within this angle (45deg) of "
+        "the heading in which people walk there, by default through the doors on its border; "
+        "door:GLOB[,M][,DEG] is the floor within M of doors (1.5m, 45deg); exit with 3 if "
+        "less than SHARE",
+        Enters::History);
     line.texts("--privacy", "ZONE[,D]", words.privacy,
                "exit with 3 if a camera sees some of these zones (globs allowed), or sees it with "
                "at least D pixels a metre, a number or a density class",

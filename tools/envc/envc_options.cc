@@ -87,10 +87,11 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
         "or per cell of a ROS map that is written (there 0.05 m by default)",
         Enters::History);
     line.count("--width", "PIXELS", options.width, 200, 12000, "width of a PNG", Enters::History);
-    line.texts("--zone", "ZONE", options.zones,
-               "add a zone: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or door:GLOB,M within M of doors; of "
-               "nav2-keepout floor to keep out of, also a zone's id",
-               Enters::History);
+    line.texts(
+        "--zone", "ZONE", options.zones,
+        "add a zone: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or door:GLOB[,M] within M of doors (1.5m); of "
+        "nav2-keepout floor to keep out of, also a zone's id",
+        Enters::History);
     line.flag("--info", options.info, "report on the environment instead of writing it",
               Enters::Nothing);
     line.flag("--json", options.json, "the report of --info, or --rooms list, as JSON",
@@ -266,12 +267,12 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
                     [](const std::string& zone) { return zone.find(':') == std::string::npos; }))
         throw UsageError(
             "--zone is for --to nav2-keepout, or adds rect:X,Y,X,Y, poly:X,Y;X,Y;... or "
-            "door:GLOB,M: the room has the zones that are called by their ids");
+            "door:GLOB[,M]: the room has the zones that are called by their ids");
     if (options.format == nullptr) return;
     if (takes_zones && options.zones.empty())
         throw UsageError(
             std::string(options.format->name) +
-            ": say which floor to keep out of: --zone NAME, rect:X,Y,X,Y, poly:… or door:GLOB,M");
+            ": say which floor to keep out of: --zone NAME, rect:X,Y,X,Y, poly:… or door:GLOB[,M]");
     const std::string suffix = suffixOf(options.common.output);
     const ExportFormat& format = *options.format;
     if ((format.needs_beside && suffix != format.suffix) ||

@@ -77,7 +77,7 @@ void SimrunCommand::declareRun() {
     SimrunOptions& o = options_;
     line_.texts("--zone", "ZONE", o.zones,
                 "add a zone for events and --expect: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
-                "door:GLOB,M within M of doors, named DOOR-zone",
+                "door:GLOB[,M] within M of doors (1.5m), named DOOR-zone",
                 Enters::History);
     line_.parsed(
         "--clock", "CLOCK", [&o](const std::string& text) { o.clock = parseClock(text); },
