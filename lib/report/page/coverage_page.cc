@@ -81,11 +81,11 @@ std::string identifiedText(const CoverageReport& report) {
     return "";
 }
 
-/// Tells how much of the floor the sensors see.
-PageText sightOf(const CoveragePageInput& input) {
-    const CoverageReport& report = input.coverage.report;
+}  // namespace
+
+PageText sightText(const CoverageReport& report, std::size_t sensors) {
     std::string seen = "The sensors see " + shareText(report.coverage) + " of the indoor floor";
-    if (const auto twice = seenTwice(report); twice && input.scene.sensors.size() > 1)
+    if (const auto twice = seenTwice(report); twice && sensors > 1)
         seen += ", and two or more of them " + percentText(*twice);
     seen += identifiedText(report) + ".";
     if (!report.unseen.empty())
@@ -94,6 +94,8 @@ PageText sightOf(const CoveragePageInput& input) {
                 pointText(report.unseen.front().place) + ".";
     return {std::move(seen)};
 }
+
+namespace {
 
 std::string outcomeText(bool is_met, const std::string& finding) {
     return std::string(is_met ? "met" : "not met") + (finding.empty() ? "." : "; " + finding + ".");
@@ -106,7 +108,8 @@ PageSection summaryOf(const CoveragePageInput& input) {
                                       " of indoor floor, " + squareMetres(report.free_area) +
                                       " of it free at " + formatFixed(report.height, 2) +
                                       " m, and " + sensorsText(input.scene) + "."});
-    if (!input.scene.sensors.empty()) section.blocks.push_back(sightOf(input));
+    if (!input.scene.sensors.empty())
+        section.blocks.push_back(sightText(report, input.scene.sensors.size()));
     if (input.parts.run != nullptr && !input.parts.run->all.time_shares.empty())
         section.blocks.push_back(sightInRun(*input.parts.run, "robots and people"));
     if (input.parts.run != nullptr)

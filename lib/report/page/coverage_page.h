@@ -41,6 +41,11 @@ struct CoveragePageInput {
     Progress* progress = nullptr;           ///< of the pictures; null: silent
 };
 
+/// Tells how much of the floor the sensors see, how much of it two or more see, on which share
+/// cameras identify people, and the largest spot of free floor that none sees.
+/// \param sensors number of those that see the floor
+PageText sightText(const CoverageReport& report, std::size_t sensors);
+
 /// Tells of collisions and of targets that were given up; empty without any.
 std::vector<PageText> incidentsOf(const RunCoverage& run);
 

@@ -177,9 +177,11 @@ std::vector<PageSection> cameraSheets(const Scene& scene, const Coverage& covera
             sheet.blocks.push_back(std::move(*picture));
             pictures.erase(picture);
         }
+        // In a building views have the storey before their ids, and some are of other storeys.
+        const auto index = static_cast<std::size_t>(camera - scene.sensors.begin());
         const auto view =
             std::find_if(coverage.sensors.begin(), coverage.sensors.end(),
-                         [&row](const SensorView& one) { return one.id == row.front(); });
+                         [index](const SensorView& one) { return one.index == index; });
         if (view != coverage.sensors.end()) {
             PageFigure floor = floorFigure(
                 scene, coverage, static_cast<std::size_t>(view - coverage.sensors.begin()));

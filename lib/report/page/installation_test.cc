@@ -290,6 +290,23 @@ TEST(CameraSheets, FitOnOneSheetOfEitherPaper) {
     }
 }
 
+TEST(CameraSheets, HaveTheFloorOfCamerasInBuildings) {
+    const Scene scene = sceneOf(
+        "#env 1\nispace id=hall at=4,3 size=8,8,2.5\n"
+        "laser id=l at=1,1\ncamera id=c at=0.2,0.2,2.4 heading=45 tilt=-30 pixels=640,480\n");
+    Worlds worlds(scene.environment);
+    Coverage coverage = measureCoverage(scene, worlds, {});
+    // Ids name the storey there, but those of the scene do not.
+    for (SensorView& view : coverage.sensors) view.id.insert(0, "ground/");
+    std::vector<PageFigure> figures = sensorPictures(scene, coverage);
+    const PageTable table = installationTable(scene, coverage, installationsOf(scene), {});
+    const std::vector<PageSection> sheets = cameraSheets(scene, coverage, table, figures);
+    ASSERT_EQ(sheets.size(), 1U);
+    ASSERT_EQ(sheets[0].blocks.size(), 3U) << "table, picture, floor";
+    EXPECT_EQ(std::get<PageFigure>(sheets[0].blocks[2]).caption,
+              "ground/c: the floor that it sees");
+}
+
 TEST(IndoorFloor, EndsAtOpenDoors) {
     // Half of the disc of `door` is outside, behind an open door.
     const Scene scene = sceneOf(

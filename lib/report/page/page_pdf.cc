@@ -323,13 +323,7 @@ class PdfWriter {
             sheets_.skip(kHeading);
             sheets_.text(section.title, {kHeading, true, Align::Left, palette::kInk, {}});
             sheets_.skip(0.3 * kHeading);
-            for (const PageBlock& block : section.blocks)
-                std::visit(
-                    [this](const auto& one) {
-                        if constexpr (!std::is_same_v<decltype(one), const PageFigure&>) endRow();
-                        add(one);
-                    },
-                    block);
+            addBlocks(section.blocks);
             endRow();
         }
         filled_ = sheets_.allFilled();
@@ -337,6 +331,40 @@ class PdfWriter {
     }
 
   private:
+    /// Adds blocks in their order, but tables before a figure that leaves much of its sheet empty.
+    void addBlocks(const std::vector<PageBlock>& blocks) {
+        std::vector<bool> is_added(blocks.size());
+        const auto add_one = [&](std::size_t i) {
+            std::visit(
+                [this](const auto& one) {
+                    if constexpr (!std::is_same_v<decltype(one), const PageFigure&>) endRow();
+                    add(one);
+                },
+                blocks[i]);
+            is_added[i] = true;
+        };
+        for (std::size_t i = 0; i < blocks.size(); ++i) {
+            if (is_added[i]) continue;
+            for (std::size_t k = i + 1; k < blocks.size() && leavesGap(blocks[i]); ++k) {
+                const auto* const table = std::get_if<PageTable>(&blocks[k]);
+                if (table != nullptr && !is_added[k] &&
+                    sheets_.y() + leastHeight(*table) <= sheets_.end())
+                    add_one(k);
+            }
+            add_one(i);
+        }
+    }
+    /// Returns true for a figure that needs the next sheet though much of this one is empty.
+    [[nodiscard]] bool leavesGap(const PageBlock& block) const {
+        constexpr double kGap = 0.25;  // of a sheet's height
+        const bool is_figure =
+            std::holds_alternative<PageFigure>(block) || std::holds_alternative<PageMap>(block);
+        if (!is_figure || row_.height > 0) return false;
+        const double height =
+            std::visit([this](const auto& one) { return this->leastHeight(one); }, block);
+        return sheets_.y() + height > sheets_.end() && sheets_.filled() < 1 - kGap;
+    }
+
     /// Draws the logo above the title.
     void addLogo() {
         if (page_.cover.logo.empty()) return;

@@ -214,6 +214,38 @@ TEST(Page, PdfShrinksAFigureWithoutScaleToTheRestOfASheet) {
     EXPECT_EQ(with(400, PageUnit::Pixel), 2U);
 }
 
+TEST(Page, PdfSetsTablesBeforeAFigureThatNeedsTheNextSheet) {
+    const auto sheets_with = [](std::size_t texts) {
+        ReportPage page{"map", "", {}};
+        std::vector<PageBlock> blocks(texts, PageText{"a line"});
+        blocks.emplace_back(PageFigure{"the figure", pictureOf(178, 240, PageUnit::Millimetre)});
+        blocks.emplace_back(PageTable{"the table", "lr", {"zone", "area"}, {{"a", "1"}}});
+        page.sections.push_back({"map", "Map", std::move(blocks)});
+        return sheetsOf(page);
+    };
+    const auto sheet_of = [](const std::vector<Picture>& sheets, std::string_view text) {
+        for (std::size_t i = 0; i < sheets.size(); ++i)
+            for (const DisplayList::Text& one : sheets[i].list().texts)
+                if (one.text == text) return i;
+        return sheets.size();
+    };
+    const std::vector<Picture> sheets = sheets_with(8);
+    ASSERT_EQ(sheets.size(), 2U);
+    EXPECT_EQ(sheet_of(sheets, "the table"), 0U);
+    EXPECT_EQ(sheet_of(sheets, "the figure"), 1U);
+    // A sheet that is filled keeps the order.
+    const std::vector<Picture> full = sheets_with(38);
+    EXPECT_EQ(sheet_of(full, "the figure"), 1U);
+    EXPECT_EQ(sheet_of(full, "the table"), full.size() - 1);
+}
+
+TEST(Page, WideTablesShowThatTheyContinue) {
+    const std::string html = htmlOf(samplePage());
+    EXPECT_TRUE(holds(html, "<div class=\"wide\" role=\"region\" tabindex=\"0\""));
+    EXPECT_TRUE(holds(html, "background-attachment: local, local, scroll, scroll"));
+    EXPECT_TRUE(holds(html, "width: max-content; max-width: min("));  // captions
+}
+
 TEST(Page, PdfSplitsTablesThatAreTooWide) {
     const auto with = [](std::vector<PageBlock> blocks) {
         ReportPage page{"wide", "", {}};
