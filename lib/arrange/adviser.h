@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "arrange/arrange.h"
+#include "arrange/coarse_sight.h"
 #include "arrange/suggestion.h"
 #include "coverage/exact_shares.h"
 #include "coverage/private_floor.h"
@@ -117,7 +118,9 @@ class Adviser {
         const bool is_by_density =
             std::any_of(options_.requirements.begin(), options_.requirements.end(),
                         [](const Requirement& one) { return one.density.has_value(); });
-        auto shares = is_by_density ? std::nullopt : exactShares(changed, worlds, options);
+        auto shares = is_by_density
+                          ? std::nullopt
+                          : exactShares(changed, worlds, options, knownSight(changed.environment));
         Coverage coverage =
             shares ? *std::move(shares)
                    : measureChanged(changed, worlds, options, {&now.scene, &now.coverage});
@@ -150,6 +153,12 @@ class Adviser {
 
     /// Returns the sight in the first environment that keeps regions; null in others.
     const VisibleArea* sightIn(const Environment& environment);
+    /// Returns the same if it exists.
+    [[nodiscard]] const VisibleArea* knownSight(const Environment& environment) const {
+        const bool is_first =
+            first_sight_ && first_sight_->environment.digest() == environment.digest();
+        return is_first ? &first_sight_->sight : nullptr;
+    }
     /// Returns the floor that suggestions of this state gain, at least, m2: smaller gains are not
     /// told unless requirements fall short.
     [[nodiscard]] static double leastGain(const MeasuredState& now) {
@@ -206,6 +215,7 @@ class Adviser {
         }
     };
     std::unique_ptr<FirstSight> first_sight_;
+    std::unique_ptr<CoarseSight> first_coarse_;  // of its environment
     /// Of the first environment, and of the last other one.
     std::array<std::unique_ptr<PrivateFloor>, 2> private_floors_;
 };

@@ -52,11 +52,10 @@ void CoarseSight::look(std::span<const Sensor> sensors) {
     heard_.assign(target_.grid.size(), 0);
     for (const Sensor& sensor : sensors) {
         if (!kindOf(sensor.model).perceives) continue;
-        sight_.prepare(sensor);
-        CellSet cells = sight_.cellsOf(target_.grid, sensor);
+        const CellSet& cells = viewsOf({&sensor, 1}).front()->cells;
         std::vector<std::uint32_t>& counts = isPartial(sensor.model) ? heard_ : times_;
         cells.forEach([&counts](std::size_t cell) { ++counts[cell]; });
-        seen_.insert_or_assign(sensor.id, std::move(cells));
+        seen_.insert_or_assign(sensor.id, cells);
     }
 }
 
@@ -74,31 +73,54 @@ void CoarseSight::count(const Sensor& moving) {
     });
 }
 
-FloorGain CoarseSight::gainOf(const Sensor& sensor) const {
-    FloorGain gain;
-    gain.gained =
-        cell_ * static_cast<double>(countCommon(sight_.cellsOf(target_.grid, sensor), counted_));
-    if (!sensor.is<Camera>()) return gain;
+CoarseSight::View CoarseSight::viewOf(const Sensor& sensor) const {
+    View view{sensor, sight_.cellsOf(target_.grid, sensor)};
+    if (!sensor.is<Camera>()) return view;
     for (const Private& rule : private_) {
         Sensor camera = sensor;
         camera.model = withDensity(sensor.as<Camera>(), rule.density);
-        gain.required -= cell_ * static_cast<double>(
+        view.required -= cell_ * static_cast<double>(
                                      countCommon(sight_.cellsOf(target_.grid, camera), rule.cells));
     }
-    return gain;
+    return view;
+}
+
+std::vector<const CoarseSight::View*> CoarseSight::viewsOf(std::span<const Sensor> sensors) {
+    const auto key_of = [](const Pose3& pose) {
+        return std::tuple(pose.position.x, pose.position.y, pose.heading.degrees());
+    };
+    constexpr std::size_t kMost = 10'000;
+    if (views_.size() + sensors.size() > kMost) views_.clear();
+    std::vector<const View*> views(sensors.size());
+    std::vector<std::size_t> fresh;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const auto [first, last] = views_.equal_range(key_of(sensors[i].pose));
+        const auto known = std::find_if(
+            first, last, [&](const auto& one) { return seeAlike(one.second.sensor, sensors[i]); });
+        if (known != last)
+            views[i] = &known->second;
+        else
+            fresh.push_back(i);
+    }
+    if (fresh.empty()) return views;
+    sight_.prepare(sensors[fresh.front()]);
+    std::vector<View> made(fresh.size());
+    tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t k) {
+        // A thread that waits for rows of cells in here must not begin with another pose.
+        tbb::this_task_arena::isolate([&] { made[k] = viewOf(sensors[fresh[k]]); });
+    });
+    for (std::size_t k = 0; k < fresh.size(); ++k)
+        views[fresh[k]] =
+            &views_.emplace(key_of(sensors[fresh[k]].pose), std::move(made[k]))->second;
+    return views;
 }
 
 std::vector<FloorGain> CoarseSight::at(const Sensor& sensor, std::span<const Pose3> poses) {
-    sight_.prepare(sensor);
-    std::vector<FloorGain> gains(poses.size());
-    tbb::parallel_for(std::size_t{0}, poses.size(), [&](std::size_t i) {
-        // A thread that waits for rows of cells in here must not begin with another pose.
-        tbb::this_task_arena::isolate([&] {
-            Sensor moved = sensor;
-            moved.pose = poses[i];
-            gains[i] = gainOf(moved);
-        });
-    });
+    std::vector<Sensor> moved(poses.size(), sensor);
+    for (std::size_t i = 0; i < poses.size(); ++i) moved[i].pose = poses[i];
+    std::vector<FloorGain> gains;
+    gains.reserve(poses.size());
+    for (const View* const view : viewsOf(moved)) gains.push_back(gainOf(*view));
     return gains;
 }
 
@@ -108,9 +130,9 @@ FloorGain CoarseSight::whole(std::span<const Sensor> sensors) {
     std::vector<std::uint32_t> heard(target_.grid.size());
     for (const Sensor& sensor : sensors) {
         if (!kindOf(sensor.model).perceives) continue;
-        sight_.prepare(sensor);
-        sum.required += gainOf(sensor).required;
-        const CellSet cells = sight_.cellsOf(target_.grid, sensor);
+        const View& view = *viewsOf({&sensor, 1}).front();
+        sum.required += view.required;
+        const CellSet& cells = view.cells;
         if (!isPartial(sensor.model))
             seen |= cells;
         else

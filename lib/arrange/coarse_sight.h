@@ -8,6 +8,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "arrange/suggestion.h"
@@ -45,7 +46,7 @@ class CoarseSight {
     /// sees. O(cells)
     void count(const Sensor& moving);
     /// Estimates the counted floor that a sensor covers at each pose, and, below 0, the private
-    /// floor that it sees.
+    /// floor that it sees. Looks once from each pose.
     [[nodiscard]] std::vector<FloorGain> at(const Sensor& sensor, std::span<const Pose3> poses);
 
     /// Estimates the floor that the sensors of a scene in this environment cover together, and,
@@ -60,7 +61,19 @@ class CoarseSight {
         double density;
         CellSet cells;
     };
-    [[nodiscard]] FloorGain gainOf(const Sensor& sensor) const;
+    /// The cells that a sensor sees at a pose, and, below 0, the private floor.
+    struct View {
+        Sensor sensor;
+        CellSet cells;
+        double required = 0;
+    };
+    [[nodiscard]] View viewOf(const Sensor& sensor) const;
+    /// Returns the views of these sensors, which are computed once, until the next call. \pre they
+    /// have equal models
+    [[nodiscard]] std::vector<const View*> viewsOf(std::span<const Sensor> sensors);
+    [[nodiscard]] FloorGain gainOf(const View& view) const {
+        return {view.required, cell_ * static_cast<double>(countCommon(view.cells, counted_))};
+    }
 
     Worlds worlds_;
     VisibleArea sight_;
@@ -72,6 +85,7 @@ class CoarseSight {
     CellSet counted_;
     std::map<std::string, CellSet, std::less<>> seen_;  // by the ids of sensors, of look()
     std::vector<std::uint32_t> times_, heard_;          // that sensors see, receivers hear a cell
+    std::multimap<std::tuple<double, double, double>, View> views_;  // by place and heading
 };
 
 }  // namespace ispace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -126,19 +127,26 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     ExactGain gain(others, known != nullptr ? *known : own, sensors, weightsFor(now), 1);
     if (!gain.prepareAll()) gain.prepareBounds();
     RuleTrials rules_of_cameras(now, options_, privateFloorOf(now.scene.environment));
-    std::optional<CoarseSight> coarse;
+    std::unique_ptr<CoarseSight> own_coarse;
+    CoarseSight* coarse = nullptr;
     if (CoarseSight::estimates(options_)) {
-        coarse.emplace(now.scene.environment, options_);
+        if (known != nullptr && first_coarse_ == nullptr)
+            first_coarse_ = std::make_unique<CoarseSight>(first_sight_->environment, options_);
+        if (known == nullptr)
+            own_coarse = std::make_unique<CoarseSight>(now.scene.environment, options_);
+        coarse = known != nullptr ? first_coarse_.get() : own_coarse.get();
         coarse->look(now.scene.sensors);
     }
     const FloorGain worthwhile{0, (1 - kNegligible) * leastGain(now)};
     std::optional<Trial> turn, shift;
     // Measures trials, the most promising ones first, until no other can be the best. The first of
     // several with the same gain is taken.
-    const auto attempt = [&](std::vector<Trial> trials, std::optional<Trial>& best) {
+    // \param enough smaller gains are of no use
+    const auto attempt = [&](std::vector<Trial> trials, std::optional<Trial>& best,
+                             const FloorGain& enough = {}) {
         const Sensor& sensor = sensors[trials.front().sensor];
         const double most = rules_of_cameras.mostGain(sensor);
-        const auto least = [&] { return best ? best->gain : FloorGain(); };
+        const auto least = [&] { return best ? std::max(best->gain, enough) : enough; };
         std::erase_if(trials, [&](Trial& trial) {
             trial.most = {most, gain.mostMore(poseAfter(sensor.pose, trial))};
             return trial.most <= least();
@@ -162,17 +170,28 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
         for (std::size_t first = 0; first < trials.size() && !isStopped(); first += at_once) {
             if (trials[first].most < least()) break;
             const std::size_t end = std::min(first + at_once, trials.size());
+            // By the rules first, which are less floor, and decide before all other floor.
+            std::vector<std::size_t> tried;
             std::vector<Pose3> poses;
-            for (std::size_t i = first; i < end; ++i)
-                poses.push_back(poseAfter(sensor.pose, trials[i]));
+            for (std::size_t i = first; i < end; ++i) {
+                const Pose3 pose = poseAfter(sensor.pose, trials[i]);
+                if (coarse) trials[i].gain.required = rules_of_cameras.gain(sensor, pose);
+                if (coarse && FloorGain{trials[i].gain.required, trials[i].most.gained} < least())
+                    continue;
+                tried.push_back(i);
+                poses.push_back(pose);
+            }
+            if (poses.empty()) continue;
             if (!coarse) poses.push_back(sensor.pose);
             const std::vector<double> gains = gain.gains(poses);
             if (!coarse) present = gains.back();
-            for (std::size_t i = first; i < end; ++i) {
-                Trial& trial = trials[i];
-                trial.gain = {0, gains[i - first] - present};
-                if (FloorGain{most, trial.gain.gained} < least()) continue;
-                trial.gain.required = rules_of_cameras.gain(sensor, poses[i - first]);
+            for (std::size_t k = 0; k < tried.size(); ++k) {
+                Trial& trial = trials[tried[k]];
+                trial.gain.gained = gains[k] - present;
+                if (!coarse) {
+                    if (FloorGain{most, trial.gain.gained} < least()) continue;
+                    trial.gain.required = rules_of_cameras.gain(sensor, poses[k]);
+                }
                 const bool is_before =
                     is_found && trial.gain == best->gain && trial.number < best->number;
                 if (!(trial.gain > least() || is_before)) continue;
@@ -204,7 +223,8 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
         for (const Vec2 by : displacements(kShifts))
             if (validity.isValid(sensors[i].pose.position.onFloor() + by))
                 trials.push_back({i, 0, by});
-        if (!trials.empty()) attempt(trials, shift);
+        // No finer shifts follow that might gain more.
+        if (!trials.empty()) attempt(trials, shift, worthwhile);
         advance(1);
     }
     std::vector<Suggestion> found;

@@ -66,16 +66,16 @@ double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestO
 /// known, else by cells. Turns and shifts are found by exact gains (ExactGain) and skipped if a
 /// sensor has no exact region; sensors on robots and people stay. Furniture: the pieces nearest to
 /// sensors, by the floor that they can hide, moved to positions without new findings. Without
-/// requirements and rules of facing, coarse cells bound the gains of poses (CoarseSight), and the
-/// shadows of pieces those of moves (MoveTrials); only those that may be the best are measured. If
-/// all requirements are met, changes that cannot gain a thousandth of the floor are not tried, by
-/// the uncovered floor about them. Together
-/// repeats the best change, so it is short, not proven shortest. It may also remove cameras that
-/// see private zones. No change raises missingFloor(). Deterministic. Measures the scene up
-/// to some hundreds of times: some dozens of poses of each sensor by its view alone, up to 150
-/// moves of furniture and, if rules are not met, all but the furniture again for each change of
-/// Together, at most eight. Returns the suggestions so far if progress says stop. \param coverage
-/// of the scene, by options.measure
+/// requirements and rules of facing, coarse cells bound the gains of poses (CoarseSight; rules
+/// decide before other floor), and the shadows of pieces those of moves (MoveTrials); only those
+/// that may be the best are measured. If all requirements are met, changes that cannot gain a
+/// thousandth of the floor are not tried, by the uncovered floor about them. Together repeats the
+/// best change, so it is short, not proven shortest. It may also remove cameras that see private
+/// zones. No change raises missingFloor(). Deterministic. Measures the scene up to some hundreds of
+/// times: some dozens of poses of each sensor by its view alone, up to 150 moves of furniture and,
+/// if rules are not met, all but the furniture again for each change of Together, at most eight.
+/// Returns the suggestions so far if progress says stop. \param coverage of the scene, by
+/// options.measure
 std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& coverage,
                                        const SuggestOptions& options,
                                        const DeviceCatalogue& devices, Progress& progress);
