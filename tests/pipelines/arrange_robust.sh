@@ -67,6 +67,15 @@ arrange "${cameras[@]}" --facing entrance,45deg --zone entrance -o faces.3dm 2>r
 has 'facing entrance through [a-z0-9]* within 45 degrees of -90: [0-9.]*% of 3.90 m2 is seen' <report || fail "no faces: $(cat report)"
 coverage room.env faces.3dm --facing entrance,45deg >out
 has "^$(sed -n 's/^arrange: \(facing.*\)/\1/p' report)\$" <out || fail "other faces: $(cat report)"
+# A target without zones is of all floor, which is told with the zones to add; those are read as they are written there.
+arrange "${cameras[@]}" --facing entrance --target 5% -o x.3dm 2>report
+has "is of all floor: .* add --zone 'entrance'" <report || fail "no note: $(cat report)"
+arrange "${cameras[@]}" --facing 'door:*' --target 5% -o x.3dm 2>report
+has "add --zone 'door:\*,1.5'" <report || fail "no note of doors: $(cat report)"
+arrange "${cameras[@]}" --facing 'door:*' --zone 'door:*' --target 5% -o x.3dm 2>report
+has 'is of all floor' <report && fail "a note in vain: $(cat report)"
+arrange "${cameras[@]}" --facing 'door:*' --zone 'door:*,1.5' --target 5% -o y.3dm 2>report
+cmp <(grep -v '^#' x.3dm) <(grep -v '^#' y.3dm) || fail 'door:* is not door:*,1.5'
 # A camera that stays sees the desk.
 printf '#3dm 1\ncamera id=c at=0,0,2.4 tilt=-90 projection=omni fov=179 pixels=2000,2000 range=30\n' >dome.3dm
 expect_status 3 arrange room.env dome.3dm --sensor camera --candidates 1,1,8 --privacy desk1 -o x.3dm
