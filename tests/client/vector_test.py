@@ -156,6 +156,16 @@ class Worlds(unittest.TestCase):
         with self.assertRaises(ispace.ToolError):
             env.reset()
 
+    def test_a_reader_that_goes_leaves_no_memory_behind(self):
+        name = f"ispace-test-{os.getpid()}"
+        words = [filters.tool("simrun"), OFFICE, "--vector", "2", "--shm", name]
+        with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+            process.stdout.readline()
+            self.assertIn(name, os.listdir("/dev/shm"))
+            process.stdout.close()
+            process.stdin.write(b"reset\n")
+        self.assertNotIn(name, os.listdir("/dev/shm"))
+
     def test_an_interrupted_wait_mixes_no_replies(self):
         class Interrupt(Exception):
             pass

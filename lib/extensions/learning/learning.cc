@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -118,6 +119,10 @@ class Learning : public OptionGroup {
         if (step_) task.step = *step_;
         LearningSetting setting = settingOf(input, std::move(task));
         const auto worlds = static_cast<std::size_t>(*worlds_);
+        // From here on neither a signal nor a reader that has gone ends the process at once: it
+        // would leave the segment behind.
+        std::signal(SIGPIPE, SIG_IGN);
+        RequestLines requests;
         const VectorSegment segment(segment_, setting, worlds, factsOf(setting, worlds));
         LearningBatch batch(std::move(setting), worlds,
                             autoreset_ == "disabled"    ? AutoReset::Disabled
@@ -130,7 +135,6 @@ class Learning : public OptionGroup {
             segment.arrays().seeds[i] = input.common.seed + i;
             segment.arrays().masks[i] = static_cast<std::uint8_t>(ResetMask::Next);
         }
-        RequestLines requests;
         if (!reply(segment.description())) return;
         for (std::string line; requests.next(line);)
             if (line == "quit" || !reply(answer(batch, line))) return;
