@@ -32,7 +32,7 @@ def wants_its_token(folder):
             "const lamp = document.querySelector('#state-list li button'); lamp?.click(); return Boolean(lamp)")
         says = lambda: part("token-why").text if part("token").is_displayed() else ""
         try:
-            # On this machine everybody may look, and only who has the token may change the world.
+            # On this machine all may look, and only holders of the token may change the world.
             browser.get(run.url)
             eventually("a first frame", lambda: part("time").text != "–")
             check(says() == "", f"it says {says()}")
