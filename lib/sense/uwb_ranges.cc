@@ -123,14 +123,22 @@ std::optional<Ranging> rangingOf(const UwbRadio& radio, const std::string& ancho
 /// Estimates the standard deviation of a range in line of sight.
 double errorOf(const UwbRadio& radio) { return std::hypot(radio.noise.sigma[0], radio.noise.bias); }
 
-/// An anchor near enough to a tag.
-struct NearAnchor {
+/// An anchor near enough to a tag, or a tag near enough to an anchor.
+struct Near {
     double distance = 0;
-    std::size_t anchor = 0;  ///< index in Uwb::anchors
+    std::size_t index = 0;  ///< in Uwb::anchors, or in Uwb::tags
 };
 
-bool isFarther(const NearAnchor& a, const NearAnchor& b) {
-    return std::tie(a.distance, a.anchor) > std::tie(b.distance, b.anchor);
+bool isFarther(const Near& a, const Near& b) {
+    return std::tie(a.distance, a.index) > std::tie(b.distance, b.index);
+}
+
+/// Takes the nearest from a heap. \pre it is not empty
+Near takeNearest(std::vector<Near>& heap) {
+    std::pop_heap(heap.begin(), heap.end(), isFarther);
+    const Near nearest = heap.back();
+    heap.pop_back();
+    return nearest;
 }
 
 const Pose3& anchorPose(const UwbAnchor& anchor, const Moment& now) {
@@ -138,8 +146,8 @@ const Pose3& anchorPose(const UwbAnchor& anchor, const Moment& now) {
 }
 
 /// Returns the anchors whose range contains a tag, as a heap with the nearest on top.
-std::vector<NearAnchor> anchorsAbout(Point3 place, const Uwb& uwb, const Moment& now) {
-    std::vector<NearAnchor> near;
+std::vector<Near> anchorsAbout(Point3 place, const Uwb& uwb, const Moment& now) {
+    std::vector<Near> near;
     std::size_t index = 0;
     for (const UwbAnchor& anchor : uwb.anchors) {
         const double distance = length(place - anchorPose(anchor, now).position);
@@ -180,11 +188,9 @@ bool canBe(Point3 place, double distance, const std::vector<Hearing>& heard, con
 std::optional<PositionFix> fixOf(const Uwb& uwb, const std::string& tag, Point3 place,
                                  const Moment& now) {
     std::vector<Hearing> heard;
-    std::vector<NearAnchor> near = anchorsAbout(place, uwb, now);
+    std::vector<Near> near = anchorsAbout(place, uwb, now);
     while (!near.empty() && heard.size() < kMaxAnchors) {
-        std::pop_heap(near.begin(), near.end(), isFarther);
-        const UwbAnchor& anchor = uwb.anchors.begin()[near.back().anchor];
-        near.pop_back();
+        const UwbAnchor& anchor = uwb.anchors.begin()[takeNearest(near).index];
         const Pose3& pose = anchorPose(anchor, now);
         const auto ranging = rangingOf(anchor.radio, anchor.id, pose.position,
                                        MovingBodies::kNoOwner, tag, place, now);
@@ -241,24 +247,29 @@ std::shared_ptr<UwbFixes::Tags> UwbFixes::at(const Uwb& uwb, const Moment& now) 
 
 namespace {
 
-/// Finds the tags in range of an anchor that no wall hides, by rays side by side: empty for tags
-/// out of range, at the anchor, and without a place.
-std::vector<std::optional<bool>> tagsInSight(const Uwb& uwb, Point3 at,
-                                             const std::vector<std::optional<Point3>>& places,
-                                             const Moment& now) {
-    std::vector<Point3> near;
-    std::vector<std::size_t> numbers;
+/// Returns the tags whose distance an anchor can measure, as a heap with the nearest on top.
+std::vector<Near> tagsAbout(const Uwb& uwb, Point3 at,
+                            const std::vector<std::optional<Point3>>& places) {
+    std::vector<Near> near;
     for (std::size_t i = 0; i < places.size(); ++i) {
-        if (!places[i] || *places[i] == at || !withinRange(length(*places[i] - at), uwb.max_range))
-            continue;
-        near.push_back(*places[i]);
-        numbers.push_back(i);
+        if (!places[i]) continue;
+        const double distance = length(*places[i] - at);
+        if (withinRange(distance, uwb.max_range)) near.push_back({distance, i});
     }
-    std::vector<std::uint8_t> free(near.size());
-    now.mesh().query(at, near, free);
-    std::vector<std::optional<bool>> in_sight(places.size());
-    for (std::size_t k = 0; k < numbers.size(); ++k) in_sight[numbers[k]] = free[k] != 0;
-    return in_sight;
+    std::make_heap(near.begin(), near.end(), isFarther);
+    return near;
+}
+
+/// Finds which of some tags no wall hides from an anchor, by rays side by side.
+std::vector<std::uint8_t> areInSight(std::span<const Near> tags, Point3 at,
+                                     const std::vector<std::optional<Point3>>& places,
+                                     const Moment& now) {
+    std::vector<Point3> points;
+    points.reserve(tags.size());
+    for (const Near& tag : tags) points.push_back(*places[tag.index]);
+    std::vector<std::uint8_t> free(points.size());
+    now.mesh().query(at, points, free);
+    return free;
 }
 
 }  // namespace
@@ -278,17 +289,23 @@ UwbRanges readingOf(const Uwb& uwb, const Moment& now) {
         tags->fixes[i] = fix;
         return fix;
     };
-    const std::vector<std::optional<bool>> in_sight =
-        tagsInSight(uwb, now.pose.position, tags->places, now);
-    for (std::size_t i = 0; i < uwb.tags.size(); ++i) {
+    const auto take = [&](std::size_t i, bool is_in_sight) {
         const RfidTag& tag = uwb.tags.begin()[i];
-        const std::optional<Point3>& place = tags->places[i];
-        if (!place) continue;
+        const Point3 place = *tags->places[i];
         const auto ranging = rangingOf(uwb, now.sensor.id, now.pose.position, carrierOf(now.sensor),
-                                       tag.text, *place, now, in_sight[i]);
-        if (!ranging) continue;
-        reading.tags.push_back(
-            {tag.text, ranging->range, ranging->blocks > 0, fix_of(i, tag.text, *place)});
+                                       tag.text, place, now, is_in_sight);
+        if (ranging)
+            reading.tags.push_back(
+                {tag.text, ranging->range, ranging->blocks > 0, fix_of(i, tag.text, place)});
+    };
+    std::vector<Near> near = tagsAbout(uwb, now.pose.position, tags->places);
+    while (!near.empty() && reading.tags.size() < uwb.slots) {
+        std::vector<Near> asked;
+        while (!near.empty() && reading.tags.size() + asked.size() < uwb.slots)
+            asked.push_back(takeNearest(near));
+        const std::vector<std::uint8_t> free =
+            areInSight(asked, now.pose.position, tags->places, now);
+        for (std::size_t k = 0; k < asked.size(); ++k) take(asked[k].index, free[k] != 0);
     }
     std::sort(reading.tags.begin(), reading.tags.end(), [](const UwbRange& a, const UwbRange& b) {
         return std::tie(a.tag, a.range) < std::tie(b.tag, b.range);

@@ -71,10 +71,11 @@ class UwbFixes {
     std::deque<Known> known_;  // the latest first
 };
 
-/// Measures the ranges of the tags that an anchor reaches. The tag of a thing lies above the middle
-/// of its top, that of a robot too; a person wears it on the chest, and is a mover between for
-/// anchors behind. Each wall (see wallsBetween(), sense/walls_between.h) or mover between divides
-/// the greatest range by 10^(loss/20), and with noise adds to the error; all movers count once.
+/// Measures the ranges of the tags that an anchor reaches, of more than Uwb::slots the nearest. The
+/// tag of a thing lies above the middle of its top, that of a robot too; a person wears it on the
+/// chest, and is a mover between for anchors behind. Each wall (see wallsBetween(),
+/// sense/walls_between.h) or mover between divides the greatest range by 10^(loss/20), and with
+/// noise adds to the error; all movers count once.
 ///
 /// The position comes from the anchors that stand in the room and have the tag in line of sight, at
 /// least kMinAnchors and of more than kMaxAnchors the nearest, by locate() within the height of the
@@ -83,8 +84,8 @@ class UwbFixes {
 /// PositionFix::is_one_of_two is set.
 ///
 /// Noise depends on seed, anchor, tag and frame alone: anchors of one rate compute one position,
-/// and only once with TakerOptions::fixes: O(tags) rays an anchor, and O(tags * anchors) distances
-/// a moment.
+/// and only once with TakerOptions::fixes: at most O(slots) rays an anchor, and
+/// O(tags * anchors) distances a moment.
 UwbRanges readingOf(const Uwb& uwb, const Moment& now);
 
 }  // namespace ispace

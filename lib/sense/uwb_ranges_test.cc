@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -210,6 +212,45 @@ TEST(UwbRanges, TheSixteenNearestAnchorsInSightLocateATag) {
     EXPECT_GT(error("wall from=1,-3 to=1,-1\n"), 1e-3) << "farther ones instead of those behind it";
 }
 
+TEST(UwbRanges, ARoundHasTimeForTheNearestTagsThatAnswer) {
+    std::string room = "wall from=0,-6 to=0,6\n";
+    for (int i = 0; i < 40; ++i)
+        room.append("cube at=")
+            .append(std::to_string(-5.7 + 0.29 * i))
+            .append(",")
+            .append(std::to_string(i % 3 - 1))
+            .append(" size=0.1 tag=t")
+            .append(std::to_string(i))
+            .append("\n");
+    // Behind the wall tags answer up to 3 m.
+    const std::string anchor = "uwb at=-1,0,1 range=12 loss=12.0412 sigma=0.2 dropout=10%";
+    const TakerOptions noisy{.noise_seed = 5};
+    const Point3 at{-1, 0, 1};
+    const auto distance_of = [&](const UwbRange& range) {
+        const int i = std::stoi(range.tag.substr(1));
+        return length(Point3{-5.7 + 0.29 * i, i % 3 - 1.0, 0.1} - at);
+    };
+    std::vector<UwbRange> all = tagsIn(room, anchor + " slots=40", noisy);
+    EXPECT_GE(all.size(), 20U);
+    EXPECT_LT(all.size(), 36U);
+    std::sort(all.begin(), all.end(), [&](const UwbRange& a, const UwbRange& b) {
+        return distance_of(a) < distance_of(b);
+    });
+    for (const std::size_t slots : {1U, 2U, 7U, 20U}) {
+        std::vector<UwbRange> nearest(all.begin(),
+                                      all.begin() + static_cast<std::ptrdiff_t>(slots));
+        std::sort(nearest.begin(), nearest.end(),
+                  [](const UwbRange& a, const UwbRange& b) { return a.tag < b.tag; });
+        const std::string keys = " slots=" + std::to_string(slots);
+        const std::vector<UwbRange> taken = tagsIn(room, anchor + keys, noisy);
+        ASSERT_EQ(taken.size(), slots);
+        for (std::size_t k = 0; k < slots; ++k) {
+            EXPECT_EQ(taken[k].tag, nearest[k].tag) << slots;
+            EXPECT_EQ(taken[k].range, nearest[k].range) << slots;
+        }
+    }
+}
+
 TEST(UwbRanges, HaveErrorsInSightAndLargerOnesThroughWalls) {
     const std::string keys = "uwb at=0,0,1 bias=0.1 sigma=0.05 blocked=0.4,0.2\n";
     constexpr int kFrames = 600;
@@ -263,7 +304,7 @@ TEST(Uwb, ReadsItsKeys) {
     EXPECT_EQ(read(""), Uwb());
     EXPECT_FALSE(Uwb().isNoisy());
     const Uwb uwb =
-        read("range=0.2,30 loss=9 bias=-0.02 sigma=0.03 blocked=0.3,0.2 dropout=2% rate=5");
+        read("range=0.2,30 loss=9 bias=-0.02 sigma=0.03 blocked=0.3,0.2 dropout=2% rate=5 slots=7");
     EXPECT_EQ(uwb.min_range, 0.2);
     EXPECT_EQ(uwb.max_range, 30);
     EXPECT_EQ(uwb.loss, 9);
@@ -273,11 +314,14 @@ TEST(Uwb, ReadsItsKeys) {
     EXPECT_EQ(uwb.blocked_bias, 0.3);
     EXPECT_EQ(uwb.blocked_sigma, 0.2);
     EXPECT_EQ(uwb.rate, 5);
+    EXPECT_EQ(uwb.slots, 7U);
     EXPECT_TRUE(uwb.isNoisy());
     EXPECT_TRUE(read("model=dwm1000").isNoisy());
     EXPECT_NE(testing::findings([&] { return read("range=3,2"); }).find("above the greatest"),
               std::string::npos);
     EXPECT_NE(testing::findings([&] { return read("blocked=1"); }), "");
+    EXPECT_NE(testing::findings([&] { return read("slots=0"); }), "");
+    EXPECT_NE(testing::findings([&] { return read("slots=2.5"); }), "");
 }
 
 }  // namespace

@@ -943,6 +943,11 @@ class Growth:
             sizes, is_first = [4 * size for size in sizes], False
         self.sizes, self.start = sizes, start
         self.fit()
+        bound = lists.memory_bound(family) if lists else None
+        if bound and not self.wrong:
+            total, _, memory = self.measure(envc, family, bound[0], seconds)
+            if memory > bound[1]:
+                self.wrong = f"{memory / 1e6:.0f} MB for {total / 1000:.0f} kB"
 
     def fit(self):
         self.time = slope([(n, max(spent - self.start[0], LEAST_SECONDS)) for n, spent, _ in self.rows])

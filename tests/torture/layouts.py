@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Lists of layouts, rooms, buildings and options through the tools: a row for each kind of record or option, a command
-for each way to read it. A row is a function of a count that returns the records of a room, those of a layout, and
-words to add to the command.
+for each way to read it. A row is a function of a count that returns the records of a room, those of a layout,
+words to add to the command, and where it has them further files by name.
 """
 import math
 
@@ -120,6 +120,66 @@ def pending(count):
     return "", "laser model=urg-04lx\n" * count, []
 
 
+def recorded(movers, moments=3, tracks=0):
+    """A record of people side by side, and as many moments of tracks near them."""
+    people = ["t,id,x,y,heading_deg,speed,rotspeed_deg,phase,sidespeed,stall"]
+    told = ["t,track,x,y,kind"]
+    for k in range(moments):
+        for i, (x, y) in enumerate(spread(movers)):
+            people.append(f"{0.1 * k:g},h{i},{x + 0.01 * k:.3f},{y},0,0.1,0,0,0,0")
+        for i, (x, y) in enumerate(spread(tracks)):
+            told.append(f"{0.1 * k:g},t{i},{x + 0.02:.3f},{y},person")
+    files = {"run/people.csv": "\n".join([*people, ""]), "run/scene.env": f"#env 1\nispace size={WIDTH:g},{DEPTH:g}\n",
+             "run/robots.csv": "t,id,x,y,heading_deg,speed,rotspeed_deg,accel,rotaccel_deg,stall\n"}
+    return {**files, "tracks.csv": "\n".join([*told, ""])} if tracks else files
+
+
+def of_people(count):
+    return LASERS + "".join(f"human id=h{i} at={x},{y} height=0.6\n" for i, (x, y) in enumerate(spread(count)))
+
+
+def run_of(count):
+    """A record of people."""
+    return "", of_people(count), ["--run", "{folder}/run"], recorded(count)
+
+
+def long_run(count):
+    """A record of ten people for a long time."""
+    return "", of_people(10), ["--run", "{folder}/run"], recorded(10, count)
+
+
+def judged(count):
+    """Tracks of many people at once."""
+    return "", LASERS, ["--run", "{folder}/run", "--tracks", "{folder}/tracks.csv"], recorded(count, 3, count)
+
+
+def judged_at_length(count):
+    """Tracks of ten people for a long time."""
+    return "", LASERS, ["--run", "{folder}/run", "--tracks", "{folder}/tracks.csv"], recorded(10, count, 10)
+
+
+def judged_false(count):
+    """Tracks of nobody beside ten people, each told once."""
+    files = recorded(10, 3)
+    files["tracks.csv"] = "t,track,x,y,kind\n" + "".join(
+        f"{0.1 * (i % 3):g},t{i},{x},{y},person\n" for i, (x, y) in enumerate(spread(count)))
+    return "", LASERS, ["--run", "{folder}/run", "--tracks", "{folder}/tracks.csv"], files
+
+
+def nodes(count):
+    """Nodes with a laser each."""
+    places = list(enumerate(spread(count)))
+    return "", ("".join(f"laser id=l{i} at={x},{y} range=3\n" for i, (x, y) in places) +
+                "".join(f"node id=n{i} sensors=l{i} delay=20ms,5ms loss=1%\n" for i, _ in places)), []
+
+
+def wide_node(count):
+    """A node with many lasers."""
+    places = list(enumerate(spread(count)))
+    return "", ("".join(f"laser id=l{i} at={x},{y} range=3\n" for i, (x, y) in places) +
+                "node id=n sensors=" + ",".join(f"l{i}" for i, _ in places) + "\n"), []
+
+
 ROWS = {
     "walls": of_room("wall from={x},{y} to={x},{above}"),
     "star": star,
@@ -165,6 +225,13 @@ ROWS = {
     "watched": heard("camera at={x},{y},2.4 tilt=-40 range=6 pixels=64,48", "table at={x},{y} size=0.3,0.3"),
     "pir_people": heard("pir at={x},{y},2.2", "human at={x},{y} height=0.6"),
     "pending": pending,
+    "nodes": nodes,
+    "wide_node": wide_node,
+    "run": run_of,
+    "long_run": long_run,
+    "judged": judged,
+    "judged_at_length": judged_at_length,
+    "judged_false": judged_false,
     "requirements": of_options("--require", "zone:z{i}=1%"),
     "privacy": of_options("--privacy", "z{i}"),
     "rules": of_options("--keep-out", "z{i}"),
@@ -173,7 +240,9 @@ ROWS = {
 BUILDINGS = ("storeys", "lifts", "stairs", "shafts")
 # Rows of options go to the command that has them.
 ONLY = {"requirements": ("coverage", "suggest"), "privacy": ("coverage", "arrange"), "rules": ("arrange",),
-        "weights": ("arrange",), "star_crowds": ("arrange",), "pending": ("place",)}
+        "weights": ("arrange",), "star_crowds": ("arrange",), "pending": ("place",),
+        "run": ("coverage",), "long_run": ("coverage",), "judged": ("coverage",), "judged_at_length": ("coverage",),
+        "judged_false": ("coverage",)}
 
 # Words of the command; {room} and {layout} are the files, {out} is a file to write.
 COMMANDS = {
@@ -193,12 +262,19 @@ FAMILIES = {f"{way}_of_{row}": (row, way) for row in ROWS for way in COMMANDS
             if way in ONLY.get(row, EVERYWHERE) and not (way == "scan" and row in NOT_SCANNED)}
 
 
-# Rows that grow faster, with bounds of their exponents, which may only fall: each anchor measures each tag.
-KNOWN = {"simrun_of_worn_tags": 1.7}
+# Pages of long layouts, whose memory has a bound of its own: bytes of the layout, and of the memory.
+LONG_PAGES, MOST_MEMORY = 96_000, 300e6
+PAGES = ("report_of_lasers", "report_of_pir", "report_of_radars", "report_of_cameras", "report_of_rangers", "report_of_uwb")
 
 
 def steepest(family):
-    return KNOWN.get(family, STEEPEST)
+    del family
+    return STEEPEST
+
+
+def memory_bound(family):
+    """(bytes of the input, bytes of the memory), or None."""
+    return (LONG_PAGES, MOST_MEMORY) if family in PAGES else None
 
 
 def is_refused(family):
@@ -211,11 +287,12 @@ def files(family, size):
     """The files of a family at a size in bytes, the operand first."""
     row, _ = FAMILIES[family]
     each_of = 100
-    room, layout, words = ROWS[row](each_of)
-    count = max(1, size * each_of // len(room + layout + " ".join(words)))
-    room, layout, words = ROWS[row](count)
+    room, layout, words, *more = ROWS[row](each_of)
+    bytes_ = len(room + layout + " ".join(words) + "".join(text for files in more for text in files.values()))
+    room, layout, words, *more = ROWS[row](max(1, size * each_of // bytes_))
     floor = f"#env 1\nispace size={WIDTH:g},{DEPTH:g}\n"
-    named = {"floor.env": floor, "layout.3dm": "#3dm 1\n" + layout, "words": "\n".join(words)}
+    named = {"floor.env": floor, "layout.3dm": "#3dm 1\n" + layout, "words": "\n".join(words),
+             **{name: text for files in more for name, text in files.items()}}
     return {"room.env": "#env 1\n" + room if row in BUILDINGS else floor + room, **named}
 
 
@@ -225,5 +302,5 @@ def command(tools, family, operand):
     tool, *words = COMMANDS[FAMILIES[family][1]]
     with open(f"{folder}/words", encoding="utf-8") as more:
         words = [*words, *more.read().split()]
-    return [f"{tools}/{tool}", *(word.format(room=operand, layout=f"{folder}/layout.3dm", out=f"{folder}/out")
+    return [f"{tools}/{tool}", *(word.format(room=operand, layout=f"{folder}/layout.3dm", out=f"{folder}/out", folder=folder)
                                  for word in words)]

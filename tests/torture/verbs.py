@@ -91,6 +91,13 @@ ROWS = {
     "scans": (requests("SCAN", ["laser id=l1 at=0,0"], "LASER l1"), RESULT),
     "sonars": (requests("SONAR", ["robot id=r1 at=0,0"], "ROBOT r1"), RESULT),
     "motions": (requests("FORWARD 0.{i}", ["robot id=r1 at=0,0"], "ROBOT r1"), RESULT),
+    "tracks": (requests("TRACK t{i} {x},{y}"), RESULT),
+    "one_track": (requests("TRACK t {x},{y}"), RESULT),
+    "told": (world(ROBOT, "WORLD", *[f"TRACK t{i} 0,{0.01 * i:g}" for i in range(100)], "STEP 20"), RESULT),
+    "nodes": (each("laser id=l{i} at={x},{y} range=3\nnode id=n{i} sensors=l{i}", "SET l{i}.range=2"), RESULT),
+    "sent": (requests("SEND {i}", ["laser id=l1 at=0,0", "node id=n1 sensors=l1 delay=1s", "laser id=l2 at=1,0", "node id=n2 sensors=l2"], "NODE n1"),
+             RESULT),
+    "goals": (requests("GOTO {x},{y}", ["robot id=r1 at=0,0.1 radius=0.1"], "ROBOT r1"), RESULT),
     "lights": (each("lux at={x},{y},1", "ADD lamp at={x},{y}"), RESULT),
 }
 FAMILIES = {f"verb_{row}": row for row in ROWS}
@@ -110,6 +117,10 @@ def files(family, size):
 def steepest(family):
     del family
     return STEEPEST
+
+
+def memory_bound(family):
+    del family
 
 
 def is_refused(family):

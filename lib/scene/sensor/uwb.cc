@@ -24,6 +24,7 @@ Uwb withParameters(Uwb base, const Record& record) {
         base.blocked_sigma = blocked[1];
     }
     if (record.has("rate")) base.rate = record.number("rate");
+    if (record.has("slots")) base.slots = static_cast<std::size_t>(record.number("slots"));
     findings.throwIfAny();
     return base;
 }
@@ -35,7 +36,7 @@ FieldOfView fieldOfView(const Uwb& uwb, const Pose3& pose) {
 namespace {
 
 void addUwbKeys(std::vector<KeySpec>& keys) {
-    constexpr double kMaxError = 1e3, kMaxLoss = 200;
+    constexpr double kMaxError = 1e3, kMaxLoss = 200, kMaxSlots = 1e6;
     keys.push_back(rangeKey("least and greatest range in line of sight, or the greatest alone"));
     keys.push_back({.name = "loss",
                     .type = KeyType::Number,
@@ -71,6 +72,12 @@ void addUwbKeys(std::vector<KeySpec>& keys) {
                     .lower = 0,
                     .upper = 1});
     keys.push_back(positiveKey("rate", Unit::Frequency, "rounds of ranges a second", kMaxRate));
+    keys.push_back({.name = "slots",
+                    .type = KeyType::Number,
+                    .help = "tags that a round has time for: the nearest that answer",
+                    .lower = 1,
+                    .upper = kMaxSlots,
+                    .whole = true});
 }
 
 /// Returns the anchors that stand by themselves.
@@ -106,7 +113,7 @@ const SensorKind Uwb::kKind = {
     .noun = "UWB anchor",
     .help =
         "ultra-wideband anchor, which measures the ranges of tags: the key `tag` of people, robots "
-        "and things; bare: range=50 loss=6 rate=10",
+        "and things; bare: range=50 loss=6 rate=10 slots=64",
     .heading_help = "direction that it faces, from +x; it measures in all directions",
     .device_help = "an ultra-wideband module one can buy",
     .sign = SensorSign::Triangle,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
@@ -17,6 +18,10 @@ struct SensorKind;
 
 /// Anchors that locate a tag: those that have it in line of sight, at least.
 constexpr std::size_t kMinAnchors = 3;
+
+/// Tags that a bare anchor measures in a round, at most: an exchange takes a millisecond or two,
+/// and ten rounds a second leave time for some dozens.
+constexpr std::size_t kUwbSlots = 64;
 
 /// The radio of an ultra-wideband anchor. It measures in all directions, and through walls.
 struct UwbRadio {
@@ -39,15 +44,18 @@ struct UwbAnchor {
 
 /// An ultra-wideband anchor, which measures the ranges of tags.
 struct Uwb : UwbRadio {
-    std::string model;  ///< "" for the bare anchor
-    double rate = 10;   ///< rounds a second
+    std::string model;              ///< "" for the bare anchor
+    double rate = 10;               ///< rounds a second
+    std::size_t slots = kUwbSlots;  ///< tags that a round has time for; the nearest answer
     SharedList<RfidTag> tags;
     SharedList<UwbAnchor> anchors;  ///< those of the room that stand, this one included
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     /// Walls between stop a ray each.
-    [[nodiscard]] std::size_t rays() const { return 1 + 4 * tags.size() * (1 + anchors.size()); }
+    [[nodiscard]] std::size_t rays() const {
+        return 1 + 4 * std::min(tags.size(), slots) * (1 + anchors.size());
+    }
     [[nodiscard]] static bool isOmnidirectional(const Pose3& /*mount*/) { return true; }
     [[nodiscard]] bool isNoisy() const {
         return !noise.isNone() || blocked_bias > 0 || blocked_sigma > 0;
