@@ -6,7 +6,11 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstddef>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -32,6 +36,24 @@ std::string shown(const std::string& name) {
 }
 std::string nameOf(const CLI::Option& option) { return shown(option.get_name()); }
 
+/// The heading of the options before the first group.
+constexpr const char* kMainGroup = "Main options";
+
+/// Returns the words of a heading in small letters, but for articles.
+std::vector<std::string> wordsOf(const std::string& title) {
+    std::vector<std::string> words;
+    std::string word;
+    for (const char c : title + ' ') {
+        if (c != ' ' && c != ',') {
+            word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        } else if (!word.empty()) {
+            if (word != "the" && word != "a") words.push_back(word);
+            word.clear();
+        }
+    }
+    return words;
+}
+
 }  // namespace
 
 struct CommandLine::Data {
@@ -44,8 +66,15 @@ struct CommandLine::Data {
     };
 
     std::string tool, synopsis, summary;
-    std::map<std::size_t, std::string> groups = {{0, "Options"}};  // by index of the first entry
-    std::vector<std::pair<std::string, std::string>> examples;     // commands and their effects
+    struct Group {
+        std::size_t first;  ///< index of its first entry
+        std::string title, extension;
+    };
+    std::vector<Group> groups = {{0, kMainGroup, ""}};
+    std::string extension;
+    std::set<const CLI::Option*> essential;
+    std::string about;                                          ///< what --help was asked for
+    std::vector<std::pair<std::string, std::string>> examples;  // commands and their effects
     std::string statuses = "0 done, 1 bad data or failed I/O, 2 usage, 3 requirement not met";
     CLI::App app;
     std::vector<Entry> entries;
@@ -57,6 +86,12 @@ struct CommandLine::Data {
     std::map<std::string, std::string> renamed;  // removed options and their hints
     std::map<std::string, std::string> values;   // of options that may stand without one
     std::function<void()> check = [] {};  // of options against each other, once all are known
+
+    [[nodiscard]] std::size_t endOf(std::size_t group) const {
+        return group + 1 < groups.size() ? groups[group + 1].first : entries.size();
+    }
+    [[nodiscard]] std::vector<std::size_t> groupsAbout(const std::string& word) const;
+    void takeHelpWord(std::vector<std::string>& words);
 
     void keep(CLI::Option* option, const std::string& value, const std::string& text,
               Enters enters) {
@@ -149,6 +184,53 @@ struct CommandLine::Data {
     }
 };
 
+/// Returns the groups whose extension is `word`, or whose heading begins with it, or contains it;
+/// else those of whose words one begins with it.
+std::vector<std::size_t> CommandLine::Data::groupsAbout(const std::string& word) const {
+    using Test = bool (*)(const Group&, const std::string&);
+    constexpr auto kTests = std::to_array<Test>({
+        [](const Group& group, const std::string& text) {
+            return group.extension == text || wordsOf(group.title).front() == text;
+        },
+        [](const Group& group, const std::string& text) {
+            const std::vector<std::string> words = wordsOf(group.title);
+            return std::find(words.begin(), words.end(), text) != words.end();
+        },
+        [](const Group& group, const std::string& text) {
+            const std::vector<std::string> words = wordsOf(group.title);
+            return std::any_of(words.begin(), words.end(),
+                               [&](const std::string& one) { return one.starts_with(text); });
+        },
+    });
+    std::vector<std::size_t> found;
+    for (const Test test : kTests) {
+        for (std::size_t i = 0; i < groups.size() && !word.empty(); ++i)
+            if (test(groups[i], word)) found.push_back(i);
+        if (!found.empty()) break;
+    }
+    return found;
+}
+
+/// Takes the word behind --help, or joined to it by =, out of a command line. A name of a file is
+/// an operand.
+void CommandLine::Data::takeHelpWord(std::vector<std::string>& words) {
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        constexpr std::string_view kJoined = "--help=";
+        if (words[i].starts_with(kJoined)) {
+            about = words[i].substr(kJoined.size());
+            words[i] = "--help";
+        }
+        if (words[i] != "--help" && words[i] != "-h") continue;
+        if (!about.empty() || i + 1 == words.size()) return;
+        const std::string& next = words[i + 1];
+        if (next.empty() || next.starts_with('-')) return;
+        if (next.find_first_of("./") != std::string::npos) return;
+        about = next;
+        words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        return;
+    }
+}
+
 CommandLine::CommandLine(std::string tool, std::string synopsis, std::string summary)
     : data_(std::make_unique<Data>()) {
     data_->tool = std::move(tool);
@@ -156,7 +238,9 @@ CommandLine::CommandLine(std::string tool, std::string synopsis, std::string sum
     data_->summary = std::move(summary);
     data_->app.set_help_flag();
     data_->app.allow_extras();
-    flag("-h,--help", data_->help, "show this help and exit", Enters::Nothing);
+    flag("-h,--help", data_->help,
+         "show this help and exit; --help WORD prints a group of options, or one, --help all all",
+         Enters::Nothing);
     flag("-V,--version", data_->version, "show version and licence and exit", Enters::Nothing);
 }
 
@@ -334,7 +418,17 @@ void CommandLine::renamed(const std::string& name, const std::string& hint) {
 
 void CommandLine::exitStatus(const std::string& text) { data_->statuses = text; }
 
-void CommandLine::group(const std::string& title) { data_->groups[data_->entries.size()] = title; }
+void CommandLine::group(const std::string& title) {
+    data_->groups.push_back({data_->entries.size(), title, data_->extension});
+}
+
+void CommandLine::extension(const std::string& name) { data_->extension = name; }
+
+void CommandLine::essential(std::initializer_list<std::string_view> names) {
+    data_->essential.insert(data_->app.get_option("--help"));
+    for (const std::string_view name : names)
+        data_->essential.insert(data_->app.get_option(std::string(name)));
+}
 
 void CommandLine::example(const std::string& command, const std::string& effect) {
     data_->examples.emplace_back(command, effect);
@@ -394,6 +488,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
     if (has("--errors=json") ||
         std::search(words.begin(), words.end(), json.begin(), json.end()) != words.end())
         selectMessageForm(MessageForm::Json);
+    d.takeHelpWord(words);
     rewriteCompilerNames(words);
     d.addValues(words);
     std::reverse(words.begin(), words.end());
@@ -405,7 +500,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
     } catch (const CLI::ParseError& error) {
         d.usage(error.what());
     }
-    if (d.help) throw TextRequested{helpText()};
+    if (d.help) throw TextRequested{helpText(d.about)};
     if (d.version) throw TextRequested{versionText(d.tool)};
     d.forEachOrdered([](const Data::Entry& entry, const std::string& text) { entry.take(text); });
     std::vector<std::string> rest = d.app.remaining();
@@ -455,16 +550,53 @@ std::vector<std::string> CommandLine::resultWords() const {
     return words;
 }
 
-std::string CommandLine::helpText() const {
-    HelpPage page{data_->tool, data_->synopsis, data_->summary,
-                  {},          data_->examples, data_->statuses};
-    for (std::size_t i = 0; i < data_->entries.size(); ++i) {
-        const Data::Entry& entry = data_->entries[i];
-        const auto group = data_->groups.find(i);
-        page.options.push_back({group == data_->groups.end() ? "" : group->second,
-                                signature(*entry.option, entry.value), entry.help});
+std::string CommandLine::helpText(const std::string& about) const {
+    const Data& d = *data_;
+    HelpPage page{d.tool, d.synopsis, d.summary, {}, {}, d.examples, d.statuses};
+    const auto add = [&](std::size_t index, const std::string& heading) {
+        const Data::Entry& entry = d.entries[index];
+        page.options.push_back({heading, signature(*entry.option, entry.value), entry.help});
+    };
+    const auto add_group = [&](std::size_t group) {
+        for (std::size_t i = d.groups[group].first; i < d.endOf(group); ++i)
+            add(i, i == d.groups[group].first ? d.groups[group].title : "");
+    };
+    const bool is_short = about.empty() && !d.essential.empty();
+    if (is_short) {
+        for (std::size_t i = 0; i < d.entries.size(); ++i)
+            if (d.essential.contains(d.entries[i].option))
+                add(i, page.options.empty() ? "Options" : "");
+        for (std::size_t group = 0; group < d.groups.size(); ++group) {
+            std::size_t i = d.groups[group].first;
+            while (i < d.endOf(group) && d.essential.contains(d.entries[i].option)) ++i;
+            if (i == d.endOf(group)) continue;
+            const std::string& title = d.groups[group].title;
+            page.groups.push_back({wordsOf(title).front(), title, d.groups[group].extension});
+        }
+        return ispace::helpText(page);
     }
-    return ispace::helpText(page);
+    if (about.empty() || about == "all") {
+        for (std::size_t group = 0; group < d.groups.size(); ++group) add_group(group);
+        return ispace::helpText(page);
+    }
+    page.examples.clear();
+    const std::vector<std::size_t> found = d.groupsAbout(about);
+    if (found.size() == 1) {
+        add_group(found.front());
+        return ispace::helpText(page);
+    }
+    for (std::size_t i = 0; i < d.entries.size() && found.empty(); ++i)
+        if (d.entries[i].option->check_name(about) || d.entries[i].option->check_name("--" + about))
+            add(i, "Option");
+    if (!page.options.empty()) return ispace::helpText(page);
+    std::string words;
+    for (std::size_t group = 0; group < d.groups.size(); ++group)
+        if (found.empty() || std::find(found.begin(), found.end(), group) != found.end())
+            words.append(words.empty() ? "" : ", ").append(wordsOf(d.groups[group].title).front());
+    throw UsageError("--help " + about +
+                     (found.empty() ? ": no group and no option has this name: all, "
+                                    : ": several groups have this word: ") +
+                     words);
 }
 
 }  // namespace ispace

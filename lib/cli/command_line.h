@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -38,8 +40,15 @@ class CommandLine {
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;
 
-    /// Puts the options declared from here on under this heading of `--help`, "Options" at first.
+    /// Puts the options declared from here on under this heading of `--help`, "Main options" at
+    /// first.
+    /// `--help WORD` prints the group alone, by a word of the heading.
     void group(const std::string& title);
+    /// The groups from here on belong to this extension, "" to the tool.
+    void extension(const std::string& name);
+    /// Names the options that `--help` lists ("--output"); the others are a line for each group.
+    /// Without this call it lists all. \pre they are declared
+    void essential(std::initializer_list<std::string_view> names);
     /// Adds a command to the examples at the end of `--help`.
     void example(const std::string& command, const std::string& effect);
     /// `names` as CLI11 takes them ("-o,--output"), `value` names the value in help ("FILE").
@@ -113,7 +122,9 @@ class CommandLine {
     /// Returns the words of a command line with the same result: the tool, the options that enter
     /// its history as they were given, and the operands.
     [[nodiscard]] std::vector<std::string> resultWords() const;
-    [[nodiscard]] std::string helpText() const;
+    /// Returns the page of `--help`, of "all", of a group by a word of its heading or by its
+    /// extension, or of one option by its name. \throws UsageError for any other word
+    [[nodiscard]] std::string helpText(const std::string& about = "") const;
 
   private:
     struct Data;

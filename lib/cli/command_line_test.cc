@@ -210,7 +210,7 @@ TEST(CommandLine, KnowsTheDependencyOptionsOfCompilers) {
     joined.parse({"-MFx.d", "room.glb", "-MD", "-o", "x"});
     EXPECT_EQ(joined.common.dependencies.file, "x.d");
     EXPECT_EQ(joined.operands, std::vector<std::string>{"room.glb"});
-    const std::string help = joined.line.helpText();
+    const std::string help = joined.line.helpText("all");
     EXPECT_NE(help.find("\n  -MD "), std::string::npos) << help;
     EXPECT_NE(help.find("\n  -MF FILE "), std::string::npos) << help;
     EXPECT_NE(Tool().errorOf({"-MD"}).find("-o FILE"), std::string::npos);
@@ -218,6 +218,73 @@ TEST(CommandLine, KnowsTheDependencyOptionsOfCompilers) {
     Tool behind;
     behind.parse({"--", "-MD"});
     EXPECT_EQ(behind.operands, std::vector<std::string>{"-MD"});
+}
+
+TEST(CommandLine, HelpListsTheEssentialOptionsAndGroupsOfTheOthers) {
+    CommandLine line("tool", "", "does something.");
+    bool flag = false;
+    line.flag("--first", flag, "the first", Enters::Nothing);
+    line.group("Maps, and pictures");
+    line.flag("--draw", flag, "the picture", Enters::Nothing);
+    line.flag("--width", flag, "its width", Enters::Nothing);
+    line.extension("judge");
+    line.group("Tracks of a run");
+    line.flag("--tracks", flag, "the tracks", Enters::Nothing);
+    line.extension("");
+    line.group("The run");
+    line.flag("--until", flag, "its end", Enters::Nothing);
+    // All of them, unless some are essential.
+    for (const char* const name : {"--first", "--draw", "--width", "--tracks", "--until"})
+        EXPECT_NE(line.helpText().find(name), std::string::npos);
+    line.essential({"--first", "--draw", "--until"});
+    const std::string page = line.helpText();
+    for (const char* const text :
+         {"--first", "--draw", "--until", "\n  maps          maps, and pictures\n",
+          "\n  tracks        tracks of a run (extension judge)\n"})
+        EXPECT_NE(page.find(text), std::string::npos) << page;
+    // A group without further options is not listed.
+    for (const char* const text : {"--width", "--tracks", "the run\n"})
+        EXPECT_EQ(page.find(text), std::string::npos) << page;
+    for (const char* const word : {"maps", "and", "pictures", "pict"}) {
+        EXPECT_NE(line.helpText(word).find("--width"), std::string::npos) << word;
+        EXPECT_EQ(line.helpText(word).find("--first"), std::string::npos) << word;
+    }
+    EXPECT_EQ(line.helpText("judge"), line.helpText("tracks"));
+    EXPECT_NE(line.helpText("width").find("its width"), std::string::npos);
+    EXPECT_EQ(line.helpText("width").find("--draw"), std::string::npos);
+    // The heading that begins with the word comes before those that contain it.
+    EXPECT_NE(line.helpText("run").find("--until"), std::string::npos);
+    EXPECT_THROW(static_cast<void>(line.helpText("walls")), UsageError);
+    EXPECT_THROW(static_cast<void>(line.helpText("-")), UsageError);
+}
+
+TEST(CommandLine, TakesTheWordBehindHelp) {
+    const auto asked = [](std::vector<const char*> words) {
+        CommandLine line("tool", "", "does something.");
+        bool flag = false;
+        line.flag("--first", flag, "the first", Enters::Nothing);
+        line.group("Maps");
+        line.flag("--draw", flag, "the picture", Enters::Nothing);
+        line.essential({"--first"});
+        words.insert(words.begin(), "tool");
+        try {
+            line.parse(static_cast<int>(words.size()), words.data());
+        } catch (const TextRequested& text) {
+            return text.text;
+        }
+        return std::string();
+    };
+    const std::string page = asked({"--help"}), all = asked({"--help", "all"});
+    EXPECT_EQ(page.find("--draw"), std::string::npos);
+    EXPECT_NE(all.find("--draw"), std::string::npos);
+    EXPECT_EQ(asked({"-h"}), page);
+    EXPECT_EQ(asked({"-h", "all"}), all);
+    EXPECT_EQ(asked({"--first", "--help=all"}), all);
+    EXPECT_EQ(asked({"--help", "--first"}), page);
+    EXPECT_EQ(asked({"room.env", "--help", "room.env"}), page);
+    EXPECT_EQ(asked({"--help", "./room"}), page);
+    EXPECT_NE(asked({"--help", "maps"}), all);
+    EXPECT_THROW(asked({"--help", "mops"}), UsageError);
 }
 
 TEST(CommandLine, TakesTimesWithUnits) {

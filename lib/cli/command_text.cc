@@ -2,6 +2,7 @@
 #include "cli/command_text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <filesystem>
 #include <sstream>
@@ -15,7 +16,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::size_t kHelpWidth = 79, kHelpColumn = 26;
+constexpr std::size_t kHelpWidth = 79, kHelpColumn = 26, kWordColumn = 16;
 
 /// Appends `text` wrapped to kHelpWidth, its lines beginning at `column`; the first line already
 /// has `used` characters.
@@ -50,7 +51,20 @@ std::string helpText(const HelpPage& page) {
                     : '\n' + std::string(kHelpColumn, ' ');
         appendWrapped(out, option.text, kHelpColumn, kHelpColumn);
     }
-    out += "\nExamples:\n";
+    if (!page.groups.empty()) {
+        out += "\nMore options, by --help WORD; --help all prints all:\n";
+        for (const HelpPage::Group& group : page.groups) {
+            std::string name = "  " + group.word;
+            name.resize(std::max(name.size() + 2, kWordColumn), ' ');
+            std::string title = group.title;
+            title.front() =
+                static_cast<char>(std::tolower(static_cast<unsigned char>(title.front())));
+            if (!group.extension.empty()) title += " (extension " + group.extension + ")";
+            out += name;
+            appendWrapped(out, title, name.size(), kWordColumn);
+        }
+    }
+    if (!page.examples.empty()) out += "\nExamples:\n";
     for (const auto& [command, effect] : page.examples) {
         out += "  " + command + "\n      ";
         appendWrapped(out, effect, 6, 6);

@@ -14,8 +14,14 @@ struct HelpPage {
         std::string signature;  ///< "-o, --output FILE"
         std::string text;
     };
+    /// Options that the page leaves out.
+    struct Group {
+        std::string word, title;  ///< `--help WORD` prints them
+        std::string extension;    ///< that they belong to; "" for the tool's own
+    };
     std::string tool, synopsis, summary;
     std::vector<Option> options;
+    std::vector<Group> groups;
     std::vector<std::pair<std::string, std::string>> examples;  ///< commands and their effects
     std::string statuses;                                       ///< meanings of the exit statuses
 };

@@ -34,7 +34,9 @@ ToolExtensions::ToolExtensions(std::span<const ToolExtension> rows, std::string_
 void ToolExtensions::declare(CommandLine& line) {
     for (Member& member : members_) {
         const std::size_t before = line.names().size();
+        line.extension(member.extension);
         member.group->declare(line);
+        line.extension("");
         const std::vector<std::string> names = line.names();
         member.options.assign(names.begin() + static_cast<std::ptrdiff_t>(before), names.end());
     }

@@ -19,7 +19,7 @@ printf -- '-15,-12,0\n15,12,180\n' >places.csv
 python3 - <<'END' || fail "a limit of a second does not hold"
 import os, re, resource, subprocess, sys, time
 
-help_text = subprocess.run(["arrange", "--help"], stdout=subprocess.PIPE, text=True, check=True).stdout
+help_text = subprocess.run(["arrange", "--help", "all"], stdout=subprocess.PIPE, text=True, check=True).stdout
 choices = lambda option: re.search(rf"{option} ([a-z|]+)", help_text)[1].split("|")
 strategies, optimizers = choices("--strategy"), choices("--optimize")
 proofs = choices("--proof")

@@ -34,9 +34,24 @@ for tool in $tools; do
     mv out short
     expect_status 0 "$tool" --help
     expect_same short out "$tool: -h and --help differ"
+    [ "$(wc -l <out)" -le 90 ] || fail "$tool --help has $(wc -l <out) lines"
+    # Each word of its groups prints options that are in the whole page, and all of them together are that page's.
+    "$tool" --help all >whole
+    sed -n 's/^More options.*/&/; /^More options/,/^$/s/^  \([a-z-]*\) .*/\1/p' out >words
+    [ "$(wc -l <words)" -ge 5 ] || fail "$tool --help names $(wc -l <words) groups"
+    options() { grep -oE '^  -.*' "$@" | sed 's/^  \([^ ]*\).*/\1/' | LC_ALL=C sort -u; }
+    while read -r word; do "$tool" --help "$word" || fail "$tool --help $word"; done <words >parts
+    diff <(cat out parts | options) <(options whole) || fail "$tool: options of the groups (<) and of --help all (>) differ"
+    expect_error 2 "$tool" --help gruppe
+    grep -q ": all, " err || fail "$tool does not list its groups: $(cat err)"
+    expect_status 0 "$tool" --help quiet
+    [ "$(options out)" = -q, ] || fail "$tool --help quiet: $(cat out)"
+    # A file is an operand.
+    expect_status 0 "$tool" --help room.env
+    expect_same short out "$tool: --help room.env is another page"
     [ ! -s err ] || fail "$tool --help talks on stderr"
     awk -v tool="$tool" 'length > 100 { print tool " --help is wide: " $0; bad = 1 } END { exit bad }' out
 done
 expect_status 1 envc <empty
 expect_status 1 coverage "$data/room.env" - <empty
-[ "$(ls -A)" = "$(printf '%s\n' empty err folder out short)" ] || fail "left behind: $(ls -A)"
+[ "$(ls -A)" = "$(printf '%s\n' empty err folder out parts short whole words)" ] || fail "left behind: $(ls -A)"

@@ -123,7 +123,7 @@ for option in --frame-rate=5 --truths=all --films=f; do
     grep -q -- "${option%%=*} goes with --tracks" err || fail "$option: $(cat err)"
 done
 tasks="--tracks --frame-rate --truths --films --goal --robot --reach --way"
-coverage --help | grep -oE '^  (-., )?--?[A-Za-z-]+' | sed 's/.* //' | sort >options
+coverage --help all | grep -oE '^  (-., )?--?[A-Za-z-]+' | sed 's/.* //' | sort >options
 # shellcheck disable=SC2086
 printf '%s\n' $works $refused $tasks -MF | sed 's/=.*//' | sort | diff - options || fail "an option that --batch does not know"
 for option in "--cell 0.5" "--grid-of beams" "--height 1" "--plane 1" "--parallax 30" "--density 50" \

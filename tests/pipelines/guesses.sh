@@ -4,7 +4,7 @@
 # with the option to take, which the tool that is named has.
 . "$(dirname "$0")/common.sh"
 
-for tool in envc arrange scan coverage simrun; do $tool --help >"$tool.help"; done
+for tool in envc arrange scan coverage simrun; do $tool --help all >"$tool.help"; done
 
 # TOOL GUESS HINT, in which the words that begin with - are options of TOOL, or of the tool named before them.
 count=0

@@ -45,7 +45,7 @@ expect dirnames bash ispace simrun --record x
 expect default bash scan room
 
 for tool in $tools; do
-    "$tool" --help | grep -E '^  -' | cut -c 3-26 | grep -oE -- '--?[A-Za-z][A-Za-z0-9-]*' | LC_ALL=C sort -u >in_help
+    "$tool" --help all | grep -E '^  -' | cut -c 3-26 | grep -oE -- '--?[A-Za-z][A-Za-z0-9-]*' | LC_ALL=C sort -u >in_help
     sed -n "s/^    $tool) echo '\(.*\)' ;;/\1/p" "$folder/bash/ispace" | tr ' ' '\n' | LC_ALL=C sort >in_bash
     diff in_help in_bash || fail "$tool: options of --help (<) and of the completion (>) differ"
     [ -s "$folder/zsh/_$tool" ] && [ -s "$folder/fish/$tool.fish" ] || fail "no completion of $tool"

@@ -28,7 +28,7 @@ else
 fi
 for tool in $programs; do
     page=$pages/$tool.1
-    "$tool" --help >help
+    "$tool" --help all >help
     options_of_help help >in_help
     options_of_page "$page" >in_page
     [ "$(wc -l <in_help)" -gt 6 ] || fail "no options found in $tool --help"

@@ -285,6 +285,10 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     addSceneRules(line, o.rules);
     addStoreyOption(line, o.rules, "default: all storeys");
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
+    line.essential({"--version",    "--json",    "--report",  "--cell",    "--height", "--plane",
+                    "--density",    "--zone",    "--require", "--compare", "--run",    "--suggest",
+                    "--time-limit", "--to",      "--width",   "--color",   "--storey", "--output",
+                    "--quiet",      "--threads", "--seed"});
     line.parse(argc, argv);
 
     o.task = extensions.task(line, {o.common, o.rules, o.operands});

@@ -323,6 +323,11 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     extensions.declare(line);
     addSceneRules(line, options.rules);
     addCommonOptions(line, options.common, "write the product there (default: stdout)");
+    line.essential({"--version", "--to",         "--slice",       "--resolution", "--width",
+                    "--zone",    "--info",       "--json",        "--report",     "--check",
+                    "--add",     "--fence",      "--set",         "--delete",     "--inside",
+                    "--rooms",   "--close-gaps", "--wall-height", "--units",      "--up",
+                    "--storey",  "--output",     "--quiet",       "--threads"});
     line.parse(argc, argv);
 
     options.task = extensions.task(line, {options.common, options.rules, options.inputs});

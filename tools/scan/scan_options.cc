@@ -45,6 +45,9 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
           "Without LAYOUT read it from stdin unless ENV holds sensors with a pose.") {
     ToolExtensions extensions(toolExtensions(), "scan");
     declare(extensions);
+    line_.essential({"--version", "--to", "--select", "--frames", "--noise", "--poses", "--model",
+                     "--coordinates", "--size", "--samples", "--view", "--run", "--list-models",
+                     "--storey", "--output", "--quiet", "--threads", "--seed"});
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;
     o.task = extensions.task(line_, {o.common, o.rules, o.operands});

@@ -64,6 +64,11 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
         line_, options_.common,
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "
         ".pdf) or a film (.y4m, .gif; a folder or a pattern with %d for pictures)");
+    line_.essential({"--version",   "--clock",  "--dt",      "--until",    "--noise",
+                     "--script",    "--record", "--report",  "--suggest",  "--replay",
+                     "--expect",    "--listen", "--web",     "--web-edit", "--foxglove",
+                     "--rosbridge", "--ros2",   "--mcap",    "--mqtt",     "--storey",
+                     "--output",    "--quiet",  "--threads", "--seed"});
     line_.parse(argc, argv);
     options_.task = extensions.task(line_, {options_.common, options_.rules, options_.operands});
     if (options_.task) return;
