@@ -18,6 +18,9 @@
 #ifdef ISPACE_HAS_LEARNING
 #include "extensions/learning/learning.h"
 #endif
+#ifdef ISPACE_HAS_MEMORY
+#include "extensions/memory/memory.h"
+#endif
 #ifdef ISPACE_HAS_NAVIGATION
 #include "extensions/navigation/navigation.h"
 #endif
@@ -39,6 +42,9 @@ namespace {
 bool addFormats() {
 #ifdef ISPACE_HAS_CALIBRATION
     addImporters(calibrationImporters());
+#endif
+#ifdef ISPACE_HAS_MEMORY
+    addSceneSchemas(volumeSchemas());
 #endif
 #ifdef ISPACE_HAS_NODES
     addSceneSchemas(nodeSchemas());
@@ -81,6 +87,9 @@ std::span<const MakeObjective> arrangeObjectives() {
 
 std::span<const MakeRoleService> roleServices() {
     static const std::vector<MakeRoleService> services = {
+#ifdef ISPACE_HAS_MEMORY
+        makeMemory,
+#endif
 #ifdef ISPACE_HAS_NODES
         makeNodes,
 #endif

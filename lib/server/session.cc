@@ -305,11 +305,13 @@ void Session::refuse(std::string_view verb, bool first) {
     for (const Request& request : requests()) {
         verbs.emplace_back(request.verb);
         if (request.verb != verb) continue;
-        const bool is_guest = request.role == Role::Guest;
-        if (is_guest && state_->roleServices().empty()) continue;
-        if (!roles.empty()) roles += " or ";
-        if (request.role)
-            roles += is_guest ? state_->roleServices().front()->verb() : verbOf(*request.role);
+        const auto add_role = [&roles](std::string_view role) {
+            roles.append(roles.empty() ? "" : " or ").append(role);
+        };
+        if (request.role == Role::Guest)
+            for (const RoleService* const each : state_->roleServices()) add_role(each->verb());
+        else
+            add_role(request.role ? verbOf(*request.role) : "");
     }
     for (const RoleService* const each : state_->roleServices()) verbs.emplace_back(each->verb());
     if (guest_)

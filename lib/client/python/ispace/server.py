@@ -15,6 +15,7 @@ from typing import IO, Optional
 from .errors import ToolError
 from .filters import Option, Placed, Room, arguments_of, last_line, operands, tool
 from .movers import Person, Robot
+from .memory import Memory
 from .node import Node
 from .sensors import Camera, LaserSensor, Ranger, Sensor
 from .world import World
@@ -109,6 +110,10 @@ class Simrun:
     def node(self, id: str) -> Node:
         """Takes a node of its sensor network."""
         return Node(self.address, id)
+
+    def memory(self, tags: str = "*") -> Memory:
+        """Keeps contents at places, and hears what these tags touch."""
+        return Memory(self.address, tags)
 
     def world(self) -> World:
         """Watches and controls the world and its clock."""
