@@ -195,11 +195,11 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     addSceneRules(line_, options_.rules);
     addStoreyOption(line_, options_.rules, "default: all storeys");
     addCommonOptions(line_, options_.common, "write the layout there (default: stdout)");
-    line_.essential({"--version",    "--sensor",     "--fixed",   "--strategy",  "--mount",
-                     "--z",          "--keep-out",   "--keep-in", "--objective", "--zone",
-                     "--weight",     "--redundancy", "--target",  "--budget",    "--density",
-                     "--time-limit", "--refine",     "--curve",   "--report",    "--storey",
-                     "--output",     "--quiet",      "--threads", "--seed"});
+    line_.essential({"--version", "--sensor",     "--fixed",   "--strategy",  "--mount",
+                     "--z",       "--keep-out",   "--keep-in", "--objective", "--zone",
+                     "--weight",  "--redundancy", "--target",  "--budget",    "--time-limit",
+                     "--refine",  "--curve",      "--report",  "--storey",    "--output",
+                     "--quiet",   "--threads",    "--seed"});
     line_.parse(argc, argv);
     options_.task = extensions.task(line_, {options_.common, options_.rules, options_.operands});
     if (!options_.task) settle();
