@@ -260,24 +260,14 @@ std::vector<std::size_t> settlingOrder(std::span<const Mover> movers) {
 Traffic::Traffic(std::span<const Mover> movers, std::span<const std::size_t> order, double duration)
     : rank_(movers.size()), places_(movers.size()) {
     for (std::size_t k = 0; k < order.size(); ++k) rank_[order[k]] = k;
-    for (const auto& [id, model, pose, course, place, is_person] : movers) {
+    for (const auto& [id, model, pose, course, place, is_person] : movers)
         reach_ = std::max(
             reach_, model.radius + std::hypot(model.max_speed, model.max_sidespeed) * duration);
-        widest_ = std::max(widest_, model.radius);
-    }
 }
 
 void Traffic::rebuild(std::span<const Motion> motions) {
-    fastest_ = 0;
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-        places_[i] = motions[i].pose.position;
-        fastest_ =
-            std::max(fastest_, std::abs(motions[i].drive.speed) + std::abs(motions[i].side.speed));
-    }
-    if (places_.size() > kFew)
-        grid_.rebuild(places_, reach_);
-    else
-        grid_.layOut(places_, reach_);
+    for (std::size_t i = 0; i < motions.size(); ++i) places_[i] = motions[i].pose.position;
+    grid_.rebuild(places_, reach_);
 }
 
 std::optional<std::size_t> Traffic::hit(std::span<const Move> moves, std::size_t mover) const {
@@ -286,7 +276,7 @@ std::optional<std::size_t> Traffic::hit(std::span<const Move> moves, std::size_t
         bounds(Segment2{move.start(), move.end()}).expanded(move.radius + move.to.bulge);
     const std::size_t rank = rank_[mover];
     std::optional<std::size_t> first;
-    forEachIn(box, move.start(), std::numeric_limits<double>::infinity(), [&](std::size_t other) {
+    grid_.forEachNear(box, [&](std::size_t other) {
         if (other == mover || (first && rank_[*first] < rank_[other])) return;
         if (collides(move, moves[other], rank_[other] < rank)) first = other;
     });

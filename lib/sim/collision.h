@@ -170,35 +170,16 @@ class Traffic {
     [[nodiscard]] std::size_t rank(std::size_t mover) const { return rank_[mover]; }
     /// Returns a mover's position.
     [[nodiscard]] Point2 place(std::size_t mover) const { return places_[mover]; }
-    /// Calls visit(index) for each mover that may come within `reach` of p in a step, and may omit
-    /// those that are farther from p than `farthest`.
+    /// Calls visit(index) for each mover that may come within `reach` of p in a step.
     template <typename Visit>
-    void forEachNear(Point2 p, double reach, Visit visit,
-                     double farthest = std::numeric_limits<double>::infinity()) const {
+    void forEachNear(Point2 p, double reach, Visit visit) const {
         const Vec2 margin{reach, reach};
-        forEachIn({p - margin, p + margin}, p, farthest * farthest, visit);
+        grid_.forEachNear({p - margin, p + margin}, visit);
     }
-    /// Returns an upper bound of the movers' speeds, as of rebuild().
-    [[nodiscard]] double fastest() const { return fastest_; }
-    /// Returns the largest of their radii.
-    [[nodiscard]] double widest() const { return widest_; }
 
   private:
-    /// Number of movers up to which testing all takes less time than an index. Both visit the same.
-    static constexpr std::size_t kFew = 32;
-    template <typename Visit>
-    void forEachIn(const Box2& box, Point2 p, double most_square, Visit visit) const {
-        if (places_.size() > kFew) return grid_.forEachNear(box, visit);
-        for (std::size_t i = 0; i < places_.size(); ++i) {
-            const Vec2 way = places_[i] - p;
-            if (dot(way, way) > most_square) continue;
-            if (box.contains(places_[i]) || grid_.isNear(box, places_[i])) visit(i);
-        }
-    }
-
     std::vector<std::size_t> rank_;  // in settling order
     double reach_ = 0;               // of the mover that gets farthest from its start in a step
-    double fastest_ = 0, widest_ = 0;
     std::vector<Point2> places_;
     FloorGrid grid_;
 };

@@ -53,46 +53,6 @@ struct Step {
     Step& operator=(const Step&) = delete;
 };
 
-TEST(Traffic, VisitsFewMoversAsItsGridDoes) {
-    std::mt19937_64 random(3);
-    constexpr double kDuration = 0.1;
-    for (const std::size_t count : {1, 7, 32, 33, 80}) {
-        std::vector<Mover> movers(count);
-        std::vector<Motion> motions(count);
-        std::vector<Point2> places(count);
-        std::uniform_real_distribution<double> offset(-15, 15);
-        double reach = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            movers[i].id = "m" + std::to_string(i);
-            motions[i].pose.position = places[i] = {offset(random), offset(random)};
-            motions[i].drive.speed = i % 3 == 0 ? -1 : 0.5;
-            const RobotModel& model = movers[i].model;
-            reach = std::max(
-                reach, model.radius + std::hypot(model.max_speed, model.max_sidespeed) * kDuration);
-        }
-        Traffic traffic(movers, settlingOrder(movers), kDuration);
-        traffic.rebuild(motions);
-        EXPECT_EQ(traffic.fastest(), 1);
-        EXPECT_EQ(traffic.widest(), movers[0].model.radius);
-        FloorGrid grid;
-        grid.rebuild(places, reach);
-        for (int draw = 0; draw < 100; ++draw) {
-            const Point2 p{offset(random), offset(random)};
-            const double sight = 4, farthest = 6;
-            std::vector<int> visits(count), all(count);
-            grid.forEachNear({p - Vec2{sight, sight}, p + Vec2{sight, sight}},
-                             [&](std::size_t i) { ++visits[i]; });
-            traffic.forEachNear(p, sight, [&](std::size_t i) { ++all[i]; });
-            EXPECT_EQ(all, visits);
-            traffic.forEachNear(
-                p, sight, [&](std::size_t i) { --all[i]; }, farthest);
-            for (std::size_t i = 0; i < count; ++i) {
-                EXPECT_TRUE(all[i] == 0 || length(places[i] - p) > farthest);
-            }
-        }
-    }
-}
-
 TEST(Collision, SegmentsHaveADistance) {
     const Segment2 s{{0, 0}, {2, 0}};
     EXPECT_EQ(distance(s, Segment2{{1, -1}, {1, 1}}), 0);

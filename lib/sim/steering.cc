@@ -25,30 +25,12 @@ constexpr double kLeastReach = 1e-3;
 
 double square(double x) { return x * x; }
 
-/// Metres: farther than all coordinates of a room.
-constexpr double kFarAway = 1e6;
-
 /// Sets the lanes up to a multiple of kLanes.
 void pad(LineLanes& lanes) {
-    for (std::size_t i = lanes.count; i % LineLanes::kLanes != 0; ++i) {
-        lanes.ax[i] = lanes.ay[i] = kFarAway;
+    for (std::size_t i = lanes.count; i % LineLanes::kLanes != 0; ++i)
         for (LineLanes::Lane* const lane :
-             {&lanes.dx, &lanes.dy, &lanes.per_square, &lanes.reach_square})
+             {&lanes.ax, &lanes.ay, &lanes.dx, &lanes.dy, &lanes.per_square, &lanes.reach_square})
             (*lane)[i] = 0;
-    }
-}
-
-std::size_t endOf(const LineLanes& lanes) {
-    return (lanes.count + LineLanes::kLanes - 1) / LineLanes::kLanes * LineLanes::kLanes;
-}
-
-double leastOf(const LineLanes& lanes, const LineLanes::Lane& numbers) {
-    std::array<double, LineLanes::kLanes> least;
-    least.fill(square(kFarAway));
-    for (std::size_t i = 0; i < endOf(lanes); i += LineLanes::kLanes)
-        for (std::size_t k = 0; k < LineLanes::kLanes; ++k)
-            least[k] = simd::choose(numbers[i + k] < least[k], numbers[i + k], least[k]);
-    return *std::min_element(least.begin(), least.end());
 }
 
 Vec2 velocityOf(const Motion& motion) {
@@ -70,28 +52,12 @@ bool comesNear(const Segment2& way, const Segment2& line, double reach) {
     return least < reach * reach || intersects(way, line);
 }
 
-/// Computes the squared distance of each line, and sets that at which a way comes near: of `usual`
-/// metres, or, if the line is nearer, a hair less than its own.
-ISPACE_SIMD_CLONES void findReaches(LineLanes& lanes, std::size_t end, double usual,
-                                    double* apart) {
-    for (std::size_t i = 0; i < end; ++i) {
-        const double ax = lanes.ax[i], ay = lanes.ay[i], dx = lanes.dx[i], dy = lanes.dy[i];
-        const double along = -(ax * dx + ay * dy) * lanes.per_square[i];
-        const double least = simd::choose(along > 0, along, 0.0);
-        const double t = simd::choose(least < 1, least, 1.0);
-        const double x = ax + t * dx, y = ay + t * dy, square = x * x + y * y;
-        const double own = std::sqrt(square) - kHair;
-        const double reach = simd::choose(own < usual, own, usual);
-        apart[i] = square;
-        lanes.reach_square[i] = reach * reach;
-    }
-}
-
 /// Computes for each line the least squared distance of the way to it, less that at which it comes
 /// near; -1 if they cross. Rounds otherwise than comesNear().
-ISPACE_SIMD_CLONES void findRoom(const LineLanes& lanes, std::size_t end, double x, double y,
-                                 double* room) {
+ISPACE_SIMD_CLONES void findRoom(const LineLanes& lanes, double x, double y, double* room) {
     const double per_square = 1 / (x * x + y * y);
+    const std::size_t end =
+        (lanes.count + LineLanes::kLanes - 1) / LineLanes::kLanes * LineLanes::kLanes;
     for (std::size_t i = 0; i < end; ++i) {
         const double ax = lanes.ax[i], ay = lanes.ay[i], dx = lanes.dx[i], dy = lanes.dy[i];
         const double bx = ax + dx, by = ay + dy;
@@ -128,24 +94,18 @@ Steering::Steering(const SteeringState& helm, double speed, double horizon)
 
 void Steering::findNeighbours(const Surroundings& around, std::size_t mover) {
     const double sight = radius_ + std::min(kMoverSight, 2 * speed_ * horizon_);
-    const auto farthest_of = [this](double reach, double fastest) {
-        return (reach + fastest * horizon_) * (1 + kHair);
-    };
-    const auto visit = [&](std::size_t other) {
+    around.traffic->forEachNear(place_, sight, [&](std::size_t other) {
         if (other == mover) return;
         const Motion& motion = around.motions[other];
         const Vec2 offset = motion.pose.position - place_;
         const double reach = radius_ + around.movers[other].model.radius + kGap;
         // Most are too far away to meet within the horizon.
         const double fastest = speed_ + std::abs(motion.drive.speed) + std::abs(motion.side.speed);
-        const double farthest = farthest_of(reach, fastest);
+        const double farthest = (reach + fastest * horizon_) * (1 + kHair);
         if (dot(offset, offset) > farthest * farthest) return;
         if (neighbours_.empty()) neighbours_.reserve(kUsualNeighbours);
         neighbours_.push_back({offset, velocityOf(motion), reach});
-    };
-    const Traffic& traffic = *around.traffic;
-    traffic.forEachNear(place_, sight, visit,
-                        farthest_of(radius_ + traffic.widest() + kGap, speed_ + traffic.fastest()));
+    });
 }
 
 void Steering::findLines() const {
@@ -175,24 +135,36 @@ double Steering::untilNeighbour(Vec2 velocity) const {
     return least;
 }
 
-/// Fills lanes with the lines of the index about p. \returns false if the index does not know them,
-/// they are too many, or one is too near to the mover to decide by lanes
-bool Steering::fillFromIndex(Point2 p, LineLanes& lanes) const {
+/// Fills lanes with the lines of the index about p that are nearer than `farthest` to the mover.
+/// \returns false if the index does not know them, they are too many, or one is too near to decide
+/// by lanes
+bool Steering::fillFromIndex(Point2 p, double farthest, LineLanes& lanes) const {
     const auto near = helm_->index->near(p);
     if (!near || near->which.size() > LineLanes::kMost) return false;
-    lanes.count = near->which.size();
-    for (std::size_t i = 0; i < lanes.count; ++i) {
-        const ObstacleIndex::Line& line = near->all[near->which[i]];
-        lanes.ax[i] = line.begin.x - place_.x;
-        lanes.ay[i] = line.begin.y - place_.y;
-        lanes.dx[i] = line.along.x;
-        lanes.dy[i] = line.along.y;
-        lanes.per_square[i] = line.per_square;
+    const double usual = radius_ + kGap, apart = usual + 2 * kHair;
+    double nearest = kForever;
+    std::size_t count = 0;
+    for (const std::uint32_t i : near->which) {
+        const ObstacleIndex::Line& line = near->all[i];
+        const Vec2 begin = line.begin - place_;
+        const double share = std::clamp(-dot(begin, line.along) * line.per_square, 0.0, 1.0);
+        const Vec2 foot = begin + share * line.along;
+        const double square = dot(foot, foot);
+        double reach = usual;
+        if (square < apart * apart) reach = std::min(usual, std::sqrt(square) - kHair);
+        lanes.ax[count] = begin.x;
+        lanes.ay[count] = begin.y;
+        lanes.dx[count] = line.along.x;
+        lanes.dy[count] = line.along.y;
+        lanes.per_square[count] = line.per_square;
+        lanes.reach_square[count] = reach * reach;
+        nearest = std::min(nearest, square);
+        count += square < farthest * farthest ? 1 : 0;
     }
+    lanes.count = count;
     pad(lanes);
-    LineLanes::Lane apart;
-    findReaches(lanes, endOf(lanes), radius_ + kGap, apart.data());
-    return leastOf(lanes, apart) > square(kLeastReach);
+    is_apart_ = is_apart_ && nearest >= apart * apart;
+    return nearest > kLeastReach * kLeastReach;
 }
 
 /// Nearer lines to the mover are in the lanes.
@@ -204,19 +176,22 @@ double Steering::reachOfLanes() const {
 bool Steering::fillLanes() const {
     const double farthest = reachOfLanes();
     if (helm_->clearance > farthest - radius_) return true;
-    return farthest <= ObstacleIndex::kNear && fillFromIndex(place_, lanes_);
+    return farthest <= ObstacleIndex::kNear && fillFromIndex(place_, farthest, lanes_);
 }
 
-/// Tests a share of the horizon; empty in doubt.
+/// Tests a share of the horizon; empty in doubt, and without an index, for which lanes do not pay.
 std::optional<bool> Steering::isFreeByLanes(Vec2 velocity, double share) const {
+    if (helm_->index == nullptr || has_lines_) return std::nullopt;
     if (!std::exchange(has_lanes_, true)) are_in_lanes_ = fillLanes();
     if (!are_in_lanes_) return std::nullopt;
     // Exceeds all rounding of coordinates of a town.
     constexpr double kDoubt = 1e-7;
     const auto least_room = [](const LineLanes& lanes, Vec2 way) {
-        LineLanes::Lane room;
-        findRoom(lanes, endOf(lanes), way.x, way.y, room.data());
-        return leastOf(lanes, room);
+        std::array<double, LineLanes::kMost> room;
+        findRoom(lanes, way.x, way.y, room.data());
+        double least = 1;
+        for (std::size_t i = 0; i < lanes.count; ++i) least = std::min(least, room[i]);
+        return least;
     };
     const Vec2 way = share * horizon_ * velocity;
     const double room = least_room(lanes_, way);
@@ -224,6 +199,8 @@ std::optional<bool> Steering::isFreeByLanes(Vec2 velocity, double share) const {
     if (room <= kDoubt) return std::nullopt;
     if (share <= kAside) return true;
     const double usual = radius_ + kGap, end = length(way);
+    for (const double part : {1.0, 0.75, 0.5})
+        if (is_apart_ && helm_->index->most(place_ + part * way) < usual - kDoubt) return false;
     // The point of a line that is nearest to the way lies beside it or about its end. The index is
     // asked from the end on back to the lines in the lanes.
     const double reach = usual + kHair;
@@ -236,7 +213,7 @@ std::optional<bool> Steering::isFreeByLanes(Vec2 velocity, double share) const {
     LineLanes lanes;
     for (double left = end; left > known; ahead = each) {
         const double middle = left - ahead;
-        if (!fillFromIndex(place_ + middle / end * way, lanes)) return std::nullopt;
+        if (!fillFromIndex(place_ + middle / end * way, kForever, lanes)) return std::nullopt;
         const double least = least_room(lanes, way);
         if (least < -kDoubt) return false;
         if (least <= kDoubt) return std::nullopt;
@@ -247,15 +224,9 @@ std::optional<bool> Steering::isFreeByLanes(Vec2 velocity, double share) const {
 
 /// Tests a share of the horizon.
 bool Steering::isFreeOfLines(Vec2 velocity, double share) const {
+    if (const auto is_free = isFreeByLanes(velocity, share)) return *is_free;
     const Segment2 way{place_, place_ + share * horizon_ * velocity};
-    if (helm_->index != nullptr && !has_lines_) {
-        // Bounds decide most ways, lanes most others.
-        if (helm_->clearance > speed_ * horizon_ + kGap) return true;
-        const ObstacleIndex::Way look = helm_->index->look(way, radius_ + kGap);
-        if (look != ObstacleIndex::Way::Unknown) return look == ObstacleIndex::Way::Clear;
-        const auto is_free = isFreeByLanes(velocity, share);
-        return is_free ? *is_free : isFreeByIndex(way);
-    }
+    if (helm_->index != nullptr && !has_lines_) return isFreeByIndex(way);
     findLines();
     return std::none_of(lines_.begin(), lines_.end(),
                         [&](const Line& line) { return comesNear(way, line.line, line.reach); });
@@ -271,8 +242,12 @@ double Steering::untilLine(Vec2 velocity, double most, double needed) const {
 
 /// Tests a way against the lines that findLines() would find, of which it reads those near the way.
 bool Steering::isFreeByIndex(const Segment2& way) const {
+    const double ahead = speed_ * horizon_ + kGap;
+    if (helm_->clearance > ahead) return true;
+    const ObstacleIndex::Way look = helm_->index->look(way, radius_ + kGap);
+    if (look != ObstacleIndex::Way::Unknown) return look == ObstacleIndex::Way::Clear;
     helm_->index->findIn(bounds(way).expanded(radius_ + kGap), nearby_);
-    const double farthest = radius_ + speed_ * horizon_ + kGap;
+    const double farthest = radius_ + ahead;
     return std::none_of(nearby_.begin(), nearby_.end(), [&](const Segment2& line) {
         const double square = squaredDistance(place_, line);
         return square < farthest * farthest &&
@@ -308,12 +283,9 @@ FreeHeading Steering::choose(Angle desired, double needed) const {
     // Most often one of them is free. Without any, all times are compared.
     std::array<double, kTurns.size()> most;  // upper bounds of these times
     const auto share_of = [](double turn) { return turn == 0 ? 1 : kAside; };
-    // Most often it is the heading, whose vector is known.
-    const Motion& own = helm_->around->motions[helm_->mover];
     for (std::size_t i = 0; i < kTurns.size(); ++i) {
         const Angle direction = desired + Angle::degrees(kTurns[i]);
-        const Vec2 velocity =
-            speed_ * (direction == own.kept_heading ? own.kept_forward : unitVector(direction));
+        const Vec2 velocity = speed_ * unitVector(direction);
         most[i] = std::min(horizon_, untilNeighbour(velocity));
         if (most[i] < needed) continue;
         if (most[i] == 0) return {direction, 0};  // as long as needed: no time at all

@@ -52,6 +52,8 @@ class ObstacleIndex {
     static constexpr double kNear = 1;
     /// Returns the lines nearer to p than kNear, once each, and possibly others; empty if unknown.
     [[nodiscard]] virtual std::optional<Some> near(Point2 p) const = 0;
+    /// Returns a distance from p within which an obstacle lies; infinite if unknown.
+    [[nodiscard]] virtual double most(Point2 p) const = 0;
 };
 
 /// Pose and surroundings of a mover that is steered.
@@ -73,7 +75,7 @@ struct LineLanes {
     Lane ax, ay, dx, dy;    ///< beginning and extent
     Lane per_square;        ///< inverse of the squared length
     Lane reach_square;      ///< of the distance at which a way comes near
-    std::size_t count = 0;  ///< of lines; those up to a multiple of kLanes are far away
+    std::size_t count = 0;  ///< of lines; lanes up to a multiple of kLanes are set
 };
 
 /// A direction, and the seconds for which it is free.
@@ -119,7 +121,7 @@ class Steering {
     void findLines() const;
     [[nodiscard]] bool fillLanes() const;
     [[nodiscard]] double reachOfLanes() const;
-    [[nodiscard]] bool fillFromIndex(Point2 p, LineLanes& lanes) const;
+    [[nodiscard]] bool fillFromIndex(Point2 p, double farthest, LineLanes& lanes) const;
     [[nodiscard]] std::optional<bool> isFreeByLanes(Vec2 velocity, double share) const;
     [[nodiscard]] double untilNeighbour(Vec2 velocity) const;
     [[nodiscard]] double untilLine(Vec2 velocity, double most, double needed) const;
@@ -135,6 +137,7 @@ class Steering {
     mutable std::vector<Segment2> nearby_;  // of an index, for one way
     mutable bool has_lanes_ = false;        // fillLanes() was called
     mutable bool are_in_lanes_ = false;     // its result
+    mutable bool is_apart_ = true;          // no line of the lanes is as near as others are passed
     mutable LineLanes lanes_;
 };
 

@@ -60,26 +60,15 @@ double untilWall(const Maze& maze, Vec2 velocity, double most, double horizon) {
 /// The walls of a maze, by the slowest index.
 class MazeIndex : public ObstacleIndex {
   public:
-    /// \param is_clever look() decides
-    MazeIndex(const std::vector<Segment2>& walls, bool is_clever)
-        : walls_(walls), is_clever_(is_clever) {
+    explicit MazeIndex(const std::vector<Segment2>& walls) : walls_(walls) {
         for (const Segment2& wall : walls) {
             const Vec2 along = wall.b - wall.a;
             const double square = dot(along, along);
             lines_.push_back({wall.a, along, square > 0 ? 1 / square : 0});
         }
     }
-    [[nodiscard]] Way look(const Segment2& way, double reach) const override {
-        constexpr double kMargin = 1e-5;
-        double at_start = kForever, least = kForever;
-        for (const Segment2& wall : walls_) {
-            at_start = std::min(at_start, distance(way.a, wall));
-            least = std::min(least, distance(way, wall));
-        }
-        if (!is_clever_ || at_start < reach + kMargin) return Way::Unknown;
-        return least > reach + kMargin   ? Way::Clear
-               : least < reach - kMargin ? Way::Blocked
-                                         : Way::Unknown;
+    [[nodiscard]] Way look(const Segment2& /*way*/, double /*reach*/) const override {
+        return Way::Unknown;
     }
     void findIn(const Box2& /*box*/, std::vector<Segment2>& lines) const override {
         lines = walls_;
@@ -90,10 +79,14 @@ class MazeIndex : public ObstacleIndex {
             if (distance(p, walls_[i]) < kNear) which_.push_back(i);
         return Some{lines_, which_};
     }
+    [[nodiscard]] double most(Point2 p) const override {
+        double least = kForever;
+        for (const Segment2& wall : walls_) least = std::min(least, distance(p, wall));
+        return least + 0.1;
+    }
 
   private:
     std::vector<Segment2> walls_;
-    bool is_clever_;
     std::vector<Line> lines_;
     mutable std::vector<std::uint32_t> which_;
 };
@@ -114,7 +107,7 @@ TEST(Steering, ChoosesTheNearestFreeHeadingOrTheBest) {
         const Surroundings around{movers, motions, &traffic};
         Vicinity vicinity;
         const double speed = 0.4 + 0.2 * (seed % 6), horizon = 2;
-        const MazeIndex index(maze.band.sheets, seed % 5 == 0);
+        const MazeIndex index(maze.band.sheets);
         const ObstacleIndex* const used = seed % 3 == 0 ? nullptr : &index;
         const SteeringState helm{&around, &obstacles, &vicinity, 0, 0, {}, {}, used};
         const Steering steering(helm, speed, horizon);

@@ -74,7 +74,7 @@ double MovingBody::meet(Point3 origin, Vec3 direction) const {
     return BodyFrame(*this, cosSin(pose.heading), origin).meet(direction).multiple;
 }
 
-void FloorGrid::layOut(std::span<const Point2> places, double reach) {
+void FloorGrid::rebuild(std::span<const Point2> places, double reach) {
     // Small margin, so that rounding cannot lose a touching body.
     reach_ = reach * (1 + kContactTolerance) + kContactTolerance;
     box_ = {};
@@ -88,11 +88,7 @@ void FloorGrid::layOut(std::span<const Point2> places, double reach) {
                       std::sqrt(box_.width() / count) * std::sqrt(box_.depth())});
     columns_ = static_cast<std::size_t>(box_.width() / size_) + 1;
     rows_ = static_cast<std::size_t>(box_.depth() / size_) + 1;
-    indices_.clear();
-}
 
-void FloorGrid::rebuild(std::span<const Point2> places, double reach) {
-    layOut(places, reach);
     // Count, then fill: the lists of all cells lie in one array.
     const auto cell = [&](Point2 place) {
         return cellOf(place.y - box_.low.y, rows_) * columns_ +
@@ -106,13 +102,6 @@ void FloorGrid::rebuild(std::span<const Point2> places, double reach) {
     // Backwards from the ends, which thereby become the beginnings.
     for (std::size_t i = places.size(); i-- > 0;)
         indices_[--first_[cell(places[i])]] = static_cast<std::uint32_t>(i);
-}
-
-bool FloorGrid::isNear(const Box2& box, Point2 place) const {
-    const Cells cells = cellsAbout(box);
-    const std::size_t column = cellOf(place.x - box_.low.x, columns_),
-                      row = cellOf(place.y - box_.low.y, rows_);
-    return column >= cells.left && column <= cells.right && row >= cells.low && row <= cells.high;
 }
 
 FloorGrid::Cells FloorGrid::cellsAbout(const Box2& box) const {

@@ -59,10 +59,6 @@ class FloorGrid {
   public:
     /// \param reach maximum extent of a mover from its position \pre positions are finite
     void rebuild(std::span<const Point2> places, double reach);
-    /// Sets the cells for these positions without an index of them: forEachNear() visits none.
-    void layOut(std::span<const Point2> places, double reach);
-    /// Returns true if forEachNear() visits a mover at this position, once rebuilt.
-    [[nodiscard]] bool isNear(const Box2& box, Point2 place) const;
     /// Calls visit(index) once for each mover that may extend into the box, in a fixed order.
     template <typename Visit>
     void forEachNear(const Box2& box, Visit visit) const;

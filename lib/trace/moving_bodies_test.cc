@@ -173,12 +173,8 @@ TEST(FloorGrid, FindsWhatMayExtendIntoABoxOnce) {
             if (i % 5 == 0) box = {places[0] + Vec2{reach, 0}, places[0] + Vec2{reach, 0}};
             std::vector<int> visits(places.size());
             grid.forEachNear(box, [&](std::size_t index) { ++visits[index]; });
-            FloorGrid layout;
-            layout.layOut(places, reach);
-            layout.forEachNear(box, [](std::size_t) { FAIL(); });
             for (std::size_t k = 0; k < places.size(); ++k) {
                 const Point2 p = places[k];
-                EXPECT_EQ(layout.isNear(box, p), visits[k] == 1) << scale << ' ' << k;
                 const bool near = p.x >= box.low.x - reach && p.x <= box.high.x + reach &&
                                   p.y >= box.low.y - reach && p.y <= box.high.y + reach;
                 EXPECT_LE(visits[k], 1);

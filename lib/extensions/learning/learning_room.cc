@@ -104,7 +104,7 @@ std::optional<double> WaysTo::from(Point2 p) const {
     for (int row = std::max(0, bottom); row <= std::min(rows_ - 1, bottom + 1); ++row)
         for (int column = std::max(0, left); column <= std::min(columns_ - 1, left + 1); ++column) {
             const std::uint16_t cost = costAt(column, row);
-            if (cost == kNoWay || (best && cost * kMetres >= *best)) continue;
+            if (cost == kNoWay) continue;
             const double way = cost * kMetres + FloorCells::kSide * std::hypot(x - column, y - row);
             if (!best || way < *best) best = way;
         }
@@ -144,21 +144,23 @@ Vicinity* SharedVicinities::at(Point2 p) const {
 }
 
 ClearanceField::ClearanceField(const Obstacles& obstacles, const Box2& box) : low_(box.low) {
-    constexpr double kLeastSide = 0.1, kMostCells = 4e5;
+    constexpr double kLeastSide = 0.1, kMostCells = 4e5, kFarthest = 3;
     side_ = std::max(kLeastSide, std::sqrt(box.width() * box.depth() / kMostCells));
     per_metre_ = 1 / side_;
     columns_ = static_cast<int>(std::ceil(box.width() / side_)) + 1;
     rows_ = static_cast<int>(std::ceil(box.depth() / side_)) + 1;
-    const auto tiles_of = [](int cells) { return static_cast<std::size_t>(cells) / kTile + 1; };
-    tiles_ = tiles_of(columns_);
-    least_.resize(tiles_ * tiles_of(rows_) * kTile * kTile);
-    // From the centre of a cell, rounded down.
+    least_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    // From the centre of a cell, less half its diagonal.
+    const double half = side_ * 0.7072;
+    slack_ = 2.001 * half;
     tbb::parallel_for(0, rows_, [&](int row) {
         for (int column = 0; column < columns_; ++column) {
             const Point2 center{low_.x + side_ * (column + 0.5), low_.y + side_ * (row + 0.5)};
-            const double least = obstacles.nearest(center, kFarthest);
-            least_[placeOf(static_cast<std::size_t>(column), static_cast<std::size_t>(row))] =
-                static_cast<std::uint8_t>(least / kUnit);
+            const double bound = std::max(-half, obstacles.nearest(center, kFarthest) - half);
+            // Rounded down.
+            least_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                   static_cast<std::size_t>(column)] =
+                std::nextafter(static_cast<float>(bound), -1.0F);
         }
     });
     addLines(obstacles, box);
@@ -253,6 +255,13 @@ void ClearanceField::findIn(const Box2& box, std::vector<Segment2>& lines) const
     });
 }
 
+double ClearanceField::most(Point2 p) const {
+    const double x = (p.x - low_.x) * per_metre_, y = (p.y - low_.y) * per_metre_;
+    if (!(x >= 0 && y >= 0 && x < columns_ && y < rows_))
+        return std::numeric_limits<double>::infinity();
+    return at(p) + slack_;
+}
+
 double ClearanceField::clearanceAt(Point2 p) const {
     constexpr double kRounding = 1e-9;
     const auto some = near(p);
@@ -284,47 +293,40 @@ bool ClearanceField::isClear(const Segment2& way, double reach) const {
            });
 }
 
-inline ClearanceField::Bounds ClearanceField::boundsAt(double x, double y) const {
-    const auto column = static_cast<std::size_t>(x), row = static_cast<std::size_t>(y);
-    const double across = std::abs(x - (static_cast<double>(column) + 0.5));
-    const double along = std::abs(y - (static_cast<double>(row) + 0.5));
-    // At least the distance to the centre.
-    constexpr double kRoot = 0.4143, kRounding = 1e-6;
-    const double off = side_ * (std::max(across, along) + kRoot * std::min(across, along));
-    const std::uint8_t stored = least_[placeOf(column, row)];
-    const double distance = stored * kUnit;
-    return {distance - off - kRounding, stored == std::numeric_limits<std::uint8_t>::max()
-                                            ? std::numeric_limits<double>::infinity()
-                                            : distance + kUnit + off + kRounding};
-}
-
 double ClearanceField::at(Point2 p) const {
     const double x = (p.x - low_.x) * per_metre_, y = (p.y - low_.y) * per_metre_;
-    return isInside(x, y) ? boundsAt(x, y).least : 0;
+    if (!(x >= 0 && y >= 0 && x < columns_ && y < rows_)) return 0;
+    return static_cast<double>(
+        least_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+               static_cast<std::size_t>(x)]);
 }
 
 ObstacleIndex::Way ClearanceField::look(const Segment2& way, double reach) const {
-    // From circle to circle in which all is clear, as long as they are wide; a few points tell most
-    // blocked ways. The margin exceeds those that steering leaves for rounding.
-    constexpr double kLeastStep = 0.05, kMargin = 3e-6;
+    // From circle to circle in which all is clear; where they are narrow, in short steps that only
+    // look for an obstacle. The margin exceeds those that steering leaves for rounding.
+    constexpr double kLeastStep = 0.05, kShortStep = 0.1, kMargin = 3e-6;
     const Vec2 along = way.b - way.a;
     const double end = std::sqrt(dot(along, along));
-    // In cells.
-    const double x = (way.a.x - low_.x) * per_metre_, y = (way.a.y - low_.y) * per_metre_;
-    const double dx = along.x * per_metre_, dy = along.y * per_metre_;
-    if (!isInside(x, y) || !isInside(x + dx, y + dy)) return Way::Unknown;
-    const double start_room = boundsAt(x, y).least - reach - kMargin;
-    if (!(start_room >= 0)) return Way::Unknown;
+    const auto is_inside = [this](Point2 p) {
+        const double x = (p.x - low_.x) * per_metre_, y = (p.y - low_.y) * per_metre_;
+        return x >= 0 && y >= 0 && x < columns_ && y < rows_;
+    };
+    const double start_room = at(way.a) - reach - kMargin;
+    if (!(start_room >= 0) || !is_inside(way.b)) return Way::Unknown;
     if (start_room >= end) return Way::Clear;
-    for (const double part : {1.0, 0.75, 0.5})
-        if (boundsAt(x + part * dx, y + part * dy).most < reach - kMargin) return Way::Blocked;
-    const double per_end = 1 / end;
-    for (double gone = start_room, room = start_room; room >= kLeastStep; gone += room) {
-        const double part = gone * per_end;
-        room = boundsAt(x + part * dx, y + part * dy).least - reach - kMargin;
-        if (room >= end - gone) return Way::Clear;
+    const auto is_blocked = [&](double least) { return least + slack_ < reach - kMargin; };
+    if (is_blocked(at(way.b))) return Way::Blocked;
+    const Vec2 unit = 1 / end * along;
+    bool is_clear = start_room >= kLeastStep;
+    for (double gone = is_clear ? start_room : kShortStep; gone < end;) {
+        const double least = at(way.a + gone * unit);
+        if (is_blocked(least)) return Way::Blocked;
+        const double room = least - reach - kMargin;
+        is_clear = is_clear && room >= kLeastStep;
+        if (is_clear && room >= end - gone) return Way::Clear;
+        gone += is_clear ? room : std::max(room, kShortStep);
     }
-    return Way::Unknown;
+    return is_clear ? Way::Clear : Way::Unknown;
 }
 
 LearningRoom::LearningRoom(Scene scene, const LearningTask& task, std::size_t goals)

@@ -141,6 +141,7 @@ class ClearanceField : public ObstacleIndex {
     [[nodiscard]] Way look(const Segment2& way, double reach) const override;
     void findIn(const Box2& box, std::vector<Segment2>& lines) const override;
     [[nodiscard]] std::optional<Some> near(Point2 p) const override;
+    [[nodiscard]] double most(Point2 p) const override;
     /// Returns a distance that no obstacle is nearer to p than, at most kNear: the distance to the
     /// nearest but for rounding; 0 outside of the box.
     [[nodiscard]] double clearanceAt(Point2 p) const;
@@ -167,31 +168,11 @@ class ClearanceField : public ObstacleIndex {
     void addLines(const Obstacles& obstacles, const Box2& box);
     void addNear(const std::vector<Segment2>& lines);
 
-    /// Farther obstacles are taken to be so far away, metres.
-    static constexpr double kFarthest = 3;
-    static constexpr double kUnit = kFarthest / 255;  // of the stored distances
-    /// Cells of a tile along each side, which share a line of cache.
-    static constexpr std::size_t kTile = 8;
-    [[nodiscard]] bool isInside(double column, double row) const {
-        return column >= 0 && row >= 0 && column < columns_ && row < rows_;
-    }
-    [[nodiscard]] std::size_t placeOf(std::size_t column, std::size_t row) const {
-        return (row / kTile * tiles_ + column / kTile) * (kTile * kTile) + row % kTile * kTile +
-               column % kTile;
-    }
-
-    /// Bounds of the distance to the nearest obstacle.
-    struct Bounds {
-        double least, most;
-    };
-    /// \pre inside, in cells
-    [[nodiscard]] Bounds boundsAt(double x, double y) const;
-
     Point2 low_;
     double side_ = 1, per_metre_ = 1;
+    double slack_ = 0;  // the nearest obstacle is at most so much farther than at()
     int columns_ = 0, rows_ = 0;
-    std::size_t tiles_ = 1;            // in a row of them
-    std::vector<std::uint8_t> least_;  // of the centres of cells, tile by tile, in kUnits
+    std::vector<float> least_;  // by cell
     Cells line_cells_, near_cells_;
     std::vector<std::uint32_t> first_;              // of each cell of lines, and the end
     std::vector<Segment2> lines_;                   // of all cells, one after another

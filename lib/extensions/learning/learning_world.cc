@@ -24,11 +24,6 @@ double toMillimetre(double x) {
     return std::round(x * kScale) / kScale;
 }
 
-double speedOf(const Motion& motion) {
-    const double side = motion.side.speed;  // mostly 0, and a root is slow
-    return side == 0 ? std::abs(motion.drive.speed) : std::hypot(motion.drive.speed, side);
-}
-
 double distanceOf(Point2 a, Point2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 }  // namespace
@@ -312,7 +307,7 @@ void LearningWorld::settle(LearningScratch& scratch) {
         scratch.next[i] = move.to.motion;
         if (i < robots_.size()) continue;
         const Motion& motion = scratch.next[i];
-        const double speed = speedOf(motion);
+        const double speed = std::hypot(motion.drive.speed, motion.side.speed);
         const double path = move.to.path;
         gaits_[i - robots_.size()].walk(room.movers()[i].model.height,
                                         motion.drive.speed < 0 ? -path : path, speed);
@@ -403,7 +398,7 @@ void LearningWorld::observe(const LearningSetting& setting, std::size_t robot, s
                 continue;
             }
             const std::size_t person = i - robots_.size();
-            const double speed = speedOf(motions_[i]);
+            const double speed = std::hypot(motions_[i].drive.speed, motions_[i].side.speed);
             addHumanBodies(body.height, at, kFirstPerson + static_cast<std::uint32_t>(person),
                            gaits_[person].swing(speed), {&height, 1}, scratch.bodies);
         }
