@@ -184,8 +184,8 @@ struct CommandLine::Data {
     }
 };
 
-/// Returns the groups whose extension is `word`, or whose heading begins with it, or contains it;
-/// else those of whose words one begins with it.
+/// Returns the groups of the extension `word`, or with it as the first word of the heading; else
+/// with it in the heading; else with a word that begins so.
 std::vector<std::size_t> CommandLine::Data::groupsAbout(const std::string& word) const {
     using Test = bool (*)(const Group&, const std::string&);
     constexpr auto kTests = std::to_array<Test>({

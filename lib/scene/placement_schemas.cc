@@ -296,8 +296,9 @@ Schema resultSchema() {
                   "area"),
             {.name = "objective",
              .type = KeyType::Word,
-             .help = "subject of `value`: path (seen share of the shortest way), localise (1 "
-                     "less the mean error), track (1 less the share of the loss); floor without it"},
+             .help =
+                 "subject of `value`: path (seen share of the shortest way), localise (1 "
+                 "less the mean error), track (1 less the share of the loss); floor without it"},
             share("bound",
                   "upper bound on the value, or on the coverage without a value: of layouts of the "
                   "candidates or, after refinement, of any poses"),

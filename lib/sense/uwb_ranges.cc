@@ -247,7 +247,7 @@ std::shared_ptr<UwbFixes::Tags> UwbFixes::at(const Uwb& uwb, const Moment& now) 
 
 namespace {
 
-/// Returns the tags whose distance an anchor can measure, as a heap with the nearest on top.
+/// Returns the tags at a distance that an anchor can measure, as a heap with the nearest on top.
 std::vector<Near> tagsAbout(const Uwb& uwb, Point3 at,
                             const std::vector<std::optional<Point3>>& places) {
     std::vector<Near> near;

@@ -58,7 +58,7 @@ def touches(lab, system, radius, shown):
 
 def run(lab):
     lab.text("A hand is held still in the middle of a volume for a second, located ten times; volumes lie side by side. "
-             "Shares of 196 hands: those whose first position is in the volume, those of which one position of half a "
+             "Shares of 196 hands: those with the first position in the volume, those of which one position of half a "
              "second is, those that stay for half a second, and those that touch the volume beside it.")
     lab.given("positions have an error of 50 mm by the ultrasonic system on the ceiling, and of 0.1 m in its zone",
               "sections 2.1.2 and 5.2.2")

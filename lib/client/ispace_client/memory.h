@@ -51,7 +51,7 @@ class Memory {
     std::vector<std::string> at(double x, double y, double z) {
         return find(textOf(x) + "," + textOf(y) + "," + textOf(z));
     }
-    /// Returns the volumes whose content has this text, in capitals or not.
+    /// Returns the volumes with this text in their content, in capitals or not.
     std::vector<std::string> find(const std::string& text) {
         return split(connection_.ask("FIND " + text).fields.text("ids", ""), ',');
     }

@@ -201,19 +201,17 @@ MemoryClient::Place MemoryClient::placeOf(std::string_view text) const {
         rest.remove_prefix(slash + 1);
     }
     std::vector<double> numbers;
-    while (numbers.size() < 4) {
-        const std::size_t comma = std::min(rest.find(','), rest.size());
+    bool is_right = true, is_last = false;
+    while (is_right && !is_last) {
         constexpr double kFarthest = 1e6;
+        const std::size_t comma = rest.find(',');
+        is_last = comma == std::string_view::npos;
         const auto number = parseDouble(rest.substr(0, comma));
-        if (!number || std::abs(*number) > kFarthest) break;
-        numbers.push_back(*number);
-        if (comma == rest.size()) {
-            rest = {};
-            break;
-        }
-        rest.remove_prefix(comma + 1);
+        is_right = number && std::abs(*number) <= kFarthest && numbers.size() < 3;
+        if (is_right) numbers.push_back(*number);
+        if (!is_last) rest.remove_prefix(comma + 1);
     }
-    if (!rest.empty() || numbers.size() < 2 || numbers.size() > 3) {
+    if (!is_right || numbers.size() < 2) {
         place.wrong = excerpt(text) + " is no place x,y[,z]";
         return place;
     }

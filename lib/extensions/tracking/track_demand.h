@@ -34,7 +34,7 @@ struct LossFigures {
 /// element, which only a sensor that sees the person at that moment serves; the elements of a
 /// meeting weigh `crossing` together. Weights are whole milliseconds, at least one.
 ///
-/// A sensor sees a person as DetectionMonitor does, whose point lies in its region, unless another
+/// A sensor sees a person as DetectionMonitor does, by a point in its region, unless another
 /// person stands in the line of sight: a figure of kUsualHeight whose level cuts are circles about
 /// its middle, as wide as the body there. Lasers see people in level slices below their heads, if
 /// the whole figure is within range, and not otherwise; sensors on movers see none.

@@ -58,7 +58,7 @@ class Memory(Client):
         return self._found(f"{place}{x:.6g},{y:.6g},{z:.6g}")
 
     def find(self, text: str) -> List[str]:
-        """The volumes whose content has this text, in capitals or not."""
+        """The volumes with this text in their content, in capitals or not."""
         return self._found(text)
 
     def _found(self, what: str) -> List[str]:
