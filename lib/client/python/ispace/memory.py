@@ -50,6 +50,7 @@ class Memory(Client):
         self._ask(" ".join([*words, content]).rstrip())
 
     def forget(self, id: str) -> None:
+        """Removes a volume."""
         self._ask(f"FORGET {id}")
 
     def at(self, x: float, y: float, z: float, storey: str = "") -> List[str]:
