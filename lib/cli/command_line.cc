@@ -91,6 +91,7 @@ struct CommandLine::Data {
         return group + 1 < groups.size() ? groups[group + 1].first : entries.size();
     }
     [[nodiscard]] std::vector<std::size_t> groupsAbout(const std::string& word) const;
+    [[nodiscard]] std::string wordOf(std::size_t group) const;
     void takeHelpWord(std::vector<std::string>& words);
 
     void keep(CLI::Option* option, const std::string& value, const std::string& text,
@@ -184,11 +185,15 @@ struct CommandLine::Data {
     }
 };
 
-/// Returns the groups of the extension `word`, or with it as the first word of the heading; else
-/// with it in the heading; else with a word that begins so.
+/// Returns the groups with `word` as their heading; else those of the extension `word`, or with it
+/// as the first word of the heading; else with it in the heading; else with a word that begins so.
 std::vector<std::size_t> CommandLine::Data::groupsAbout(const std::string& word) const {
     using Test = bool (*)(const Group&, const std::string&);
     constexpr auto kTests = std::to_array<Test>({
+        [](const Group& group, const std::string& text) {
+            const std::vector<std::string> words = wordsOf(group.title);
+            return words.size() == 1 && words.front() == text;
+        },
         [](const Group& group, const std::string& text) {
             return group.extension == text || wordsOf(group.title).front() == text;
         },
@@ -209,6 +214,15 @@ std::vector<std::size_t> CommandLine::Data::groupsAbout(const std::string& word)
         if (!found.empty()) break;
     }
     return found;
+}
+
+/// Returns a word that stands for a group alone, if there is one.
+std::string CommandLine::Data::wordOf(std::size_t group) const {
+    std::vector<std::string> words = wordsOf(groups[group].title);
+    words.push_back(groups[group].extension);
+    for (const std::string& word : words)
+        if (groupsAbout(word) == std::vector<std::size_t>{group}) return word;
+    return words.front();
 }
 
 /// Takes the word behind --help, or joined to it by =, out of a command line. A name of a file is
@@ -571,7 +585,7 @@ std::string CommandLine::helpText(const std::string& about) const {
             while (i < d.endOf(group) && d.essential.contains(d.entries[i].option)) ++i;
             if (i == d.endOf(group)) continue;
             const std::string& title = d.groups[group].title;
-            page.groups.push_back({wordsOf(title).front(), title, d.groups[group].extension});
+            page.groups.push_back({d.wordOf(group), title, d.groups[group].extension});
         }
         return ispace::helpText(page);
     }
@@ -592,7 +606,7 @@ std::string CommandLine::helpText(const std::string& about) const {
     std::string words;
     for (std::size_t group = 0; group < d.groups.size(); ++group)
         if (found.empty() || std::find(found.begin(), found.end(), group) != found.end())
-            words.append(words.empty() ? "" : ", ").append(wordsOf(d.groups[group].title).front());
+            words.append(words.empty() ? "" : ", ").append(d.wordOf(group));
     throw UsageError("--help " + about +
                      (found.empty() ? ": no group and no option has this name: all, "
                                     : ": several groups have this word: ") +

@@ -254,6 +254,15 @@ TEST(CommandLine, HelpListsTheEssentialOptionsAndGroupsOfTheOthers) {
     EXPECT_EQ(line.helpText("width").find("--draw"), std::string::npos);
     // The heading that begins with the word comes before those that contain it.
     EXPECT_NE(line.helpText("run").find("--until"), std::string::npos);
+    // A heading of one word is that group; another group with the word has one of its own.
+    line.group("Run of many");
+    line.flag("--many", flag, "many", Enters::Nothing);
+    line.group("Maps");
+    line.flag("--tiles", flag, "tiles", Enters::Nothing);
+    EXPECT_NE(line.helpText("maps").find("--tiles"), std::string::npos);
+    EXPECT_EQ(line.helpText("maps").find("--width"), std::string::npos);
+    EXPECT_NE(line.helpText().find("\n  many          run of many\n"), std::string::npos)
+        << line.helpText();
     EXPECT_THROW(static_cast<void>(line.helpText("walls")), UsageError);
     EXPECT_THROW(static_cast<void>(line.helpText("-")), UsageError);
 }
