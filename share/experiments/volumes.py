@@ -24,9 +24,11 @@ import ispace
 
 address = "127.0.0.1:" + sys.argv[1]
 with ispace.Memory(address) as memory, ispace.World(address) as world:
-    world.step({steps})
-    while touch := memory.next_touch(timeout=0.2):
-        print(touch.kind, touch.volume, touch.tag, touch.time)
+    for _ in range(0, {steps}, 20):
+        world.step(20)
+        memory.recall("v0")  # comes after what has been told
+        while touch := memory.next_touch():
+            print(touch.kind, touch.volume, touch.tag, touch.time)
 """
 
 
