@@ -31,9 +31,9 @@ class MemoryOfARoom(unittest.TestCase):
         with self.server.memory() as memory, self.server.memory("no*") as deaf, self.server.world() as world:
             self.assertEqual(memory.tags, ["hand"])
             self.assertEqual(deaf.tags, [])
-            world.step(330)
+            world.step(400)
             self.assertEqual(memory.tags_at("news"), ["hand"])
-            world.step(270)
+            world.step(300)
             touches = [memory.next_touch(5) for _ in range(3)]
             self.assertEqual([touch.kind for touch in touches], ["touch", "dwell", "leave"])
             for touch in touches:
