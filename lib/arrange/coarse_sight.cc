@@ -32,7 +32,6 @@ double edgeFor(const Box2& limits) {
 CoarseSight::CoarseSight(const Environment& environment, const SuggestOptions& options)
     : worlds_(environment),
       sight_(environment, options.measure.plane, &worlds_),
-      options_(options),
       target_(
           makeTarget(environment, CellSize{edgeFor(environment.limits())}, options.measure.height)),
       cell_(target_.grid.cellArea()),

@@ -77,7 +77,6 @@ class CoarseSight {
 
     Worlds worlds_;
     VisibleArea sight_;
-    const SuggestOptions& options_;
     Target target_;
     double cell_ = 0;  // m2
     double error_ = 0;
