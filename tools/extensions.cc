@@ -12,6 +12,9 @@
 #ifdef ISPACE_HAS_CALIBRATION
 #include "extensions/calibration/calibrate.h"
 #endif
+#ifdef ISPACE_HAS_EXPECT
+#include "extensions/expect/expectations.h"
+#endif
 #ifdef ISPACE_HAS_JUDGE
 #include "extensions/judge/judge.h"
 #endif
@@ -83,6 +86,15 @@ std::span<const MakeObjective> arrangeObjectives() {
 #endif
     };
     return objectives;
+}
+
+std::span<const MakeJudge> runJudges() {
+    static const std::vector<MakeJudge> judges = {
+#ifdef ISPACE_HAS_EXPECT
+        makeExpectations,
+#endif
+    };
+    return judges;
 }
 
 std::span<const MakeRoleService> roleServices() {

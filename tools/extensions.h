@@ -6,6 +6,7 @@
 
 #include "cli/extension.h"
 #include "cli/objective_extension.h"
+#include "cli/run_judge.h"
 #include "server/client_role.h"
 
 namespace ispace {
@@ -16,6 +17,9 @@ std::span<const ToolExtension> toolExtensions();
 
 /// Returns the objectives that extensions add to arrange.
 std::span<const MakeObjective> arrangeObjectives();
+
+/// Returns the judges of runs that extensions add to simrun.
+std::span<const MakeJudge> runJudges();
 
 /// Returns the roles that extensions add to the protocol of simrun.
 std::span<const MakeRoleService> roleServices();

@@ -30,6 +30,7 @@ void claimFiles(const SimrunOptions& options) {
     if (!options.drawing.format.empty()) claimOutputs(options.common);
     claimOutput(options.port_file, "--port-file");
     claimOutput(options.junit, "--junit");
+    options.judges->claim();
     claimOutput(options.report, "--report");
     claimOutput(mcapFile(options), "--mcap");
     claimOutput(bagMetadataFile(options), "the metadata of --mcap");
@@ -60,10 +61,11 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
            const std::optional<Replay>& replay, JunitFile& junit) {
     const SimrunOptions& options = command.options();
     World& world = simulation.world();
-    auto judge = ofOption("--expect", [&] { return ExpectationJudge(world, options.expected); });
-    judge.observe();
-    simulation.onStep([&judge] { judge.observe(); });
-    if (!options.expected.empty()) simulation.keepOrder();
+    const RunRoom room{"", &simulation};
+    const auto judge = options.judges->judge({&room, 1});
+    judge->observe();
+    simulation.onStep([&judge] { judge->observe(); });
+    if (options.judges->isAsked()) simulation.keepOrder();
 
     checkRecord(options, world);
     Server server(simulation, options.listen, limitsOf(options, input));
@@ -96,9 +98,10 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
                  "the record ends in the midst of a step, which is left out");
         if (!options.report.empty())
             writeAll(options.report,
-                     reportFile(options, input, judge, historyOf(command, input).back()));
+                     reportFile(options, input, *judge, historyOf(command, input).back()));
         if (options.suggestions) writeAll("-", suggestionsText(options, input));
-        conclude(judge, options, input.environment_operand, junit);
+        judge->report(options.record);
+        conclude(*judge, options, input.environment_operand, junit);
     };
     endingAtOnce([&server] { return server.isBusy(); }, junit, options, serve_and_conclude);
 }

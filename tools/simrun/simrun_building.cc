@@ -164,7 +164,7 @@ void claimRecords(const SimrunOptions& options, const BuildingRun& run) {
 
 /// Writes --report and --suggest. \pre the records are complete
 void reportRun(const SimrunOptions& options, const BuildingInput& input, const BuildingRun& run,
-               const ExpectationJudge& judge, const std::string& command) {
+               const RunJudge& judge, const std::string& command) {
     if (options.report.empty() && !options.suggestions) return;
     for (const JoinedRoom& room : run.rooms())
         for (const std::string& file : Recorder::filesIn(options.record + '/' + room.id))
@@ -195,11 +195,13 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     }
     StepLogs logs(run, options);
     simulation.onStep([&logs] { logs.tell(); });
-    auto judge =
-        ofOption("--expect", [&] { return ExpectationJudge(run.rooms(), options.expected); });
-    judge.observe();
-    simulation.onStep([&judge] { judge.observe(); });
-    if (!options.expected.empty()) simulation.keepOrder();
+    std::vector<RunRoom> rooms;
+    rooms.reserve(run.rooms().size());
+    for (const JoinedRoom& room : run.rooms()) rooms.push_back({room.id, room.simulation});
+    const auto judge = options.judges->judge(rooms);
+    judge->observe();
+    simulation.onStep([&judge] { judge->observe(); });
+    if (options.judges->isAsked()) simulation.keepOrder();
     ServerLimits limits = limitsOf(options);
     limits.source = std::make_shared<SceneFolder>(
         options.load_folder.empty()
@@ -238,8 +240,9 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
         if (run.replay(i) != nullptr && run.replay(i)->isCut())
             warn(options.common, "simrun",
                  run.rooms()[i].id + ": the record ends in the midst of a step, which is left out");
-    reportRun(options, *input, run, judge, history.back());
-    conclude(judge, options, input->environment_operand, junit);
+    reportRun(options, *input, run, *judge, history.back());
+    judge->report(options.record);
+    conclude(*judge, options, input->environment_operand, junit);
     return true;
 }
 

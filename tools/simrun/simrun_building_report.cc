@@ -33,7 +33,7 @@ std::optional<double> shareSeen(const SimrunOptions& options, const BuildingScen
 }  // namespace
 
 std::string reportFile(const SimrunOptions& options, const BuildingInput& input,
-                       const ExpectationJudge& judge, const std::string& command) {
+                       const RunJudge& judge, const std::string& command) {
     const BuildingCoverage coverage = measureBuilding(input.building, {});
     const BuildingRunCoverage run = measuredRun(options, input.building);
     const std::string suffix = suffixOf(options.report);

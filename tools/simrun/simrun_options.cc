@@ -64,15 +64,14 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
         line_, options_.common,
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "
         ".pdf) or a film (.y4m, .gif; a folder or a pattern with %d for pictures)");
-    line_.essential({"--version",   "--clock",  "--dt",      "--until",    "--noise",
-                     "--script",    "--record", "--report",  "--suggest",  "--replay",
-                     "--expect",    "--listen", "--web",     "--web-edit", "--foxglove",
-                     "--rosbridge", "--ros2",   "--mcap",    "--mqtt",     "--storey",
-                     "--output",    "--quiet",  "--threads", "--seed"});
+    line_.essential({"--version",  "--clock",    "--dt",        "--until",   "--noise",  "--script",
+                     "--record",   "--report",   "--suggest",   "--replay",  "--listen", "--web",
+                     "--web-edit", "--foxglove", "--rosbridge", "--ros2",    "--mcap",   "--mqtt",
+                     "--storey",   "--output",   "--quiet",     "--threads", "--seed"});
     line_.parse(argc, argv);
     options_.task = extensions.task(line_, {options_.common, options_.rules, options_.operands});
     if (options_.task) return;
-    takeExpectations();
+    takeJudgement();
     checkReplay();
     takeDrawing();
     takeServer();
@@ -145,20 +144,16 @@ void SimrunCommand::declareRun() {
 
 void SimrunCommand::declareJudgement() {
     SimrunOptions& o = options_;
-    line_.texts("--expect", "SENTENCE", expected_,
-                "exit with 3 unless the run does this, e.g. 'r1 within 0.4 of 2,1 before 60', "
-                "'no collision', 'h1 unseen at most 5' (see the manual)",
-                Enters::Nothing);
+    o.judges = std::make_shared<JudgeExtensions>(runJudges());
+    o.judges->declare(line_);
     line_.file("--junit", "FILE", o.junit,
                "write the verdicts on the expectations there, as XML that CI servers read",
                Enters::Nothing);
 }
 
-void SimrunCommand::takeExpectations() {
-    for (const std::string& text : expected_)
-        options_.expected.push_back(
-            ofOption("--expect", [&text] { return parseExpectation(text); }));
-    if (line_.given("--junit") && expected_.empty())
+void SimrunCommand::takeJudgement() {
+    options_.judges->take(line_);
+    if (line_.given("--junit") && !options_.judges->isAsked())
         throw UsageError("--junit writes what became of expectations: give --expect");
 }
 
@@ -248,9 +243,11 @@ void SimrunCommand::takeDrawing() {
         throw UsageError(
             "-o is a picture or a film of a record: give --replay DIR (a run writes to --record "
             "DIR)");
-    std::vector<std::string> of_runs{"--record", "--expect", "--clock",    "--hold",
-                                     "--listen", "--web",    "--foxglove", "--rosbridge",
-                                     "--ros2",   "--mcap",   "--mqtt",     "--port-file"};
+    std::vector<std::string> of_runs{"--record", "--clock",    "--hold",      "--listen",
+                                     "--web",    "--foxglove", "--rosbridge", "--ros2",
+                                     "--mcap",   "--mqtt",     "--port-file"};
+    const std::vector<std::string>& of_judges = options_.judges->options();
+    of_runs.insert(of_runs.end(), of_judges.begin(), of_judges.end());
     for (const WireProtocol* const protocol : wireProtocols())
         of_runs.push_back("--" + std::string(protocol->name));
     for (const std::string& option : of_runs)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,9 +11,9 @@
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "cli/extension.h"
+#include "cli/run_judge.h"
 #include "server/device/wire_session.h"
 #include "server/server.h"
-#include "sim/expect.h"
 #include "sim/record_form.h"
 #include "sim/simulation.h"
 
@@ -76,7 +77,7 @@ struct SimrunOptions {
     SimTime from{};                                         ///< of the replay
     bool holds = false;                                     ///< at the end of the replay
     DrawingOptions drawing;
-    std::vector<Expectation> expected;
+    std::shared_ptr<JudgeExtensions> judges;
     std::string junit;  ///< file; "" without
     std::optional<bool> records_readings;
     double recorded_frames = 1;  ///< per simulated second, at most
@@ -113,14 +114,13 @@ class SimrunCommand : public ToolCommand<SimrunOptions> {
     void checkReplay() const;
     void declareDrawing();
     void takeDrawing();
-    void takeExpectations();
+    void takeJudgement();
     void declareServer();
     void declareRos();
     void declareMqtt();
     void takeMqtt();
     void takeServer();
 
-    std::vector<std::string> expected_;
     std::string to_;
     std::string mqtt_prefix_;
 };

@@ -35,8 +35,8 @@ std::optional<RunCoverage> recordedRun(const SimrunOptions& options, const Scene
 
 }  // namespace
 
-std::string reportFile(const SimrunOptions& options, const SceneInput& input,
-                       const ExpectationJudge& judge, const std::string& command) {
+std::string reportFile(const SimrunOptions& options, const SceneInput& input, const RunJudge& judge,
+                       const std::string& command) {
     for (const std::string& file : Recorder::filesIn(options.record)) completeOutput(file);
     const Scene& scene = input.scene;
     Worlds worlds(scene.environment);

@@ -8,7 +8,6 @@
 #include "arrange/suggestion.h"
 #include "cli/building_operands.h"
 #include "cli/operands.h"
-#include "sim/expect.h"
 #include "simrun/simrun_options.h"
 
 namespace ispace {
@@ -16,12 +15,12 @@ namespace ispace {
 /// Returns the bytes of --report: the coverage of the scene and of the run, as coverage --run
 /// --report writes them, and the expectations. \pre the record is complete
 /// \param command as in histories
-std::string reportFile(const SimrunOptions& options, const SceneInput& input,
-                       const ExpectationJudge& judge, const std::string& command);
+std::string reportFile(const SimrunOptions& options, const SceneInput& input, const RunJudge& judge,
+                       const std::string& command);
 
 /// Likewise of a building, as coverage --run --report writes it.
 std::string reportFile(const SimrunOptions& options, const BuildingInput& input,
-                       const ExpectationJudge& judge, const std::string& command);
+                       const RunJudge& judge, const std::string& command);
 
 /// A change of a sensor, and the share of the time of all movers for which a sensor sees them after
 /// it.

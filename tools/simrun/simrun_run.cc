@@ -118,8 +118,8 @@ void report(const Simulation& simulation, const SimrunOptions& options) {
             "the world could not keep up: the clock gave up " + formatMilliseconds(lost) + " s");
 }
 
-void conclude(const ExpectationJudge& judge, const SimrunOptions& options,
-              const std::string& environment, JunitFile& junit) {
+void conclude(const RunJudge& judge, const SimrunOptions& options, const std::string& environment,
+              JunitFile& junit) {
     const std::vector<RunVerdict> verdicts = judge.verdicts();
     std::vector<JunitCase> cases;
     cases.reserve(verdicts.size());

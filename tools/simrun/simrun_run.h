@@ -20,7 +20,6 @@
 #include "server/server.h"
 #include "sim/activity.h"
 #include "sim/command.h"
-#include "sim/expect.h"
 #include "sim/recorder.h"
 #include "sim/replay.h"
 #include "sim/simulation.h"
@@ -60,11 +59,11 @@ std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions
 /// Reports the length of a run and whether it kept up with the clock.
 void report(const Simulation& simulation, const SimrunOptions& options);
 
-/// Reports the verdicts of --expect at the end. Completes the file of --junit.
+/// Reports the verdicts of the judge at the end. Completes the file of --junit.
 /// \throws UnmetError if one is unmet
 /// \param environment operand
-void conclude(const ExpectationJudge& judge, const SimrunOptions& options,
-              const std::string& environment, JunitFile& junit);
+void conclude(const RunJudge& judge, const SimrunOptions& options, const std::string& environment,
+              JunitFile& junit);
 
 /// A record that is being written.
 struct RunningRecord {
