@@ -2,8 +2,11 @@
 // Thins and clips the curves of coverage for the page, and fills the floor with their colours.
 #include <algorithm>
 #include <array>
+#include <queue>
+#include <tuple>
 #include <utility>
 
+#include "base/number.h"
 #include "geom/polyline.h"
 #include "geom/predicates.h"
 #include "raster/contour.h"
@@ -50,6 +53,38 @@ Polygon thinnedCurve(const Polygon& curve, double tolerance) {
     result.insert(result.end(), rest.begin() + 1, rest.end() - 1);
     return result;
 }
+
+/// Part of a closed curve between two of its corners, with the largest distance of a corner from
+/// the chord that would replace it.
+struct Run {
+    double apart;
+    std::size_t curve, from, to, farthest;
+
+    [[nodiscard]] bool operator<(const Run& other) const {
+        return std::tie(apart, other.curve, other.from) < std::tie(other.apart, curve, from);
+    }
+};
+
+Run runOf(const Polygon& corners, std::size_t curve, std::size_t from, std::size_t to) {
+    const Point2 start = corners[from];
+    const Vec2 chord = corners[to % corners.size()] - start;
+    const double square = dot(chord, chord);
+    Run run{0, curve, from, to, from};
+    for (std::size_t i = from + 1; i < to; ++i) {
+        const Vec2 way = corners[i] - start;
+        const double along = square > 0 ? std::clamp(dot(way, chord) / square, 0.0, 1.0) : 0;
+        const Vec2 off = way - along * chord;
+        if (const double apart = dot(off, off); apart > run.apart) {
+            run.apart = apart;
+            run.farthest = i;
+        }
+    }
+    run.apart = std::sqrt(run.apart);
+    return run;
+}
+
+/// Returns the limits with a rim that hides strokes along them.
+Box2 rimOf(const MapPicture& map) { return map.limits().expanded(4 * map.em / map.view.scale); }
 
 using Curves = std::vector<Polygon>;
 
@@ -229,9 +264,8 @@ std::optional<Segment2> clipped(const Segment2& segment, const Box2& box) {
 }
 
 std::vector<Polygon> drawable(const MapPicture& map, std::vector<Polygon> curves) {
-    // Far enough outside to hide strokes along the box.
-    const double rim = 4 * map.em / map.view.scale, tolerance = 0.03 / map.view.scale;
-    const Box2 box = map.limits().expanded(rim);
+    const double tolerance = 0.03 / map.view.scale;
+    const Box2 box = rimOf(map);
     for (Polygon& curve : curves) curve = thinnedCurve(clipped(curve, box), tolerance);
     std::erase_if(curves, [](const Polygon& curve) { return curve.size() < 3; });
     return curves;
@@ -242,6 +276,59 @@ std::vector<Polygon> drawable(const MapPicture& map, const std::vector<Curve>& c
     polygons.reserve(curves.size());
     for (const Curve& curve : curves) polygons.push_back(chords(curve, 0.03 / map.view.scale));
     return drawable(map, std::move(polygons));
+}
+
+std::size_t cornersOf(const std::vector<Polygon>& curves) {
+    std::size_t count = 0;
+    for (const Polygon& curve : curves) count += curve.size();
+    return count;
+}
+
+FittedCurves fitted(std::vector<Polygon> curves, std::size_t most) {
+    if (cornersOf(curves) <= most) return {std::move(curves)};
+    std::priority_queue<Run> open;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        const Box2 box = bounds(curves[i]);
+        open.push({std::max(box.width(), box.depth()), i, 0, curves[i].size(), 0});
+    }
+    std::vector<std::vector<std::size_t>> kept(curves.size());
+    for (std::size_t left = most; left > 0 && !open.empty() && open.top().apart > 0; --left) {
+        const Run run = open.top();
+        open.pop();
+        const Polygon& curve = curves[run.curve];
+        kept[run.curve].push_back(run.farthest);
+        if (run.from < run.farthest) open.push(runOf(curve, run.curve, run.from, run.farthest));
+        open.push(runOf(curve, run.curve, run.farthest, run.to));
+    }
+    FittedCurves result{{}, open.empty() ? 0 : open.top().apart};
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        if (kept[i].size() < 3) continue;
+        std::ranges::sort(kept[i]);
+        Polygon& curve = result.curves.emplace_back();
+        curve.reserve(kept[i].size());
+        for (const std::size_t corner : kept[i]) curve.push_back(curves[i][corner]);
+    }
+    return result;
+}
+
+std::size_t cornersFor(std::size_t views) {
+    return std::max(kLeastCorners, kMostCorners / std::max<std::size_t>(views, 1));
+}
+
+FittedCurves fittedContours(const MapPicture& map, const SensorView& view) {
+    const std::size_t most = cornersFor(map.coverage.sensors.size());
+    if (view.region) return fitted(drawable(map, *view.region), most);
+    std::vector<Polygon> curves = contours(map.coverage.target.grid, view.cells);
+    // Those of which most corners go are not thinned before.
+    if (cornersOf(curves) <= most) return {drawable(map, std::move(curves))};
+    const Box2 box = rimOf(map);
+    for (Polygon& curve : curves) curve = clipped(curve, box);
+    return fitted(std::move(curves), most);
+}
+
+std::string toleranceText(const FittedCurves& view) {
+    if (!(view.tolerance > 0)) return {};
+    return ", outline within " + formatFixed(std::max(0.01, view.tolerance), 2) + " m";
 }
 
 std::uint32_t redundancyScale(const CoverageReport& report) {

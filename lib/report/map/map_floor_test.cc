@@ -353,6 +353,51 @@ TEST(MapCurves, ThinnedLinesStayNear) {
     EXPECT_EQ(thinned({{0, 0}, {1, 0}, {2, 0}}, 0.1), (std::vector<Point2>{{0, 0}, {2, 0}}));
 }
 
+/// A closed curve about a place, round but for its noise.
+Polygon roundCurve(std::mt19937_64& random, Point2 middle, double radius, int corners) {
+    std::uniform_real_distribution<double> noise(0.97, 1.03);
+    Polygon curve;
+    for (int i = 0; i < corners; ++i) {
+        const Angle way = Angle::degrees(360.0 * i / corners);
+        curve.push_back(middle + noise(random) * radius * unitVector(way));
+    }
+    return curve;
+}
+
+TEST(MapCurves, FittedCurvesHaveFewCornersAndStayNear) {
+    std::mt19937_64 random(5);
+    std::vector<Polygon> curves = {roundCurve(random, {0, 0}, 10, 3000),
+                                   roundCurve(random, {30, 0}, 4, 900)};
+    for (int i = 0; i < 20; ++i) curves.push_back(roundCurve(random, {-30.0, 5.0 * i}, 0.05, 12));
+    double last = 1e9;
+    for (const std::size_t most : {20U, 80U, 600U}) {
+        const FittedCurves fit = fitted(curves, most);
+        EXPECT_LE(cornersOf(fit.curves), most);
+        EXPECT_GT(cornersOf(fit.curves), most / 2);
+        EXPECT_GT(fit.tolerance, 0);
+        EXPECT_LT(fit.tolerance, last);
+        last = fit.tolerance;
+        ASSERT_GE(fit.curves.size(), 2U);
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_GT(signedArea(fit.curves[i]), 0);
+            for (const Point2 p : curves[i]) {
+                double nearest = 1e9;
+                forEachEdge(fit.curves[i], [&](const Segment2& edge) {
+                    nearest = std::min(nearest, distance(p, edge));
+                });
+                ASSERT_LE(nearest, fit.tolerance + 1e-12);
+            }
+        }
+    }
+    // Small ones are left out first.
+    EXPECT_EQ(fitted(curves, 20).curves.size(), 2U);
+    EXPECT_EQ(fitted(curves, 6000).curves, curves);
+    EXPECT_EQ(fitted(curves, 6000).tolerance, 0);
+    EXPECT_TRUE(fitted({}, 5).curves.empty());
+    // Curves without extent have no corner to keep.
+    EXPECT_TRUE(fitted({Polygon(9, Point2{1, 1})}, 5).curves.empty());
+}
+
 TEST(DensityMap, IsColouredByClass) {
     const std::string lines =
         "ispace size=8,8,3\ncamera at=-3.9,0,2 tilt=-20 fov=90 pixels=640,480\n";

@@ -22,11 +22,9 @@ bool countsInSet(const SensorView& view) { return view.isPartial(); }
 
 constexpr std::size_t kManySensors = 2 * kSeriesColors;  // above it, lines are finer
 
-/// Returns the contours of a sensor's or a set's view.
-template <typename View>
-std::vector<Polygon> contoursOf(const MapPicture& map, const View& view) {
-    if (view.region) return drawable(map, *view.region);
-    return drawable(map, contours(map.coverage.target.grid, view.cells));
+std::vector<Polygon> contoursOf(const MapPicture& map, const CoveredSet& set) {
+    if (set.region) return drawable(map, *set.region);
+    return drawable(map, contours(map.coverage.target.grid, set.cells));
 }
 
 void drawContours(Picture& picture, const MapPicture& map, const std::vector<Polygon>& curves,
@@ -248,14 +246,16 @@ void drawViews(Picture& picture, const MapPicture& map) {
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const SensorView& view = sensors[i];
         const Stroke line = sensorStroke(map, i);
-        picture.pushGroup("", "field of view of " + view.id);
+        const bool has_beams = !countsInSet(view) && showsBeams(map, view);
+        const FittedCurves outline = has_beams ? FittedCurves{} : fittedContours(map, view);
+        picture.pushGroup("", "field of view of " + view.id + toleranceText(outline));
         if (countsInSet(view)) {
             const Color faint = line.color.faded(0.5 * line.color.alpha);
-            picture.area(contoursOf(map, view), {Stroke{faint, map.em / 24}});
-        } else if (showsBeams(map, view)) {
+            picture.area(outline.curves, {Stroke{faint, map.em / 24}});
+        } else if (has_beams) {
             drawBeams(picture, map, i);
         } else {
-            drawContours(picture, map, contoursOf(map, view), line);
+            drawContours(picture, map, outline.curves, line);
         }
         picture.pop();
     }
@@ -267,8 +267,10 @@ void drawViews(Picture& picture, const MapPicture& map) {
 void drawRegions(Picture& picture, const MapPicture& map) {
     for (std::size_t i = 0; i < map.coverage.sensors.size(); ++i) {
         const SensorView& view = map.coverage.sensors[i];
-        picture.pushGroup("view-" + view.id, "field of view of " + view.id);
-        picture.area(contoursOf(map, view), {sensorStroke(map, i)});
+        const FittedCurves outline = fittedContours(map, view);
+        picture.pushGroup("view-" + view.id,
+                          "field of view of " + view.id + toleranceText(outline));
+        picture.area(outline.curves, {sensorStroke(map, i)});
         picture.pop();
     }
 }

@@ -47,6 +47,27 @@ std::vector<Polygon> drawable(const MapPicture& map, std::vector<Polygon> curves
 /// Likewise for exact curves: chords replace arcs.
 std::vector<Polygon> drawable(const MapPicture& map, const std::vector<Curve>& curves);
 
+/// Corners that the views of a picture have in sum, and at least each: more would take memory that
+/// no reader has, for details that no eye sees.
+constexpr std::size_t kMostCorners = 400'000, kLeastCorners = 64;
+
+/// Curves with a bounded number of corners.
+struct FittedCurves {
+    std::vector<Polygon> curves;
+    double tolerance = 0;  ///< that they may be off, in metres; 0: they are as they were
+};
+std::size_t cornersOf(const std::vector<Polygon>& curves);
+/// Returns curves as they are if they have at most `most` corners; otherwise those corners that lie
+/// farthest from the outline without them (Douglas and Peucker, largest distance first). Curves
+/// with fewer than three of these are left out.
+FittedCurves fitted(std::vector<Polygon> curves, std::size_t most);
+/// Returns the share of one among `views` in the corners of a picture.
+std::size_t cornersFor(std::size_t views);
+/// Returns the contours of a sensor's view for drawing, with its share of corners.
+FittedCurves fittedContours(const MapPicture& map, const SensorView& view);
+/// Returns ", outline within 0.2 m" of curves that were thinned, else an empty text.
+std::string toleranceText(const FittedCurves& view);
+
 // Passages (map_passages.cc).
 
 /// Draws stairs with their steps and an arrow upwards, lifts with a cross, and shafts with a dashed

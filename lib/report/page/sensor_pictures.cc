@@ -236,11 +236,12 @@ PageFigure regionOf(const Scene& scene, const Coverage& coverage, const SensorVi
     for (const Polygon& curve : curves)
         for (const Point2 p : curve) box.add(p);
     FloorFigure figure(view, box, "floor that " + view.id + " sees");
+    const FittedCurves outline = fitted(std::move(curves), cornersFor(coverage.sensors.size()));
     figure.picture().pushView(figure.page());
-    figure.picture().area(curves, {color.faded(0.35), Stroke{color, 1}});
+    figure.picture().area(outline.curves, {color.faded(0.35), Stroke{color, 1}});
     figure.picture().pop();
     figure.drawWalls(scene, kScanHeight);
-    return figure.finish(color, view.id + ": the floor that it sees");
+    return figure.finish(color, view.id + ": the floor that it sees" + toleranceText(outline));
 }
 
 /// Draws the scan of a laser: its beams, with a dot at each return.
