@@ -177,8 +177,10 @@ void Adviser::keepPromising(const MeasuredState& now, std::vector<Move>& moves) 
         if (findingsOf(moved) > accepted) continue;
         kept.push_back(move);
         if (!estimates) continue;
-        CoarseSight coarse(moved.environment, options_);
-        gains.push_back(coarse.whole(moved.sensors));
+        CoarseSight coarse(moved.environment, options_, CoarseSight::Cells::Few);
+        // With private zones the floor that is covered decides nothing, see below.
+        gains.push_back(options_.privacy.empty() ? coarse.whole(moved.sensors)
+                                                 : FloorGain{coarse.privateOf(moved.sensors), 0});
         error = coarse.error();
     }
     moves.clear();

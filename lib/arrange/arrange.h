@@ -139,6 +139,9 @@ struct ArrangeOptions {
     /// it, sensors may stand anywhere in the rectangle around the room, all of which counts (fig.
     /// 4.8).
     bool judges_inside = true;
+    /// Looks only at floor that standing sensors leave uncovered, which is faster. A sensor without
+    /// a gain then stands anywhere, and connections are not known.
+    bool is_for_gain_alone = false;
     std::uint64_t seed = 0;
 };
 

@@ -15,13 +15,13 @@
 
 #include "arrange/beam_cells.h"
 #include "arrange/case_room.h"
-#include "arrange/counted_cells.h"
 #include "arrange/demand.h"
 #include "arrange/facing_cells.h"
 #include "arrange/sensor_group.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/packed.h"
+#include "coverage/counted_cells.h"
 #include "coverage/plane_cells.h"
 #include "coverage/sector_cells.h"
 
@@ -194,8 +194,11 @@ struct CandidateViews::Data {
                                      turned->headings().begin(), turned->headings().end());
             const SiteSights::Held known =
                 sights != nullptr ? sights->at(site.place) : SiteSights::Held();
-            cellsByView(grid, sight.meshFor(device), fields, sight.plane(), parts, window,
-                        is_known ? &*turned : nullptr, known.get());
+            cellsByView(grid, sight.meshFor(device), fields, sight.plane(), parts,
+                        {.window = window,
+                         .counted = counted ? &*counted : nullptr,
+                         .turned = is_known ? &*turned : nullptr,
+                         .known = known.get()});
         } else {  // lasers
             parts.first.resize(1);
             for (std::size_t k = 0; k < headings; ++k) {

@@ -16,29 +16,39 @@ namespace ispace {
 
 namespace {
 
-constexpr double kCells = 4'000;  // about so many
-constexpr double kLeastEdge = 0.1, kMostEdge = 0.5;
+constexpr double kLeastEdge = 0.05, kMostEdge = 0.5;
 /// Errors of cells along an outline cancel out, but where an edge of a field of view runs through
 /// centres, which counts them all: measured in furnished rooms, views rarely have so many more, and
-/// never twice as many more, cells than were counted.
-constexpr double kCellsOfError = 8;
+/// never twice as many more, cells of kUsualEdge than were counted.
+constexpr double kCellsOfError = 8, kUsualEdge = 0.18;
 
-double edgeFor(const Box2& limits) {
-    return std::clamp(std::sqrt(limits.width() * limits.depth() / kCells), kLeastEdge, kMostEdge);
+double edgeFor(const Box2& limits, CoarseSight::Cells cells) {
+    return std::clamp(std::sqrt(limits.width() * limits.depth() / static_cast<double>(cells)),
+                      kLeastEdge, kMostEdge);
+}
+
+/// Outlines pass more of smaller cells.
+double errorOf(double cell) {
+    return kCellsOfError * cell * std::sqrt(std::max(1.0, kUsualEdge / std::sqrt(cell)));
 }
 
 }  // namespace
 
-CoarseSight::CoarseSight(const Environment& environment, const SuggestOptions& options)
+CoarseSight::CoarseSight(const Environment& environment, const SuggestOptions& options, Cells cells)
     : worlds_(environment),
       sight_(environment, options.measure.plane, &worlds_),
-      target_(
-          makeTarget(environment, CellSize{edgeFor(environment.limits())}, options.measure.height)),
+      target_(makeTarget(environment, CellSize{edgeFor(environment.limits(), cells)},
+                         options.measure.height)),
       cell_(target_.grid.cellArea()),
-      error_(kCellsOfError * cell_),
-      counted_(target_.indoor) {
+      error_(errorOf(cell_)) {
     for (const PrivacyRule& rule : options.privacy)
-        private_.push_back({rule.density, privateCells(rule, environment, target_)});
+        private_.push_back({rule.density, someOf(privateCells(rule, environment, target_))});
+}
+
+CoarseSight::Some CoarseSight::someOf(CellSet cells) const {
+    CountedCells counted(cells);
+    const CellWindow window = CellWindow::of(target_.grid, cells);
+    return {std::move(cells), std::move(counted), window};
 }
 
 bool CoarseSight::estimates(const SuggestOptions& options) {
@@ -60,7 +70,7 @@ void CoarseSight::look(std::span<const Sensor> sensors) {
 
 void CoarseSight::count(const Sensor& moving) {
     const auto own = seen_.find(moving.id);
-    counted_ = target_.indoor;
+    CellSet counted = target_.indoor;
     const bool is_partial = isPartial(moving.model);
     target_.indoor.forEach([&](std::size_t cell) {
         const std::uint32_t mine = own != seen_.end() && own->second.test(cell) ? 1 : 0;
@@ -68,32 +78,53 @@ void CoarseSight::count(const Sensor& moving) {
         const std::uint32_t heard = heard_[cell] - (is_partial ? mine : 0);
         // A receiver covers the floor that is one short of enough.
         const bool is_open = is_partial ? heard + 1 == kMinReceivers : heard < kMinReceivers;
-        if (times > 0 || !is_open) counted_.reset(cell);
+        if (times > 0 || !is_open) counted.reset(cell);
     });
+    counted_ = someOf(std::move(counted));
 }
 
 CoarseSight::View CoarseSight::viewOf(const Sensor& sensor) const {
-    View view{sensor, sight_.cellsOf(target_.grid, sensor)};
-    if (!sensor.is<Camera>()) return view;
+    return {sensor, sight_.cellsOf(target_.grid, sensor), privateOf(sensor)};
+}
+
+double CoarseSight::privateOf(const Sensor& sensor) const {
+    double required = 0;
+    if (!sensor.is<Camera>()) return required;
     for (const Private& rule : private_) {
         Sensor camera = sensor;
         camera.model = withDensity(sensor.as<Camera>(), rule.density);
-        view.required -= cell_ * static_cast<double>(
-                                     countCommon(sight_.cellsOf(target_.grid, camera), rule.cells));
+        const CellSet cells = sight_.cellsOf(target_.grid, camera, &rule.cells.counted);
+        required -= cell_ * static_cast<double>(countCommon(cells, rule.cells.set));
     }
-    return view;
+    return required;
 }
 
+double CoarseSight::privateOf(std::span<const Sensor> sensors) const {
+    double required = 0;
+    for (const Sensor& sensor : sensors) {
+        if (!sensor.is<Camera>()) continue;
+        sight_.prepare(sensor);
+        required += privateOf(sensor);
+    }
+    return required;
+}
+
+namespace {
+
+constexpr std::size_t kMost = 10'000;  // views that are kept
+
+std::tuple<double, double, double> keyOf(const Pose3& pose) {
+    return {pose.position.x, pose.position.y, pose.heading.degrees()};
+}
+
+}  // namespace
+
 std::vector<const CoarseSight::View*> CoarseSight::viewsOf(std::span<const Sensor> sensors) {
-    const auto key_of = [](const Pose3& pose) {
-        return std::tuple(pose.position.x, pose.position.y, pose.heading.degrees());
-    };
-    constexpr std::size_t kMost = 10'000;
     if (views_.size() + sensors.size() > kMost) views_.clear();
     std::vector<const View*> views(sensors.size());
     std::vector<std::size_t> fresh;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
-        const auto [first, last] = views_.equal_range(key_of(sensors[i].pose));
+        const auto [first, last] = views_.equal_range(keyOf(sensors[i].pose));
         const auto known = std::find_if(
             first, last, [&](const auto& one) { return seeAlike(one.second.sensor, sensors[i]); });
         if (known != last)
@@ -110,16 +141,75 @@ std::vector<const CoarseSight::View*> CoarseSight::viewsOf(std::span<const Senso
     });
     for (std::size_t k = 0; k < fresh.size(); ++k)
         views[fresh[k]] =
-            &views_.emplace(key_of(sensors[fresh[k]].pose), std::move(made[k]))->second;
+            &views_.emplace(keyOf(sensors[fresh[k]].pose), std::move(made[k]))->second;
     return views;
 }
 
+void CoarseSight::addSeen(const Sensor& sensor, std::span<const Pose3> poses, const Some& cells,
+                          std::span<double> floor) const {
+    std::vector<FieldOfView> views;
+    views.reserve(poses.size());
+    for (const Pose3& pose : poses)
+        if (const auto view = fieldOfView({sensor.id, sensor.model, pose})) views.push_back(*view);
+    const bool is_one_place = std::all_of(poses.begin(), poses.end(), [&](const Pose3& pose) {
+        return pose.position == poses.front().position;
+    });
+    const Sensor first{sensor.id, sensor.model, poses.front()};
+    const Point3 place = first.pose.position;
+    if (is_one_place && !scansSlice(first) && views.size() == poses.size()) {
+        if (sight_.levelAt(place.z)->isInsideSolid(place.onFloor())) return;
+        CellParts parts;
+        cellsByView(target_.grid, sight_.meshFor(sensor.model), views, sight_.plane(), parts,
+                    {.window = cells.window, .counted = &cells.counted});
+        for (std::size_t i = 0; i < poses.size(); ++i)
+            floor[i] += cell_ * static_cast<double>(
+                                    countCommon(cellsOf(parts, i, target_.grid.size()), cells.set));
+        return;
+    }
+    tbb::parallel_for(std::size_t{0}, poses.size(), [&](std::size_t i) {
+        // A thread that waits for rows of cells in here must not begin with another pose.
+        tbb::this_task_arena::isolate([&] {
+            const Sensor moved{sensor.id, sensor.model, poses[i]};
+            const CellSet seen = sight_.cellsOf(target_.grid, moved, &cells.counted);
+            floor[i] += cell_ * static_cast<double>(countCommon(seen, cells.set));
+        });
+    });
+}
+
 std::vector<FloorGain> CoarseSight::at(const Sensor& sensor, std::span<const Pose3> poses) {
-    std::vector<Sensor> moved(poses.size(), sensor);
-    for (std::size_t i = 0; i < poses.size(); ++i) moved[i].pose = poses[i];
-    std::vector<FloorGain> gains;
-    gains.reserve(poses.size());
-    for (const View* const view : viewsOf(moved)) gains.push_back(gainOf(*view));
+    sight_.prepare(sensor);
+    std::vector<double> gained(poses.size());
+    addSeen(sensor, poses, *counted_, gained);
+    std::vector<FloorGain> gains(poses.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) gains[i].gained = gained[i];
+    if (!sensor.is<Camera>() || private_.empty()) return gains;
+    if (private_seen_.size() + poses.size() > kMost) private_seen_.clear();
+    std::vector<std::size_t> fresh;
+    std::vector<Pose3> fresh_poses;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const Sensor moved{sensor.id, sensor.model, poses[i]};
+        const auto [first, last] = private_seen_.equal_range(keyOf(poses[i]));
+        const auto known = std::find_if(
+            first, last, [&](const auto& one) { return seeAlike(one.second.sensor, moved); });
+        if (known != last) {
+            gains[i].required = known->second.required;
+        } else {
+            fresh.push_back(i);
+            fresh_poses.push_back(poses[i]);
+        }
+    }
+    std::vector<double> seen(fresh.size());
+    for (const Private& rule : private_) {
+        if (fresh.empty()) break;
+        addSeen({sensor.id, withDensity(sensor.as<Camera>(), rule.density), sensor.pose},
+                fresh_poses, rule.cells, seen);
+    }
+    for (std::size_t k = 0; k < fresh.size(); ++k) {
+        gains[fresh[k]].required = -seen[k];
+        private_seen_.emplace(
+            keyOf(fresh_poses[k]),
+            Known{Sensor{sensor.id, sensor.model, fresh_poses[k]}, gains[fresh[k]].required});
+    }
     return gains;
 }
 

@@ -43,7 +43,7 @@ TEST(CoarseSight, ViewsCoverHardlyMoreThanTheirCells) {
         ASSERT_TRUE(CoarseSight::estimates(options));
         const Sensor& moving = scene.sensors.front();
         const std::vector<Pose3> poses = posesAround(moving.pose);
-        CoarseSight coarse(scene.environment, options);
+        CoarseSight coarse(scene.environment, options, CoarseSight::Cells::Many);
         coarse.look(scene.sensors);
         coarse.count(moving);
         const std::vector<FloorGain> estimates = coarse.at(moving, poses);
@@ -64,7 +64,7 @@ TEST(CoarseSight, CountsPrivateFloorAgainstACamera) {
     const Scene scene = roomWith("camera id=c at=-4,-3,2.5 fov=80 tilt=-35 heading=45\n");
     SuggestOptions options;
     options.privacy = {parsePrivacy("corner,1")};
-    CoarseSight coarse(scene.environment, options);
+    CoarseSight coarse(scene.environment, options, CoarseSight::Cells::Many);
     const Sensor& camera = scene.sensors.front();
     coarse.look(scene.sensors);
     coarse.count(camera);
@@ -72,6 +72,7 @@ TEST(CoarseSight, CountsPrivateFloorAgainstACamera) {
     away.heading = Angle::degrees(-135);
     const FloorGain whole = coarse.whole(scene.sensors);
     EXPECT_LT(whole.required, -4) << "most of 9 m2";
+    EXPECT_EQ(coarse.privateOf(scene.sensors), whole.required);
     const std::vector<FloorGain> gains = coarse.at(camera, {&away, 1});
     EXPECT_EQ(gains[0].required, 0);
     EXPECT_LT(gains[0].gained, 1) << "it faces the corner";
@@ -90,7 +91,7 @@ TEST(CoarseSight, CountsFloorThatOneReceiverIsShortOf) {
         "ultrasound id=d at=0,2,2.5 range=4\n";
     const Scene scene = roomWith("ultrasound id=c at=-3,-2,2.5 range=4\n" + others);
     const Sensor& moving = scene.sensors.front();
-    CoarseSight coarse(scene.environment, {});
+    CoarseSight coarse(scene.environment, {}, CoarseSight::Cells::Many);
     coarse.look(scene.sensors);
     coarse.count(moving);
     const std::vector<Pose3> poses = posesAround(moving.pose);

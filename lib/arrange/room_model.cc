@@ -122,9 +122,13 @@ void RoomModel::withoutFaces(CellParts& parts) const {
 }
 
 void RoomModel::makePool(std::vector<std::uint32_t> left, Progress& progress) {
-    pool_ = std::make_unique<CandidatePool>(
-        scene_->environment, worlds_, target_, CandidateWeights{counted_, std::move(left)},
-        options_, progress, cases_, facing_ ? &*facing_ : nullptr, options_.demand.get());
+    CellSet counted = counted_;
+    for (std::size_t i = 0; options_.is_for_gain_alone && i < left.size(); ++i)
+        if (left[i] == 0) counted.reset(i);
+    pool_ = std::make_unique<CandidatePool>(scene_->environment, worlds_, target_,
+                                            CandidateWeights{std::move(counted), std::move(left)},
+                                            options_, progress, cases_,
+                                            facing_ ? &*facing_ : nullptr, options_.demand.get());
 }
 
 }  // namespace ispace

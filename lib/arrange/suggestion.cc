@@ -37,7 +37,7 @@ constexpr double kSearchedCells = 40'000, kLeastCells = 2'500;
 constexpr double kShifts[] = {0.1, 0.25, 0.5, 1};
 constexpr int kDirections = 8;
 constexpr int kTurnStep = 15;             ///< degrees; then single degrees about the best
-constexpr std::size_t kTrialsAtOnce = 4;  ///< that are measured side by side, if cells bound them
+constexpr std::size_t kTrialsAtOnce = 2;  ///< that are measured side by side, if cells bound them
 
 }  // namespace
 
@@ -77,13 +77,16 @@ FloorWeights Adviser::weightsFor(const MeasuredState& now) const {
 
 namespace {
 
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
 /// A pose to try, as an edit.
 struct Trial {
     std::size_t sensor;
     int turn = 0;  ///< degrees
     Vec2 by = {};
-    FloorGain gain = {};  ///< over the present pose
-    FloorGain most = {};  ///< a bound of it
+    FloorGain gain = {};               ///< over the present pose
+    FloorGain most = {0, kUnbounded};  ///< a bound of it
+    double floor = kUnbounded;         ///< ExactGain::mostMore(), once it was computed
     std::size_t number = 0;
 };
 
@@ -131,9 +134,11 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
     CoarseSight* coarse = nullptr;
     if (CoarseSight::estimates(options_)) {
         if (known != nullptr && first_coarse_ == nullptr)
-            first_coarse_ = std::make_unique<CoarseSight>(first_sight_->environment, options_);
+            first_coarse_ = std::make_unique<CoarseSight>(first_sight_->environment, options_,
+                                                          CoarseSight::Cells::Many);
         if (known == nullptr)
-            own_coarse = std::make_unique<CoarseSight>(now.scene.environment, options_);
+            own_coarse = std::make_unique<CoarseSight>(now.scene.environment, options_,
+                                                       CoarseSight::Cells::Many);
         coarse = known != nullptr ? first_coarse_.get() : own_coarse.get();
         coarse->look(now.scene.sensors);
     }
@@ -147,22 +152,31 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
         const Sensor& sensor = sensors[trials.front().sensor];
         const double most = rules_of_cameras.mostGain(sensor);
         const auto least = [&] { return best ? std::max(best->gain, enough) : enough; };
-        std::erase_if(trials, [&](Trial& trial) {
-            trial.most = {most, gain.mostMore(poseAfter(sensor.pose, trial))};
-            return trial.most <= least();
-        });
+        for (std::size_t i = 0; i < trials.size(); ++i) {
+            trials[i].most.required = most;
+            trials[i].number = i;
+        }
         // Small gains count, too: whole degrees about the best turn may gain more.
-        const bool may_be_worthwhile =
-            std::any_of(trials.begin(), trials.end(),
-                        [&](const Trial& trial) { return trial.most >= worthwhile; });
+        const auto bound = [&](Trial& trial) {
+            if (trial.floor == kUnbounded)
+                trial.floor = gain.mostMore(poseAfter(sensor.pose, trial));
+            return FloorGain{most, trial.floor};
+        };
+        const bool may_be_worthwhile = std::any_of(trials.begin(), trials.end(), [&](Trial& trial) {
+            return bound(trial) > least() && bound(trial) >= worthwhile;
+        });
         if (!may_be_worthwhile) return;
-        for (std::size_t i = 0; i < trials.size(); ++i) trials[i].number = i;
         // Without cells all gains are computed at once: then they are comparable in any case.
         double present = 0;
+        const auto is_too_little = [&](const Trial& trial) { return trial.most <= least(); };
         if (coarse) {
             present = gain.gains({&sensor.pose, 1}).front();
             boundByCells(trials, sensor, {-most, present}, *coarse);
+            std::erase_if(trials, is_too_little);
         }
+        for (Trial& trial : trials)
+            trial.most.gained = std::min(trial.most.gained, bound(trial).gained);
+        std::erase_if(trials, is_too_little);
         std::stable_sort(trials.begin(), trials.end(),
                          [](const Trial& a, const Trial& b) { return a.most > b.most; });
         const std::size_t at_once = coarse ? kTrialsAtOnce : trials.size();
@@ -271,6 +285,7 @@ ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Scene& home,
     options.pixel_density = options_.measure.density;
     options.privacy = options_.privacy;
     options.seed = 0;
+    options.is_for_gain_alone = true;
     const Box2& limits = home.environment.limits();
     CandidateDensity& density = options.density;
     density.lattice_step =

@@ -116,7 +116,7 @@ void StoreySight::look(std::size_t from, std::span<const Sensor> turned, std::si
     if (window.first_row >= window.end_row || window.first_column >= window.end_column) return;
     const auto& room = rooms_[to].get(
         [&] { return std::make_shared<const SurroundedRoom>(*coupling_.surroundings(to)); });
-    cellsByView(grid, room->mesh(), views, plane_, parts, window);
+    cellsByView(grid, room->mesh(), views, plane_, parts, {.window = window});
     const auto is_framed = [&](std::size_t cell) {
         const Point2 place = grid.center(cell);
         return std::all_of(floors.begin(), floors.end(), [&](const Passed& floor) {

@@ -51,11 +51,12 @@ struct CellTarget {
 /// Runs of cells that each view sees, from seen cells in ascending order.
 class RunsByView {
   public:
-    explicit RunsByView(std::size_t views) : runs_(views) {}
+    /// \param counted runs go on over cells that do not count; null: all count
+    RunsByView(std::size_t views, const CountedCells* counted) : runs_(views), counted_(counted) {}
 
     /// Adds a cell to the runs of these views.
     void add(std::uint32_t cell, std::uint64_t views) {
-        if (cell != end_) close(open_);
+        if ((counted_ != nullptr ? counted_->next(end_) : end_) != cell) close(open_);
         close(open_ & ~views);
         for (std::uint64_t bits = views & ~open_; bits != 0; bits &= bits - 1)
             runs_[static_cast<std::size_t>(std::countr_zero(bits))].push_back({cell, cell});
@@ -76,6 +77,7 @@ class RunsByView {
     }
 
     std::vector<std::vector<CellRun>> runs_;
+    const CountedCells* counted_;
     std::uint64_t open_ = 0;  // views whose last run ends at end_
     std::uint32_t end_ = 0;
 };
@@ -85,20 +87,19 @@ template <typename TargetOf>
 class RowLook {
   public:
     RowLook(const Grid& grid, const RayWorld& mesh, const Reach& reach, const TargetOf& target_of,
-            const CellWindow& window, KnownSight* known)
+            const ViewScope& scope)
         : grid_(grid),
           columns_(GridAxis::columnsOf(grid)),
           mesh_(mesh),
           reach_(reach),
           target_of_(target_of),
-          window_(window),
-          known_(known) {}
+          scope_(scope) {}
 
     /// Appends the cells of a row that each view sees to its runs.
     void add(int row, RunsByView& runs) {
         findTargets(row);
         if (targets_.empty()) return;
-        if (known_ != nullptr) return addKnown(runs);
+        if (scope_.known != nullptr) return addKnown(runs);
         seen_.resize(targets_.size());
         mesh_.query(reach_.origin, targets_, seen_);
         for (std::size_t i = 0; i < targets_.size(); ++i)
@@ -111,18 +112,19 @@ class RowLook {
         unknown_cells_.clear();
         unknown_.clear();
         for (std::size_t i = 0; i < targets_.size(); ++i) {
-            if (known_->tested.test(cells_[i])) continue;
+            if (scope_.known->tested.test(cells_[i])) continue;
             unknown_cells_.push_back(cells_[i]);
             unknown_.push_back(targets_[i]);
         }
         seen_.resize(unknown_.size());
         if (!unknown_.empty()) mesh_.query(reach_.origin, unknown_, seen_);
         for (std::size_t i = 0; i < unknown_.size(); ++i) {
-            known_->tested.set(unknown_cells_[i]);
-            if (seen_[i] != 0 || unknown_[i] == reach_.origin) known_->seen.set(unknown_cells_[i]);
+            scope_.known->tested.set(unknown_cells_[i]);
+            if (seen_[i] != 0 || unknown_[i] == reach_.origin)
+                scope_.known->seen.set(unknown_cells_[i]);
         }
         for (std::size_t i = 0; i < targets_.size(); ++i)
-            if (known_->seen.test(cells_[i])) runs.add(cells_[i], held_[i]);
+            if (scope_.known->seen.test(cells_[i])) runs.add(cells_[i], held_[i]);
     }
     /// Finds the cells of the row that lie in any view.
     void findTargets(int row) {
@@ -133,10 +135,17 @@ class RowLook {
         if (!(std::fabs(dy) <= reach_.distance)) return;
         const double half = std::sqrt(reach_.distance * reach_.distance - dy * dy);
         const int in_reach = columns_.firstNotBelow(reach_.origin.x - half);
-        const int first = std::max(in_reach, window_.first_column);
+        const CellWindow& window = scope_.window;
+        const int first = std::max(in_reach, window.first_column);
         const int end =
-            std::min(columns_.firstAbove(reach_.origin.x + half, in_reach), window_.end_column);
-        for (int column = first; column < end; ++column) {
+            std::min(columns_.firstAbove(reach_.origin.x + half, in_reach), window.end_column);
+        const auto next = [&](int column) {
+            if (scope_.counted == nullptr || column >= end) return column;
+            const std::size_t at = grid_.cell(column, row);
+            return column +
+                   static_cast<int>(scope_.counted->next(static_cast<std::uint32_t>(at)) - at);
+        };
+        for (int column = next(first); column < end; column = next(column + 1)) {
             const CellTarget target = target_of_({columns_.center(column), y}, column, row);
             if (target.held == 0) continue;
             cells_.push_back(static_cast<std::uint32_t>(grid_.cell(column, row)));
@@ -150,8 +159,7 @@ class RowLook {
     const RayWorld& mesh_;
     Reach reach_;
     TargetOf target_of_;
-    CellWindow window_;
-    KnownSight* known_;
+    ViewScope scope_;
     std::vector<std::uint32_t> cells_, unknown_cells_;
     std::vector<Point3> targets_, unknown_;
     std::vector<std::uint64_t> held_;
@@ -161,19 +169,19 @@ class RowLook {
 /// Appends a part for each view. Bands of rows run in parallel.
 template <typename TargetOf>
 void addParts(const Grid& grid, const RayWorld& mesh, const Reach& reach, std::size_t views,
-              const TargetOf& target_of, CellParts& parts, const CellWindow& window = {},
-              KnownSight* known = nullptr) {
+              const TargetOf& target_of, CellParts& parts, const ViewScope& scope = {}) {
     constexpr int kCellsOfBand = 1 << 16;
     const int rows = std::max(1, kCellsOfBand / grid.columns);
     const auto bands = static_cast<std::size_t>((grid.rows + rows - 1) / rows);
-    std::vector<RunsByView> runs(bands, RunsByView(views));
+    std::vector<RunsByView> runs(bands, RunsByView(views, scope.counted));
     const auto look = [&](std::size_t band) {
         // Bands that run in parallel share no words of cells.
-        RowLook<TargetOf> row_look(grid, mesh, reach, target_of, window,
-                                   bands == 1 ? known : nullptr);
+        ViewScope own = scope;
+        if (bands > 1) own.known = nullptr;
+        RowLook<TargetOf> row_look(grid, mesh, reach, target_of, own);
         const int first = static_cast<int>(band) * rows;
-        for (int row = std::max(first, window.first_row);
-             row < std::min({first + rows, grid.rows, window.end_row}); ++row)
+        for (int row = std::max(first, scope.window.first_row);
+             row < std::min({first + rows, grid.rows, scope.window.end_row}); ++row)
             row_look.add(row, runs[band]);
     };
     if (bands == 1)
@@ -351,8 +359,7 @@ CellWindow CellWindow::of(const Grid& grid, const CellSet& cells) {
 }
 
 void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
-                 double height, CellParts& parts, const CellWindow& window,
-                 const TurnedViews* turned, KnownSight* known) {
+                 double height, CellParts& parts, const ViewScope& scope) {
     parts.runs.clear();
     parts.first.assign(1, 0);
     for (std::size_t begin = 0; begin < views.size(); begin += HeldViews::kMax) {
@@ -364,14 +371,16 @@ void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOf
             continue;
         }
         const HeldViews held(some);
-        const CellWindow near = reach->within(grid, window);
-        if (turned != nullptr)
-            addParts(grid, mesh, *reach, some.size(),
-                     TurnedTargets(grid, held, *turned, origin.onFloor(), height, near), parts,
-                     near, known);
+        ViewScope near = scope;
+        near.window = reach->within(grid, scope.window);
+        if (scope.turned != nullptr)
+            addParts(
+                grid, mesh, *reach, some.size(),
+                TurnedTargets(grid, held, *scope.turned, origin.onFloor(), height, near.window),
+                parts, near);
         else
-            addParts(grid, mesh, *reach, some.size(), ViewTargets(grid, held, height, near), parts,
-                     near, known);
+            addParts(grid, mesh, *reach, some.size(), ViewTargets(grid, held, height, near.window),
+                     parts, near);
     }
 }
 
@@ -385,11 +394,12 @@ std::optional<TurnedViews> turnedViews(const FieldOfView& ahead, std::span<const
     return TurnedViews(ahead, headings, height, std::min(reach->distance, most));
 }
 
-CellSet cellsOnPlane(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height) {
+CellSet cellsOnPlane(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height,
+                     const CountedCells* counted) {
     CellParts parts;
     parts.first.assign(1, 0);
     if (const auto view = fieldOfView(sensor))
-        cellsByView(grid, mesh, {&*view, 1}, height, parts);
+        cellsByView(grid, mesh, {&*view, 1}, height, parts, {.counted = counted});
     else if (sensor.as<Laser>().sweep == SweepAxis::None)
         addScan(grid, mesh, sensor, parts);
     else

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/cell_set.h"
+#include "coverage/counted_cells.h"
 #include "coverage/turned_views.h"
 #include "raster/grid.h"
 #include "scene/sensor/field_of_view.h"
@@ -22,7 +23,10 @@ namespace ispace {
 /// They agree with ShadowCaster::regionSeen(), except for centres within 0.3 mm of its boundary. A
 /// swept laser, whose region is unknown, sees the floor that its scans cross, and the floor
 /// between scans.
-CellSet cellsOnPlane(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height);
+///
+/// \param counted as ViewScope::counted, unless the sensor sweeps or scans in a plane; null: all
+CellSet cellsOnPlane(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height,
+                     const CountedCells* counted = nullptr);
 
 /// Rows and columns of a grid.
 struct CellWindow {
@@ -39,13 +43,20 @@ struct KnownSight {
     explicit KnownSight(std::size_t cells) : tested(cells), seen(cells) {}
 };
 
+/// What is known and wanted of views.
+struct ViewScope {
+    CellWindow window = {};                 ///< views are wanted as far as they lie in it
+    const CountedCells* counted = nullptr;  ///< cells to which rays are cast; null: all
+    const TurnedViews* turned = nullptr;    ///< table of the views, if there is one
+    /// Of the same grid, mesh, position and height, if views look again from there.
+    KnownSight* known = nullptr;
+};
+
 /// Computes the cells of several fields of view at one position that differ only in heading: part k
-/// of `parts` is the view k, as far as it lies in the window. O(cells in reach * views + rays)
-/// \param turned their table, if there is one: O(cells in reach + rays)
-/// \param known of the same grid, mesh, position and height, if views look again from there
+/// of `parts` is the view k. With counted cells it holds those of them that are seen, and arbitrary
+/// others. O(cells in reach * views + rays), with a table O(cells in reach + rays)
 void cellsByView(const Grid& grid, const RayWorld& mesh, std::span<const FieldOfView> views,
-                 double height, CellParts& parts, const CellWindow& window = {},
-                 const TurnedViews* turned = nullptr, KnownSight* known = nullptr);
+                 double height, CellParts& parts, const ViewScope& scope = {});
 
 /// Returns the table of views with these headings over the plane at `height`, for points that are
 /// no farther than the grid's corners are apart; `ahead` is the view at heading 0. Empty if no

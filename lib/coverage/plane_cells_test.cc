@@ -140,8 +140,8 @@ TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
             cellsByView(room.grid, sight.meshFor(model), views, 0, parts);
             const auto turned = turnedViews(view_at({0, 0, 2.6}, 0), headings, 0, room.grid);
             EXPECT_TRUE(turned || parts.runs.empty()) << lens;
-            cellsByView(room.grid, sight.meshFor(model), views, 0, by_table, {},
-                        turned ? &*turned : nullptr);
+            cellsByView(room.grid, sight.meshFor(model), views, 0, by_table,
+                        {.turned = turned ? &*turned : nullptr});
             EXPECT_EQ(parts.first, by_table.first) << lens;
             EXPECT_EQ(parts.runs, by_table.runs) << lens;
             for (std::size_t k = 0; k < views.size(); ++k) {
@@ -163,6 +163,35 @@ TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
     }
 }
 
+TEST(PlaneCells, ViewsOfCountedCellsHoldThoseThatAreSeen) {
+    const Room room("ispace size=12,8,4\ncube at=1,1 size=1,1,1");
+    Worlds worlds(room.scene.environment);
+    const VisibleArea sight(room.scene.environment, 0, &worlds);
+    const Sensor sensor = rangerAt(poseAt({0, 0, 3}, 0, -60), 90, 60, 20);
+    sight.prepare(sensor);
+    std::vector<FieldOfView> views;
+    for (const double heading : {0.0, 70.0, 140.0})
+        views.push_back(*fieldOfView(rangerAt(poseAt({0, 0, 3}, heading, -60), 90, 60, 20)));
+    const RayWorld& mesh = sight.meshFor(sensor.model);
+    CellSet wanted(room.grid.size());
+    for (std::size_t cell = 0; cell < wanted.size(); ++cell)
+        if (cell % 7 < 2 || cell % 90 == 5) wanted.set(cell);
+    const CountedCells counted(wanted);
+    CellParts all, some;
+    cellsByView(room.grid, mesh, views, 0, all);
+    cellsByView(room.grid, mesh, views, 0, some, {.counted = &counted});
+    ASSERT_EQ(some.size(), views.size());
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        CellSet expected = cellsOf(all, k, room.grid.size());
+        CellSet seen = cellsOf(some, k, room.grid.size());
+        expected &= wanted;
+        seen &= wanted;
+        EXPECT_GT(expected.count(), 20U);
+        EXPECT_EQ(seen, expected) << k;
+    }
+    EXPECT_LT(some.runs.size(), all.runs.size() + wanted.count() / 4) << "runs go on over others";
+}
+
 TEST(PlaneCells, AWindowLeavesOutOtherCells) {
     const Room room("ispace size=12,8,4\ncube at=1,1 size=1,1,1");
     Worlds worlds(room.scene.environment);
@@ -176,14 +205,14 @@ TEST(PlaneCells, AWindowLeavesOutOtherCells) {
     CellSet wanted(room.grid.size());
     for (int row = 12; row < 25; ++row)
         for (int column = 33; column < 41; ++column) wanted.set(room.grid.cell(column, row));
-    cellsByView(room.grid, mesh, views, 0, part, CellWindow::of(room.grid, wanted));
+    cellsByView(room.grid, mesh, views, 0, part, {.window = CellWindow::of(room.grid, wanted)});
     CellSet expected = cellsOf(all, 0, room.grid.size());
     expected &= wanted;
     EXPECT_GT(expected.count(), 20U);
     EXPECT_LT(expected.count(), wanted.count()) << "the cube hides some";
     EXPECT_EQ(cellsOf(part, 0, room.grid.size()), expected);
     const CellWindow empty = CellWindow::of(room.grid, CellSet(room.grid.size()));
-    cellsByView(room.grid, mesh, views, 0, none, empty);
+    cellsByView(room.grid, mesh, views, 0, none, {.window = empty});
     EXPECT_EQ(none.size(), 1U);
     EXPECT_TRUE(none.runs.empty());
 }

@@ -7,6 +7,7 @@
 
 #include "base/cell_set.h"
 #include "base/parallel.h"
+#include "coverage/counted_cells.h"
 #include "coverage/shadow_footprint.h"
 #include "env/level.h"
 #include "geom/curve.h"
@@ -47,7 +48,9 @@ class VisibleArea {
     /// Returns a box that holds regionOf(), by the field of view and the range alone. Thread-safe.
     [[nodiscard]] Box2 boxOf(const Sensor& sensor) const;
     /// Returns the cells with their centre in the view. Thread-safe. \pre prepare()
-    [[nodiscard]] CellSet cellsOf(const Grid& grid, const Sensor& sensor) const;
+    /// \param counted if not null, the view holds those of these cells, and arbitrary others
+    [[nodiscard]] CellSet cellsOf(const Grid& grid, const Sensor& sensor,
+                                  const CountedCells* counted = nullptr) const;
 
     [[nodiscard]] double plane() const { return plane_; }
     [[nodiscard]] std::shared_ptr<const Level> levelAt(double height) const {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/arrange: cells with a weight.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +9,7 @@
 
 namespace ispace {
 
-/// Removes runs of cells without weight.
+/// The cells of a grid that count: views hold those of them that they see, and arbitrary others.
 class CountedCells {
   public:
     explicit CountedCells(const CellSet& cells) : next_(cells.size() + 1), end_(cells.size() + 1) {
@@ -20,6 +19,8 @@ class CountedCells {
         end_[0] = 0;
         for (std::uint32_t i = 0; i < size; ++i) end_[i + 1] = cells.test(i) ? i + 1 : end_[i];
     }
+    /// Returns the first counted cell from this one on; the number of all cells if there is none.
+    [[nodiscard]] std::uint32_t next(std::uint32_t cell) const { return next_[cell]; }
     /// Clips all runs so that they begin and end with counted cells.
     void keepIn(CellParts& parts) const {
         std::uint32_t count = 0, begin = 0;
