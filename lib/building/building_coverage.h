@@ -48,6 +48,18 @@ std::vector<CameraRules> measureBuildingRules(const BuildingScene& building,
                                               const CoverageOptions& options,
                                               std::span<const FacingRule> facing,
                                               std::span<const PrivacyRule> privacy);
+/// Returns the rules that a storey has, with its id before those of zones and doors, as in its
+/// scene of wholeScenes(). \throws UsageError for a rule that no storey has
+struct StoreyRules {
+    std::vector<FacingRule> facing;
+    std::vector<PrivacyRule> privacy;
+};
+StoreyRules rulesOfStorey(const BuildingScene& building, const BuildingCoverage& coverage,
+                          std::size_t storey, std::span<const FacingRule> facing,
+                          std::span<const PrivacyRule> privacy);
+/// Returns the floor that falls short of rules, m2: faces that are not seen, and private floor that
+/// is.
+double missingFloor(std::span<const CameraRules> rules);
 /// Returns the rules of all storeys, with the storey before each.
 std::vector<JudgedRule> judgedInBuilding(const BuildingScene& building,
                                          std::span<const CameraRules> rules);

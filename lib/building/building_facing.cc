@@ -124,6 +124,43 @@ std::vector<CameraRules> measureBuildingRules(const BuildingScene& building,
     return measured;
 }
 
+StoreyRules rulesOfStorey(const BuildingScene& building, const BuildingCoverage& coverage,
+                          std::size_t storey, std::span<const FacingRule> facing,
+                          std::span<const PrivacyRule> privacy) {
+    const Storey& own = building.document.storeys[storey];
+    StoreyRules rules;
+    for (FacingRule rule : facing)
+        forEachStoreyOf(
+            building, coverage, kFacing, rule.zone, [&](std::size_t i, const std::string& zone) {
+                if (i != storey) return;
+                rule.zone =
+                    zone.starts_with(kDoorPrefix)
+                        ? std::string(kDoorPrefix) + wholeId(own, zone.substr(kDoorPrefix.size()))
+                        : wholeId(own, zone);
+                rules.facing.push_back(rule);
+            });
+    for (PrivacyRule rule : privacy)
+        forEachStoreyOf(building, coverage, "--privacy", rule.zones,
+                        [&](std::size_t i, const std::string& zones) {
+                            if (i != storey) return;
+                            rule.zones = wholeId(own, zones);
+                            rules.privacy.push_back(rule);
+                        });
+    return rules;
+}
+
+double missingFloor(std::span<const CameraRules> rules) {
+    double sum = 0;
+    for (const CameraRules& storey : rules) {
+        for (const FacingResult& result : storey.facing)
+            if (!isMet(result))
+                sum += (*result.rule.required - result.share.value_or(0)) * result.area;
+        for (const PrivacyResult& result : storey.privacy)
+            if (!isMet(result)) sum += result.seen.value_or(result.area);
+    }
+    return sum;
+}
+
 std::vector<JudgedRule> judgedInBuilding(const BuildingScene& building,
                                          std::span<const CameraRules> rules) {
     std::vector<JudgedRule> all;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -27,15 +28,41 @@ double seenShare(const BuildingCoverage& coverage) {
     return coverage.coverage.exact.value_or(coverage.coverage.grid.value_or(0));
 }
 
-/// Gives the sensor that a suggestion adds an id.
-void nameAdded(Suggestion& suggestion, const Storey& storey, const std::vector<std::string>& ids) {
-    Record added = readRecord(suggestion.edits.front().text, "", sceneSchemas());
-    std::string id;
-    for (std::size_t n = 1; id.empty() || std::find(ids.begin(), ids.end(), id) != ids.end(); ++n)
-        id = wholeId(storey, added.keyword() + std::to_string(n));
-    added.set("id", id);
-    suggestion.edits.front() = parseEdit(Edit::Kind::Add, formatRecord(added));
-    suggestion.text += " on " + storey.id;
+void replaceAll(std::string& text, const std::string& old, const std::string& by) {
+    for (std::size_t at = text.find(old); at != std::string::npos;
+         at = text.find(old, at + by.size()))
+        text.replace(at, old.size(), by);
+}
+
+/// Gives the sensors that a suggestion adds ids of the storey, in its later edits, too.
+void nameAdded(Suggestion& suggestion, const Storey& storey, std::vector<std::string> ids) {
+    for (std::size_t i = 0; i < suggestion.edits.size(); ++i) {
+        if (suggestion.edits[i].kind != Edit::Kind::Add) continue;
+        Record added = readRecord(suggestion.edits[i].text, "", sceneSchemas());
+        const std::string before = added.has("id") ? added.text("id") : "";
+        std::string id;
+        for (std::size_t n = 1; id.empty() || std::find(ids.begin(), ids.end(), id) != ids.end();
+             ++n)
+            id = wholeId(storey, added.keyword() + std::to_string(n));
+        added.set("id", id);
+        ids.push_back(id);
+        suggestion.edits[i] = parseEdit(Edit::Kind::Add, formatRecord(added));
+        if (before.empty()) continue;
+        for (std::size_t k = i + 1; k < suggestion.edits.size(); ++k) {
+            const Edit& edit = suggestion.edits[k];
+            const std::string& text = edit.text;
+            if (text == before || text.starts_with(before + ':') || text.starts_with(before + '.'))
+                suggestion.edits[k] = parseEdit(edit.kind, id + text.substr(before.size()));
+        }
+        for (const char* const verb : {"turn ", "move ", "remove "}) {
+            std::string old = verb, by = verb;
+            replaceAll(suggestion.text, old.append(before).append(" "), by.append(id).append(" "));
+        }
+    }
+    if (suggestion.kind == Suggestion::Kind::Add)
+        suggestion.text += " on " + storey.id;
+    else
+        replaceAll(suggestion.text, "add a ", "add on " + storey.id + " a ");
 }
 
 }  // namespace
@@ -54,6 +81,7 @@ std::vector<std::shared_ptr<const Scene>> wholeScenes(const BuildingScene& build
 
 std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::size_t storey,
                                          std::span<const std::shared_ptr<const Scene>> whole,
+                                         const BuildingCoverage& coverage,
                                          const SuggestOptions& options, Progress& progress) {
     BuildingScene named = building;
     named.scenes[storey] = whole[storey];
@@ -62,15 +90,16 @@ std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::siz
     SuggestOptions own = options;
     own.most = kKinds;
     own.requirements.clear();
+    StoreyRules rules = rulesOfStorey(building, coverage, storey, options.facing, options.privacy);
+    own.facing = std::move(rules.facing);
+    own.privacy = std::move(rules.privacy);
     for (const auto& other : whole)
         if (other != nullptr && other != whole[storey]) own.others.push_back(other.get());
     Worlds worlds(scene.environment);
-    const Coverage coverage = measureCoverage(scene, worlds, own.measure);
+    const Coverage measured = measureCoverage(scene, worlds, own.measure);
     std::vector<Suggestion> found =
-        suggestChanges(scene, coverage, own, building.devices, progress);
-    for (Suggestion& one : found)
-        if (one.kind == Suggestion::Kind::Add)
-            nameAdded(one, building.document.storeys[storey], scene.ids);
+        suggestChanges(scene, measured, own, building.devices, progress);
+    for (Suggestion& one : found) nameAdded(one, building.document.storeys[storey], scene.ids);
     return found;
 }
 
@@ -89,27 +118,62 @@ std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
                                            const BuildingCoverage& coverage,
                                            const SuggestOptions& options, Progress& progress) {
     const auto whole = wholeScenes(building);
-    const double before = seenShare(coverage);
+    const auto missing_of = [&](const BuildingScene& of, const BuildingCoverage& by) {
+        if (options.facing.empty() && options.privacy.empty()) return 0.0;
+        return missingFloor(
+            measureBuildingRules(of, by, options.measure, options.facing, options.privacy));
+    };
+    const double before = seenShare(coverage), missing = missing_of(building, coverage);
+    constexpr double kRounding = 1e-6;  // m2
     std::vector<Suggestion> gains, savings;
+    std::optional<Suggestion> whole_change;
+    BuildingScene after_all = building;
     progress.begin("storeys", static_cast<std::int64_t>(whole.size()));
     for (std::size_t i = 0; i < whole.size() && !progress.stopped(); ++i) {
         progress.advance(1);
         if (whole[i] == nullptr) continue;
         const double floor = coverage.storeys[i].report.indoor_area;
         StopsWith stops(progress);
-        for (Suggestion& one : suggestForStorey(building, i, whole, options, stops)) {
+        for (Suggestion& one : suggestForStorey(building, i, whole, coverage, options, stops)) {
             const bool saves =
                 one.kind == Suggestion::Kind::Replace || one.kind == Suggestion::Kind::Remove;
-            one.share = seenShare(
-                measureBuilding(editedStorey(building, i, *whole[i], one.edits), options.measure));
+            const BuildingScene changed = editedStorey(building, i, *whole[i], one.edits);
+            if (one.kind == Suggestion::Kind::Together) {
+                after_all.scenes[i] = changed.scenes[i];
+                if (!whole_change) {
+                    whole_change = std::move(one);
+                    continue;
+                }
+                whole_change->text.append(", ").append(one.text);
+                whole_change->edits.insert(whole_change->edits.end(), one.edits.begin(),
+                                           one.edits.end());
+                continue;
+            }
+            const BuildingCoverage measured = measureBuilding(changed, options.measure);
+            if (missing_of(changed, measured) > missing + kRounding) continue;
+            one.share = seenShare(measured);
             one.gained = (one.share - before) * coverage.indoor_area;
-            if (one.gained < (saves ? -kMaxLoss : kMinGain) * floor) continue;
+            const double most = saves ? one.gained : std::max(one.gained, one.required);
+            if (most < (saves ? -kMaxLoss : kMinGain) * floor) continue;
             (saves ? savings : gains).push_back(std::move(one));
         }
     }
     progress.end();
-    std::stable_sort(gains.begin(), gains.end(),
-                     [](const Suggestion& a, const Suggestion& b) { return a.gained > b.gained; });
+    std::stable_sort(gains.begin(), gains.end(), [](const Suggestion& a, const Suggestion& b) {
+        return std::pair(a.required, a.gained) > std::pair(b.required, b.gained);
+    });
+    if (whole_change && !progress.stopped()) {
+        const BuildingCoverage measured = measureBuilding(after_all, options.measure);
+        if (missing_of(after_all, measured) == 0) {
+            whole_change->required = missing;
+            whole_change->share = seenShare(measured);
+            whole_change->gained = (whole_change->share - before) * coverage.indoor_area;
+            // Told once if it is a single change.
+            std::erase_if(gains,
+                          [&](const Suggestion& one) { return one.text == whole_change->text; });
+            gains.insert(gains.begin(), *std::move(whole_change));
+        }
+    }
     std::move(savings.begin(), savings.end(), std::back_inserter(gains));
     if (gains.size() > options.most) gains.resize(options.most);
     return gains;

@@ -18,10 +18,12 @@ std::vector<std::shared_ptr<const Scene>> wholeScenes(const BuildingScene& build
 
 /// Finds the changes of one storey, without the openings in its floor, by suggestChanges(), which
 /// may add sensors like those of other storeys: with ids across the building, which added sensors
-/// have, too, but with the gains of the storey by itself. Requirements are ignored. \param whole
-/// wholeScenes() \pre that of the storey is not null
+/// have, too, but with the gains of the storey by itself, by the rules of cameras that it has.
+/// Requirements are ignored. \param whole wholeScenes() \param coverage of the building
+/// \pre that of the storey is not null
 std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::size_t storey,
                                          std::span<const std::shared_ptr<const Scene>> whole,
+                                         const BuildingCoverage& coverage,
                                          const SuggestOptions& options, Progress& progress);
 
 /// Returns the building after edits of one storey, see suggestForStorey().
@@ -31,8 +33,10 @@ BuildingScene editedStorey(const BuildingScene& building, std::size_t storey, co
 /// Finds changes of a measured building that would help, the one with the largest gain first; then
 /// those that save a sensor or its cost: those of suggestForStorey() on each storey, of storeys
 /// that share a scene and openings on the lowest. Gains and shares are of the floor of the whole
-/// building, by measureBuilding(), so the floor counts that sensors see on other storeys. \param
-/// coverage of the building, by options.measure
+/// building, by measureBuilding(), so the floor counts that sensors see on other storeys. Rules of
+/// cameras come first, by the floor that cameras of a storey miss in it; changes by which the
+/// building misses more are left out. Together joins those of all storeys with such rules, if they
+/// meet all. \param coverage of the building, by options.measure
 std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
                                            const BuildingCoverage& coverage,
                                            const SuggestOptions& options, Progress& progress);

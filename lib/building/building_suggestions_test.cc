@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "building/building_coverage.h"
 #include "building/building_sight.h"
 
 namespace ispace {
@@ -24,7 +25,8 @@ TEST(BuildingSuggestions, AddNoSensorInAShaft) {
     const auto floors = Coupling(building).floors();
     int added = 0;
     SilentProgress silent;
-    for (const Suggestion& one : suggestForStorey(building, 1, whole, {}, silent)) {
+    for (const Suggestion& one :
+         suggestForStorey(building, 1, whole, measureBuilding(building, {}), {}, silent)) {
         const BuildingScene changed = editedStorey(building, 1, *whole[1], one.edits);
         for (const Sensor& sensor : changed.scenes[1]->sensors)
             EXPECT_EQ(floors[1]->environment.indoor().locate(sensor.pose.position.onFloor()),
@@ -57,7 +59,65 @@ TEST(BuildingSuggestions, AreForTheLowestOfEqualStoreys) {
     EXPECT_EQ(whole[2]->ids, (std::vector<std::string>{"c/ispace1", "c/l"}));
     EXPECT_EQ(whole[3], nullptr);
     SilentProgress silent;
-    EXPECT_FALSE(suggestForStorey(building, 2, whole, {}, silent).empty());
+    const BuildingCoverage coverage = measureBuilding(building, {});
+    EXPECT_FALSE(suggestForStorey(building, 2, whole, coverage, {}, silent).empty());
+}
+
+/// Two storeys with a private zone that its camera sees; the upper one has a face to be seen.
+BuildingScene privateHouse() {
+    return sceneOf(
+        "- storey: {id: g, height: 3, records: [{ispace: {size: 8 x 6}}, "
+        "{zone: {id: desk, path: '1,-1;3,-1;3,1;1,1'}}, "
+        "{camera: {id: c, at: [-3.8, 0, 2.6], fov: 70, tilt: -30}}]}\n"
+        "- storey: {id: u, z: 3, height: 3, records: [{ispace: {size: 9 x 6}}, "
+        "{zone: {id: desk, path: '1,-1;3,-1;3,1;1,1'}}, "
+        "{camera: {id: c, at: [-4.3, 0, 2.6], fov: 70, tilt: -30}}]}\n");
+}
+
+TEST(BuildingSuggestions, MeetRulesOfPrivacyOnAllStoreys) {
+    const BuildingScene building = privateHouse();
+    SuggestOptions options;
+    options.privacy = {parsePrivacy("*/desk")};
+    const BuildingCoverage coverage = measureBuilding(building, options.measure);
+    const auto missing = [&](const BuildingScene& of) {
+        return missingFloor(measureBuildingRules(of, measureBuilding(of, options.measure),
+                                                 options.measure, {}, options.privacy));
+    };
+    ASSERT_GT(missing(building), 4);
+    SilentProgress silent;
+    const auto found = suggestForBuilding(building, coverage, options, silent);
+    ASSERT_FALSE(found.empty());
+    EXPECT_EQ(found[0].kind, Suggestion::Kind::Together);
+    EXPECT_NEAR(found[0].required, missing(building), 1e-6);
+    const auto whole = wholeScenes(building);
+    BuildingScene changed = building;
+    for (const std::size_t storey : {0U, 1U}) {
+        std::vector<Edit> own;
+        for (const Edit& edit : found[0].edits)
+            if (edit.text.starts_with(building.document.storeys[storey].id + '/'))
+                own.push_back(edit);
+        EXPECT_FALSE(own.empty());
+        changed.scenes[storey] = editedStorey(building, storey, *whole[storey], own).scenes[storey];
+    }
+    EXPECT_EQ(missing(changed), 0);
+    for (const Suggestion& one : found) EXPECT_GE(one.required, 0) << one.text;
+}
+
+TEST(BuildingSuggestions, RegardRulesOfOneStorey) {
+    const BuildingScene building = privateHouse();
+    SuggestOptions options;
+    options.facing = {parseFacing("u/desk,45deg,0=90%")};
+    const BuildingCoverage coverage = measureBuilding(building, options.measure);
+    const StoreyRules lower = rulesOfStorey(building, coverage, 0, options.facing, {});
+    const StoreyRules upper = rulesOfStorey(building, coverage, 1, options.facing, {});
+    EXPECT_TRUE(lower.facing.empty());
+    ASSERT_EQ(upper.facing.size(), 1U);
+    EXPECT_EQ(upper.facing[0].zone, "u/desk");
+    SilentProgress silent;
+    const auto found = suggestForBuilding(building, coverage, options, silent);
+    ASSERT_FALSE(found.empty());
+    EXPECT_EQ(found[0].kind, Suggestion::Kind::Together) << found[0].text;
+    for (const Edit& edit : found[0].edits) EXPECT_NE(edit.text.find("u/"), std::string::npos);
 }
 
 }  // namespace

@@ -292,14 +292,20 @@ void writeFiles(const CoverageToolOptions& options, const BuildingInput& input,
 std::optional<Advice> adviceFor(const CoverageToolOptions& options, const BuildingInput& input,
                                 const BuildingCoverage& coverage, int& signal) {
     if (!options.suggestions) return std::nullopt;
-    const SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
-                                .measure = options.measure};
+    SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
+                          .measure = options.measure,
+                          .facing = options.facing,
+                          .privacy = options.privacy};
+    std::erase_if(wanted.facing, [](const FacingRule& rule) { return !rule.required; });
     SearchWatch watch(makeProgress("coverage", options.common.progress, options.common.quiet),
                       options.time_limit);
     Advice advice{suggestForBuilding(input.building, coverage, wanted, watch),
                   editCommand(input.named, options.rules)};
     advice.is_cut = watch.stopped();
     signal = watch.signal();
+    advice.is_short = missingFloor(coverage.rules) > 0 &&
+                      (advice.suggestions.empty() ||
+                       advice.suggestions.front().kind != Suggestion::Kind::Together);
     return advice;
 }
 
