@@ -30,6 +30,10 @@
 #ifdef ISPACE_HAS_NODES
 #include "extensions/nodes/nodes.h"
 #endif
+#ifdef ISPACE_HAS_PRESSURE
+#include "extensions/pressure/pressure_role.h"
+#include "extensions/pressure/pressure_scan.h"
+#endif
 #ifdef ISPACE_HAS_REALITY
 #include "extensions/reality/reality.h"
 #endif
@@ -52,6 +56,9 @@ bool addFormats() {
 #ifdef ISPACE_HAS_NODES
     addSceneSchemas(nodeSchemas());
 #endif
+#ifdef ISPACE_HAS_PRESSURE
+    addSceneSchemas(pressureSchemas());
+#endif
     return true;
 }
 
@@ -71,6 +78,9 @@ std::span<const ToolExtension> toolExtensions() {
 #endif
 #ifdef ISPACE_HAS_NAVIGATION
         {"navigation", "coverage", makeNavigationJudge},
+#endif
+#ifdef ISPACE_HAS_PRESSURE
+        {"pressure", "scan", makePressureOptions},
 #endif
 #ifdef ISPACE_HAS_REALITY
         {"reality", "scan", makeRealityOptions},
@@ -104,6 +114,9 @@ std::span<const MakeRoleService> roleServices() {
 #endif
 #ifdef ISPACE_HAS_NODES
         makeNodes,
+#endif
+#ifdef ISPACE_HAS_PRESSURE
+        makePressure,
 #endif
     };
     return services;

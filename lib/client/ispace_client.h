@@ -21,6 +21,7 @@
 #define ISPACE_CLIENT_H
 
 #include <ispace_client/error.h>
+#include <ispace_client/floor.h>
 #include <ispace_client/memory.h>
 #include <ispace_client/mote.h>
 #include <ispace_client/node.h>

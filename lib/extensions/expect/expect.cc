@@ -460,9 +460,10 @@ bool ExpectationJudge::Data::addZone(Term& term) {
 
 /// Returns the state of a thing that a condition means: the one that it names, or the only one.
 std::string ExpectationJudge::Data::keyOf(const Thing& thing, const Condition& condition) const {
-    if (condition.key == "occupied" &&
-        std::find(thing.keys.begin(), thing.keys.end(), "occupied") == thing.keys.end())
-        return "n";  // of a mat
+    const auto has = [&thing](const char* key) {
+        return std::find(thing.keys.begin(), thing.keys.end(), key) != thing.keys.end();
+    };
+    if (condition.key == "occupied" && !has("occupied") && has("n")) return "n";  // of a mat
     if (!condition.key.empty()) return condition.key;
     if (thing.keys.size() == 1) return thing.keys.front();
     throw SentenceError(thing.name + " has " +

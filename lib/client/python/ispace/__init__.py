@@ -14,7 +14,7 @@
     print(report.coverage.exact)
 
 Robot and Person drive, LaserSensor, Camera and their kin read, World controls the clock, changes and events, Node is
-a computer of a sensor network, Memory holds contents at places; each is a separate connection to a running simrun, by its address
+a computer of a sensor network, Memory holds contents at places, Floor feels weights; each is a separate connection to a running simrun, by its address
 ``"127.0.0.1:7001"``. Units are those of the protocol: metres, degrees, simulated seconds; frames are right-handed and
 headings counter-clockwise. Failures raise an Error with the server's text. The standard library is enough; arrays are numpy's if it is installed.
 
@@ -36,6 +36,7 @@ from .errors import (
     ToolError,
 )
 from .filters import CoverageReport, Figure, Layout, Object, Record, arrange, coverage, info, scan
+from .floor import Floor, Pressure
 from .memory import Memory, Touch
 from .mote import Mote, MoteReport
 from .movers import Bumper, End, Limits, Motion, Odometry, Person, Robot, Sonar, Status
@@ -114,6 +115,7 @@ __all__ = [
     "Fields",
     "Figure",
     "Fix",
+    "Floor",
     "Gate",
     "Illuminance",
     "Imu",
@@ -143,6 +145,7 @@ __all__ = [
     "ProtocolError",
     "Pir",
     "Presence",
+    "Pressure",
     "Radar",
     "Ranger",
     "Reading",

@@ -14,6 +14,7 @@ from typing import IO, Optional
 
 from .errors import ToolError
 from .filters import Option, Placed, Room, arguments_of, last_line, operands, tool
+from .floor import Floor
 from .movers import Person, Robot
 from .memory import Memory
 from .node import Node
@@ -114,6 +115,10 @@ class Simrun:
     def memory(self, tags: str = "*") -> Memory:
         """Keeps contents at places, and hears what these tags touch."""
         return Memory(self.address, tags)
+
+    def floor(self, sensors: str = "*") -> Floor:
+        """Reads floors, beds and chairs that feel weights."""
+        return Floor(self.address, sensors)
 
     def world(self) -> World:
         """Watches and controls the world and its clock."""

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lib/extensions/pressure: floors, beds and chairs that feel weights. Uses server and below.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "extensions/pressure/pressure_record.h"
+#include "sim/world.h"
+
+namespace ispace {
+
+/// A disc on the floor that bears a weight evenly: a foot, or a wheel.
+struct FootContact {
+    Point2 center;
+    double radius = 0;   ///< metres
+    double newtons = 0;  ///< by all of it
+};
+
+/// Returns the feet of a person. They are where all sensors see the legs meet the floor. Standing,
+/// each bears half of the weight; walking, the foot that goes back bears it, all of it in the
+/// middle of a step and half when the other foot comes down. \param mass kg
+std::vector<FootContact> feetOf(double height, double mass, const RobotStatus& status);
+/// Returns the wheels of a robot: two at 0.7 of the radius to the sides, which bear 40 % each, and
+/// a castor at 0.7 of it behind.
+std::vector<FootContact> wheelsOf(double radius, double mass, const RobotStatus& status);
+
+/// A reading of a floor or a seat.
+struct PressureReading {
+    std::int64_t number = 0;  ///< since the start of the run, from 0
+    SimTime time{};
+    std::map<std::size_t, double> cells = {};  ///< of a floor: newtons by index, those above 0
+    double newtons = 0;                        ///< in all
+    bool is_occupied = false;
+
+    [[nodiscard]] double kilograms() const;
+};
+
+/// Reads a floor. Contacts press the cells in which each of 64 even parts of them lies; parts
+/// beyond the edge press none. \param noise seed of the run; null: exact
+PressureReading readFloor(const PressureFloor& floor, std::span<const FootContact> contacts,
+                          std::int64_t number, const std::uint64_t* noise);
+
+/// The floors and seats of a world, and who is where on them.
+class PressureField {
+  public:
+    /// The world must outlive it. \throws FormatError as pressureScene()
+    PressureField(const World& world, std::string prefix);
+
+    /// Reads the world after a step. Reads the records again after a change; a record that it does
+    /// not understand then leaves all as it was.
+    void observe();
+
+    [[nodiscard]] const std::vector<PressureFloor>& floors() const { return scene_.floors; }
+    [[nodiscard]] const std::vector<PressureSeat>& seats() const { return scene_.seats; }
+    /// Return what a floor or a seat feels now. \param number of the reading, for its noise
+    [[nodiscard]] PressureReading read(const PressureFloor& floor, std::int64_t number) const;
+    [[nodiscard]] PressureReading read(const PressureSeat& seat, std::int64_t number) const;
+
+  private:
+    void findContacts();
+
+    const World* world_;
+    std::string prefix_;
+    std::int64_t changes_ = 0;
+    PressureScene scene_;
+    std::map<std::string, SimTime> still_;    // since when movers that stand do
+    std::vector<FootContact> contacts_;       // on the floor
+    std::map<std::string, double> on_seats_;  // kg by seat
+};
+
+}  // namespace ispace

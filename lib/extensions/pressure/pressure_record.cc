@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "extensions/pressure/pressure_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "env/body.h"
+#include "env/environment.h"
+#include "geom/predicates.h"
+#include "scene/sensor/sensor_keys.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kFarthest = 1e6, kLongest = 3600, kFastest = 1000, kStrongest = 1e6;
+
+KeySpec numberKey(std::string name, Unit unit, std::string help, double standard, double lower,
+                  double upper) {
+    return {.name = std::move(name),
+            .type = KeyType::Number,
+            .unit = unit,
+            .help = std::move(help),
+            .default_value = standard,
+            .lower = lower,
+            .upper = upper};
+}
+
+KeySpec ofKey(std::string help) {
+    return {.name = "of",
+            .type = KeyType::Word,
+            .help = std::move(help),
+            .required = true,
+            .role = Role::Reference};
+}
+
+/// Numbers of cells, of which a rounding error makes no further one.
+std::size_t cellsAlong(double length, double cell) {
+    constexpr double kRounding = 1e-9;
+    return static_cast<std::size_t>(std::max(1.0, std::ceil(length / cell - kRounding)));
+}
+
+PressureFloor floorOf(const Record& record, std::string id) {
+    PressureFloor floor;
+    floor.id = std::move(id);
+    const Tuple &at = record.tuple("at"), &size = record.tuple("size");
+    floor.pose = {{at[0], at[1]}, record.angle("heading")};
+    floor.length = size[0];
+    floor.width = size[1];
+    floor.cell = record.number("cell");
+    floor.rate = record.number("rate");
+    floor.threshold = record.number("threshold");
+    floor.sigma = record.number("sigma");
+    if (floor.length / floor.cell * (floor.width / floor.cell) >
+        static_cast<double>(PressureFloor::kMostCells))
+        throw FormatError(record.finding(
+            "cell", "`cell`: there are more than a million cells, wanted larger ones"));
+    return floor;
+}
+
+PressureSeat seatOf(const Record& record, std::string id, const Scene& scene) {
+    PressureSeat seat;
+    seat.id = std::move(id);
+    seat.reach = record.number("reach");
+    seat.settle = record.number("settle");
+    seat.rate = record.number("rate");
+    seat.threshold = record.number("threshold");
+    seat.sigma = record.number("sigma");
+    const std::string& of = record.text("of");
+    std::vector<std::string> things;
+    for (const Element& element : scene.environment.elements()) {
+        if (element.body.prisms.empty()) continue;
+        things.push_back(element.id);
+        if (element.id != of) continue;
+        for (const Prism& prism : element.body.prisms) seat.thing.push_back(prism.footprint);
+    }
+    if (seat.thing.empty())
+        throw FormatError(record.finding(
+            "of", "`of`: no thing of the room is " + excerpt(of) + didYouMean(of, things)));
+    return seat;
+}
+
+}  // namespace
+
+std::size_t PressureFloor::columns() const { return cellsAlong(length, cell); }
+std::size_t PressureFloor::rows() const { return cellsAlong(width, cell); }
+
+Point2 PressureFloor::middleOf(std::size_t index) const {
+    const std::size_t column = index % columns(), row = index / columns();
+    constexpr double kMiddle = 0.5;
+    return pose * Point2{(static_cast<double>(column) + kMiddle) * cell - length / 2,
+                         (static_cast<double>(row) + kMiddle) * cell - width / 2};
+}
+
+double PressureSeat::distanceTo(Point2 point) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Polygon& outline : thing) {
+        if (locate(outline, point) != Side::Outside) return 0;
+        for (std::size_t i = 0; i < outline.size(); ++i)
+            nearest = std::min(
+                nearest, distance(point, Segment2{outline[i], outline[(i + 1) % outline.size()]}));
+    }
+    return nearest;
+}
+
+std::vector<Schema> pressureSchemas() {
+    const KeySpec rate =
+        numberKey("rate", Unit::Frequency, "readings a second", 10, 0.001, kFastest);
+    const KeySpec sigma =
+        numberKey("sigma", Unit::None, "standard deviation of its noise, N", 0, 0, kStrongest);
+    KeySpec heading = headingKey("direction of its columns");
+    heading.default_value = 0.0;
+    return {
+        {.keyword = "floor_sensor",
+         .type = RecordType::Placement,
+         .help = "a part of the floor whose cells feel weights, for simrun and scan",
+         .keys = {idKey(),
+                  {.name = "at",
+                   .type = KeyType::Tuple,
+                   .unit = Unit::Length,
+                   .help = "its middle x,y",
+                   .min_count = 2,
+                   .max_count = 2,
+                   .lower = -kFarthest,
+                   .upper = kFarthest,
+                   .required = true,
+                   .role = Role::Place},
+                  heading,
+                  {.name = "size",
+                   .type = KeyType::Tuple,
+                   .unit = Unit::Length,
+                   .help = "its length and width",
+                   .min_count = 2,
+                   .max_count = 2,
+                   .lower = 0.01,
+                   .upper = 1000,
+                   .required = true},
+                  numberKey("cell", Unit::Length, "side of a cell", 0.25, 0.01, 100),
+                  rate,
+                  numberKey("threshold", Unit::None, "force below which a cell reads 0, N", 5, 0,
+                            kStrongest),
+                  sigma}},
+        {.keyword = "seat_sensor",
+         .type = RecordType::Placement,
+         .help = "a bed, chair or sofa that feels the people on it, for simrun",
+         .keys = {idKey(), ofKey("id of the thing"),
+                  numberKey("reach", Unit::Length, "from the thing to a person on it", 0.6, 0, 10),
+                  numberKey("settle", Unit::Time, "without motion until a person is on it", 2, 0,
+                            kLongest),
+                  rate,
+                  numberKey("threshold", Unit::None, "force from which it is occupied, N", 50, 0,
+                            kStrongest),
+                  sigma}},
+        {.keyword = "load",
+         .type = RecordType::Placement,
+         .help = "the weight of a robot or a person, for floor_sensor and seat_sensor",
+         .keys = {idKey(),
+                  ofKey("id of the robot or person"),
+                  {.name = "kg",
+                   .type = KeyType::Number,
+                   .help = "its mass, kilograms",
+                   .lower = 0,
+                   .upper = 1e5,
+                   .required = true}}}};
+}
+
+double massOfPerson(double height) {
+    constexpr double kDensity = 23;  // kg/m^2
+    return kDensity * height * height;
+}
+
+double massOfRobot(double radius) {
+    constexpr double kDensity = 144;  // kg/m^2
+    return kDensity * radius * radius;
+}
+
+PressureScene pressureScene(const Scene& scene, const std::string& prefix) {
+    PressureScene made;
+    for (const PlacedPerson& person : scene.people)
+        made.masses[person.id] = massOfPerson(person.height);
+    for (const PlacedRobot& robot : scene.robots)
+        made.masses[robot.id] = massOfRobot(robot.model.radius);
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        const Record& record = scene.records[i];
+        if (record.keyword() == "floor_sensor") {
+            made.floors.push_back(floorOf(record, prefix + scene.ids[i]));
+        } else if (record.keyword() == "seat_sensor") {
+            made.seats.push_back(seatOf(record, prefix + scene.ids[i], scene));
+        } else if (record.keyword() == "load") {
+            const std::string& of = record.text("of");
+            const auto known = std::find_if(
+                made.masses.begin(), made.masses.end(),
+                [&](const auto& each) { return each.first == of || each.first == prefix + of; });
+            if (known == made.masses.end()) {
+                std::vector<std::string> movers;
+                for (const auto& each : made.masses) movers.push_back(each.first);
+                throw FormatError(record.finding(
+                    "of", "`of`: no robot or person is " + excerpt(of) + didYouMean(of, movers)));
+            }
+            known->second = record.number("kg");
+        }
+    }
+    return made;
+}
+
+}  // namespace ispace

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "cli/extension.h"
+
+namespace ispace {
+
+/// Makes the option --floor of scan: readings of floors and seats with robots and people at their
+/// starts, a line of JSON each.
+std::unique_ptr<OptionGroup> makePressureOptions();
+
+}  // namespace ispace
