@@ -81,7 +81,6 @@ std::vector<std::shared_ptr<const Scene>> wholeScenes(const BuildingScene& build
 
 std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::size_t storey,
                                          std::span<const std::shared_ptr<const Scene>> whole,
-                                         const BuildingCoverage& coverage,
                                          const SuggestOptions& options, Progress& progress) {
     BuildingScene named = building;
     named.scenes[storey] = whole[storey];
@@ -90,9 +89,6 @@ std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::siz
     SuggestOptions own = options;
     own.most = kKinds;
     own.requirements.clear();
-    StoreyRules rules = rulesOfStorey(building, coverage, storey, options.facing, options.privacy);
-    own.facing = std::move(rules.facing);
-    own.privacy = std::move(rules.privacy);
     for (const auto& other : whole)
         if (other != nullptr && other != whole[storey]) own.others.push_back(other.get());
     Worlds worlds(scene.environment);
@@ -134,7 +130,11 @@ std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
         if (whole[i] == nullptr) continue;
         const double floor = coverage.storeys[i].report.indoor_area;
         StopsWith stops(progress);
-        for (Suggestion& one : suggestForStorey(building, i, whole, coverage, options, stops)) {
+        StoreyRules rules = rulesOfStorey(building, coverage, i, options.facing, options.privacy);
+        SuggestOptions own = options;
+        own.facing = std::move(rules.facing);
+        own.privacy = std::move(rules.privacy);
+        for (Suggestion& one : suggestForStorey(building, i, whole, own, stops)) {
             const bool saves =
                 one.kind == Suggestion::Kind::Replace || one.kind == Suggestion::Kind::Remove;
             const BuildingScene changed = editedStorey(building, i, *whole[i], one.edits);

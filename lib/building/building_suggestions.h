@@ -18,12 +18,11 @@ std::vector<std::shared_ptr<const Scene>> wholeScenes(const BuildingScene& build
 
 /// Finds the changes of one storey, without the openings in its floor, by suggestChanges(), which
 /// may add sensors like those of other storeys: with ids across the building, which added sensors
-/// have, too, but with the gains of the storey by itself, by the rules of cameras that it has.
-/// Requirements are ignored. \param whole wholeScenes() \param coverage of the building
-/// \pre that of the storey is not null
+/// have, too, but with the gains of the storey by itself. Rules of cameras are those of the storey,
+/// see rulesOfStorey(); requirements are ignored. \param whole wholeScenes() \pre that of the
+/// storey is not null
 std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::size_t storey,
                                          std::span<const std::shared_ptr<const Scene>> whole,
-                                         const BuildingCoverage& coverage,
                                          const SuggestOptions& options, Progress& progress);
 
 /// Returns the building after edits of one storey, see suggestForStorey().

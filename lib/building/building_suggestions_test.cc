@@ -25,8 +25,7 @@ TEST(BuildingSuggestions, AddNoSensorInAShaft) {
     const auto floors = Coupling(building).floors();
     int added = 0;
     SilentProgress silent;
-    for (const Suggestion& one :
-         suggestForStorey(building, 1, whole, measureBuilding(building, {}), {}, silent)) {
+    for (const Suggestion& one : suggestForStorey(building, 1, whole, {}, silent)) {
         const BuildingScene changed = editedStorey(building, 1, *whole[1], one.edits);
         for (const Sensor& sensor : changed.scenes[1]->sensors)
             EXPECT_EQ(floors[1]->environment.indoor().locate(sensor.pose.position.onFloor()),
@@ -59,8 +58,7 @@ TEST(BuildingSuggestions, AreForTheLowestOfEqualStoreys) {
     EXPECT_EQ(whole[2]->ids, (std::vector<std::string>{"c/ispace1", "c/l"}));
     EXPECT_EQ(whole[3], nullptr);
     SilentProgress silent;
-    const BuildingCoverage coverage = measureBuilding(building, {});
-    EXPECT_FALSE(suggestForStorey(building, 2, whole, coverage, {}, silent).empty());
+    EXPECT_FALSE(suggestForStorey(building, 2, whole, {}, silent).empty());
 }
 
 /// Two storeys with a private zone that its camera sees; the upper one has a face to be seen.
