@@ -480,6 +480,15 @@ void ExpectationJudge::Data::unknownThing(const Condition& condition) const {
         if (!thing.keys.empty()) known.push_back(thing.keyword);
         for (const std::string& key : thing.keys) known.push_back(thing.name + '.' + key);
     }
+    std::erase(known, condition.subject);  // `l1.level on` knows the name, but not so
+    // In a building the room is missed most.
+    const auto with_room = std::find_if(known.begin(), known.end(), [&](const std::string& name) {
+        return name.ends_with('/' + condition.subject);
+    });
+    if (with_room != known.end())
+        throw SentenceError(
+            "no thing is " + excerpt(condition.subject) + ", did you mean `" + *with_room + "`?",
+            condition.offset);
     throw SentenceError("no thing is " + excerpt(condition.subject) +
                             (condition.part.empty() ? "" : " of " + condition.part) +
                             didYouMean(condition.subject, known),
@@ -510,6 +519,7 @@ void ExpectationJudge::Data::addThings(Term& term) {
     const std::size_t dot = condition.subject.rfind('.');
     const std::string before = condition.subject.substr(0, dot);
     const std::string key = dot == std::string::npos ? "" : condition.subject.substr(dot + 1);
+    const bool is_key = !key.empty() && (condition.key.empty() || condition.key == key);
     const auto has_states = [&](const Thing& thing, const std::string& wanted) {
         return !thing.keys.empty() || thing.name == wanted;
     };
@@ -517,7 +527,7 @@ void ExpectationJudge::Data::addThings(Term& term) {
         if (isSelected(thing.name, {condition.subject}) && has_states(thing, condition.subject) &&
             is_in_part(thing))
             add(thing, keyOf(thing, condition));
-    if (term.subjects.empty() && !key.empty() && condition.key.empty())
+    if (term.subjects.empty() && is_key)
         for (const Thing& thing : things.things())
             if (isSelected(thing.name, {before}) && has_states(thing, before) && is_in_part(thing))
                 add(thing, key);
@@ -525,7 +535,7 @@ void ExpectationJudge::Data::addThings(Term& term) {
         for (const Thing& thing : things.things())
             if (thing.keyword == condition.subject && !thing.keys.empty() && is_in_part(thing))
                 add(thing, keyOf(thing, condition));
-    if (term.subjects.empty() && !key.empty() && condition.key.empty())
+    if (term.subjects.empty() && is_key)
         for (const Thing& thing : things.things())
             if (thing.keyword == before && !thing.keys.empty() && is_in_part(thing))
                 add(thing, key);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "base/error.h"
 #include "extensions/expect/expectations.h"
 #include "extensions/expect/rule_file.h"
@@ -414,6 +416,8 @@ TEST_F(RuleTest, NamesWhatIsNotThere) {
               std::string::npos);
     EXPECT_NE(why("total l1.color above 1").find("is no number"), std::string::npos);
     EXPECT_EQ(why("k1 open"), "");
+    EXPECT_EQ(why("l1.on on"), "");
+    EXPECT_NE(why("l1.level on"), "");
 }
 
 TEST(RuleFile, ReadsSentencesWithTheirPlaces) {
@@ -464,6 +468,56 @@ TEST_F(RuleTest, ReportsWithTheCommandOfAFilm) {
     EXPECT_NE(
         expectationsJson(results, "run").find("\"met\":false,\"rules\":[{\"expect\":\"" + rule),
         std::string::npos);
+}
+
+/// Sentences of random words are parsed and judged, or refused with the place of a word.
+TEST(ParseExpectation, TakesRandomWords) {
+    const std::vector<std::string> words = {"r1",     "ann",      "l1",
+                                            "k1",     "kitchen",  "lamp",
+                                            "*",      "any",      "total",
+                                            "not",    "always",   "never",
+                                            "within", "in",       "zone",
+                                            "of",     "1",        "2s",
+                                            "0.5,1",  "on",       "off",
+                                            "open",   "above",    "is",
+                                            "seen",   "by",       "enters",
+                                            "leaves", "for",      "at",
+                                            "least",  "most",     "more",
+                                            "than",   "times",    "all",
+                                            "the",    "end",      "and",
+                                            "or",     "while",    "after",
+                                            "before", "no",       "collision",
+                                            "still",  "faster",   "turns",
+                                            "anyone", "l1.level", "kitchen.people",
+                                            "h1.kwh"};
+    const Scene scene =
+        testing::scene(kRoom + std::string("lamp id=l1 at=1,0\nheater id=h1 at=0,1\n"
+                                           "window id=w1 at=0,3\n"),
+                       "robot id=r1 at=0,0\nhuman id=ann at=-1,0\n"
+                       "contact id=k1 at=0,3,2 door=w1\n");
+    World world(scene, kStep);
+    std::mt19937 random(3);
+    std::size_t parsed = 0, judged = 0;
+    for (int round = 0; round < 100'000; ++round) {
+        std::string text;
+        for (std::size_t i = 0, count = 1 + random() % 9; i < count; ++i)
+            text.append(i == 0 ? "" : " ").append(words[random() % words.size()]);
+        try {
+            Expectation sentence = parseExpectation(text);
+            ++parsed;
+            if (parsed % 10 != 0) continue;
+            ExpectationJudge judge(world, {std::move(sentence)});
+            judge.observe();
+            const RunVerdict verdict = judge.verdicts().front();
+            EXPECT_EQ(verdict.is_met, verdict.reason.empty()) << text;
+            ++judged;
+        } catch (const SentenceError& error) {
+            EXPECT_LE(error.offset(), text.size()) << text;
+        } catch (const UsageError&) {  // a name that the world lacks
+        }
+    }
+    EXPECT_GT(parsed, 250U);
+    EXPECT_GT(judged, 10U);
 }
 
 }  // namespace
