@@ -46,6 +46,14 @@ for tool in $programs; do
     fi
 done
 
+# No name of an option breaks at the end of a line.
+if command -v man >/dev/null; then
+    for page in "$binary_dir"/share/man/man*/*; do
+        broken=$(MANWIDTH=80 LC_ALL=C.UTF-8 man -l "$page" 2>/dev/null | col -b | grep -nE -- '(^|[ [(])--?[a-z][a-z0-9-]*[-‐]$' || true)
+        [ -z "$broken" ] || fail "${page##*/}: $broken"
+    done
+fi
+
 # A build for `make demo` has both sections, too.
 make -C "$source_dir" -n demo BUILD="$binary_dir" >demo
 grep -q -- '--target tools manual$' demo || fail "make demo builds no manual: $(cat demo)"
