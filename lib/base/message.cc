@@ -126,11 +126,8 @@ std::string base64(std::string_view bytes) {
 
 std::string programPrefix() {
     std::error_code error;
-    const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-    auto prefix = folder.parent_path();
-    // Packages install the tools here, apart from other programs of the same names.
-    if (folder.string().ends_with("/lib/ispace/bin")) prefix = prefix.parent_path().parent_path();
-    return prefix.string();
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+    return program.parent_path().parent_path().string();
 }
 
 std::string_view version() { return ISPACE_VERSION; }

@@ -60,16 +60,25 @@ status=0
 PATH=$PWD/empty "$binary_dir/bin/ispace" help scan 2>err || status=$?
 [ "$status" -eq 1 ] && grep -q 'man is not installed (Debian: man-db)' err || fail "status $status: $(cat err)"
 
-# ispace runs tools in a package's separate folder, and they find their files.
+# All tools are one program, which links in any folder call; they find their files beside it.
+for tool in $tools golden-diff; do
+    [ "$binary_dir/bin/$tool" -ef "$binary_dir/bin/ispace" ] || fail "$tool is another program than ispace"
+done
 mkdir -p usr/bin usr/lib/ispace/bin usr/share
 cp "$binary_dir/bin/ispace" usr/bin
-cp "$binary_dir/bin/scan" usr/lib/ispace/bin
-printf '#!/bin/sh\necho another scan\n' >usr/bin/scan
-chmod +x usr/bin/scan
+ln -s ../../../bin/ispace usr/lib/ispace/bin/scan
+ln -s ../lib/ispace/bin/scan usr/bin/scan
 ln -s "$source_dir/share" usr/share/ispace
-usr/bin/ispace scan --list-models | has urg-04lx || fail "another scan, or no devices"
-expect_status 1 usr/bin/ispace envc --version
-grep -q 'ispace: .*usr/bin/envc: error: No such file' err || fail "$(cat err)"
+for scan in "usr/bin/ispace scan" usr/lib/ispace/bin/scan usr/bin/scan; do
+    $scan --list-models | has urg-04lx || fail "no devices by $scan"
+done
+(PATH=$PWD/usr/bin && scan --version) | has '^scan ' || fail "not found in PATH"
+# A copy is a tool by its name, or else asks for one.
+cp -L "$binary_dir/bin/scan" usr/bin/my-scan
+expect_status 2 usr/bin/my-scan
+grep -q 'which tool? (see ispace --help)' err || fail "$(cat err)"
+cp -L "$binary_dir/bin/scan" usr/lib/ispace/bin/envc
+usr/lib/ispace/bin/envc --version | has '^envc ' || fail "no copy by another name"
 
 # Help and page name the same options; the page's example runs.
 page=$binary_dir/share/man/man1/ispace.1

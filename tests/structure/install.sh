@@ -28,7 +28,9 @@ if command -v man >/dev/null; then
     done
 fi
 [ "$(ls moved/bin | wc -l)" -eq 8 ] || fail "more than the tools in bin: $(ls moved/bin)"
-if find moved -type l | grep .; then fail "links installed"; fi
+links=$(cd moved && find . -type l -printf '%p %l\n' | sort | tr '\n' ' ')
+[ "$links" = "./bin/arrange ispace ./bin/coverage ispace ./bin/envc ispace ./bin/golden-diff ispace ./bin/scan ispace ./bin/simrun ispace " ] ||
+    fail "links installed: $links"
 
 mkdir elsewhere
 cd elsewhere

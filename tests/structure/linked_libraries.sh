@@ -26,7 +26,7 @@ done
 
 # Without the module the tools reject only pictures that require it, and name the package to install.
 mkdir -p moved/bin
-cp "$binary_dir/bin/envc" moved/bin
+cp -L "$binary_dir/bin/envc" moved/bin
 envc=$scratch/moved/bin/envc
 "$envc" "$data/pictures/room.png" --resolution 0.05 --to env >/dev/null
 status=0
@@ -45,7 +45,7 @@ if [ -e "$binary_dir/lib/ispace/dds.so" ]; then
     ldd "$binary_dir/lib/ispace/dds.so" >module.ldd
     grep -q libddsc module.ldd || fail "the module for DDS does without Cyclone: $(cat module.ldd)"
 fi
-cp "$binary_dir/bin/simrun" moved/bin
+cp -L "$binary_dir/bin/simrun" moved/bin
 mkdir moved/share
 ln -s "$source_dir/share" moved/share/ispace
 status=0

@@ -28,6 +28,7 @@ done
 [ "$(cd short/usr/bin && ls)" = "$(tr ' ' '\n' <<<"$tools" | sort)" ] || fail "short names: $(ls short/usr/bin)"
 for tool in $tools; do
     [ -x "root/usr/lib/ispace/bin/$tool" ] || fail "no $tool"
+    [ "$(readlink "root/usr/lib/ispace/bin/$tool")" = "../../../bin/ispace" ] || fail "$tool: not a link to the program"
     [ "$(readlink "short/usr/bin/$tool")" = "../lib/ispace/bin/$tool" ] || fail "$tool: not a link to the tool"
     [ -s "root/usr/share/man/man1/$tool.1ispace.gz" ] || fail "no manual page of $tool"
 done
@@ -35,6 +36,8 @@ for page in man1/ispace.1 man1/ispace-sweep.1 man5/ispace-env.5 man5/ispace-3dm.
     man1/golden-diff.1 man7/ispace-protocol.7 man7/ispace-ros.7 man7/ispace-stability.7 man7/ispace-wire.7; do
     [ -s "root/usr/share/man/$page.gz" ] || fail "no page $page"
 done
+tools_size=$(find root/usr/bin root/usr/lib/ispace/bin -type f -printf '%s\n' | awk '{ sum += $1 } END { print int(sum / 1e6) }')
+[ "$tools_size" -lt 25 ] || fail "the tools are $tools_size MB"
 if found=$(grep -rlF -e "$source_dir" -e "$binary_dir" root); then fail "the build's path is in $found"; fi
 dpkg-deb -f one/ispace_*.deb Recommends | has 'libopencv-imgcodecs' || fail "OpenCV's pictures are not recommended"
 if [ -e "$binary_dir/lib/ispace/dds.so" ]; then

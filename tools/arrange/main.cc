@@ -21,6 +21,7 @@
 #include "record/text.h"
 #include "report/curve_chart.h"
 #include "report/trace_file.h"
+#include "tools.h"
 
 namespace {
 
@@ -252,8 +253,8 @@ void arrangeSensors(const ArrangeCommand& command) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return ispace::runTool("arrange", argc, argv, [](int count, char** words) {
+int ispace::runArrange(int argc, char** argv) {
+    return runTool("arrange", argc, argv, [](int count, char** words) {
         arrangeSensors(ispace::ArrangeCommand(count, words));
     });
 }

@@ -25,6 +25,7 @@
 #include "report/trace_file.h"
 #include "scene/run/run_reader.h"
 #include "scene/scene.h"
+#include "tools.h"
 
 namespace {
 
@@ -197,8 +198,8 @@ void coverage(const CoverageToolOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return ispace::runTool("coverage", argc, argv, [](int count, char** words) {
+int ispace::runCoverage(int argc, char** argv) {
+    return runTool("coverage", argc, argv, [](int count, char** words) {
         const auto options = ispace::parseCoverageOptions(count, words);
         if (options.task) {
             limitThreads(options.common.threads);

@@ -31,6 +31,7 @@
 #include "scene/placement_schemas.h"
 #include "scene/sensor/sensor.h"
 #include "sim/course_check.h"
+#include "tools.h"
 
 namespace {
 
@@ -265,8 +266,7 @@ void envc(const EnvcOptions& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return ispace::runTool("envc", argc, argv, [](int count, char** words) {
-        envc(ispace::parseEnvcOptions(count, words));
-    });
+int ispace::runEnvc(int argc, char** argv) {
+    return runTool("envc", argc, argv,
+                   [](int count, char** words) { envc(ispace::parseEnvcOptions(count, words)); });
 }

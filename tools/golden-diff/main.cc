@@ -13,6 +13,7 @@
 #include "cli/command_line.h"
 #include "cli/run_tool.h"
 #include "drawing/picture_difference.h"
+#include "tools.h"
 
 namespace {
 
@@ -122,7 +123,7 @@ bool differ(const Options& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int ispace::runGoldenDiff(int argc, char** argv) {
     constexpr int kSame = 0, kDiffer = 1, kTrouble = 2;
     bool is_other = false;
     const int status = runTool("golden-diff", [&] { is_other = differ(parseOptions(argc, argv)); });

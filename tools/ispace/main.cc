@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ispace: one name for all tools. `ispace scan …` runs the program scan of the same installation,
-// even if PATH has another scan; `ispace help scan` runs man.
+// ispace: the program that all tools are. It runs the one of the name by which it was called, or of
+// its first word, as in `ispace scan …`; `ispace help scan` runs man.
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "cli/run_tool.h"
+#include "tools.h"
 
 namespace {
 
@@ -24,15 +25,16 @@ using namespace ispace;
 
 struct Tool {
     std::string_view name, summary;
+    int (*run)(int argc, char** argv);
 };
 
 /// In the order of a pipeline; the summaries are those of the manual pages.
 constexpr auto kTools = std::to_array<Tool>({
-    {"envc", "compile, check, convert, edit and draw rooms"},
-    {"arrange", "compute poses for sensors in a room"},
-    {"scan", "simulate the readings of sensors in a room"},
-    {"coverage", "measure and draw the floor that sensors cover"},
-    {"simrun", "simulate the robots and sensors of a room and serve them over TCP"},
+    {"envc", "compile, check, convert, edit and draw rooms", runEnvc},
+    {"arrange", "compute poses for sensors in a room", runArrange},
+    {"scan", "simulate the readings of sensors in a room", runScan},
+    {"coverage", "measure and draw the floor that sensors cover", runCoverage},
+    {"simrun", "simulate the robots and sensors of a room and serve them over TCP", runSimrun},
 });
 
 constexpr std::string_view kUsage =
@@ -63,28 +65,23 @@ std::string helpText() {
     return text.append(kRest);
 }
 
-bool isTool(std::string_view word) {
-    return std::any_of(kTools.begin(), kTools.end(),
-                       [word](const Tool& tool) { return tool.name == word; });
+const Tool* toolOf(std::string_view name) {
+    const auto* const found = std::ranges::find(kTools, name, &Tool::name);
+    return found == kTools.end() ? nullptr : found;
 }
 
-/// Finds a program in a separate folder if another package has a program of that name, else beside
-/// this one.
-fs::path programOf(const std::string& tool) {
-    const fs::path prefix(programPrefix());
-    if (prefix.empty()) return tool;  // without /proc: from PATH
-    const fs::path own = prefix / "lib" / "ispace" / "bin" / tool;
-    std::error_code error;
-    return fs::exists(own, error) ? own : prefix / "bin" / tool;
+/// Returns words as main() has them, with a null at the end.
+std::vector<char*> pointersTo(std::vector<std::string>& words) {
+    std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    return pointers;
 }
 
 /// Executes `file`, which execvp looks up in PATH if it has no slash. \throws std::system_error
 [[noreturn]] void become(const std::string& file, std::vector<std::string> words) {
-    std::vector<char*> argv;
-    argv.reserve(words.size() + 1);
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    ::execvp(file.c_str(), argv.data());
+    ::execvp(file.c_str(), pointersTo(words).data());
     throw std::system_error(errno, std::generic_category(), file);
 }
 
@@ -129,7 +126,7 @@ void takeErrors(std::vector<std::string>& words) {
         throw UsageError("--errors: " + excerpt(form) + " is not text or json");
     words.erase(words.begin(), words.begin() + (is_pair ? 2 : 1));
     if (form == "json") selectMessageForm(MessageForm::Json);
-    if (!words.empty() && isTool(words.front()))
+    if (!words.empty() && toolOf(words.front()) != nullptr)
         words.insert(words.begin() + 1, std::string(kErrors) + '=' + form);
 }
 
@@ -140,14 +137,14 @@ std::string versionObject() {
     return json.take() + '\n';
 }
 
-/// Returns only on errors: another program replaces this one.
-void run(std::vector<std::string> words) {
+/// Returns the tool to run, with its words; does all else itself.
+const Tool* begin(std::vector<std::string>& words) {
     takeErrors(words);
     std::vector<std::string> known = {"help"};
     for (const Tool& tool : kTools) known.emplace_back(tool.name);
     if (words.empty()) throw UsageError("which tool? (see ispace --help)");
     const std::string& first = words.front();
-    if (isTool(first)) become(programOf(first).string(), words);
+    if (const Tool* const tool = toolOf(first)) return tool;
     const bool is_help = first == "help" || first == "-h" || first == "--help";
     const bool is_version = first == "-V" || first == "--version";
     if (is_version && words.size() == 2 && words.back() == "--json")
@@ -166,5 +163,13 @@ void run(std::vector<std::string> words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return runTool("ispace", [&] { run(std::vector<std::string>(argv + 1, argv + argc)); });
+    const std::string called = argc > 0 ? fs::path(argv[0]).filename().string() : "";
+    if (const Tool* const tool = toolOf(called)) return tool->run(argc, argv);
+    if (called == "golden-diff") return runGoldenDiff(argc, argv);
+    std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    const Tool* tool = nullptr;
+    const int status = runTool("ispace", [&] { tool = begin(words); });
+    if (tool == nullptr) return status;
+    std::vector<char*> pointers = pointersTo(words);
+    return tool->run(static_cast<int>(words.size()), pointers.data());
 }

@@ -19,6 +19,7 @@
 #include "scene/findings/findings.h"
 #include "scene/scene.h"
 #include "sense/warnings.h"
+#include "tools.h"
 
 namespace {
 
@@ -155,8 +156,7 @@ void scan(const ScanCommand& command) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return ispace::runTool("scan", argc, argv, [](int count, char** words) {
-        scan(ispace::ScanCommand(count, words));
-    });
+int ispace::runScan(int argc, char** argv) {
+    return runTool("scan", argc, argv,
+                   [](int count, char** words) { scan(ispace::ScanCommand(count, words)); });
 }

@@ -20,6 +20,7 @@
 #include "simrun/simrun_ports.h"
 #include "simrun/simrun_report.h"
 #include "simrun/simrun_run.h"
+#include "tools.h"
 
 namespace {
 
@@ -154,8 +155,7 @@ void simrun(const SimrunCommand& command) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    return ispace::runTool("simrun", argc, argv, [](int count, char** words) {
-        simrun(ispace::SimrunCommand(count, words));
-    });
+int ispace::runSimrun(int argc, char** argv) {
+    return runTool("simrun", argc, argv,
+                   [](int count, char** words) { simrun(ispace::SimrunCommand(count, words)); });
 }
