@@ -9,7 +9,7 @@ JOBS = $(shell nproc)
 FUZZ_SECONDS = 60
 TORTURE_MINUTES = 10
 
-configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev
+configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev -DISPACE_WERROR=ON
 build = cmake --build $(1) -j $(JOBS)
 
 .NOTPARALLEL:
