@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/number.h"
 #include "sim/world.h"
@@ -59,16 +63,46 @@ std::vector<WayFinder::Spot> World::standingBeside(std::size_t mover) const {
     return data_->standingBeside(mover);
 }
 
+std::optional<Point2> World::Data::nearestRoom(std::size_t mover, Point2 goal) {
+    constexpr double kPerMetre = 10;   // points of a lattice
+    constexpr int kReach = 20;         // of its steps
+    constexpr std::size_t kTries = 4;  // ways
+    const Obstacles& bodies = *states[mover].obstacles;
+    const double radius = movers[mover].model.radius;
+    std::vector<std::pair<double, Point2>> points;
+    const double column = std::round(goal.x * kPerMetre), row = std::round(goal.y * kPerMetre);
+    for (int i = -kReach; i <= kReach; ++i)
+        for (int k = -kReach; k <= kReach; ++k) {
+            const Point2 p{(column + i) / kPerMetre, (row + k) / kPerMetre};
+            if (distance(p, goal) * kPerMetre <= kReach) points.emplace_back(distance(p, goal), p);
+        }
+    std::stable_sort(points.begin(), points.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::size_t tries = 0;
+    for (const auto& [off, p] : points) {
+        if (scene->environment.indoor().locate(p) != Side::Inside || bodies.overlap(p, radius))
+            continue;
+        if (!finderOf(mover).wayBetween(motions[mover].pose.position, p).empty()) return p;
+        if (++tries == kTries) break;
+    }
+    return std::nullopt;
+}
+
 std::string World::findWay(std::size_t mover, Command& command) {
     assert(command.verb == Verb::Goto && !command.course.path.empty());
     Data& data = *data_;
     const Point2 goal = command.course.path.back();
     const auto goal_text = [goal] { return formatDouble(goal.x) + ',' + formatDouble(goal.y); };
     const Mover& who = data.movers[mover];
-    if (const auto body = data.states[mover].obstacles->overlap(goal, who.model.radius))
-        return who.id + " has no room at " + goal_text() + ": " + data.elements()[*body].id +
-               " stands there";
     const Point2 at = data.motions[mover].pose.position;
+    if (const auto body = data.states[mover].obstacles->overlap(goal, who.model.radius)) {
+        const auto near = data.nearestRoom(mover, goal);
+        return who.id + " has no room at " + goal_text() + ": " + data.elements()[*body].id +
+               " stands there" +
+               (near ? "; the nearest point with room is " + formatDouble(near->x) + ',' +
+                           formatDouble(near->y)
+                     : "");
+    }
     std::vector<Point2> way = data.finderOf(mover).wayBetween(at, goal);
     if (way.empty()) return "no way for " + who.id + " to " + goal_text();
     command.value = lengthOf(at, way);

@@ -102,7 +102,11 @@ TEST(Goto, SaysWhyThereIsNoWay) {
     EXPECT_EQ(command.course.path, std::vector<Point2>{(Point2{7, 1})});
     EXPECT_EQ(world.findWay(1, command), "");
     command = goTo({6, 2.4});
-    EXPECT_EQ(world.findWay(1, command), "slim has no room at 6,2.4: desk1 stands there");
+    EXPECT_EQ(
+        world.findWay(1, command),
+        "slim has no room at 6,2.4: desk1 stands there; the nearest point with room is 6,2.7");
+    EXPECT_EQ(world.findWay(0, command), "wide has no room at 6,2.4: desk1 stands there")
+        << "it comes nowhere near";
     command = goTo({20, 1});
     EXPECT_EQ(world.findWay(1, command), "no way for slim to 20,1");
 }

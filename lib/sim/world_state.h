@@ -163,6 +163,9 @@ struct World::Data {
     void end(std::size_t mover, Outcome outcome);
     /// Returns the ways of a mover's size, found anew after a change. O(cells) the first time
     const WayFinder& finderOf(std::size_t mover);
+    /// Returns the nearest point about a goal, in whole decimetres and up to 2 m away, where a
+    /// mover has room and to which it has a way. Tries few ways.
+    std::optional<Point2> nearestRoom(std::size_t mover, Point2 goal);
     [[nodiscard]] std::vector<WayFinder::Spot> standingBeside(std::size_t mover) const;
     /// Goes on with a Goto whose way came to an end. \returns false if that ends the command
     bool continueTrip(std::size_t mover, Outcome outcome);
