@@ -169,9 +169,14 @@ def _check(options: argparse.Namespace) -> None:
     if options.action is None:
         raise UsageError(f"an action is needed: {', '.join(ACTIONS)} (--help shows how)")
     if options.action not in ACTIONS:
-        raise UsageError(f"unknown action `{options.action}`{did_you_mean(options.action, ACTIONS)}")
+        raise UsageError(f"unknown action `{options.action}`"
+                         f"{did_you_mean(options.action, ACTIONS) or ': one of ' + ', '.join(ACTIONS)}")
     if options.sweep is None:
         raise UsageError("the sweep's file is needed (--help shows how)")
+    if options.sweep.endswith((".csv", ".npz")):
+        parts = " PART..." if options.action in ("join", "plot", "status") else ""
+        raise UsageError(f"{options.sweep} holds results: the sweep comes first, "
+                         f"`{TOOL} {options.action} sweep.yaml{parts}`")
     if options.parts and options.action not in ("join", "plot", "status"):
         raise UsageError(f"{options.parts[0]}: `{options.action}` takes one sweep")
     if options.sweep == "-" and sys.stdin.isatty():

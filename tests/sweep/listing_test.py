@@ -273,6 +273,8 @@ ERRORS = [
 USAGE = [
     ([], "an action is needed: commands, names"),
     (["comands", "sweep.yaml"], "unknown action `comands`, did you mean `commands`?"),
+    (["list", "sweep.yaml"], "unknown action `list`: one of commands, names, makefile, run, status, join, plot"),
+    (["plot", "table.csv", "--x", "count"], "table.csv holds results: the sweep comes first, `ispace-sweep plot sweep.yaml PART...`"),
     (["commands"], "the sweep's file is needed"),
     (["commands", "sweep.yaml", "--partial"], "--partial is not for `commands`"),
     (["names", "sweep.yaml", "-j", "2"], "--threads is not for `names`"),
