@@ -38,6 +38,7 @@ std::string unknownRule(const std::string& option, const std::string& zone, cons
                         const BuildingScene& building) {
     const bool is_of_doors = own.starts_with(kDoorPrefix);
     std::string list, doors_named;
+    std::vector<std::string> zones;
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         const Storey& storey = building.document.storeys[i];
         const Environment& room = building.scenes[i]->environment;
@@ -50,11 +51,14 @@ std::string unknownRule(const std::string& option, const std::string& zone, cons
             doors_named = "; doors have this name: " + zone.substr(0, zone.size() - own.size()) +
                           std::string(kDoorPrefix) + own;
         for (const Element& element : room.elements())
-            if (element.record.keyword() == "zone")
+            if (element.record.keyword() == "zone") {
                 list += (list.empty() ? "" : ", ") + wholeId(storey, element.id);
+                zones.push_back(element.id);
+            }
     }
     const std::string kind = is_of_doors ? "door" : "zone";
-    return option + ": " + excerpt(zone) + " meets no " + kind + doors_named +
+    return option + ": " + excerpt(zone) + " meets no " + kind + inLowerCase(own, zones) +
+           doors_named +
            (list.empty() ? ": the building has none"
                          : "; the " + kind + "s of the building: " + list);
 }

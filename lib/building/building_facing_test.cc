@@ -113,6 +113,9 @@ TEST(BuildingFacing, UnknownDoorsListThoseOfAllStoreys) {
               "(1.00 m), u/back (1.00 m)");
     EXPECT_EQ(message("lobby,45deg,0"),
               "--facing: `lobby` meets no zone; the zones of the building: g/hall");
+    EXPECT_EQ(message("*/H*,45deg,0"),
+              "--facing: `*/H*` meets no zone, did you mean `h*`?; the zones of the building: "
+              "g/hall");
     EXPECT_EQ(message("u/ba*,45deg,0"),
               "--facing: `u/ba*` meets no zone; doors have this name: u/door:ba*; the zones of the "
               "building: g/hall");

@@ -125,11 +125,24 @@ bool namesDoors(std::string_view glob, const Environment& environment) {
 
 }  // namespace
 
+std::string inLowerCase(std::string_view pattern, std::span<const std::string> names) {
+    std::string lower(pattern);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (lower == pattern) return "";
+    const Glob glob(lower);
+    const bool is_met = std::any_of(names.begin(), names.end(),
+                                    [&](const std::string& name) { return glob.matches(name); });
+    return is_met ? ", did you mean " + excerpt(lower) + "?" : "";
+}
+
 std::string unknownZoneText(std::string_view text, const Environment& environment) {
     std::vector<std::string> known;
     for (const Element& element : environment.elements())
         if (element.record.keyword() == "zone") known.push_back(element.id);
-    return "the room has no zone " + excerpt(text) + didYouMean(text, known) +
+    std::string meant = inLowerCase(text, known);
+    if (meant.empty()) meant = didYouMean(text, known);
+    return "the room has no zone " + excerpt(text) + meant +
            (namesDoors(text, environment)
                 ? "; its doors of this name: " + std::string(kDoorPrefix) + printable(text)
                 : "") +

@@ -28,6 +28,9 @@ struct NamedZone {
 NamedZone readZone(std::string_view text, const Environment& environment);
 /// Returns the zone of an outline. \throws UsageError as readZone()
 NamedZone namedZone(std::string_view text, Polygon outline);
+/// Returns ", did you mean `*bath*`?" for a pattern with capitals that matches one of these names
+/// in lower case; else "".
+std::string inLowerCase(std::string_view pattern, std::span<const std::string> names);
 /// Returns "the room has no zone `x`, did you mean …; its zones: a, b".
 std::string unknownZoneText(std::string_view text, const Environment& environment);
 

@@ -73,6 +73,7 @@ TEST(ReadZone, RefusesWhatIsNone) {
               "the room has no zone `entrence`, did you mean `entrance`?; its zones: entrance, "
               "desk, zone1; "
               "write the id of a zone, rect:X,Y,X,Y, poly:X,Y;X,Y;X,Y or door:GLOB[,M]");
+    EXPECT_NE(refusal("Desk").find("no zone `Desk`, did you mean `desk`?; its"), std::string::npos);
     EXPECT_NE(refusal(""), "");
     EXPECT_NE(refusal("room1"), "") << "not a zone";
     EXPECT_EQ(refusal("poly:0,0;1,1"), "zone `poly:0,0;1,1` has 2 corners, wanted at least 3");
