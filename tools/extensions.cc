@@ -58,6 +58,7 @@ bool addFormats() {
 #endif
 #ifdef ISPACE_HAS_PRESSURE
     addSceneSchemas(pressureSchemas());
+    addPressureChecks();
 #endif
     return true;
 }

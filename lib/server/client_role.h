@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/room_state.h"
 #include "sim/simulation.h"
 
 namespace ispace {
@@ -65,6 +66,8 @@ class RoleService {
     [[nodiscard]] virtual bool holdsWorld() const = 0;
     /// Names the clients that the world will wait for; "" if it waits for no client.
     [[nodiscard]] virtual std::string waitsFor() const = 0;
+    /// Returns the states of its things, by ids across the run, which STATE lists.
+    [[nodiscard]] virtual std::vector<RoomState> states() const { return {}; }
 };
 
 /// Makes the service of an extension for a run; null if the scenes ask for none. \param rooms of

@@ -204,6 +204,8 @@ std::vector<RoomState> ServerState::statesOfAll() const {
             state.id = nameAcross(room, state.id);
             states.push_back(std::move(state));
         }
+    for (const RoleService* const service : role_services_)
+        for (RoomState& state : service->states()) states.push_back(std::move(state));
     if (rooms_ == nullptr) return states;
     for (const LiftState& lift : rooms_->worlds->lifts())
         for (RoomState& state : statesOf(lift)) states.push_back(std::move(state));

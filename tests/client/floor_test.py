@@ -34,6 +34,9 @@ class FloorOfARoom(unittest.TestCase):
             bed = floor.read("bed-sensor")
             self.assertTrue(bed.occupied)
             self.assertEqual((bed.weight, bed.columns, bed.cells), (58.0, 0, {}))
+            states = world.states()
+            self.assertEqual((states["bed-sensor.occupied"], states["bed-sensor.weight"]), ("1", "58"))
+            self.assertEqual(states["chair-sensor.occupied"], "0")
             self.assertAlmostEqual(floor.read("floor").weight, before.weight - 58, delta=0.01)
             with self.assertRaisesRegex(ispace.Refused, "did you mean `bed-sensor`"):
                 floor.read("bad-sensor")

@@ -33,6 +33,7 @@ class MemoryOfARoom(unittest.TestCase):
             self.assertEqual(deaf.tags, [])
             world.step(400)
             self.assertEqual(memory.tags_at("news"), ["hand"])
+            self.assertEqual(world.states("news"), {"news.touched": "1"})
             world.step(300)
             touches = [memory.next_touch(5) for _ in range(3)]
             self.assertEqual([touch.kind for touch in touches], ["touch", "dwell", "leave"])

@@ -324,6 +324,13 @@ class Memory : public RoleService {
 
     [[nodiscard]] bool holdsWorld() const override { return false; }
     [[nodiscard]] std::string waitsFor() const override { return ""; }
+    [[nodiscard]] std::vector<RoomState> states() const override {
+        std::vector<RoomState> states;
+        states.reserve(run_.volumes.all().size());
+        for (const auto& each : run_.volumes.all())
+            states.push_back({each.first, "touched", touched_.contains(each.first) ? "1" : "0"});
+        return states;
+    }
 
   private:
     void tell(const std::vector<Touch>& touches) {

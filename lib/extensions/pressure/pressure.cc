@@ -107,11 +107,17 @@ PressureField::PressureField(const World& world, std::string prefix)
 void PressureField::observe() {
     if (std::exchange(changes_, world_->changes()) != world_->changes()) {
         try {
-            scene_ = pressureScene(world_->scene(), prefix_);
+            scene_ = pressureScene(world_->scene(), prefix_, LoadsOf::Any);
         } catch (const FormatError&) {  // of a change by a client: the run goes on as it was
         }
     }
     if (!scene_.floors.empty() || !scene_.seats.empty()) findContacts();
+}
+
+std::optional<double> PressureField::massOf(const std::string& id) const {
+    for (const auto* const loads : {&scene_.loads, &visitors_})
+        if (const auto known = loads->find(id); known != loads->end()) return known->second;
+    return std::nullopt;
 }
 
 void PressureField::findContacts() {
@@ -122,14 +128,11 @@ void PressureField::findContacts() {
     for (std::size_t i = 0; i < world_->movers().size(); ++i) {
         const std::string id(world_->movers()[i].id);
         const RobotStatus status = world_->status(i);
-        const auto known = scene_.masses.find(id);
         const bool is_person = i >= robots;
-        // A person who came from another room has no record here.
         const double height = is_person ? world_->people()[i - robots].height : 0;
         const double radius = is_person ? 0 : world_->robots()[i].model.radius;
-        const double mass = known != scene_.masses.end() ? known->second
-                            : is_person                  ? massOfPerson(height)
-                                                         : massOfRobot(radius);
+        const double mass =
+            massOf(id).value_or(is_person ? massOfPerson(height) : massOfRobot(radius));
         const bool stands =
             status.speed == 0 && status.sidespeed == 0 && status.rotspeed == Angle();
         if (!stands) still_.erase(id);

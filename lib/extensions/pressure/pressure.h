@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "extensions/pressure/pressure_record.h"
@@ -55,6 +57,11 @@ class PressureField {
     /// not understand then leaves all as it was.
     void observe();
 
+    /// Returns the loads of this room.
+    [[nodiscard]] const std::map<std::string, double>& loads() const { return scene_.loads; }
+    /// Sets those of other rooms, from which robots and people may come.
+    void expectVisitors(std::map<std::string, double> loads) { visitors_ = std::move(loads); }
+
     [[nodiscard]] const std::vector<PressureFloor>& floors() const { return scene_.floors; }
     [[nodiscard]] const std::vector<PressureSeat>& seats() const { return scene_.seats; }
     /// Return what a floor or a seat feels now. \param number of the reading, for its noise
@@ -63,11 +70,13 @@ class PressureField {
 
   private:
     void findContacts();
+    [[nodiscard]] std::optional<double> massOf(const std::string& id) const;
 
     const World* world_;
     std::string prefix_;
     std::int64_t changes_ = 0;
     PressureScene scene_;
+    std::map<std::string, double> visitors_;  // kg
     std::map<std::string, SimTime> still_;    // since when movers that stand do
     std::vector<FootContact> contacts_;       // on the floor
     std::map<std::string, double> on_seats_;  // kg by seat

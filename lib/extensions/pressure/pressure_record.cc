@@ -11,6 +11,7 @@
 #include "env/body.h"
 #include "env/environment.h"
 #include "geom/predicates.h"
+#include "scene/findings/findings.h"
 #include "scene/sensor/sensor_keys.h"
 
 namespace ispace {
@@ -82,6 +83,19 @@ PressureSeat seatOf(const Record& record, std::string id, const Scene& scene) {
         throw FormatError(record.finding(
             "of", "`of`: no thing of the room is " + excerpt(of) + didYouMean(of, things)));
     return seat;
+}
+
+/// Returns the finding about a record whose `of` is none of these.
+Finding wrongReference(const Scene& scene, std::size_t record, const std::string& wanted,
+                       const std::vector<std::string>& known) {
+    const Record& checked = scene.records[record];
+    const std::string nearest = nearestWord(checked.text("of"), known);
+    return {.severity = Severity::Error,
+            .element = scene.ids[record],
+            .message = checked.keyword() + ' ' + scene.ids[record] + " is of " +
+                       excerpt(checked.text("of")) + ", which is no " + wanted,
+            .hint = nearest.empty() ? "name one in `of`" : "name `" + nearest + '`',
+            .source = checked.keyPlace("of")};
 }
 
 }  // namespace
@@ -168,6 +182,29 @@ std::vector<Schema> pressureSchemas() {
                    .required = true}}}};
 }
 
+void addPressureChecks() {
+    addRecordCheck("seat_sensor", [](const Scene& scene, std::size_t record) {
+        std::vector<std::string> things;
+        for (const Element& element : scene.environment.elements())
+            if (!element.body.prisms.empty()) things.push_back(element.id);
+        const std::string& of = scene.records[record].text("of");
+        return std::find(things.begin(), things.end(), of) != things.end()
+                   ? std::nullopt
+                   : std::optional(wrongReference(scene, record, "thing of the room", things));
+    });
+    addRecordCheck("load", [](const Scene& scene, std::size_t record) {
+        std::vector<std::string> movers;
+        for (const PlacedRobot& robot : scene.robots) movers.push_back(robot.id);
+        for (const PlacedPerson& person : scene.people) movers.push_back(person.id);
+        const std::string& of = scene.records[record].text("of");
+        const bool is_known = std::any_of(
+            movers.begin(), movers.end(),
+            [&](const std::string& mover) { return mover == of || mover.ends_with('/' + of); });
+        return is_known ? std::nullopt
+                        : std::optional(wrongReference(scene, record, "robot or person", movers));
+    });
+}
+
 double massOfPerson(double height) {
     constexpr double kDensity = 23;  // kg/m^2
     return kDensity * height * height;
@@ -178,12 +215,11 @@ double massOfRobot(double radius) {
     return kDensity * radius * radius;
 }
 
-PressureScene pressureScene(const Scene& scene, const std::string& prefix) {
+PressureScene pressureScene(const Scene& scene, const std::string& prefix, LoadsOf movers) {
     PressureScene made;
-    for (const PlacedPerson& person : scene.people)
-        made.masses[person.id] = massOfPerson(person.height);
-    for (const PlacedRobot& robot : scene.robots)
-        made.masses[robot.id] = massOfRobot(robot.model.radius);
+    std::vector<std::string> known;
+    for (const PlacedPerson& person : scene.people) known.push_back(person.id);
+    for (const PlacedRobot& robot : scene.robots) known.push_back(robot.id);
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
         const Record& record = scene.records[i];
         if (record.keyword() == "floor_sensor") {
@@ -192,16 +228,12 @@ PressureScene pressureScene(const Scene& scene, const std::string& prefix) {
             made.seats.push_back(seatOf(record, prefix + scene.ids[i], scene));
         } else if (record.keyword() == "load") {
             const std::string& of = record.text("of");
-            const auto known = std::find_if(
-                made.masses.begin(), made.masses.end(),
-                [&](const auto& each) { return each.first == of || each.first == prefix + of; });
-            if (known == made.masses.end()) {
-                std::vector<std::string> movers;
-                for (const auto& each : made.masses) movers.push_back(each.first);
+            const std::string id = of.starts_with(prefix) ? of : prefix + of;
+            if (movers == LoadsOf::ItsOwn &&
+                std::find(known.begin(), known.end(), id) == known.end())
                 throw FormatError(record.finding(
-                    "of", "`of`: no robot or person is " + excerpt(of) + didYouMean(of, movers)));
-            }
-            known->second = record.number("kg");
+                    "of", "`of`: no robot or person is " + excerpt(of) + didYouMean(of, known)));
+            made.loads[id] = record.number("kg");
         }
     }
     return made;

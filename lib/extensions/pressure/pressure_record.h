@@ -55,7 +55,7 @@ struct PressureSeat {
 struct PressureScene {
     std::vector<PressureFloor> floors;
     std::vector<PressureSeat> seats;
-    std::map<std::string, double> masses;  ///< of robots and people, kg, by id
+    std::map<std::string, double> loads;  ///< by the ids of robots and people in the run, kg
 };
 
 /// Returns the schemas of the records.
@@ -68,9 +68,19 @@ double massOfPerson(double height);
 /// weighs its 9 kg.
 double massOfRobot(double radius);
 
-/// Reads the records of a scene. \param prefix of a room, "ground/", put before ids of
-/// sensors \throws FormatError at a record that refers to no thing or mover, and for a grid of too
-/// many cells
-PressureScene pressureScene(const Scene& scene, const std::string& prefix);
+/// Adds the checks of the records: `of` names a thing of the room, or a robot or person.
+void addPressureChecks();
+
+/// Which movers loads may be of.
+enum class LoadsOf {
+    ItsOwn,  ///< those of the scene
+    Any      ///< others, too, which have gone to another room
+};
+
+/// Reads the records of a scene. \param prefix of a room, "ground/", put before ids of sensors
+/// \throws FormatError at a record that refers to no thing or mover, and for a grid of too many
+/// cells
+PressureScene pressureScene(const Scene& scene, const std::string& prefix,
+                            LoadsOf movers = LoadsOf::ItsOwn);
 
 }  // namespace ispace

@@ -92,6 +92,7 @@ struct Run {
         return names;
     }
     void list(std::size_t room);
+    void tellLoads();
     bool readIfDue(SensorOfRun& sensor) const;
 };
 
@@ -111,6 +112,14 @@ void Run::list(std::size_t room) {
     for (const PressureSeat& seat : rooms[room].field.seats()) keep(seat.id, nullptr, &seat);
     std::erase_if(sensors, [room](const auto& each) { return each.second.room == room; });
     sensors.merge(listed);
+}
+
+/// Lets each room know the weights of all, as people and robots go from one to another.
+void Run::tellLoads() {
+    if (rooms.size() < 2) return;
+    std::map<std::string, double> all;
+    for (const Room& room : rooms) all.insert(room.field.loads().begin(), room.field.loads().end());
+    for (Room& room : rooms) room.field.expectVisitors(all);
 }
 
 /// Reads a sensor whose next period has begun. \returns true if it did
@@ -203,6 +212,7 @@ class Floors : public RoleService {
   public:
     explicit Floors(Run run) : run_(std::move(run)) {
         for (std::size_t room = 0; room < run_.rooms.size(); ++room) run_.list(room);
+        run_.tellLoads();
         for (auto& each : run_.sensors) run_.readIfDue(each.second);
     }
     [[nodiscard]] std::string_view verb() const override { return "FLOOR"; }
@@ -219,7 +229,9 @@ class Floors : public RoleService {
             Run::Room& each = run_.rooms[room];
             each.field.observe();
             const std::int64_t changes = each.simulation->world().changes();
-            if (std::exchange(each.changes, changes) != changes) run_.list(room);
+            if (std::exchange(each.changes, changes) == changes) continue;
+            run_.list(room);
+            run_.tellLoads();
         }
         for (auto& [id, sensor] : run_.sensors) {
             if (run_.readIfDue(sensor))
@@ -230,6 +242,15 @@ class Floors : public RoleService {
 
     [[nodiscard]] bool holdsWorld() const override { return false; }
     [[nodiscard]] std::string waitsFor() const override { return ""; }
+    [[nodiscard]] std::vector<RoomState> states() const override {
+        std::vector<RoomState> states;
+        states.reserve(2 * run_.sensors.size());
+        for (const auto& [id, sensor] : run_.sensors) {
+            states.push_back({id, "occupied", sensor.was_occupied ? "1" : "0"});
+            states.push_back({id, "weight", formatDouble(sensor.told)});
+        }
+        return states;
+    }
 
   private:
     /// Raises the events of the run. A weight is told once it differs by a kilogram.

@@ -126,15 +126,30 @@ void checkCollisions(CheckContext& context, std::size_t record, std::vector<Find
     context.circles().check(record, findings);
 }
 
-constexpr std::array<SceneCheck, 9> kChecks{{{"walls", checkWalls},
-                                             {"objects", checkObjects},
-                                             {"zones", checkZones},
-                                             {"unplaced", checkUnplaced},
-                                             {"outside", checkOutside},
-                                             {"buried", checkBuried},
-                                             {"collisions", checkCollisions},
-                                             {"paths", checkPath},
-                                             {"loose ends", checkLooseEnds}}};
+/// The checks of extensions, by keyword.
+std::map<std::string, RecordCheck, std::less<>>& recordChecks() {
+    static std::map<std::string, RecordCheck, std::less<>> checks;
+    return checks;
+}
+
+void checkRecords(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
+    if (record >= context.scene.records.size() || recordChecks().empty()) return;
+    const auto check = recordChecks().find(context.scene.records[record].keyword());
+    if (check == recordChecks().end()) return;
+    if (auto finding = check->second(context.scene, record))
+        findings.push_back(std::move(*finding));
+}
+
+constexpr std::array<SceneCheck, 10> kChecks{{{"walls", checkWalls},
+                                              {"objects", checkObjects},
+                                              {"zones", checkZones},
+                                              {"unplaced", checkUnplaced},
+                                              {"outside", checkOutside},
+                                              {"buried", checkBuried},
+                                              {"collisions", checkCollisions},
+                                              {"paths", checkPath},
+                                              {"loose ends", checkLooseEnds},
+                                              {"records", checkRecords}}};
 
 }  // namespace
 
@@ -192,6 +207,10 @@ Diagnostic Finding::diagnostic() const {
 }
 
 std::span<const SceneCheck> sceneChecks() { return kChecks; }
+
+void addRecordCheck(std::string_view keyword, RecordCheck check) {
+    recordChecks().insert_or_assign(std::string(keyword), check);
+}
 
 std::vector<Finding> checkScene(const Scene& scene, const FindingFilter& filter) {
     CheckContext context(scene);

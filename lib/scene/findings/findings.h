@@ -63,7 +63,15 @@ struct SceneCheck {
 /// - paths: points of paths of robots and people outside the room; sim/course_check.h walks the
 ///   legs.
 /// - loose ends: ends of walls in the room less than 0.2 m before another wall.
+/// - records: mistakes in records of extensions, see addRecordCheck().
 std::span<const SceneCheck> sceneChecks();
+
+/// Checks the record of a scene with this index. Returns empty if it is right.
+using RecordCheck = std::optional<Finding> (*)(const Scene& scene, std::size_t record);
+
+/// Adds the check of the records with a keyword, for the program: call it before any scene is
+/// checked.
+void addRecordCheck(std::string_view keyword, RecordCheck check);
 
 /// Selects findings; by default all.
 struct FindingFilter {
