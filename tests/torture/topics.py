@@ -132,8 +132,10 @@ class TopicReader:
 TOPICS = ("/clock", "/tf", "/tf_static", "/map", "/room", "/people", "/diagnostics", "/honest/odom", "/honest/sonar_0",
           "/honest_laser/scan", "/eye_laser/scan", "/eye/image_raw/compressed", "/eye/camera_info", "/xr1/odom", "/xl1/scan",
           "/xc1/image_raw/compressed", "/xk1/depth/image_rect", "/none", "", "/" + "t" * 3000)
-INPUTS = ("/cmd_vel", "/honest/cmd_vel", "/xr1/cmd_vel", "/xr2/cmd_vel", "/xr1/initialpose", "/initialpose", "/clock", "x")
-TYPES = ("geometry_msgs/Twist", "geometry_msgs/msg/TwistStamped", "geometry_msgs/PoseWithCovarianceStamped", "std_msgs/Bool", "")
+INPUTS = ("/cmd_vel", "/honest/cmd_vel", "/xr1/cmd_vel", "/xr2/cmd_vel", "/xr1/initialpose", "/initialpose", "/xr1/goal_pose",
+          "/goal_pose", "/clock", "x")
+TYPES = ("geometry_msgs/Twist", "geometry_msgs/msg/TwistStamped", "geometry_msgs/PoseWithCovarianceStamped",
+         "geometry_msgs/PoseStamped", "std_msgs/Bool", "")
 
 
 def speed(r):

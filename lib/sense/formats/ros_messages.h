@@ -133,7 +133,7 @@ struct RosPose {
     Pose2 pose;
     double height = 0;  ///< metres
 };
-/// Reads the pose of a PoseWithCovarianceStamped, turned about z alone.
+/// Reads the pose of a PoseStamped or a PoseWithCovarianceStamped, turned about z alone.
 RosPose poseOf(std::string_view message);
 
 /// A marker that stands for a person or robot: what a tracker tells.

@@ -101,6 +101,7 @@ constexpr Definition kTypes[] = {
      "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status\n"},
     {"geometry_msgs/msg/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
     {"geometry_msgs/msg/TwistStamped", "std_msgs/Header header\ngeometry_msgs/Twist twist\n"},
+    {"geometry_msgs/msg/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
     {"geometry_msgs/msg/PoseWithCovarianceStamped",
      "std_msgs/Header header\ngeometry_msgs/PoseWithCovariance pose\n"},
     {"std_msgs/msg/Empty", ""},

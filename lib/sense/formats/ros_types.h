@@ -32,6 +32,7 @@ enum class RosType : std::uint16_t {
     DiagnosticArray,
     Twist,
     TwistStamped,
+    PoseStamped,
     PoseWithCovarianceStamped,
     Empty
 };

@@ -53,8 +53,8 @@ TEST(RosFeed, HasARowForEachTopic) {
     for (const auto& [number, entry] : fed.feed.entries()) topics.insert(entry.channel.topic);
     for (const char* topic :
          {"/clock", "/tf", "/tf_static", "/map", "/room", "/people", "/diagnostics", "/r1/odom",
-          "/r1/sonar_0", "/r1/sonar_7", "/r1/cmd_vel", "/r2/initialpose", "/l1/scan", "/l2/scan",
-          "/c1/image_raw/compressed", "/c1/camera_info"})
+          "/r1/sonar_0", "/r1/sonar_7", "/r1/cmd_vel", "/r2/initialpose", "/r1/goal_pose",
+          "/l1/scan", "/l2/scan", "/c1/image_raw/compressed", "/c1/camera_info"})
         EXPECT_TRUE(topics.contains(topic)) << topic;
     EXPECT_FALSE(topics.contains("/cmd_vel")) << "two robots";
     EXPECT_FALSE(topics.contains("/r2/sonar_0")) << "a robot without sonars";

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <sstream>
 
 #include "base/number.h"
 #include "env/point_location.h"
@@ -27,7 +29,7 @@ std::span<const RosService> rosServices() {
 
 RosOrders::RosOrders(ServerState& state, std::function<void(const std::string&)> tell,
                      std::string peer)
-    : state_(&state), tell_(std::move(tell)), session_(state, std::move(peer)) {}
+    : state_(&state), tell_(std::move(tell)), session_(state, peer), peer_(std::move(peer)) {}
 
 RosOrders::~RosOrders() {
     for (const auto& [robot, driven] : driven_) release(robot, driven.hold);
@@ -53,7 +55,10 @@ unsigned RosOrders::present(std::string_view token) {
     const bool is_word = token.find_first_of(" \t\r\n") == std::string_view::npos;
     session_.request("TOKEN " + (is_word && !token.empty() ? std::string(token) : "\x7f"));
     const std::string answer = session_.take();
-    if (answer.starts_with("OK")) return 0;
+    if (answer.starts_with("OK")) {
+        token_ = token;
+        return 0;
+    }
     return answer.starts_with("ERR 429") ? kTooMany : kWrong;
 }
 
@@ -62,6 +67,7 @@ bool RosOrders::mayRequest() const { return requests_.size() < kMaxRequests; }
 void RosOrders::stepped() {
     session_.stepped();
     watch();
+    watchGoals();
     answerRequests();
 }
 
@@ -74,6 +80,7 @@ void RosOrders::finish() {
     session_.finish();
     takeAnswer();
     requests_.clear();
+    going_.clear();
 }
 
 void RosOrders::request(std::string line, Answer answer) {
@@ -117,6 +124,7 @@ void RosOrders::obey(const RosChannel& channel, std::string_view message) {
     if (state_->simulation().isReplay())
         return tell_("this run is a replay: robots go as recorded");
     if (const auto* twist = std::get_if<RosTwist>(&order)) return drive(robot, *twist);
+    if (const auto* goal = std::get_if<RosGoal>(&order)) return go(robot, goal->pose);
     place(robot, std::get<RosPose>(order));
 }
 
@@ -147,6 +155,7 @@ void RosOrders::drive(const std::string& robot, const RosTwist& twist) {
     World& world = state.simulation().world();
     if (!std::isfinite(twist.forward + twist.left + twist.turn.radians()))
         return tell_("the speeds of " + robot + " must be numbers");
+    going_.erase(robot);
     state.sync();
     const auto index = world.robotNamed(robot);
     Driven& driven = driven_[robot];
@@ -173,25 +182,32 @@ void RosOrders::drive(const std::string& robot, const RosTwist& twist) {
     if (model.drive == Drive::Omni) give(Verb::Sidespeed, twist.left, model.max_sidespeed);
 }
 
-void RosOrders::place(const std::string& robot, const RosPose& pose) {
+std::optional<RosOrders::Target> RosOrders::targetOf(const std::string& robot,
+                                                     const RosPose& pose) {
     const Point2 at = pose.pose.position;
     const double heading = pose.pose.heading.degrees();
-    if (!std::isfinite(at.x + at.y + heading + pose.height))
-        return tell_("the pose of " + robot + " must be numbers");
-    if (state_->rooms() != nullptr) return placeInRoom(robot, pose);
-    if (!pose.frame.empty() && pose.frame != kRosWorld)
-        return tell_("the pose of " + robot + " is wanted in the frame map");
-    set(robot, formatDouble(at.x) + ',' + formatDouble(at.y), heading);
+    if (!std::isfinite(at.x + at.y + heading + pose.height)) {
+        tell_("the pose of " + robot + " must be numbers");
+        return {};
+    }
+    if (state_->rooms() != nullptr) return targetInRoom(robot, pose);
+    if (!pose.frame.empty() && pose.frame != kRosWorld) {
+        tell_("the pose of " + robot + " is wanted in the frame map");
+        return {};
+    }
+    return Target{formatDouble(at.x) + ',' + formatDouble(at.y), heading};
 }
 
-/// Puts a robot to `at` and then, if it may be there, to a heading in degrees.
-void RosOrders::set(const std::string& robot, const std::string& at, double heading) {
+/// Puts a robot to its place and then, if it may be there, to its heading.
+void RosOrders::place(const std::string& robot, const RosPose& pose) {
+    const auto target = targetOf(robot, pose);
+    if (!target) return;
     if (!mayRequest()) return tell_("too many poses at once");
     const auto tell = [this](bool is_done, std::string_view text) {
         if (!is_done) tell_(std::string(text));
     };
-    request("SET " + robot + ".at=" + at,
-            [this, tell, line = "SET " + robot + ".heading=" + formatDouble(heading)](
+    request("SET " + robot + ".at=" + target->at,
+            [this, tell, line = "SET " + robot + ".heading=" + formatDouble(target->heading)](
                 bool is_done, std::string_view text) {
                 tell(is_done, text);
                 // The next request, before those that wait.
@@ -199,9 +215,59 @@ void RosOrders::set(const std::string& robot, const std::string& at, double head
             });
 }
 
-/// Puts a robot on the storey whose frame the pose names or, in the frame map, on the one with its
-/// floor nearest to the pose's height; of several there, on that which has the point indoors.
-void RosOrders::placeInRoom(const std::string& robot, const RosPose& pose) {
+/// Sends a robot to a goal, in place of an earlier one.
+void RosOrders::go(const std::string& robot, const RosPose& goal) {
+    const auto target = targetOf(robot, goal);
+    if (!target) return;
+    if (const auto driven = driven_.find(robot); driven != driven_.end()) {
+        release(robot, driven->second.hold);
+        driven_.erase(driven);
+    }
+    std::unique_ptr<Session>& session = going_[robot];
+    const bool is_new = session == nullptr;
+    if (is_new) session = std::make_unique<Session>(*state_, peer_);
+    if (session->waiting()) return tell_("too many goals at once");
+    const bool goes =
+        (!is_new || ((token_.empty() || ask(robot, *session, "TOKEN " + token_)) &&
+                     ask(robot, *session, "ROBOT " + robot))) &&
+        ask(robot, *session, "GOTO " + target->at + ',' + formatDouble(target->heading));
+    // One that cannot go to a new goal stops, as it does not know the old one to be meant still.
+    if (!goes) going_.erase(robot);
+}
+
+/// Makes a request of the client that holds a robot. \returns false, and tells why, if it fails
+bool RosOrders::ask(const std::string& robot, Session& session, const std::string& line) {
+    session.request(line);
+    const std::string answer = session.take();
+    constexpr std::string_view kError = "ERR 404 ";
+    if (!answer.starts_with("ERR ")) return true;
+    const std::size_t end = std::min(answer.find('\n'), answer.size());
+    tell_("robot " + robot + ": " +
+          answer.substr(std::min(kError.size(), end), end - std::min(kError.size(), end)));
+    return false;
+}
+
+/// Frees robots that are at their goals, or cannot go on.
+void RosOrders::watchGoals() {
+    for (auto robot = going_.begin(); robot != going_.end();) {
+        Session& session = *robot->second;
+        session.stepped();
+        bool has_ended = session.closing();
+        std::istringstream lines(session.take());
+        for (std::string line; std::getline(lines, line);) {
+            const bool has_failed =
+                line.starts_with("FAIL ") && line.find(" reason=replaced") == std::string::npos;
+            if (has_failed) tell_("robot " + robot->first + " did not come to its goal: " + line);
+            has_ended = has_ended || has_failed || line.starts_with("DONE ");
+        }
+        robot = has_ended ? going_.erase(robot) : std::next(robot);
+    }
+}
+
+/// Finds the storey whose frame the pose names or, in the frame map, the one with its floor nearest
+/// to the pose's height; of several there, that which has the point indoors.
+std::optional<RosOrders::Target> RosOrders::targetInRoom(const std::string& robot,
+                                                         const RosPose& pose) {
     const JoinedWorlds& worlds = *state_->rooms()->worlds;
     const auto rooms = worlds.rooms();
     const bool is_in_map = pose.frame.empty() || pose.frame == kRosWorld;
@@ -227,11 +293,13 @@ void RosOrders::placeInRoom(const std::string& robot, const RosPose& pose) {
                                (found.off == best->off && found.is_indoor && !best->is_indoor);
         if (is_better) best = std::move(found);
     }
-    if (!best)
-        return tell_("the pose of " + robot + " is wanted in the frame map or in that of a storey");
+    if (!best) {
+        tell_("the pose of " + robot + " is wanted in the frame map or in that of a storey");
+        return {};
+    }
     const Point2 at = best->pose.position;
-    set(robot, best->room + '/' + formatDouble(at.x) + ',' + formatDouble(at.y),
-        best->pose.heading.degrees());
+    return Target{best->room + '/' + formatDouble(at.x) + ',' + formatDouble(at.y),
+                  best->pose.heading.degrees()};
 }
 
 /// Stops robots that get no more orders.

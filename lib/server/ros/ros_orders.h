@@ -7,6 +7,8 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,7 +37,8 @@ inline constexpr SimTime kRosSilence = std::chrono::milliseconds(1500);
 /// Orders of one client of topics to robots, and its requests to the world.
 ///
 /// A robot is held while orders come; it stops and is free again when none has come for
-/// kRosSilence. Among several worlds, orders find it in whichever it is.
+/// kRosSilence. One that goes to a goal is held until it is there, or cannot go on, or gets speeds.
+/// Among several worlds, orders find it in whichever it is.
 class RosOrders {
   public:
     /// \param tell reports a failure that answers no request \param peer address of the client
@@ -64,7 +67,7 @@ class RosOrders {
     void proceed();
     [[nodiscard]] bool waiting() const { return session_.waiting(); }
     [[nodiscard]] bool waitsToChange() const { return session_.waitsToChange(); }
-    [[nodiscard]] bool isDriving() const { return !driven_.empty(); }
+    [[nodiscard]] bool isDriving() const { return !driven_.empty() || !going_.empty(); }
     /// Call at the end of the run.
     void finish();
 
@@ -80,10 +83,18 @@ class RosOrders {
     void take(const std::vector<RosTrack>& tracks, ServerState& state);
     void drive(const std::string& robot, const RosTwist& twist);
     void release(const std::string& robot, std::int64_t hold);
+    /// A pose as requests name it: "1,2" or "upper/1,2", and degrees.
+    struct Target {
+        std::string at;
+        double heading = 0;
+    };
+    [[nodiscard]] std::optional<Target> targetOf(const std::string& robot, const RosPose& pose);
+    [[nodiscard]] std::optional<Target> targetInRoom(const std::string& robot, const RosPose& pose);
     void place(const std::string& robot, const RosPose& pose);
-    void set(const std::string& robot, const std::string& at, double heading);
-    void placeInRoom(const std::string& robot, const RosPose& pose);
+    void go(const std::string& robot, const RosPose& goal);
+    bool ask(const std::string& robot, Session& session, const std::string& line);
     void watch();
+    void watchGoals();
 
     ServerState* state_;
     std::function<void(const std::string&)> tell_;
@@ -91,6 +102,9 @@ class RosOrders {
     std::deque<std::pair<std::string, Answer>> requests_;
     Answer awaited_;  // of the request under way
     std::map<std::string, Driven> driven_;
+    /// Robots on their ways to goals, each as a client that holds it.
+    std::map<std::string, std::unique_ptr<Session>> going_;
+    std::string peer_, token_;  // of those clients
 };
 
 }  // namespace ispace

@@ -264,6 +264,7 @@ std::string bumperOf(const RosMoment& moment, std::size_t robot, std::size_t par
 
 RosOrder speedsOf(RosType type, std::string_view message) { return twistOf(type, message); }
 RosOrder placeOf(RosType /*type*/, std::string_view message) { return poseOf(message); }
+RosOrder goalOf(RosType /*type*/, std::string_view message) { return RosGoal{poseOf(message)}; }
 RosOrder toldOf(RosType /*type*/, std::string_view message) { return tracksOf(message); }
 
 using Of = RosRow::Of;
@@ -285,7 +286,8 @@ constexpr RosRow kRows[] = {
     {"bumper", RosType::Bool, Of::Bumper, 10, kSensorData, bumperOf},
     {"cmd_vel", RosType::Twist, Of::Robot, 0, kNewest, nullptr, speedsOf},
     {"cmd_vel", RosType::TwistStamped, Of::Robot, 0, kNewest, nullptr, speedsOf},
-    {"initialpose", RosType::PoseWithCovarianceStamped, Of::Robot, 0, kNewest, nullptr, placeOf}};
+    {"initialpose", RosType::PoseWithCovarianceStamped, Of::Robot, 0, kNewest, nullptr, placeOf},
+    {"goal_pose", RosType::PoseStamped, Of::Robot, 0, kNewest, nullptr, goalOf}};
 // NOLINTEND(readability-magic-numbers)
 
 /// Adds the channels of a row about one robot.

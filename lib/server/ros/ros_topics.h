@@ -83,8 +83,13 @@ struct RosMoment {
     [[nodiscard]] RosHeader header() const { return {now(), frames().room}; }
 };
 
-/// A message to a robot, its speeds or its pose in the world; or tracks in a room.
-using RosOrder = std::variant<RosTwist, RosPose, std::vector<RosTrack>>;
+/// A pose to which a robot goes by its own navigator.
+struct RosGoal {
+    RosPose pose;
+};
+
+/// A message to a robot: its speeds, its pose in the world, or its goal; or tracks in a room.
+using RosOrder = std::variant<RosTwist, RosPose, RosGoal, std::vector<RosTrack>>;
 
 /// One row of the table of topics.
 struct RosRow {
