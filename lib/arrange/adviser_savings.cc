@@ -178,7 +178,7 @@ void Adviser::keepPromising(const MeasuredState& now, std::vector<Move>& moves) 
         kept.push_back(move);
         if (!estimates) continue;
         CoarseSight coarse(moved.environment, options_, CoarseSight::Cells::Few);
-        // With private zones the floor that is covered decides nothing, see below.
+        // With private zones covered floor does not decide, see below.
         gains.push_back(options_.privacy.empty() ? coarse.whole(moved.sensors)
                                                  : FloorGain{coarse.privateOf(moved.sensors), 0});
         error = coarse.error();

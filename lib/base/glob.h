@@ -11,8 +11,7 @@ namespace ispace {
 
 /// A shell pattern of names: `*` matches any bytes, `?` one, `[a-z]` and `[!a-z]` one of a set
 /// (with `[:alpha:]` and other classes), `\` the next byte literally. A name also matches a pattern
-/// with the same text, and an unclosed bracket matches itself. Case is ignored for ASCII letters
-/// only.
+/// with the same text, and an unclosed bracket matches itself. Case counts.
 ///
 /// Patterns are untrusted: a match takes at most (name bytes) * (1 + pattern bytes / 64) word
 /// operations, however many stars there are.

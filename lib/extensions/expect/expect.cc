@@ -62,7 +62,7 @@ struct Subject {
     std::optional<std::size_t> mover = {};  // its index in that room; empty while all rooms lack it
     const ThingState* state = nullptr;      // of a thing
     std::string key = {};                   // of that state, or of the zone
-    const RoomZones* zone = nullptr;        // whose people or robots count
+    const RoomZones* zone = nullptr;        // its people or robots count
 
     bool was_holding = false, was_there = false;  // at the last step
     bool begins = false;                          // at this step, having been otherwise

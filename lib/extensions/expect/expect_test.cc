@@ -274,7 +274,7 @@ TEST_F(ExpectTest, OutlivesChangesOfTheWorld) {
     EXPECT_FALSE(verdicts[1].is_met);
 }
 
-/// A flat whose things a test switches at times, and a person who walks into the kitchen at once:
+/// A flat whose things a test switches at times, and a person that walks into the kitchen at once:
 /// from x = -1 at 0.5 m/s, so that she is in it from t = 3 to 5.
 class RuleTest : public ::testing::Test {
   protected:

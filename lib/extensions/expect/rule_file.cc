@@ -46,7 +46,7 @@ class RuleReader {
         findings_.add(std::move(finding));
     }
 
-    /// Calls take(key, value) for the pairs of a map whose keys are known.
+    /// Calls take(key, value) for the pairs of a map with known keys.
     template <typename Take>
     void forEach(const YamlNode& map, const std::vector<std::string>& known, Take take) {
         std::vector<std::string> seen;

@@ -28,7 +28,7 @@ struct JudgedWorld {
 /// A state of a thing.
 struct ThingState {
     std::string text = "0";  ///< as events report it: "1", "0.4", "h1,h2"
-    double number = 0;       ///< NaN if it is none
+    double number = 0;       ///< NaN if it is a word
     bool is_on = false;      ///< neither 0 nor empty
     bool is_there = true;    ///< false once its record was removed
 };

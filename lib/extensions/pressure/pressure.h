@@ -43,11 +43,11 @@ struct PressureReading {
 };
 
 /// Reads a floor. Contacts press the cells in which each of 64 even parts of them lies; parts
-/// beyond the edge press none. \param noise seed of the run; null: exact
+/// beyond the edge do not press. \param noise seed of the run; null: exact
 PressureReading readFloor(const PressureFloor& floor, std::span<const FootContact> contacts,
                           std::int64_t number, const std::uint64_t* noise);
 
-/// The floors and seats of a world, and who is where on them.
+/// The floors and seats of a world, and where people are on them.
 class PressureField {
   public:
     /// The world must outlive it. \throws FormatError as pressureScene()

@@ -85,7 +85,7 @@ PressureSeat seatOf(const Record& record, std::string id, const Scene& scene) {
     return seat;
 }
 
-/// Returns the finding about a record whose `of` is none of these.
+/// Returns the finding about a record with another `of`.
 Finding wrongReference(const Scene& scene, std::size_t record, const std::string& wanted,
                        const std::vector<std::string>& known) {
     const Record& checked = scene.records[record];

@@ -36,7 +36,7 @@ struct PressureFloor {
     [[nodiscard]] Point2 middleOf(std::size_t index) const;
 };
 
-/// A bed, chair or sofa that feels the people on it. People neither sit nor lie down: a person who
+/// A bed, chair or sofa that feels the people on it. People neither sit nor lie down: a person that
 /// stands still beside the thing counts as on it.
 struct PressureSeat {
     std::string id;              ///< with the id of the room before it
@@ -61,8 +61,8 @@ struct PressureScene {
 /// Returns the schemas of the records.
 std::vector<Schema> pressureSchemas();
 
-/// Returns the mass of a person without a `load`, kg: 23 kg/m^2 (amid the WHO's normal weights)
-/// times the height squared.
+/// Returns the mass of a person without a `load`, kg: 23 kg/m^2 (amid the normal weights of the
+/// World Health Organization) times the height squared.
 double massOfPerson(double height);
 /// Returns that of a robot: 144 kg/m^2 times the radius squared, by which a Pioneer 2-DX of 0.25 m
 /// weighs its 9 kg.

@@ -122,7 +122,7 @@ void Run::tellLoads() {
     for (Room& room : rooms) room.field.expectVisitors(all);
 }
 
-/// Reads a sensor whose next period has begun. \returns true if it did
+/// Reads a sensor at the begin of its next period. \returns true if it did
 bool Run::readIfDue(SensorOfRun& sensor) const {
     constexpr double kRounding = 1e-9;
     const PressureField& field = rooms[sensor.room].field;

@@ -264,8 +264,8 @@ void RosOrders::watchGoals() {
     }
 }
 
-/// Finds the storey whose frame the pose names or, in the frame map, the one with its floor nearest
-/// to the pose's height; of several there, that which has the point indoors.
+/// Finds the storey with the frame that the pose names or, in the frame map, the one with its floor
+/// nearest to the pose's height; of several there, that which has the point indoors.
 std::optional<RosOrders::Target> RosOrders::targetInRoom(const std::string& robot,
                                                          const RosPose& pose) {
     const JoinedWorlds& worlds = *state_->rooms()->worlds;
