@@ -59,7 +59,7 @@ class RosTalk {
     }
     /// Carries out pending changes, which wait for their turn.
     void settle() {
-        for (int i = 0; i < 1000 && dialogue->waiting(); ++i) {
+        for (int i = 0; i < 20000 && dialogue->waiting(); ++i) {
             state.collect();
             dialogue->proceed();
             std::this_thread::sleep_for(std::chrono::milliseconds(1));

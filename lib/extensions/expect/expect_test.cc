@@ -35,6 +35,7 @@ class ExpectTest : public ::testing::Test {
     std::vector<RunVerdict> judged(const std::vector<std::string>& texts, SimTime end,
                                    double distance = 2) {
         std::vector<Expectation> expectations;
+        expectations.reserve(texts.size());
         for (const std::string& text : texts) expectations.push_back(parseExpectation(text));
         ExpectationJudge judge(world_, std::move(expectations));
         world_.command(0, {.verb = Verb::Forward, .value = distance});
@@ -293,6 +294,7 @@ class RuleTest : public ::testing::Test {
                                           const std::vector<std::pair<SimTime, Scene>>& changes) {
         World world(start_, milliseconds(100));
         std::vector<Expectation> list;
+        list.reserve(texts.size());
         for (const std::string& text : texts) list.push_back(parseExpectation(text));
         judge_.emplace(world, std::move(list));
         world.command(0, {.verb = Verb::Speed, .value = 0.5});

@@ -42,10 +42,12 @@ TEST(MapFloor, RedundancyDarkensTheFloor) {
 
 TEST(MapFloor, ShadesOfManyDepthsAreThoseOfAllDepths) {
     std::string lasers;
-    for (int i = 0; i < 60; ++i)
-        lasers += "laser at=" + std::to_string(-3.5 + i % 10 * 0.7) + "," +
-                  std::to_string(-3 + i / 10 * 1.1) + " heading=" + std::to_string(37 * i) +
+    for (int i = 0; i < 60; ++i) {
+        const int column = i % 10, row = i / 10;
+        lasers += "laser at=" + std::to_string(-3.5 + column * 0.7) + "," +
+                  std::to_string(-3 + row * 1.1) + " heading=" + std::to_string(37 * i) +
                   " fov=200 range=2.3\n";
+    }
     const Scene scene =
         sceneOf("ispace size=8,8\nwall from=-1,-4 to=-1,1\ncube at=2,2 size=0.5\n" + lasers);
     Worlds worlds(scene.environment);
