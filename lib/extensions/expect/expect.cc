@@ -1010,6 +1010,8 @@ std::vector<JudgedExpectation> ExpectationJudge::results() const {
     return results;
 }
 
+std::vector<std::string> ExpectationJudge::untold() const { return data_->things.untold(); }
+
 std::vector<RunVerdict> ExpectationJudge::verdicts() const {
     std::vector<RunVerdict> verdicts;
     for (JudgedExpectation& result : results()) verdicts.push_back(std::move(result.verdict));

@@ -433,7 +433,8 @@ TEST(RuleFile, ReadsSentencesWithTheirPlaces) {
     EXPECT_EQ(rules[1].name, "light");
     EXPECT_EQ(rules[1].source.column, 14) << "after the quote";
     EXPECT_EQ(readRules("- r1 still\n", "a.yaml").size(), 1U);
-    EXPECT_TRUE(readRules("", "a.yaml").empty());
+    for (const char* const none : {"", "# later\n", "rules: []\n", "[]"})
+        EXPECT_THROW(static_cast<void>(readRules(none, "a.yaml")), FormatError) << none;
 }
 
 TEST(RuleFile, TellsAllErrorsWithLineAndColumn) {

@@ -14,6 +14,7 @@
 #include "base/run_files.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
+#include "cli/run_tool.h"
 #include "extensions/expect/rule_file.h"
 
 namespace ispace {
@@ -47,6 +48,11 @@ class RunExpectations : public RunJudge {
     void observe() override { judge_.observe(); }
     [[nodiscard]] std::vector<RunVerdict> verdicts() const override { return judge_.verdicts(); }
     void report(const std::string& record) const override {
+        // A slip in a name must not pass for a rule that holds.
+        for (const std::string& name : judge_.untold())
+            writeMessage("simrun", {.message = "--expect: `" + name +
+                                               "` was never told in this run, and counted as 0",
+                                    .severity = Severity::Warning});
         if (file_.empty()) return;
         const bool is_json = outputFormat({}, file_, {"json", "txt"}) == "json";
         const std::vector<JudgedExpectation> results = judge_.results();

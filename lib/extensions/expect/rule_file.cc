@@ -107,8 +107,13 @@ class RuleReader {
 
 std::vector<Expectation> readRules(std::string_view bytes, const std::string& name) {
     const YamlTree tree(bytes, name);
-    if (tree.top().kind == Kind::Null) return {};
-    return RuleReader(name).read(tree.top());
+    std::vector<Expectation> rules;
+    if (tree.top().kind != Kind::Null) rules = RuleReader(name).read(tree.top());
+    // A file that was cut short must not pass for one whose rules hold.
+    if (rules.empty())
+        throw FormatError(
+            {.file = name, .message = "no rules, wanted sentences such as `- no collision`"});
+    return rules;
 }
 
 }  // namespace ispace

@@ -73,6 +73,7 @@ void ThingStates::set(std::size_t room, const std::string& name, std::string_vie
                       std::string text) {
     ThingState& state = states_[stateName(name, key)];
     state.is_there = true;
+    state.is_told = true;
     if (key == kPower)
         if (const auto watts = parseDouble(text)) {
             powers_[name].room = room;
@@ -145,7 +146,17 @@ void ThingStates::observe() {
 const ThingState* ThingStates::find(const Thing& thing, std::string_view key) {
     const std::string name = stateName(thing.name, key);
     if (const auto found = states_.find(name); found != states_.end()) return &found->second;
-    return thing.keys.empty() ? &states_[name] : nullptr;
+    if (!thing.keys.empty()) return nullptr;
+    ThingState& state = states_[name];
+    state.is_told = false;
+    return &state;
+}
+
+std::vector<std::string> ThingStates::untold() const {
+    std::vector<std::string> names;
+    for (const auto& [name, state] : states_)
+        if (!state.is_told) names.push_back(name);
+    return names;
 }
 
 }  // namespace ispace

@@ -31,6 +31,7 @@ struct ThingState {
     double number = 0;       ///< NaN if it is a word
     bool is_on = false;      ///< neither 0 nor empty
     bool is_there = true;    ///< false once its record was removed
+    bool is_told = true;     ///< false while it is 0 only because no event told another value
 };
 
 /// A record of a room that has states, or may be told some.
@@ -59,6 +60,8 @@ class ThingStates {
     /// Returns a state, at an address that stays; null for a key that the thing has not. A thing
     /// without states of its own may be told any, which is 0 until then. \pre things() has it
     [[nodiscard]] const ThingState* find(const Thing& thing, std::string_view key);
+    /// Returns the names of the states that find() gave and that were never told: "bed.occupied".
+    [[nodiscard]] std::vector<std::string> untold() const;
 
   private:
     struct Power {

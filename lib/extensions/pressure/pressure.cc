@@ -105,12 +105,8 @@ PressureField::PressureField(const World& world, std::string prefix)
 }
 
 void PressureField::observe() {
-    if (std::exchange(changes_, world_->changes()) != world_->changes()) {
-        try {
-            scene_ = pressureScene(world_->scene(), prefix_, LoadsOf::Any);
-        } catch (const FormatError&) {  // of a change by a client: the run goes on as it was
-        }
-    }
+    if (std::exchange(changes_, world_->changes()) != world_->changes())
+        scene_ = pressureScene(world_->scene(), prefix_, LoadsOf::Any);
     if (!scene_.floors.empty() || !scene_.seats.empty()) findContacts();
 }
 

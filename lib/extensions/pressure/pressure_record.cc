@@ -60,6 +60,8 @@ PressureFloor floorOf(const Record& record, std::string id) {
         static_cast<double>(PressureFloor::kMostCells))
         throw FormatError(record.finding(
             "cell", "`cell`: there are more than a million cells, wanted larger ones"));
+    if (floor.cell > std::max(floor.length, floor.width))
+        throw FormatError(record.finding("cell", "`cell` is larger than the floor"));
     return floor;
 }
 
@@ -215,25 +217,41 @@ double massOfRobot(double radius) {
     return kDensity * radius * radius;
 }
 
+namespace {
+
+/// Adds a record. \param known ids of movers that a load may be of; null: of any
+void add(const Scene& scene, std::size_t index, const std::string& prefix,
+         const std::vector<std::string>* known, PressureScene& made) {
+    const Record& record = scene.records[index];
+    const std::string name = prefix + scene.ids[index];
+    if (record.keyword() == "floor_sensor") {
+        made.floors.push_back(floorOf(record, name));
+    } else if (record.keyword() == "seat_sensor") {
+        made.seats.push_back(seatOf(record, name, scene));
+    } else if (record.keyword() == "load") {
+        const std::string& of = record.text("of");
+        const std::string id = of.starts_with(prefix) ? of : prefix + of;
+        if (known != nullptr && std::find(known->begin(), known->end(), id) == known->end())
+            throw FormatError(record.finding(
+                "of", "`of`: no robot or person is " + excerpt(of) + didYouMean(of, *known)));
+        if (!made.loads.emplace(id, record.number("kg")).second)
+            throw FormatError(record.finding("of", "`of`: " + excerpt(of) + " has a load already"));
+    }
+}
+
+}  // namespace
+
 PressureScene pressureScene(const Scene& scene, const std::string& prefix, LoadsOf movers) {
     PressureScene made;
     std::vector<std::string> known;
     for (const PlacedPerson& person : scene.people) known.push_back(person.id);
     for (const PlacedRobot& robot : scene.robots) known.push_back(robot.id);
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
-        const Record& record = scene.records[i];
-        if (record.keyword() == "floor_sensor") {
-            made.floors.push_back(floorOf(record, prefix + scene.ids[i]));
-        } else if (record.keyword() == "seat_sensor") {
-            made.seats.push_back(seatOf(record, prefix + scene.ids[i], scene));
-        } else if (record.keyword() == "load") {
-            const std::string& of = record.text("of");
-            const std::string id = of.starts_with(prefix) ? of : prefix + of;
-            if (movers == LoadsOf::ItsOwn &&
-                std::find(known.begin(), known.end(), id) == known.end())
-                throw FormatError(record.finding(
-                    "of", "`of`: no robot or person is " + excerpt(of) + didYouMean(of, known)));
-            made.loads[id] = record.number("kg");
+        try {
+            add(scene, i, prefix, movers == LoadsOf::ItsOwn ? &known : nullptr, made);
+        } catch (const FormatError&) {
+            // Of a change by a client: the other sensors go on.
+            if (movers == LoadsOf::ItsOwn) throw;
         }
     }
     return made;

@@ -74,7 +74,8 @@ void addPressureChecks();
 /// Which movers loads may be of.
 enum class LoadsOf {
     ItsOwn,  ///< those of the scene
-    Any      ///< others, too, which have gone to another room
+    Any      ///< others, too, which have gone to another room; records of a running world that
+             ///< contradict each other are left out
 };
 
 /// Reads the records of a scene. \param prefix of a room, "ground/", put before ids of sensors

@@ -71,6 +71,11 @@ TEST(PressureRecords, AreReadWithHints) {
               std::string::npos);
     EXPECT_NE(refusal("floor_sensor at=0,0 size=100,100 cell=5cm\n").find("a million cells"),
               std::string::npos);
+    EXPECT_NE(refusal("floor_sensor at=0,0 size=1,2 cell=3\n").find("larger than the floor"),
+              std::string::npos);
+    EXPECT_NE(refusal("human id=ann at=0,0\nload of=ann kg=60\nload of=ann kg=70\n")
+                  .find("`ann` has a load already"),
+              std::string::npos);
     EXPECT_THROW(sceneOf("floor_sensor at=0,0\n"), FormatError);
     EXPECT_THROW(sceneOf("floor_sensor at=0,0 size=1,1 cell=0\n"), FormatError);
     EXPECT_THROW(sceneOf("seat_sensor id=b\n"), FormatError);
@@ -236,10 +241,15 @@ TEST_F(FloorRole, FollowsChanges) {
     run(30, floor);
     EXPECT_EQ(ask(floor, "READ f").substr(0, 8), "ERR 404 ");
     EXPECT_NE(ask(floor, "READ g").find("weight=66.47 occupied=1"), std::string::npos);
-    // A record that refers to no thing leaves all as it was.
-    world_.change(sceneOf("seat_sensor id=h of=nowhere\nhuman id=ann at=-2.5,3\n"));
+    // A record that refers to no thing is left out, and the others follow the change.
+    world_.change(
+        sceneOf("floor_sensor id=f at=2.5,3 size=1,1\nseat_sensor id=h of=nowhere\n"
+                "floor_sensor id=k at=0,0 size=1000,1000 cell=0.01\nload of=nix kg=3\n"
+                "load of=ann kg=50\nhuman id=ann at=2.5,3\n"));
     run(30, floor);
-    EXPECT_NE(ask(floor, "READ g").find("weight=66.47"), std::string::npos);
+    EXPECT_NE(ask(floor, "READ f").find("weight=50.00"), std::string::npos);
+    for (const char* const gone : {"g", "h", "k"})
+        EXPECT_EQ(ask(floor, std::string("READ ") + gone).substr(0, 8), "ERR 404 ");
 }
 
 TEST(Pressure, IsNoneWithoutSensors) {

@@ -227,12 +227,12 @@ void RosOrders::go(const std::string& robot, const RosPose& goal) {
     const bool is_new = session == nullptr;
     if (is_new) session = std::make_unique<Session>(*state_, peer_);
     if (session->waiting()) return tell_("too many goals at once");
-    const bool goes =
-        (!is_new || ((token_.empty() || ask(robot, *session, "TOKEN " + token_)) &&
-                     ask(robot, *session, "ROBOT " + robot))) &&
-        ask(robot, *session, "GOTO " + target->at + ',' + formatDouble(target->heading));
-    // One that cannot go to a new goal stops, as it does not know the old one to be meant still.
-    if (!goes) going_.erase(robot);
+    const bool has_role = !is_new || ((token_.empty() || ask(robot, *session, "TOKEN " + token_)) &&
+                                      ask(robot, *session, "ROBOT " + robot));
+    const bool goes = has_role && ask(robot, *session,
+                                      "GOTO " + target->at + ',' + formatDouble(target->heading));
+    // A refused goal does not end the way to an earlier one.
+    if (!goes && is_new) going_.erase(robot);
 }
 
 /// Makes a request of the client that holds a robot. \returns false, and tells why, if it fails
@@ -242,8 +242,8 @@ bool RosOrders::ask(const std::string& robot, Session& session, const std::strin
     constexpr std::string_view kError = "ERR 404 ";
     if (!answer.starts_with("ERR ")) return true;
     const std::size_t end = std::min(answer.find('\n'), answer.size());
-    tell_("robot " + robot + ": " +
-          answer.substr(std::min(kError.size(), end), end - std::min(kError.size(), end)));
+    const std::size_t begin = std::min(kError.size(), end);
+    tell_("goal of " + robot + ": " + answer.substr(begin, end - begin));
     return false;
 }
 

@@ -148,11 +148,21 @@ TEST(RosOrders, GoalsReplaceGoalsAndSpeedsReplaceBoth) {
     EXPECT_EQ(ordered.told, std::vector<std::string>());
 }
 
+TEST(RosOrders, ARefusedGoalLeavesTheEarlierOne) {
+    Ordered ordered;
+    ordered.goTo(-2, -1);
+    EXPECT_EQ(ordered.steps(10), 10);
+    ordered.goTo(40, 0);
+    EXPECT_EQ(ordered.told.size(), 1U);
+    EXPECT_LT(ordered.steps(400), 400);
+    EXPECT_NEAR(distance(ordered.pose().position, Point2{-2, -1}), 0, 0.05);
+}
+
 TEST(RosOrders, TellsWhyAGoalIsNone) {
     Ordered ordered;
     ordered.goTo(40, 0);
     ASSERT_EQ(ordered.told.size(), 1U);
-    EXPECT_TRUE(ordered.told[0].starts_with("robot r2: ")) << ordered.told[0];
+    EXPECT_TRUE(ordered.told[0].starts_with("goal of r2: ")) << ordered.told[0];
     EXPECT_FALSE(ordered.orders.isDriving());
     EXPECT_TRUE(ordered.state.hold("r2"));
     ordered.goTo(0, 1);
