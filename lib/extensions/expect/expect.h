@@ -59,7 +59,7 @@ class ExpectationJudge {
     [[nodiscard]] std::vector<RunVerdict> verdicts() const;
     /// Likewise, with all failures.
     [[nodiscard]] std::vector<JudgedExpectation> results() const;
-    /// Returns the states that were judged as 0 because none was told: "bed.occupied".
+    /// Returns the states that were judged as 0 because no event told them: "bed.occupied".
     [[nodiscard]] std::vector<std::string> untold() const;
 
   private:

@@ -167,7 +167,7 @@ class FloorClient : public ClientRole {
         unread_.clear();
         return lines;
     }
-    /// Its readings are none of the sensors that SCAN knows.
+    /// SCAN does not know its sensors.
     [[nodiscard]] std::span<const std::string> sensors() const override { return {}; }
     [[nodiscard]] double clock(SimTime time) const override { return seconds(time); }
 
