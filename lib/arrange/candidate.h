@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -41,10 +43,8 @@ class PosedCandidates : public CandidateSet {
     /// Candidates that are added from here on stand in this room of the site; before, in room 0.
     void beginRoom(std::size_t room) { rooms_.push_back({size(), room}); }
     [[nodiscard]] std::size_t roomOf(std::size_t candidate) const {
-        std::size_t room = 0;
-        for (const RoomStart& start : rooms_)
-            if (start.candidate <= candidate) room = start.room;
-        return room;
+        const auto next = std::ranges::upper_bound(rooms_, candidate, {}, &RoomStart::candidate);
+        return next == rooms_.begin() ? 0 : std::prev(next)->room;
     }
     [[nodiscard]] Pose3 pose(std::size_t candidate) const {
         Pose3 pose = mounts_[siteOf(candidate)];

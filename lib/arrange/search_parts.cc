@@ -13,24 +13,42 @@ namespace ispace {
 
 namespace {
 
-bool holds(std::span<const std::size_t> rooms, std::size_t room) {
-    return std::find(rooms.begin(), rooms.end(), room) != rooms.end();
-}
+/// The sites of candidates in each room, of the set of the site.
+class SitesOfRooms {
+  public:
+    explicit SitesOfRooms(const CoverageModel& model)
+        : all_(*model.problem().kinds.front().candidates), sites_(model.site().rooms.size()) {
+        for (std::size_t site = 0; site < all_.sites(); ++site)
+            sites_[model.roomOf({0, all_.firstOf(site)})].push_back(site);
+    }
+    [[nodiscard]] const CandidateSet& all() const { return all_; }
+    /// Returns the sites in these rooms, ascending.
+    [[nodiscard]] std::vector<std::size_t> sitesIn(std::span<const std::size_t> rooms) const {
+        std::vector<std::size_t> sites;
+        for (const std::size_t room : rooms)
+            sites.insert(sites.end(), sites_[room].begin(), sites_[room].end());
+        std::ranges::sort(sites);
+        return sites;
+    }
+    /// Returns the candidates in these rooms, ascending.
+    [[nodiscard]] std::vector<std::size_t> candidatesIn(std::span<const std::size_t> rooms) const {
+        std::vector<std::size_t> candidates;
+        for (const std::size_t site : sitesIn(rooms))
+            for (std::size_t i = all_.firstOf(site); i < all_.firstOf(site + 1); ++i)
+                candidates.push_back(i);
+        return candidates;
+    }
 
-/// Returns the candidates in these rooms, of the set of the site.
-std::vector<std::size_t> candidatesIn(const CoverageModel& model,
-                                      std::span<const std::size_t> rooms) {
-    const CandidateSet& all = *model.problem().kinds.front().candidates;
-    std::vector<std::size_t> candidates;
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (holds(rooms, model.roomOf({0, i}))) candidates.push_back(i);
-    return candidates;
-}
+  private:
+    const CandidateSet& all_;
+    std::vector<std::vector<std::size_t>> sites_;
+};
 
 /// The problem of one part; its cells and candidates follow each other as in that of the site.
 class PartProblem {
   public:
-    PartProblem(const CoverageModel& model, std::span<const std::size_t> rooms)
+    PartProblem(const CoverageModel& model, std::span<const std::size_t> rooms,
+                const SitesOfRooms& sites)
         : set_(cellsOf(model, rooms)) {
         const Problem& whole = model.problem();
         std::uint32_t cells = 0;
@@ -49,9 +67,7 @@ class PartProblem {
         for (const auto& [block, first] : shifts_)
             for (std::size_t cell = block.first; cell < block.end; ++cell)
                 if (whole.standing.test(cell)) problem_.standing.set(first + cell - block.first);
-        const CandidateSet& all = *whole.kinds.front().candidates;
-        for (std::size_t site = 0; site < all.sites(); ++site)
-            if (holds(rooms, model.roomOf({0, all.firstOf(site)}))) addSite(all, site);
+        for (const std::size_t site : sites.sitesIn(rooms)) addSite(sites.all(), site);
         problem_.kinds.push_back({&set_, 1, 1, whole.kinds.front().multiplicity});
     }
     PartProblem(const PartProblem&) = delete;
@@ -132,11 +148,11 @@ Solution withOneMore(Solution solution, std::size_t candidates) {
     return solution;
 }
 
-PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> rooms, int most,
-                      Progress& progress) {
-    PartProblem part(model, rooms);
+PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> rooms,
+                      const SitesOfRooms& sites, int most, Progress& progress) {
+    PartProblem part(model, rooms, sites);
     PartResults results;
-    results.candidates = candidatesIn(model, rooms);
+    results.candidates = sites.candidatesIn(rooms);
     const auto last = std::min(static_cast<std::size_t>(most), results.candidates.size());
     for (std::size_t n = 1; n <= last; ++n) {
         if (n > 1 && progress.stopped()) {
@@ -169,15 +185,16 @@ std::vector<SearchResult> searchParts(const CoverageModel& model, Progress& prog
     const Problem& whole = model.problem();
     const int most = whole.kinds.front().most;
     const std::vector<CoverageModel::Part> parts = model.parts();
+    const SitesOfRooms sites(model);
     std::vector<PartResults> results(parts.size());
     std::vector<GainCurve> curves;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::size_t alike = parts[i].alike;
         if (alike == i) {
-            results[i] = resultsOf(model, parts[i].rooms, most, progress);
+            results[i] = resultsOf(model, parts[i].rooms, sites, most, progress);
         } else {
             results[i].by_number = results[alike].by_number;
-            results[i].candidates = candidatesIn(model, parts[i].rooms);
+            results[i].candidates = sites.candidatesIn(parts[i].rooms);
         }
         double standing = 0;
         for (const std::size_t room : parts[i].rooms) {
