@@ -17,6 +17,7 @@
 
 #include "scene/room_state.h"
 #include "server/background_worker.h"
+#include "server/role_answer.h"
 #include "server/server.h"
 #include "server/session_sensors.h"
 #include "sim/joined_worlds.h"
@@ -41,15 +42,6 @@ inline std::vector<std::string> laserIdsOf(const World& world) {
     for (const Sensor& sensor : world.sensors())
         if (sensor.tryAs<Laser>() != nullptr) ids.push_back(sensor.id);
     return ids;
-}
-
-inline std::string joined(const std::vector<std::string>& words, std::string_view separator) {
-    std::string out;
-    for (const std::string& word : words) {
-        if (!out.empty()) out += separator;
-        out += word;
-    }
-    return out;
 }
 
 /// Returns the name of a thing across the worlds of a run: "ground/d1". \param room "" in the only

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <list>
 #include <optional>
 #include <set>
@@ -18,13 +17,12 @@
 #include "base/number.h"
 #include "extensions/memory/touches.h"
 #include "sense/ultrasound_burst.h"
+#include "server/role_answer.h"
 
 namespace ispace {
 
 namespace {
 
-/// Lines kept for a slow reader; older ones are dropped, and counted.
-constexpr std::size_t kMostUnread = 1000;
 constexpr std::size_t kLongestContent = 1000;  // bytes
 
 constexpr auto kMany = static_cast<std::size_t>(-1);
@@ -35,18 +33,6 @@ constexpr auto kRequests = std::to_array<RoleRequest>({
     {"RECALL", "id", 1, 1},
     {"TIME", "", 0, 0},
 });
-
-std::string errorText(int code, std::string_view reason) {
-    std::string line = "ERR ";
-    line.append(std::to_string(code)).append(" ").append(printable(reason));
-    return line += '\n';
-}
-
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) text.append(text.empty() ? "" : ",").append(word);
-    return text;
-}
 
 /// Returns words as they stood in the line, with the blanks between them.
 std::string lineOf(std::span<const std::string_view> words) {
@@ -142,12 +128,8 @@ class MemoryClient : public ClientRole {
     std::string stepped(bool has_room) override {
         std::string lines;
         if (!has_room) return lines;
-        if (missed_ > 0) {
-            lines.append("EVENT missed t=").append(formatMilliseconds(run_.now())).append(" n=");
-            lines.append(std::to_string(std::exchange(missed_, 0))).append("\n");
-        }
-        for (const std::string& line : unread_) lines += line;
-        unread_.clear();
+        lines = unread_.missedLine(formatMilliseconds(run_.now()));
+        for (const std::string& line : unread_.take()) lines += line;
         return lines;
     }
     [[nodiscard]] std::span<const std::string> sensors() const override { return sensors_; }
@@ -155,10 +137,7 @@ class MemoryClient : public ClientRole {
 
     void hear(const Touch& touch, const std::string& line) {
         if (!glob_.matches(touch.tag)) return;
-        unread_.push_back(line);
-        if (unread_.size() <= kMostUnread) return;
-        unread_.pop_front();
-        ++missed_;
+        unread_.add(line);
     }
 
   private:
@@ -179,8 +158,7 @@ class MemoryClient : public ClientRole {
     std::list<MemoryClient*>& clients_;
     Glob glob_;
     std::vector<std::string> sensors_;
-    std::deque<std::string> unread_;
-    std::int64_t missed_ = 0;
+    UnreadItems<std::string> unread_;
 };
 
 MemoryClient::Place MemoryClient::placeOf(std::string_view text) const {
@@ -272,7 +250,7 @@ std::string MemoryClient::find(std::span<const std::string_view> words) const {
         for (const auto& [id, volume] : run_.volumes.all())
             if (lowered(volume.content).find(text) != std::string::npos) ids.push_back(id);
     }
-    return "OK FIND n=" + std::to_string(ids.size()) + " ids=" + joined(ids) + "\n";
+    return "OK FIND n=" + std::to_string(ids.size()) + " ids=" + joined(ids, ",") + "\n";
 }
 
 std::string MemoryClient::recall(std::string_view id) const {
@@ -286,7 +264,7 @@ std::string MemoryClient::recall(std::string_view id) const {
             pointText({volume->size->x, volume->size->y, volume->size->z}));
     else
         line.append(" radius=").append(formatFixed(volume->radius, 3));
-    line.append(" by=").append(joined(run_.touches.tagsIn(volume->id)));
+    line.append(" by=").append(joined(run_.touches.tagsIn(volume->id), ","));
     return line.append(" text=").append(volume->content).append("\n");
 }
 
@@ -303,7 +281,7 @@ class Memory : public RoleService {
             .append(" t=")
             .append(formatMilliseconds(run_.now()));
         answer.append(" volumes=").append(std::to_string(run_.volumes.all().size()));
-        answer.append(" tags=").append(joined({names.begin(), names.end()})).append("\n");
+        answer.append(" tags=").append(joined({names.begin(), names.end()}, ",")).append("\n");
         return client;
     }
 

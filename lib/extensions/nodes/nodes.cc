@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,13 +12,11 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "extensions/nodes/node_network.h"
+#include "server/role_answer.h"
 
 namespace ispace {
 
 namespace {
-
-/// Messages kept for a slow reader; older ones are dropped, and counted.
-constexpr std::size_t kMostUnread = 1000;
 
 constexpr auto kRequests = std::to_array<RoleRequest>({
     {"TIME", "", 0, 0},
@@ -27,12 +24,6 @@ constexpr auto kRequests = std::to_array<RoleRequest>({
     {"SEND", "text", 1, static_cast<std::size_t>(-1)},
     {"HEAR", "[node...]", 0, static_cast<std::size_t>(-1)},
 });
-
-std::string errorText(int code, std::string_view reason) {
-    std::string line = "ERR ";
-    line.append(std::to_string(code)).append(" ").append(printable(reason));
-    return line += '\n';
-}
 
 std::string clockText(double time) { return formatFixed(time, 6); }
 
@@ -42,8 +33,7 @@ struct Seat {
     std::optional<SimTime> awaited = {};  // by AWAIT
     bool hears = false;
     std::vector<std::size_t> heard = {};  // nodes; empty: all others
-    std::deque<NodeMessage> unread = {};
-    std::int64_t missed = 0;
+    UnreadItems<NodeMessage> unread = {};
 };
 
 struct Run {
@@ -76,17 +66,13 @@ class NodeClient : public ClientRole {
     std::string stepped(bool has_room) override {
         std::string lines;
         if (!has_room) return lines;
-        if (seat().missed > 0) {
-            lines.append("EVENT missed t=").append(clockText(clock(run_.now()))).append(" n=");
-            lines.append(std::to_string(std::exchange(seat().missed, 0))).append("\n");
-        }
-        for (const NodeMessage& message : seat().unread) {
+        lines = seat().unread.missedLine(clockText(clock(run_.now())));
+        for (const NodeMessage& message : seat().unread.take()) {
             lines.append("EVENT message t=").append(clockText(clock(message.arrival)));
             lines.append(" from=").append(run_.network.nodes()[message.from].id);
             lines.append(" n=").append(std::to_string(message.number));
             lines.append(" text=").append(message.text).append("\n");
         }
-        seat().unread.clear();
         return lines;
     }
     [[nodiscard]] std::span<const std::string> sensors() const override { return node().sensors; }
@@ -149,8 +135,9 @@ class Nodes : public RoleService {
             std::vector<std::string> known;
             for (const Node& each : run_.network.nodes()) known.push_back(each.id);
             const std::string hint = didYouMean(id, known);
-            answer += errorText(404, "no node " + excerpt(id) +
-                                         (hint.empty() ? "; there is " + joined(known) : hint));
+            answer +=
+                errorText(404, "no node " + excerpt(id) +
+                                   (hint.empty() ? "; there is " + joined(known, ",") : hint));
             return nullptr;
         }
         if (run_.seats[*found].is_taken) {
@@ -160,7 +147,7 @@ class Nodes : public RoleService {
         const Node& node = run_.network.nodes()[*found];
         answer.append("OK NODE ").append(node.id).append(" t=");
         answer.append(clockText(node.clock(run_.now())));
-        answer.append(" sensors=").append(joined(node.sensors));
+        answer.append(" sensors=").append(joined(node.sensors, ","));
         answer.append(" lockstep=").append(node.lockstep ? "1" : "0").append("\n");
         return std::make_unique<NodeClient>(run_, *found);
     }
@@ -174,10 +161,7 @@ class Nodes : public RoleService {
                     seat.heard.empty() || std::find(seat.heard.begin(), seat.heard.end(),
                                                     message.from) != seat.heard.end();
                 if (!is_heard) continue;
-                seat.unread.push_back(message);
-                if (seat.unread.size() <= kMostUnread) continue;
-                seat.unread.pop_front();
-                ++seat.missed;
+                seat.unread.add(message);
             }
     }
 
@@ -195,16 +179,10 @@ class Nodes : public RoleService {
         std::vector<std::string> ids;
         for (const Node& node : run_.network.nodes())
             if (node.lockstep) ids.push_back(node.id);
-        return ids.empty() ? "" : "the programs of nodes in lockstep: " + joined(ids);
+        return ids.empty() ? "" : "the programs of nodes in lockstep: " + joined(ids, ",");
     }
 
   private:
-    static std::string joined(const std::vector<std::string>& words) {
-        std::string text;
-        for (const std::string& word : words) text.append(text.empty() ? "" : ",").append(word);
-        return text;
-    }
-
     Run run_;
 };
 

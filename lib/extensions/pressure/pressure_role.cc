@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <list>
 #include <map>
 #include <optional>
@@ -16,13 +15,11 @@
 #include "base/glob.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "server/role_answer.h"
 
 namespace ispace {
 
 namespace {
-
-/// Lines kept for a slow reader; older ones are dropped, and counted.
-constexpr std::size_t kMostUnread = 1000;
 
 constexpr auto kRequests = std::to_array<RoleRequest>({
     {"READ", "id", 1, 1},
@@ -30,18 +27,6 @@ constexpr auto kRequests = std::to_array<RoleRequest>({
     {"UNWATCH", "", 0, 0},
     {"TIME", "", 0, 0},
 });
-
-std::string errorText(int code, std::string_view reason) {
-    std::string line = "ERR ";
-    line.append(std::to_string(code)).append(" ").append(printable(reason));
-    return line += '\n';
-}
-
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) text.append(text.empty() ? "" : ",").append(word);
-    return text;
-}
 
 /// A sensor with its newest reading.
 struct SensorOfRun {
@@ -159,12 +144,8 @@ class FloorClient : public ClientRole {
     std::string stepped(bool has_room) override {
         std::string lines;
         if (!has_room) return lines;
-        if (missed_ > 0) {
-            lines.append("EVENT missed t=").append(formatMilliseconds(run_.now())).append(" n=");
-            lines.append(std::to_string(std::exchange(missed_, 0))).append("\n");
-        }
-        for (const std::string& line : unread_) lines += line;
-        unread_.clear();
+        lines = unread_.missedLine(formatMilliseconds(run_.now()));
+        for (const std::string& line : unread_.take()) lines += line;
         return lines;
     }
     /// SCAN does not know its sensors.
@@ -173,10 +154,7 @@ class FloorClient : public ClientRole {
 
     void hear(const std::string& id, const SensorOfRun& sensor) {
         if (every_ == 0 || sensor.number % every_ != 0 || !glob_.matches(id)) return;
-        unread_.push_back("EVENT floor " + readingText(id, sensor) + "\n");
-        if (unread_.size() <= kMostUnread) return;
-        unread_.pop_front();
-        ++missed_;
+        unread_.add("EVENT floor " + readingText(id, sensor) + "\n");
     }
 
   private:
@@ -204,8 +182,7 @@ class FloorClient : public ClientRole {
     std::list<FloorClient*>& clients_;
     Glob glob_;
     std::int64_t every_ = 0;  // 0: does not watch
-    std::deque<std::string> unread_;
-    std::int64_t missed_ = 0;
+    UnreadItems<std::string> unread_;
 };
 
 class Floors : public RoleService {
@@ -220,7 +197,7 @@ class Floors : public RoleService {
     std::unique_ptr<ClientRole> take(std::string_view glob, std::string& answer) override {
         answer.append("OK FLOOR ").append(glob).append(" t=");
         answer.append(formatMilliseconds(run_.now())).append(" sensors=");
-        answer.append(joined(run_.sensorsThatMatch(Glob(glob)))).append("\n");
+        answer.append(joined(run_.sensorsThatMatch(Glob(glob)), ",")).append("\n");
         return std::make_unique<FloorClient>(run_, clients_, glob);
     }
 
