@@ -403,6 +403,8 @@ void ExpectationJudge::Data::addMovers(Term& term) {
                                 "` is about things: people and robots are `in zone " +
                                 term.condition->part + '`',
                             term.condition->offset);
+    if (term.subjects.empty() && wanted == "human")
+        throw SentenceError("no person is in this run", term.condition->offset);
     if (term.subjects.empty() && wanted != "*")
         throw unknown(rooms, wanted, term.condition->offset);
 }

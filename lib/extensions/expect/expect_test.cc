@@ -172,6 +172,7 @@ TEST_F(ExpectTest, RefusesWhatIsNotThere) {
         return "";
     };
     EXPECT_EQ(why("r3 still"), "`r3 still`: no robot or person is `r3`, did you mean `r1`?");
+    EXPECT_EQ(why("anyone in zone kitchen"), "`anyone in zone kitchen`: no person is in this run");
     EXPECT_EQ(why("r1 within 1 of x9"), "`r1 within 1 of x9`: no robot or person is `x9`");
     EXPECT_NE(why("r1 in zone kichen").find("did you mean `kitchen`?"), std::string::npos);
     EXPECT_EQ(why("r1 in zone rect:0,0,1,1"), "");
