@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/number.h"
 #include "cli/job_server.h"
 #include "cli/operands.h"
@@ -148,6 +149,7 @@ void scan(const ScanCommand& command) {
     if (options.list_models) return writeAll(options.common.output, deviceTable(shippedDevices()));
     if (options.batch.merge) return mergeReadings(command);
     limitThreads(options.common.threads);
+    if (!options.view.views.empty()) keepFreedMemory();  // of one storey for the next
     if (scanBuilding(command)) return;
     if (!options.view.views.empty()) return takeViews(command);
     if (!options.view.run.empty()) return writeRecorded(command);

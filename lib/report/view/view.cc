@@ -70,11 +70,18 @@ class ViewDrawer {
     ViewLayer drawLayer(const std::vector<bool>& hidden) {
         std::vector<bool> fine_pixels;
         if (fine_ > 1) {
-            const auto fine = static_cast<std::size_t>(fine_);
-            fine_pixels.reserve(columns() * rows());
-            for (std::size_t row = 0; row < rows(); ++row)
-                for (std::size_t column = 0; column < columns(); ++column)
-                    fine_pixels.push_back(hidden[row / fine * (columns() / fine) + column / fine]);
+            const auto fine = static_cast<std::ptrdiff_t>(fine_);
+            const std::ptrdiff_t wide = size_.columns;
+            fine_pixels.resize(columns() * rows());
+            auto to = fine_pixels.begin();
+            for (std::ptrdiff_t row = 0; row < size_.rows; ++row) {
+                const auto first = to;
+                for (auto from = hidden.begin() + row * wide;
+                     from != hidden.begin() + (row + 1) * wide; ++from)
+                    to = std::fill_n(to, fine, *from);
+                for (std::ptrdiff_t k = 1; k < fine; ++k)
+                    to = std::copy(first, first + fine * wide, to);
+            }
         }
         render(fine_ > 1 ? &fine_pixels : &hidden);
         return layer();
@@ -161,7 +168,7 @@ class ViewDrawer {
     }
 
     /// Draws rims of highlighted records, this wide, into a picture as rendered.
-    void outline(std::vector<std::uint8_t>& bytes, std::vector<bool>& is_clear) const {
+    void outline(std::vector<std::uint8_t>& bytes, std::vector<std::uint8_t>& is_clear) const {
         const auto reach = static_cast<int>(std::lround(fine_ * em() / 5));
         const auto wide = static_cast<int>(columns()), high = static_cast<int>(rows());
         const auto label = [&](int x, int y) {
@@ -186,7 +193,7 @@ class ViewDrawer {
                             const std::size_t pixel = static_cast<std::size_t>(py) * columns() +
                                                       static_cast<std::size_t>(px);
                             const std::size_t at = 3 * pixel;
-                            is_clear[pixel] = false;
+                            is_clear[pixel] = 0;
                             bytes[at] = static_cast<std::uint8_t>(255 * c.red);
                             bytes[at + 1] = static_cast<std::uint8_t>(255 * c.green);
                             bytes[at + 2] = static_cast<std::uint8_t>(255 * c.blue);
@@ -199,11 +206,12 @@ class ViewDrawer {
         constexpr double kPaper = 1.15;  // floor looks dark beside white paper
         std::vector<std::uint8_t> bytes =
             toSrgb8(picture_, options_.exposure * (standpoint_.looks_in ? kPaper : 1));
-        std::vector<bool> is_clear(picture_.depths.size());
+        std::vector<std::uint8_t> is_clear(picture_.depths.size());
         if (standpoint_.looks_in)
             for (std::size_t i = 0; i < picture_.depths.size(); ++i)
                 is_clear[i] =
-                    !std::isfinite(picture_.depths[i]) && picture_.radiance[i] == Rgb{1, 1, 1};
+                    !std::isfinite(picture_.depths[i]) && picture_.radiance[i] == Rgb{1, 1, 1} ? 1
+                                                                                               : 0;
         if (!highlighted_.empty()) outline(bytes, is_clear);
         const auto fine = static_cast<std::size_t>(fine_);
         ViewLayer layer{size_, static_cast<unsigned>(fine * fine), {}, {}};
@@ -216,7 +224,7 @@ class ViewDrawer {
                 for (std::size_t v = 0; v < fine; ++v)
                     for (std::size_t u = 0; u < fine; ++u) {
                         const std::size_t i = (row + v) * columns() + column + u;
-                        if (is_clear[i]) {
+                        if (is_clear[i] != 0) {
                             ++clear;
                             continue;
                         }

@@ -234,14 +234,17 @@ ISPACE_SIMD_CLONES void divide(float* values, const float* by, std::size_t count
 
 }  // namespace
 
-LightField::LightField(int columns, int rows) : columns_(columns), rows_(rows) {
+void LightField::reset(int columns, int rows) {
+    columns_ = columns;
+    rows_ = rows;
     const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     for (std::size_t k = 0; k < 3; ++k) {
         place_[k].resize(pixels);
         normal_[k].resize(pixels);
     }
-    depth_.resize(pixels, -1);
-    for (Plane& plane : light_) plane.resize(pixels);
+    depth_.assign(pixels, -1);
+    for (LightPlanes* const planes : {&light_, &smoothed_})
+        for (Plane& plane : *planes) plane.resize(pixels);
 }
 
 void LightField::setPlace(std::size_t pixel, const FacingPlace& surface, float depth) {
@@ -286,7 +289,7 @@ void LightField::smoothRow(const LightPlanes& from, LightPlanes& to, int row, in
     };
     for (int column = 0; column < columns_; column += kBlock) {
         const int count = std::min(kBlock, columns_ - column);
-        if (!hasSurface(row, column, count)) continue;  // its light is 0, as in `to`
+        if (!hasSurface(row, column, count)) continue;
         Sums<kPlanes> sums;
         for (int j = -2; j <= 2; ++j) {
             const int line = row + step * j;
@@ -324,13 +327,11 @@ void LightField::smoothRow(const LightPlanes& from, LightPlanes& to, int row, in
 }
 
 void LightField::smooth() {
-    LightPlanes near;
-    for (Plane& plane : near) plane.resize(depth_.size());
-    tbb::parallel_for(0, rows_, [&](int row) { smoothRow<0>(light_, near, row, 1); });
-    std::swap(light_, near);
+    tbb::parallel_for(0, rows_, [&](int row) { smoothRow<0>(light_, smoothed_, row, 1); });
+    std::swap(light_, smoothed_);
     // Direct light is complete at this point.
-    tbb::parallel_for(0, rows_, [&](int row) { smoothRow<3>(light_, near, row, kTile); });
-    for (std::size_t k = 3; k < 6; ++k) std::swap(light_[k], near[k]);
+    tbb::parallel_for(0, rows_, [&](int row) { smoothRow<3>(light_, smoothed_, row, kTile); });
+    for (std::size_t k = 3; k < 6; ++k) std::swap(light_[k], smoothed_[k]);
 }
 
 }  // namespace ispace

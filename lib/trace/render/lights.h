@@ -89,8 +89,8 @@ struct FacingPlace {
 /// concurrently.
 class LightField {
   public:
-    LightField() = default;
-    LightField(int columns, int rows);
+    /// Prepares for a picture; keeps the memory of the last one.
+    void reset(int columns, int rows);
 
     /// \param depth not below 0
     void setPlace(std::size_t pixel, const FacingPlace& surface, float depth);
@@ -131,7 +131,8 @@ class LightField {
     int columns_ = 0, rows_ = 0;
     std::array<Plane, 3> place_, normal_;
     Plane depth_;  ///< below 0: no surface
-    LightPlanes light_;
+    /// Arbitrary, but finite, where there is no surface.
+    LightPlanes light_, smoothed_;
 };
 
 }  // namespace ispace

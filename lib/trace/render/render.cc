@@ -85,25 +85,57 @@ PixelBox pixelsOf(const RenderScene::Data& scene, const EvenPixelRays& lines, Pi
             within(std::ceil(bottom) + 2, whole.top, whole.bottom)};
 }
 
-/// State shared by the threads of one picture.
+/// Rows of a picture that are rendered together.
+struct BandRows {
+    int first = 0, end = 0;              ///< whose light is computed
+    int shown_first = 0, shown_end = 0;  ///< that are written, bounds of tiles
+};
+
+/// What the lines of sight of a tile meet, see RayTile.
+struct TileHits {
+    std::array<float, kLanes> multiples;
+    std::array<std::uint32_t, kLanes> triangle;
+    std::array<SurfaceKind, kLanes> kind;
+};
+
+/// Memory that the bands of a picture use one after the other.
+struct BandMemory {
+    LightField field;
+    std::vector<TileHits> hits;  ///< by tile; empty unless the samples are the pixels' centres
+};
+
+/// State shared by the threads of one band. Pixels of the band count from its first row.
 struct Job {
     const RenderScene::Data& scene;
     const Viewpoint& viewpoint;
     const RenderOptions& options;
+    int columns, rows;
     Illumination light;
     std::optional<EvenPixelRays> even;
     std::vector<bool> hidden;
     Shading shading;
     Rendering& out;
     std::vector<PixelPoint> samples;  ///< of each pixel, about its centre
-    LightField field;
+    LightField& field;
+    std::vector<TileHits>& hits;
 
+    /// \param from has the rows of the band, `picture` the size of the whole
     Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptions& wanted,
-        Rendering& picture);
+        const BandRows& band, BandMemory& memory, Rendering& picture);
     [[nodiscard]] std::size_t pixel(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(out.columns) +
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
                static_cast<std::size_t>(column);
     }
+    /// Returns a pixel's index in the whole picture.
+    [[nodiscard]] std::size_t pixelOfWhole(int column, int row) const {
+        return pixel(column, band_.first + row);
+    }
+    /// True if the row is written.
+    [[nodiscard]] bool shows(int row) const {
+        return band_.first + row >= band_.shown_first && band_.first + row < band_.shown_end;
+    }
+    /// True if each pixel has one sample, at its centre.
+    [[nodiscard]] bool samplesCentres() const { return samples.size() == 1; }
     /// Light samples per pixel.
     [[nodiscard]] int lightSamples() const { return std::max(1, options.samples / 4); }
 
@@ -117,10 +149,14 @@ struct Job {
     [[nodiscard]] Tile tile(int column, int row) const {
         return tiles_.empty() ? Tile::Full : tiles_[tileIndex(column / kTile, row / kTile)];
     }
+    /// \pre samplesCentres() and options.colors
+    [[nodiscard]] TileHits& hitsOf(int column, int row) const {
+        return hits[tileIndex(column / kTile, row / kTile)];
+    }
+    [[nodiscard]] int tileRows() const { return (rows + kTile - 1) / kTile; }
 
   private:
-    [[nodiscard]] int tileColumns() const { return (out.columns + kTile - 1) / kTile; }
-    [[nodiscard]] int tileRows() const { return (out.rows + kTile - 1) / kTile; }
+    [[nodiscard]] int tileColumns() const { return (columns + kTile - 1) / kTile; }
     [[nodiscard]] std::size_t tileIndex(int column, int row) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(tileColumns()) +
                static_cast<std::size_t>(column);
@@ -128,6 +164,7 @@ struct Job {
     void markTiles();
     [[nodiscard]] bool isNeeded(int column, int row) const;
 
+    const BandRows& band_;
     std::vector<Tile> tiles_;  ///< row by row; empty: all are full
 };
 
@@ -137,38 +174,36 @@ Illumination chosen(Illumination wanted, const StillSurfaces& still) {
 }
 
 Job::Job(const RenderScene::Data& data, const Viewpoint& from, const RenderOptions& wanted,
-         Rendering& picture)
+         const BandRows& band, BandMemory& memory, Rendering& picture)
     : scene(data),
       viewpoint(from),
       options(wanted),
+      columns(from.columns()),
+      rows(from.rows()),
       light(chosen(wanted.light, *data.still)),
       even(from.evenPixelRays()),
       shading(data, light, wanted),
       out(picture),
-      samples(placesInPixel(wanted.samples)) {
+      samples(placesInPixel(wanted.samples)),
+      field(memory.field),
+      hits(memory.hits),
+      band_(band) {
     for (const std::size_t record : options.hidden) {
         hidden.resize(std::max(hidden.size(), record + 2));
         hidden[record + 1] = true;
     }
-    out.columns = viewpoint.columns();
-    out.rows = viewpoint.rows();
-    const std::size_t pixels =
-        static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows);
-    if (options.colors) {
-        out.radiance.resize(pixels);
-        field = LightField(out.columns, out.rows);
-    }
-    if (options.labels) out.labels.resize(pixels);
-    if (options.depths) out.depths.resize(pixels, std::numeric_limits<float>::infinity());
-    if (options.colors && (options.background || options.hidden_pixels != nullptr)) markTiles();
+    if (!options.colors) return;
+    field.reset(columns, rows);
+    if (samplesCentres()) hits.resize(tileIndex(0, tileRows()));
+    if (options.background || options.hidden_pixels != nullptr) markTiles();
 }
 
 /// Returns true if a pixel of the tile is needed.
 bool Job::isNeeded(int column, int row) const {
     if (options.hidden_pixels == nullptr) return true;
-    for (int y = row * kTile; y < std::min(out.rows, (row + 1) * kTile); ++y)
-        for (int x = column * kTile; x < std::min(out.columns, (column + 1) * kTile); ++x)
-            if (!(*options.hidden_pixels)[pixel(x, y)]) return true;
+    for (int y = row * kTile; y < std::min(rows, (row + 1) * kTile); ++y)
+        for (int x = column * kTile; x < std::min(columns, (column + 1) * kTile); ++x)
+            if (!(*options.hidden_pixels)[pixelOfWhole(x, y)]) return true;
     return false;
 }
 
@@ -177,7 +212,7 @@ void Job::markTiles() {
     constexpr int kReach = 3;
     const int wide = tileColumns(), high = tileRows();
     tiles_.assign(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high), Tile::Hidden);
-    PixelBox box{0, 0, out.columns, out.rows};
+    PixelBox box{0, 0, columns, rows};
     if (options.background && even) box = pixelsOf(scene, *even, box);
     const int left = box.left / kTile, right = (box.right + kTile - 1) / kTile;
     const int top = box.top / kTile, bottom = (box.bottom + kTile - 1) / kTile;
@@ -208,6 +243,7 @@ class TileWorker {
 
     /// Finds the surfaces at the centres of the tile's pixels.
     void measure(int column, int row) {
+        if (!job_.shows(row)) return;
         aim(column, row, {});
         tracer_.trace(tile_);
         writeMeasures(column, row);
@@ -218,11 +254,13 @@ class TileWorker {
         if (job_.tile(column, row) < Job::Tile::Lit) return;
         aim(column, row, {});
         tracer_.trace(tile_);
-        writeMeasures(column, row);
+        if (job_.samplesCentres())
+            job_.hitsOf(column, row) = {tile_.multiples, tile_.triangle, tile_.kind};
+        if (job_.shows(row)) writeMeasures(column, row);
         places_.is_wanted.fill(false);
         forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
             if (!job_.shading.meetsSurface(tile_, lane)) return;
-            const SurfacePoint point = job_.shading.surface(tile_, lane);
+            const SurfacePoint point = job_.shading.surface(tile_, lane, facet_);
             places_.set(lane, point.place, point.normal, point.lift);
             const double depth = length(point.place - tile_.origin(lane));
             job_.field.setPlace(pixel, {point.place, point.normal}, static_cast<float>(depth));
@@ -239,39 +277,59 @@ class TileWorker {
 
     /// The samples of the tile's pixels.
     void color(int column, int row) {
+        if (!job_.shows(row)) return;
         const float share = 1 / static_cast<float>(job_.samples.size());
         const Job::Tile tile = job_.tile(column, row);
+        const std::size_t beside = job_.pixelOfWhole(0, 0);
         if (tile == Job::Tile::Empty)
             return forEachPixel(column, row, [&](std::size_t, std::size_t pixel) {
+                Rgb& radiance = job_.out.radiance[pixel + beside];
                 for (std::size_t i = 0; i < job_.samples.size(); ++i)
                     for (std::size_t k = 0; k < 3; ++k)
-                        job_.out.radiance[pixel][k] += share * (*job_.options.background)[k];
+                        radiance[k] += share * (*job_.options.background)[k];
             });
         if (tile != Job::Tile::Full) return;
         for (const PixelPoint at : job_.samples) {
             aim(column, row, at);
-            tracer_.trace(tile_);
+            if (job_.samplesCentres())
+                recallHits(column, row);
+            else
+                tracer_.trace(tile_);
             const auto* layers = clear_.isIdle() ? nullptr : &clear_.trace(tile_);
             forEachPixel(column, row, [&](std::size_t lane, std::size_t pixel) {
                 Rgb light{1, 1, 1};
                 Rgb color = colorOf(lane, pixel, at, light);
                 if (layers != nullptr) veil((*layers)[lane], light, color);
-                for (std::size_t k = 0; k < 3; ++k) job_.out.radiance[pixel][k] += share * color[k];
+                Rgb& radiance = job_.out.radiance[pixel + beside];
+                for (std::size_t k = 0; k < 3; ++k) radiance[k] += share * color[k];
             });
         }
     }
 
   private:
+    /// Takes what gatherLight() found.
+    void recallHits(int column, int row) {
+        const TileHits& hits = job_.hitsOf(column, row);
+        tile_.multiples = hits.multiples;
+        tile_.triangle = hits.triangle;
+        tile_.kind = hits.kind;
+    }
+
     void aim(int column, int row, PixelPoint at) {
-        const int last_column = job_.out.columns - 1, last_row = job_.out.rows - 1;
+        const int last_column = job_.columns - 1, last_row = job_.rows - 1;
         const Vec3 shift = job_.scene.still->shift;
         if (job_.even) return tile_.set(*job_.even, {column + at.column, row + at.row}, shift);
-        lookAround(column, row);
+        const bool is_centre = at.column == 0 && at.row == 0;
+        if (!is_centre) {
+            lookAround(column, row);
+            if (are_all_around_) return tile_.set(rays_around_, at, shift);
+        }
         for (int i = 0; i < kTile * kTile; ++i) {
             const auto lane = static_cast<std::size_t>(i);
             const PixelPoint place{1.0 * std::min(column + i % kTile, last_column),
                                    1.0 * std::min(row + i / kTile, last_row)};
-            const auto line = sightLineNear(place, at);
+            const auto line =
+                is_centre ? job_.viewpoint.sightLine(place) : sightLineNear(place, at);
             tile_.is_black[lane] = !line;
             tile_.set(lane, line.value_or(PixelRay{{}, {1, 0, 0}}), shift);
         }
@@ -280,10 +338,9 @@ class TileWorker {
     /// Returns the line of sight at a fraction of a pixel beside its centre, interpolated between
     /// the surrounding centres if all have one: those are stored.
     [[nodiscard]] std::optional<PixelRay> sightLineNear(PixelPoint place, PixelPoint at) const {
-        const bool is_inner = place.column > 0 && place.column + 1 < job_.out.columns &&
-                              place.row > 0 && place.row + 1 < job_.out.rows;
+        const bool is_inner = place.column > 0 && place.column + 1 < job_.columns &&
+                              place.row > 0 && place.row + 1 < job_.rows;
         const std::optional<PixelRay>& middle = around(place);
-        if (at.column == 0 && at.row == 0) return middle;
         static const std::optional<PixelRay> none;
         const std::optional<PixelRay>& aside =
             is_inner ? around({place.column + (at.column < 0 ? -1 : 1), place.row}) : none;
@@ -304,19 +361,27 @@ class TileWorker {
                          between(d.z, aside->direction.z, below->direction.z)}};
     }
 
-    static constexpr int kAround = kTile + 2;
+    static constexpr int kAround = SurroundedTile::kSide;
 
     /// Stores the lines of sight of a tile's pixels, and of those about it.
     void lookAround(int column, int row) {
         if (column == around_column_ && row == around_row_) return;
+        const bool is_next = column == around_column_ + kTile && row == around_row_;
         around_column_ = column;
         around_row_ = row;
+        are_all_around_ = true;
         for (int i = 0; i < kAround * kAround; ++i) {
             const int x = column - 1 + i % kAround, y = row - 1 + i / kAround;
-            const bool is_inside = x >= 0 && y >= 0 && x < job_.out.columns && y < job_.out.rows;
-            around_[static_cast<std::size_t>(i)] =
-                is_inside ? job_.viewpoint.sightLine({1.0 * x, 1.0 * y}) : std::nullopt;
+            const bool is_inside = x >= 0 && y >= 0 && x < job_.columns && y < job_.rows;
+            auto& line = around_[static_cast<std::size_t>(i)];
+            if (is_next && i % kAround < 2)
+                line = around_[static_cast<std::size_t>(i) + kTile];
+            else
+                line = is_inside ? job_.viewpoint.sightLine({1.0 * x, 1.0 * y}) : std::nullopt;
+            are_all_around_ = are_all_around_ && line.has_value();
         }
+        if (!are_all_around_) return;
+        for (std::size_t i = 0; i < around_.size(); ++i) rays_around_.set(i, *around_[i]);
     }
     [[nodiscard]] const std::optional<PixelRay>& around(PixelPoint place) const {
         const int column = static_cast<int>(place.column) - around_column_ + 1;
@@ -329,7 +394,7 @@ class TileWorker {
     void forEachPixel(int column, int row, Visit visit) const {
         for (int i = 0; i < kTile * kTile; ++i) {
             const int x = column + i % kTile, y = row + i / kTile;
-            if (x < job_.out.columns && y < job_.out.rows)
+            if (x < job_.columns && y < job_.rows)
                 visit(static_cast<std::size_t>(i), job_.pixel(x, y));
         }
     }
@@ -337,10 +402,10 @@ class TileWorker {
     void writeMeasures(int column, int row) {
         const bool has_labels = !job_.out.labels.empty(), has_depths = !job_.out.depths.empty();
         if (has_labels) findLabels();
-        const int wide = std::min(kTile, job_.out.columns - column);
-        const int high = std::min(kTile, job_.out.rows - row);
+        const int wide = std::min(kTile, job_.columns - column);
+        const int high = std::min(kTile, job_.rows - row);
         for (int k = 0; k < high; ++k) {
-            const std::size_t pixel = job_.pixel(column, row + k);
+            const std::size_t pixel = job_.pixelOfWhole(column, row + k);
             const auto first = static_cast<std::size_t>(k) * kTile;
             if (has_depths) copyRow(&tile_.multiples[first], wide, &job_.out.depths[pixel]);
             if (has_labels) copyRow(&labels_[first], wide, &job_.out.labels[pixel]);
@@ -394,26 +459,29 @@ class TileWorker {
 
     Rgb colorOf(std::size_t lane, std::size_t pixel, PixelPoint at, Rgb& light) {
         if (!job_.shading.meetsSurface(tile_, lane)) return job_.shading.background(tile_, lane);
-        const SurfacePoint point = job_.shading.surface(tile_, lane);
+        const SurfacePoint point = job_.shading.surface(tile_, lane, facet_);
         light = lightAt(point, pixel, at);
-        const Rgb thrown = thrownLight(job_.scene, point);
-        for (std::size_t k = 0; k < 3; ++k) light[k] += thrown[k];
+        if (!job_.scene.still->thrown.empty()) {
+            const Rgb thrown = thrownLight(job_.scene, point);
+            for (std::size_t k = 0; k < 3; ++k) light[k] += thrown[k];
+        }
         return job_.shading.lit(point, light);
     }
 
     /// Returns the light on a surface: that of the pixel or of a neighbour that shows the same
     /// surface.
     Rgb lightAt(const SurfacePoint& point, std::size_t pixel, PixelPoint at) {
+        if (job_.samplesCentres()) return job_.field.light(pixel);  // this point is the pixel's
         const FacingPlace surface(point.place, point.normal);
         if (job_.field.reaches(pixel, surface)) return job_.field.light(pixel);
-        const auto columns = static_cast<std::size_t>(job_.out.columns);
+        const auto columns = static_cast<std::size_t>(job_.columns);
         const std::size_t column = pixel % columns, row = pixel / columns;
         const int x = at.column < 0 ? -1 : 1, y = at.row < 0 ? -1 : 1;
         const int order[8][2] = {{x, 0},  {0, y},  {x, y},  {-x, 0},
                                  {0, -y}, {x, -y}, {-x, y}, {-x, -y}};
         for (const auto& [dx, dy] : order) {
             const int i = static_cast<int>(column) + dx, j = static_cast<int>(row) + dy;
-            if (i < 0 || j < 0 || i >= job_.out.columns || j >= job_.out.rows) continue;
+            if (i < 0 || j < 0 || i >= job_.columns || j >= job_.rows) continue;
             const std::size_t beside = job_.pixel(i, j);
             if (job_.field.reaches(beside, surface)) return job_.field.light(beside);
         }
@@ -455,6 +523,9 @@ class TileWorker {
     int drawn_column_ = -1, drawn_row_ = -1;
     std::array<std::optional<PixelRay>, std::size_t{kAround} * kAround> around_;
     int around_column_ = -1, around_row_ = -1;
+    bool are_all_around_ = false;  ///< then rays_around_ holds them
+    SurroundedTile rays_around_;
+    Facet facet_;
     const SurfaceSet& solid_ = *job_.scene.still->solid;
     bool has_coverings_ = !job_.scene.still->coverings.empty();
 };
@@ -462,12 +533,12 @@ class TileWorker {
 /// Calls work(worker, column, row) for each tile.
 template <typename Work>
 void forEachTile(Job& job, Work work) {
-    const int tile_rows = (job.out.rows + kTile - 1) / kTile;
+    const int tile_rows = job.tileRows();
     tbb::parallel_for(
         tbb::blocked_range<int>(0, tile_rows, 2), [&](const tbb::blocked_range<int>& rows) {
             TileWorker worker(job);
             for (int row = rows.begin(); row != rows.end(); ++row)
-                for (int column = 0; column < job.out.columns; column += kTile)
+                for (int column = 0; column < job.columns; column += kTile)
                     work(worker, column, row * kTile);
             const int passes = job.options.colors ? 2 : 1;
             if (job.options.on_progress)
@@ -475,26 +546,34 @@ void forEachTile(Job& job, Work work) {
         });
 }
 
-}  // namespace
-
-Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
-                 const RenderOptions& options) {
-    assert(options.samples > 0);
-    Rendering out;
-    Job job(scene.data(), viewpoint, options, out);
+/// Renders rows of a picture.
+/// \param viewpoint has these rows
+void renderBand(const RenderScene& scene, const Viewpoint& viewpoint, const RenderOptions& options,
+                const BandRows& band, BandMemory& memory, Rendering& out) {
+    Job job(scene.data(), viewpoint, options, band, memory, out);
     if (!options.colors) {
         forEachTile(job,
                     [](TileWorker& worker, int column, int row) { worker.measure(column, row); });
-        return out;
+        return;
     }
     forEachTile(job,
                 [](TileWorker& worker, int column, int row) { worker.gatherLight(column, row); });
     job.field.smooth();
     forEachTile(job, [](TileWorker& worker, int column, int row) { worker.color(column, row); });
-    return out;
 }
 
-namespace {
+/// Returns a picture to be rendered.
+Rendering blankFor(const Viewpoint& viewpoint, const RenderOptions& options) {
+    Rendering out;
+    out.columns = viewpoint.columns();
+    out.rows = viewpoint.rows();
+    const std::size_t pixels =
+        static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows);
+    if (options.colors) out.radiance.resize(pixels);
+    if (options.labels) out.labels.resize(pixels);
+    if (options.depths) out.depths.resize(pixels, std::numeric_limits<float>::infinity());
+    return out;
+}
 
 /// Rows of the picture in this band.
 class Band final : public Viewpoint {
@@ -518,18 +597,16 @@ class Band final : public Viewpoint {
     int first_;
 };
 
-/// Appends rows [first, end) of a band.
-template <typename Value>
-void append(std::vector<Value>& whole, const std::vector<Value>& band, int columns, int first,
-            int end) {
-    if (band.empty()) return;
-    const auto at = [&](int row) {
-        return band.begin() + static_cast<std::ptrdiff_t>(row) * columns;
-    };
-    whole.insert(whole.end(), at(first), at(end));
-}
-
 }  // namespace
+
+Rendering render(const RenderScene& scene, const Viewpoint& viewpoint,
+                 const RenderOptions& options) {
+    assert(options.samples > 0);
+    Rendering out = blankFor(viewpoint, options);
+    BandMemory memory;
+    renderBand(scene, viewpoint, options, {0, out.rows, 0, out.rows}, memory, out);
+    return out;
+}
 
 Rendering renderInBands(const RenderScene& scene, const Viewpoint& viewpoint,
                         const RenderOptions& options, int most_pixels) {
@@ -537,31 +614,20 @@ Rendering renderInBands(const RenderScene& scene, const Viewpoint& viewpoint,
     constexpr int kOverlap = 16;
     const int rows = std::max(kOverlap, most_pixels / viewpoint.columns() / kOverlap * kOverlap);
     if (rows >= viewpoint.rows()) return render(scene, viewpoint, options);
-    Rendering out;
-    out.columns = viewpoint.columns();
-    out.rows = viewpoint.rows();
+    assert(options.samples > 0);
+    Rendering out = blankFor(viewpoint, options);
+    BandMemory memory;
     for (int row = 0; row < out.rows; row += rows) {
-        const int first = std::max(row - kOverlap, 0);
-        const int last = std::min(row + rows + kOverlap, out.rows);
         const int end = std::min(row + rows, out.rows);
+        const BandRows band{std::max(row - kOverlap, 0), std::min(row + rows + kOverlap, out.rows),
+                            row, end};
         RenderOptions own = options;
-        std::vector<bool> hidden;
-        if (options.hidden_pixels != nullptr) {
-            const auto at = [&](int line) {
-                return options.hidden_pixels->begin() +
-                       static_cast<std::ptrdiff_t>(line) * out.columns;
-            };
-            hidden.assign(at(first), at(last));
-            own.hidden_pixels = &hidden;
-        }
         if (options.on_progress)
             own.on_progress = [&options, part = (1.0 * (end - row)) / out.rows](double share) {
                 options.on_progress(part * share);
             };
-        const Rendering band = render(scene, Band(viewpoint, first, last - first), own);
-        append(out.radiance, band.radiance, out.columns, row - first, end - first);
-        append(out.labels, band.labels, out.columns, row - first, end - first);
-        append(out.depths, band.depths, out.columns, row - first, end - first);
+        renderBand(scene, Band(viewpoint, band.first, band.end - band.first), own, band, memory,
+                   out);
     }
     return out;
 }
@@ -635,12 +701,19 @@ class SrgbTable {
 
 std::vector<std::uint8_t> toSrgb8(const Rendering& picture, double exposure) {
     constexpr std::size_t kManyPixels = 20'000;
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(3 * picture.radiance.size());
+    std::vector<std::uint8_t> bytes(3 * picture.radiance.size());
     const auto convert = [&](auto byte_of) {
-        for (const Rgb& color : picture.radiance)
-            for (const float value : color)
-                bytes.push_back(byte_of(static_cast<float>(exposure) * value));
+        std::uint8_t* to = bytes.data();
+        const Rgb* last = nullptr;  // backgrounds have long runs of one colour
+        for (const Rgb& color : picture.radiance) {
+            if (last != nullptr && *last == color)
+                std::copy_n(to - 3, 3, to);
+            else
+                for (std::size_t k = 0; k < 3; ++k)
+                    to[k] = byte_of(static_cast<float>(exposure) * color[k]);
+            last = &color;
+            to += 3;
+        }
     };
     if (picture.radiance.size() < kManyPixels) {
         convert(rolledSrgb);

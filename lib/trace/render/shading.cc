@@ -48,13 +48,17 @@ SurfacePoint Shading::ground(const RayTile& tile, std::size_t lane) const {
     return point;
 }
 
+namespace {
+
+/// Turns a normal towards the viewer.
+Vec3 seen(Vec3 normal, Vec3 direction) { return dot(normal, direction) > 0 ? -1 * normal : normal; }
+
+}  // namespace
+
 Vec3 Shading::normalAt(const RayTile& tile, std::size_t lane, Point3 place) const {
     const std::uint32_t triangle = tile.triangle[lane];
-    const auto seen = [&](Vec3 normal) {
-        return dot(normal, tile.direction(lane)) > 0 ? -1 * normal : normal;
-    };
     if (tile.kind[lane] == SurfaceKind::Person)
-        return seen(scene_.people.body(triangle).body.normalAt(place));
+        return seen(scene_.people.body(triangle).body.normalAt(place), tile.direction(lane));
     const TriangleSet& set = scene_.set(tile.kind[lane]).triangles();
     Vec3 normal = set.planes()[triangle].normal;
     if (const RoundBody* round = set.roundOf(triangle)) {
@@ -63,11 +67,37 @@ Vec3 Shading::normalAt(const RayTile& tile, std::size_t lane, Point3 place) cons
         const Vec2 side = round->curve.normalAt(place.onFloor());
         normal = is_end ? Vec3{0, 0, 1} : 1 / length(side) * Vec3{side.x, side.y, 0};
     }
-    return seen(normal);
+    return seen(normal, tile.direction(lane));
 }
 
-SurfacePoint Shading::surface(const RayTile& tile, std::size_t lane) const {
-    return tile.meets(lane) ? met(tile, lane) : ground(tile, lane);
+SurfacePoint Shading::surface(const RayTile& tile, std::size_t lane, Facet& last) const {
+    if (!tile.meets(lane)) return ground(tile, lane);
+    const bool is_last = tile.triangle[lane] == last.triangle && tile.kind[lane] == last.kind;
+    if (is_last && last.is_plain) {
+        SurfacePoint point = last.point;
+        point.place = tile.place(lane);
+        point.normal = seen(point.normal, tile.direction(lane));
+        return point;
+    }
+    const SurfacePoint point = met(tile, lane);
+    if (!is_last) {
+        last.kind = tile.kind[lane];
+        last.triangle = tile.triangle[lane];
+        last.is_plain = isPlain(last.kind, last.triangle);
+        if (last.is_plain) last.point = point;
+    }
+    return point;
+}
+
+/// True if all points of a triangle have one normal and one colour.
+bool Shading::isPlain(SurfaceKind kind, std::uint32_t triangle) const {
+    const SurfaceSet& set = scene_.set(kind);
+    if (kind == SurfaceKind::Person || set.triangles().roundOf(triangle) != nullptr) return false;
+    const SurfaceFinish& finish = set.finish(triangle);
+    const Paint& look = scene_.still->paints[finish.paint];
+    const bool is_covered = finish.label == 0 && look.is_floor && !scene_.still->coverings.empty();
+    const bool has_panels = look.is_ceiling && light_ == Illumination::Lamps;
+    return finish.face == SurfaceFinish::kNoFace && !is_covered && !has_panels;
 }
 
 SurfacePoint Shading::met(const RayTile& tile, std::size_t lane) const {
@@ -290,6 +320,40 @@ void RayTile::set(const EvenPixelRays& lines, PixelPoint first, Vec3 shift) {
     if (is_one && origin(0) == kept && origin(kLanes - 1) == kept) return;
     fillOrigins(lines, shift, first, *this);
     has_new_origins = true;
+}
+
+namespace {
+
+using Pixels = SurroundedTile::Pixels;
+
+/// Interpolates between each pixel of a tile and its neighbours.
+ISPACE_SIMD_CLONES void fillBetween(const Pixels& values, PixelPoint at, double shift,
+                                    std::array<double, kLanes>& out) {
+    constexpr int kSide = SurroundedTile::kSide;
+    const double u = std::fabs(at.column), v = std::fabs(at.row);
+    const double* const middle = &values[kSide + 1];
+    const double* const aside = middle + (at.column < 0 ? -1 : 1);
+    const double* const below = middle + (at.row < 0 ? -kSide : kSide);
+    std::size_t lane = 0;
+    for (int row = 0; row < kTile; ++row)
+        for (int column = 0; column < kTile; ++column) {
+            const int i = row * kSide + column;
+            const double a = middle[i];
+            out[lane++] = a + u * (aside[i] - a) + v * (below[i] - a) + shift;
+        }
+}
+
+}  // namespace
+
+void RayTile::set(const SurroundedTile& lines, PixelPoint at, Vec3 shift) {
+    is_black.fill(false);
+    has_new_origins = true;
+    fillBetween(lines.x, at, 0, x);
+    fillBetween(lines.y, at, 0, y);
+    fillBetween(lines.z, at, 0, z);
+    fillBetween(lines.origin_x, at, shift.x, origin_x);
+    fillBetween(lines.origin_y, at, shift.y, origin_y);
+    fillBetween(lines.origin_z, at, shift.z, origin_z);
 }
 
 void TileTracer::trace(RayTile& tile) {

@@ -11,6 +11,24 @@
 
 namespace ispace {
 
+/// Lines of sight of the pixels of a tile and of those about it, row by row.
+struct SurroundedTile {
+    static constexpr int kSide = kTile + 2;
+    using Pixels = std::array<double, std::size_t{kSide} * kSide>;
+
+    alignas(64) Pixels x{}, y{}, z{};  ///< directions
+    Pixels origin_x{}, origin_y{}, origin_z{};
+
+    void set(std::size_t pixel, const PixelRay& line) {
+        x[pixel] = line.direction.x;
+        y[pixel] = line.direction.y;
+        z[pixel] = line.direction.z;
+        origin_x[pixel] = line.origin.x;
+        origin_y[pixel] = line.origin.y;
+        origin_z[pixel] = line.origin.z;
+    }
+};
+
 /// A square tile of a picture's lines of sight, relative to the middle of the plan, and their hits:
 /// `multiples` are depths.
 struct RayTile : RayPacket {
@@ -27,6 +45,8 @@ struct RayTile : RayPacket {
     void set(std::size_t lane, const PixelRay& line, Vec3 shift);
     /// Sets the lines of sight of a tile with the first pixel `first`; may exceed the picture.
     void set(const EvenPixelRays& lines, PixelPoint first, Vec3 shift);
+    /// Sets the lines of sight at a fraction of a pixel beside the centres, by interpolation.
+    void set(const SurroundedTile& lines, PixelPoint at, Vec3 shift);
     [[nodiscard]] Vec3 direction(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
     [[nodiscard]] Point3 origin(std::size_t lane) const {
         return {origin_x[lane], origin_y[lane], origin_z[lane]};
@@ -79,6 +99,14 @@ struct SurfacePoint {
     double lift = 1e-4;  ///< offset of secondary rays above the surface
 };
 
+/// The triangle that a thread met last: most pixels show that of the pixel before.
+struct Facet {
+    SurfaceKind kind{};
+    std::uint32_t triangle = ~0U;
+    bool is_plain = false;  ///< flat, in one colour: `point` holds but for the place
+    SurfacePoint point;
+};
+
 /// Computes colours of surfaces and of clear layers before them.
 class Shading {
   public:
@@ -89,7 +117,7 @@ class Shading {
     /// past all surfaces see the ground around the building.
     [[nodiscard]] bool meetsSurface(const RayTile& tile, std::size_t lane) const;
     /// \pre meetsSurface
-    [[nodiscard]] SurfacePoint surface(const RayTile& tile, std::size_t lane) const;
+    [[nodiscard]] SurfacePoint surface(const RayTile& tile, std::size_t lane, Facet& last) const;
     /// Returns the background colour of a lane without a surface.
     [[nodiscard]] Rgb background(const RayTile& tile, std::size_t lane) const;
     /// Returns the colour of a surface in this light.
@@ -97,6 +125,7 @@ class Shading {
 
   private:
     [[nodiscard]] SurfacePoint met(const RayTile& tile, std::size_t lane) const;
+    [[nodiscard]] bool isPlain(SurfaceKind kind, std::uint32_t triangle) const;
     [[nodiscard]] SurfacePoint ground(const RayTile& tile, std::size_t lane) const;
     [[nodiscard]] Vec3 normalAt(const RayTile& tile, std::size_t lane, Point3 place) const;
 
