@@ -10,6 +10,7 @@
 #include "base/message.h"
 #include "env/walls.h"
 #include "io/glb/glb_write.h"
+#include "scene/placement_schemas.h"
 
 namespace ispace {
 
@@ -104,8 +105,7 @@ std::shared_ptr<const Scene> sceneWithWholeIds(const BuildingScene& building, st
     std::vector<Record> records = scene->records;
     for (std::size_t i = 0; i < records.size(); ++i) {
         const bool is_carried = records[i].schema().type == RecordType::Placement &&
-                                records[i].schema().find("on") != nullptr && records[i].has("on") &&
-                                movers.contains(records[i].text("on"));
+                                movers.contains(carrierOf(records[i]));
         if (isMoverRecord(records[i]) || is_carried)
             records[i] = inBuilding(building.document.storeys[storey], records[i], scene->ids[i]);
     }

@@ -847,7 +847,7 @@ std::vector<Finding> Coupling::findings(std::size_t storey, const FindingFilter&
     std::optional<CheckContext> context;
     for (const PlacedRecord& placed : scene.placed) {
         if (isFull(found)) break;
-        if (scene.records[placed.record].schema().find("on") == nullptr) continue;
+        if (!mayBeCarried(scene.records[placed.record].schema())) continue;
         if (filter.ids && !filter.ids(scene.ids[placed.record])) continue;
         const Point3 at = placed.pose.position;
         const auto report = [&](const std::string& message, std::string hint) {

@@ -120,8 +120,7 @@ void BuildingRun::Data::addTravellers() {
                 if (scene.ids[k] == mover.id)
                     who.records.insert(who.records.begin(), record);
                 else if (record.schema().type == RecordType::Placement &&
-                         record.schema().find("on") != nullptr && record.has("on") &&
-                         record.text("on") == mover.id)
+                         carrierOf(record) == mover.id)
                     who.records.push_back(record);
             }
             if (mover.course.wander) wanderers.try_emplace(mover.id);

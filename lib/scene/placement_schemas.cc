@@ -348,6 +348,23 @@ std::vector<Schema> deviceSchemas() {
 
 namespace {
 
+const KeySpec* carrierKey(const Schema& schema) {
+    const auto found = std::find_if(schema.keys.begin(), schema.keys.end(),
+                                    [](const KeySpec& key) { return key.role == Role::Carrier; });
+    return found == schema.keys.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+bool mayBeCarried(const Schema& schema) { return carrierKey(schema) != nullptr; }
+
+std::string carrierOf(const Record& record) {
+    const KeySpec* const key = carrierKey(record.schema());
+    return key == nullptr || !record.has(key->name) ? "" : record.text(key->name);
+}
+
+namespace {
+
 std::vector<Schema>& addedSchemas() {
     static std::vector<Schema> added;
     return added;

@@ -21,6 +21,11 @@ std::vector<Schema> layoutSchemas();
 /// record. Model, source and confidence are required; a position is rejected.
 std::vector<Schema> deviceSchemas();
 
+/// Returns true if other records may carry those of a schema: a key `on` of others is no carrier.
+bool mayBeCarried(const Schema& schema);
+/// Returns the id of the record that carries this one; "" if it stands by itself.
+std::string carrierOf(const Record& record);
+
 /// Adds keywords of an extension to those of `.3dm`; the program does so before it first calls
 /// sceneSchemas(). Such records are placements, which the core keeps and writes, and no more.
 void addSceneSchemas(std::vector<Schema> schemas);

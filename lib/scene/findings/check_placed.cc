@@ -10,6 +10,7 @@
 #include "geom/visibility/visibility.h"
 #include "scene/bodies.h"
 #include "scene/findings/findings.h"
+#include "scene/placement_schemas.h"
 #include "scene/sensor/sensor.h"
 
 namespace ispace {
@@ -114,7 +115,7 @@ class SolidsOver {
 
 void checkBuried(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
     const PlacedRecord* const placed = context.placed_of[record];
-    if (placed == nullptr || context.scene.records[record].schema().find("on") == nullptr) return;
+    if (placed == nullptr || !mayBeCarried(context.scene.records[record].schema())) return;
     const Point3 p = placed->pose.position;
     const Point2 at = p.onFloor();
     // A level laser measures in the plane of its height, where tops and bottoms count as solid.

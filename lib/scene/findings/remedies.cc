@@ -60,7 +60,8 @@ std::vector<Vec3> movesFrom(const Environment& environment, Point3 from) {
 /// Returns the position of a record that can be moved by itself.
 std::optional<Point3> positionOf(const Scene& scene, std::size_t record) {
     const Record& it = scene.records[record];
-    if (it.keyword() == "ispace" || it.keyword() == "inside" || it.has("on") || !it.has("at"))
+    if (it.keyword() == "ispace" || it.keyword() == "inside" || !carrierOf(it).empty() ||
+        !it.has("at"))
         return std::nullopt;
     for (const PlacedRecord& placed : scene.placed)
         if (placed.record == record) return placed.pose.position;
