@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "scene/thing_kind.h"
 
 namespace ispace {
 
@@ -22,6 +23,7 @@ std::string valueText(const Record& record, std::string_view key) {
     const KeySpec& spec = *record.schema().find(key);
     if (spec.type == KeyType::Flag) return record.flag(key) ? "1" : "0";
     if (spec.type == KeyType::Number) return formatDouble(record.number(key));
+    if (spec.type == KeyType::Choice) return record.text(key);
     std::string text;
     for (const double part : record.tuple(key))
         text.append(text.empty() ? "" : ",").append(formatDouble(part));
@@ -32,6 +34,8 @@ std::vector<std::string> keysOf(std::string_view keyword) {
     std::vector<std::string> keys;
     for (const StateKey& state : kStateKeys)
         if (state.keyword == keyword) keys.emplace_back(state.key);
+    if (const ThingKind* const kind = thingKind(keyword))
+        keys.insert(keys.end(), kind->states.begin(), kind->states.end());
     return keys;
 }
 
@@ -40,17 +44,26 @@ std::vector<std::string> keysOf(std::string_view keyword) {
 std::span<const StateKey> stateKeys() { return kStateKeys; }
 
 bool isActuator(std::string_view keyword) {
-    return std::any_of(std::begin(kStateKeys), std::end(kStateKeys),
+    const ThingKind* const kind = thingKind(keyword);
+    return (kind != nullptr && !kind->states.empty()) ||
+           std::any_of(std::begin(kStateKeys), std::end(kStateKeys),
                        [&](const StateKey& state) { return state.keyword == keyword; });
 }
 
 std::vector<RoomState> roomStates(const Scene& scene) {
     std::vector<RoomState> states;
-    for (std::size_t i = 0; i < scene.records.size(); ++i)
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        const Record& record = scene.records[i];
+        const std::string& id = scene.ids[i];
         for (const StateKey& state : kStateKeys)
-            if (scene.records[i].keyword() == state.keyword)
-                states.push_back(
-                    {scene.ids[i], std::string(state.key), valueText(scene.records[i], state.key)});
+            if (record.keyword() == state.keyword)
+                states.push_back({id, std::string(state.key), valueText(record, state.key)});
+        if (const ThingKind* const kind = thingKind(record.keyword()))
+            for (const std::string& key : kind->states)
+                states.push_back({id, key, valueText(record, key)});
+        if (const auto emission = emissionOf(record))
+            states.push_back({id, "power", formatDouble(emission->watts)});
+    }
     return states;
 }
 

@@ -18,7 +18,8 @@ struct StateKey {
     std::string_view key;
 };
 
-/// Returns all of them, the keys of a keyword one after another.
+/// Returns those of the core, the keys of a keyword one after another; extensions have others, see
+/// ThingKind.
 std::span<const StateKey> stateKeys();
 /// Returns true if records with this keyword have a state.
 bool isActuator(std::string_view keyword);
@@ -30,7 +31,8 @@ struct RoomState {
     friend bool operator==(const RoomState&, const RoomState&) = default;
 };
 
-/// Returns the states of a scene, in the order of its records.
+/// Returns the states of a scene, in the order of its records. Records with an emission have a
+/// `power` in watts behind their keys, which follows from these.
 std::vector<RoomState> roomStates(const Scene& scene);
 
 /// Returns the edit that sets a state: `id.key=value`, of `key=value` with 1 and 0 for yes and no,

@@ -69,7 +69,7 @@ Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::st
         if (records[i].schema().type != RecordType::Placement) continue;
         if (records[i].keyword() == "robot") movers_.emplace(i, robots++);
         if (records[i].keyword() == "human") movers_.emplace(i, people++);
-        if (!by_id_ && records[i].has("on")) by_id_.emplace(ids.size(), IdOfRecord{&ids});
+        if (!by_id_ && !carrierOf(records[i]).empty()) by_id_.emplace(ids.size(), IdOfRecord{&ids});
     }
 }
 
@@ -354,9 +354,14 @@ std::vector<Edit> parseEdits(std::string_view request) {
     if (verb == "SET") return {parseEdit(Edit::Kind::Set, rest)};
     std::vector<Edit> edits;
     if (verb == "ACT") {
-        const std::string id(takeWord(rest));
-        while (!rest.empty())
-            edits.push_back(parseEdit(Edit::Kind::Set, id + '.' + std::string(takeWord(rest))));
+        std::string id(takeWord(rest));
+        while (!rest.empty()) {
+            const std::string word(takeWord(rest));
+            if (word == ";")
+                id = takeWord(rest);
+            else
+                edits.push_back(parseEdit(Edit::Kind::Set, id + '.' + word));
+        }
         return edits;
     }
     if (verb != "DELETE") throw UsageError(excerpt(verb) + " is no change of a world");

@@ -103,8 +103,8 @@ std::vector<std::string> leftOut(const Scene& scene, std::span<const std::string
                                  std::string_view done,
                                  const std::function<bool(std::size_t)>& is_meant = {});
 
-/// Parses a client's request for edits: `SET ID.KEY=VALUE`, `ADD RECORD`, `DELETE ID…`. \throws
-/// FormatError as parseEdit, UsageError for another request
+/// Parses a request for edits: `SET ID.KEY=VALUE`, `ADD RECORD`, `DELETE ID…`, `ACT ID KEY=VALUE…`
+/// (` ; ` begins another ID). \throws FormatError as parseEdit, UsageError for another request
 std::vector<Edit> parseEdits(std::string_view request);
 
 /// Returns true if an edit changes this id. \pre it does not add

@@ -14,6 +14,7 @@
 #include "record/schema.h"
 #include "scene/bodies.h"
 #include "scene/room_state.h"
+#include "scene/thing_kind.h"
 #include "sim/simulation.h"
 
 namespace ispace {
@@ -293,6 +294,7 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
         }
         const auto mover = world.moverNamed(plan_.lines[*doer.line].person);
         if (!mover) {
+            doer.after_use.clear();
             doer.line.reset();
             continue;
         }
@@ -306,6 +308,7 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
         } else {
             watchStay(world, *mover, doer);
         }
+        const bool was_there = !doer.walks;
         if (doer.walks && doer.command > 0) arrive(world, *mover, doer);
         if (doer.walks && doer.command == 0 && world.time() >= doer.until) {
             if (work_left_ <= 0) return waiting_.push_back(&doer);
@@ -314,7 +317,9 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
                 if (doer.gave_up) tellUnreached(simulation, doer);
             }
         }
+        if (!doer.walks && !was_there && !doer.gave_up) beginUse(simulation, doer);
         if (doer.walks || world.time() < doer.until) return;
+        endUse(simulation, doer);
         tell(simulation, doer, doer.gave_up ? -1 : 0);
         doer.is_begun = false;
         if (++doer.action == plan_.lines[*doer.line].actions.size()) doer.line.reset();
@@ -449,6 +454,28 @@ void ActivityDirector::stay(const World& world, std::size_t mover, Doer& doer) c
     doer.until = world.time() + actionOf(doer).lasts;
     doer.stays_at = world.status(mover).pose.position;
     doer.changes = world.changes();
+}
+
+/// Changes the state of a thing that says what its use does.
+void ActivityDirector::beginUse(Simulation& simulation, Doer& doer) const {
+    const DayAction& action = actionOf(doer);
+    if (action.verb != DayAction::Verb::Uses) return;
+    const Scene& scene = simulation.world().scene();
+    const auto found = std::find(scene.ids.begin(), scene.ids.end(), action.target);
+    if (found == scene.ids.end()) return;
+    const Record& record = scene.records[static_cast<std::size_t>(found - scene.ids.begin())];
+    const ThingKind* const kind = thingKind(record.keyword());
+    if (kind == nullptr || kind->use == nullptr) return;
+    const UseChanges changes = kind->use(record);
+    const auto set = [&action](const std::string& state) {
+        return state.empty() ? "" : "SET " + action.target + '.' + state;
+    };
+    if (!changes.begin.empty()) simulation.askChange(set(changes.begin));
+    doer.after_use = set(changes.end);
+}
+
+void ActivityDirector::endUse(Simulation& simulation, Doer& doer) {
+    if (!doer.after_use.empty()) simulation.askChange(std::exchange(doer.after_use, ""));
 }
 
 /// Gives up a stay if the person was led away, or the thing was.

@@ -90,6 +90,7 @@ class ActivityDirector {
         Point2 stays_at;           // of a stay that `uses` a thing
         std::int64_t changes = 0;  // of the world then
         bool waits = false;        // for its turn to look for a way
+        std::string after_use;     // the change that ends the use of a thing; "" for none
     };
     void enqueue(SimTime now);
     void goOn(Simulation& simulation, Doer& doer);
@@ -99,6 +100,8 @@ class ActivityDirector {
     void arrive(World& world, std::size_t mover, Doer& doer);
     bool isThere(const World& world, std::size_t mover, const Doer& doer);
     void stay(const World& world, std::size_t mover, Doer& doer) const;
+    void beginUse(Simulation& simulation, Doer& doer) const;
+    static void endUse(Simulation& simulation, Doer& doer);
     void watchStay(const World& world, std::size_t mover, Doer& doer);
     [[nodiscard]] std::vector<GoalWays::Spot> spotsOfOthers(const World& world,
                                                             std::size_t mover) const;

@@ -8,6 +8,7 @@
 #include "env/body.h"
 #include "geom/polygon.h"
 #include "record/edit.h"
+#include "scene/thing_kind.h"
 
 namespace ispace {
 
@@ -27,6 +28,26 @@ std::optional<Point2> middleOf(const Element& element) {
     if (element.record.keyword() != "zone") return placeOf(element.record);
     const Box2 box = bounds(zoneOutline(element.record));
     return Point2{(box.low.x + box.high.x) / 2, (box.low.y + box.high.y) / 2};
+}
+
+/// Returns the things of extensions to which people go, as elements. One that stands in or on
+/// another element is beside a person as soon as that element is.
+std::vector<Element> thingsOf(const Scene& scene) {
+    std::vector<Element> things;
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        if (thingKind(scene.records[i].keyword()) == nullptr) continue;
+        const auto place = placeOf(scene.records[i]);
+        if (!place) continue;
+        auto shape = std::make_shared<const Body>();
+        for (const Element& element : scene.environment.elements())
+            if (std::any_of(element.body.prisms.begin(), element.body.prisms.end(),
+                            [&](const Prism& prism) {
+                                return locate(prism.footprint, *place) != Side::Outside;
+                            }))
+                shape = element.shape;
+        things.push_back({.record = scene.records[i], .id = scene.ids[i], .shape = shape});
+    }
+    return things;
 }
 
 /// Returns true for records that divide rooms.
@@ -127,6 +148,9 @@ std::vector<std::string> goalIds(const Scene& scene) {
     std::vector<std::string> ids;
     for (const Element& element : scene.environment.elements())
         if (middleOf(element)) ids.push_back(element.id);
+    for (std::size_t i = 0; i < scene.records.size(); ++i)
+        if (thingKind(scene.records[i].keyword()) != nullptr && placeOf(scene.records[i]))
+            ids.push_back(scene.ids[i]);
     return ids;
 }
 
@@ -134,7 +158,17 @@ GoalWays::GoalWays(const Scene& scene, double radius, double height)
     : radius_(radius),
       environment_(scene.environment),
       obstacles_(environment_, height, nullptr),
-      walls_(dividersOf(environment_, height)) {}
+      walls_(dividersOf(environment_, height)),
+      things_(thingsOf(scene)) {}
+
+std::vector<const Element*> GoalWays::named(const std::string& id) const {
+    std::vector<const Element*> found;
+    for (const std::span<const Element> some :
+         {std::span(environment_.elements()), std::span<const Element>(things_)})
+        for (const Element& element : some)
+            if (element.id == id && middleOf(element)) found.push_back(&element);
+    return found;
+}
 
 std::vector<Point2> GoalWays::way(Point2 from, const std::string& id, std::span<const Spot> others,
                                   std::size_t* work) const {
@@ -152,9 +186,9 @@ std::vector<Point2> GoalWays::way(Point2 from, const std::string& id, std::span<
     };
     const auto wide = [&]() -> const WayFinder& { return finder(wide_, kWideSpare); };
     const auto narrow = [&]() -> const WayFinder& { return finder(narrow_, 0); };
-    for (const Element& element : environment_.elements()) {
-        const auto middle = element.id == id ? middleOf(element) : std::nullopt;
-        if (!middle) continue;
+    for (const Element* const named_so : named(id)) {
+        const Element& element = *named_so;
+        const auto middle = middleOf(element);
         const bool is_zone = element.record.keyword() == "zone";
         const Polygon zone = is_zone ? zoneOutline(element.record) : Polygon();
         const auto is_taken = [&](Point2 p) {
@@ -193,13 +227,12 @@ std::vector<Point2> GoalWays::way(Point2 from, const std::string& id, std::span<
 }
 
 bool GoalWays::isAt(Point2 p, const std::string& id) const {
-    return std::any_of(environment_.elements().begin(), environment_.elements().end(),
-                       [&](const Element& element) {
-                           if (element.id != id || !middleOf(element)) return false;
-                           if (element.record.keyword() == "zone")
-                               return locate(zoneOutline(element.record), p) != Side::Outside;
-                           return BesideTest(element, walls_).isBeside(p, kReach);
-                       });
+    const std::vector<const Element*> all = named(id);
+    return std::any_of(all.begin(), all.end(), [&](const Element* element) {
+        if (element->record.keyword() == "zone")
+            return locate(zoneOutline(element->record), p) != Side::Outside;
+        return BesideTest(*element, walls_).isBeside(p, kReach);
+    });
 }
 
 }  // namespace ispace

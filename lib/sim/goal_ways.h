@@ -42,14 +42,18 @@ class GoalWays {
     static constexpr double kReach = 0.6;  ///< metres
 
   private:
+    /// Returns the zones and things with this id.
+    [[nodiscard]] std::vector<const Element*> named(const std::string& id) const;
+
     double radius_;
     Environment environment_;
     Obstacles obstacles_;
     Obstacles walls_;                                 // with doors and windows
+    std::vector<Element> things_;                     // of extensions
     mutable std::optional<WayFinder> wide_, narrow_;  // once a way is wanted
 };
 
-/// Returns the ids of the zones and elements to which people may go.
+/// Returns the ids of the zones, elements and things of extensions to which people may go.
 std::vector<std::string> goalIds(const Scene& scene);
 
 }  // namespace ispace

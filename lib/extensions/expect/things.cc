@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/number.h"
+#include "scene/thing_kind.h"
 #include "sim/state_watch.h"
 
 namespace ispace {
@@ -101,12 +102,19 @@ void ThingStates::read(std::size_t room, bool is_first) {
         if (power.room == room) power.watts = 0;
     for (RoomState& state : statesOf(*judged.world))
         set(room, prefix + state.id, state.key, std::move(state.value));
-    for (std::size_t i = 0; i < scene.records.size(); ++i)
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        if (const ThingKind* const kind = thingKind(scene.records[i].keyword()))
+            for (const std::string& key : kind->told) {
+                const auto known = states_.find(stateName(prefix + scene.ids[i], key));
+                set(room, prefix + scene.ids[i], key,
+                    known == states_.end() ? "0" : std::string(known->second.text));
+            }
         if (const auto watts = recordPower(scene.records[i])) {
             Power& power = powers_[prefix + scene.ids[i]];
             power.room = room;
             power.watts = *watts;
         }
+    }
     for (const auto& [name, power] : powers_) {
         if (power.room != room) continue;
         set(room, name, kWatts, formatDouble(power.watts));

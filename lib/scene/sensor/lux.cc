@@ -5,6 +5,7 @@
 #include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
+#include "scene/thing_kind.h"
 
 namespace ispace {
 
@@ -56,6 +57,10 @@ std::vector<Lux::Light> lightsOf(const RoomRecords& room) {
 std::vector<ProjectorBeam> beamsOf(const RoomRecords& room) {
     std::vector<ProjectorBeam> beams;
     for (const Record& record : room.records) {
+        if (const auto emission = emissionOf(record); emission && emission->lumens > 0) {
+            const double half = tan(Angle::degrees(emission->spread.degrees() / 2));
+            beams.push_back({Frame3(emission->pose), half, half, emission->lumens});
+        }
         if (record.keyword() != "projector") continue;
         if (auto beam = projectorBeam(record)) beams.push_back(*beam);
     }

@@ -5,6 +5,7 @@
 #include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
+#include "scene/thing_kind.h"
 
 namespace ispace {
 
@@ -42,9 +43,11 @@ void addMicrophoneKeys(std::vector<KeySpec>& keys) {
     keys.push_back(positiveKey("rate", Unit::Frequency, "readings a second", kMaxRate));
 }
 
-std::vector<SoundSource> speakersOf(const RoomRecords& room) {
+std::vector<SoundSource> soundsOf(const RoomRecords& room) {
     std::vector<SoundSource> sources;
     for (const Record& record : room.records) {
+        if (const auto emission = emissionOf(record); emission && emission->volume > 0)
+            sources.push_back({emission->pose.position, emission->volume});
         if (record.keyword() != "speaker" || !record.flag("on")) continue;
         const Tuple& at = record.tuple("at");
         sources.push_back({{at[0], at[1], record.number("height")}, record.number("volume")});
@@ -52,9 +55,9 @@ std::vector<SoundSource> speakersOf(const RoomRecords& room) {
     return sources;
 }
 
-void lookUpSpeakers(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
+void lookUpSounds(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
     std::get<Microphone>(model).sources =
-        room.shared<SoundSource>([&room] { return speakersOf(room); });
+        room.shared<SoundSource>([&room] { return soundsOf(room); });
 }
 
 std::vector<Mesh> microphoneBody() {
@@ -77,7 +80,7 @@ const SensorKind Microphone::kKind = {
     .add_keys = addMicrophoneKeys,
     .body = microphoneBody,
     .read = readModel<Microphone>,
-    .look_up = lookUpSpeakers,
+    .look_up = lookUpSounds,
     .summary = [](const SensorModel& model) -> DeviceSummary {
         return {"-", "360", "-", formatDouble(std::get<Microphone>(model).rate)};
     },

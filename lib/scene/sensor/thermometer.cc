@@ -15,6 +15,7 @@
 #include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
+#include "scene/thing_kind.h"
 
 namespace ispace {
 
@@ -133,6 +134,8 @@ std::vector<HeatSource> sourcesOf(const RoomRecords& room) {
     constexpr double kLumensPerWatt = 100;  // of white light-emitting diodes
     std::vector<HeatSource> sources;
     for (const Record& record : room.records) {
+        if (const auto emission = emissionOf(record); emission && emission->heat > 0)
+            sources.push_back({emission->pose.position.onFloor(), emission->heat});
         const bool is_heater = record.keyword() == "heater";
         if ((!is_heater && record.keyword() != "lamp") || !record.flag("on")) continue;
         const Tuple& at = record.tuple("at");

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/thing_kind.h"
+
+#include <functional>
+#include <map>
+#include <utility>
+
+namespace ispace {
+
+namespace {
+
+std::map<std::string, ThingKind, std::less<>>& kinds() {
+    static std::map<std::string, ThingKind, std::less<>> known;
+    return known;
+}
+
+}  // namespace
+
+void addThingKind(std::string_view keyword, ThingKind kind) {
+    kinds().insert_or_assign(std::string(keyword), std::move(kind));
+}
+
+const ThingKind* thingKind(std::string_view keyword) {
+    const auto& known = kinds();
+    const auto found = known.find(keyword);
+    return found == known.end() ? nullptr : &found->second;
+}
+
+std::optional<Emission> emissionOf(const Record& record) {
+    const ThingKind* const kind = thingKind(record.keyword());
+    if (kind == nullptr || kind->emission == nullptr) return std::nullopt;
+    return kind->emission(record);
+}
+
+}  // namespace ispace
