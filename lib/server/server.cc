@@ -130,10 +130,13 @@ void Server::run() {
     while (!simulation.finished()) {
         data.serveClients();
         if (simulation.isDue(std::chrono::steady_clock::now())) data.state.prepareStep();
-        data.state.changeAsScripted();
+        const auto states = data.states();
+        for (ServerState* const each : states) each->changeAsScripted();
         // Last before sleeping: pending requests determine the time to wake.
         std::optional<WallTime> next;
-        next = data.state.holdsWorld() || data.rolesHoldWorld()
+        const bool holds = std::any_of(states.begin(), states.end(),
+                                       [](const ServerState* each) { return each->holdsWorld(); });
+        next = holds || data.rolesHoldWorld()
                    ? simulation.flushRecord()
                    : simulation.run(std::chrono::steady_clock::now(), data.turn());
         if (simulation.finished()) break;

@@ -393,7 +393,11 @@ std::optional<WallTime> Simulation::runDue(WallTime now, nanoseconds budget) {
         step();
         if (finished_) break;
         if (!finishStep(end)) return next_part();
-        if (preparation() || isChangeDue()) break;
+        const bool is_change_due =
+            isChangeDue() ||
+            std::any_of(followers_.begin(), followers_.end(),
+                        [](const Simulation* other) { return other->isChangeDue(); });
+        if (preparation() || is_change_due) break;
         if (steady_clock::now() >= end) break;
     }
     if (isDue(now)) return now;
