@@ -90,6 +90,26 @@ TEST(MqttTopics, DiscoveryDescribesEachKey) {
     EXPECT_NE(warm.at(0).payload.find("\"unit_of_measurement\":\"°C\""), std::string::npos);
 }
 
+TEST(MqttTopics, DiscoveryDescribesChoicesAndPower) {
+    const KeySpec flag{.name = "on", .type = KeyType::Flag, .help = ""};
+    const KeySpec state{
+        .name = "state", .type = KeyType::Choice, .help = "", .choices = {"off", "hold"}};
+    const auto kettle = discoveryOf(
+        {"k", "thing", {{"state", "t/state", &state}, {"power", "t/power"}, {"energy", "t/e"}}},
+        "home");
+    ASSERT_EQ(kettle.size(), 3U);
+    EXPECT_NE(kettle[1].payload.find("\"device_class\":\"power\",\"unit_of_measurement\":\"W\""),
+              std::string::npos);
+    EXPECT_NE(kettle[2].payload.find("\"state_class\":\"total_increasing\""), std::string::npos);
+    // Keywords of extensions, as of any actuator without a component.
+    const auto known =
+        discoveryOf({"b", "lamp", {{"on", "t/on", &flag}, {"state", "t/s", &state}}}, "home");
+    EXPECT_EQ(known.at(1).topic, "homeassistant/select/home_b___state/config");
+    EXPECT_NE(known.at(1).payload.find("\"options\":[\"off\",\"hold\"]"), std::string::npos);
+    EXPECT_EQ(wantedPayload("state", &state, "hold"), "");
+    EXPECT_EQ(wantedPayload("state", &state, "boil"), "one of off, hold");
+}
+
 TEST(MqttTopics, DistinctIdsStayDistinct) {
     EXPECT_EQ(topicId("hall/l.1"), "hall/l.1");
     EXPECT_EQ(topicId("front_door"), "front_door");

@@ -125,6 +125,15 @@ std::string wantedPayload(std::string_view key, const KeySpec* spec, std::string
             if (word == known) return "";
         return "ON or OFF";
     }
+    if (spec->type == KeyType::Choice) {
+        const auto& choices = spec->choices;
+        const std::string word = valueOfPayload(key, payload);
+        if (std::find(choices.begin(), choices.end(), word) != choices.end()) return "";
+        std::string wanted = "one of ";
+        for (const std::string& choice : choices)
+            wanted.append(choice).append(&choice == &choices.back() ? "" : ", ");
+        return wanted;
+    }
     if (spec->type != KeyType::Number) return "";
     const double scale = isShare(key) ? kPerCent : 1;
     const std::optional<double> number = parseDouble(payload);
@@ -174,11 +183,32 @@ class Entity {
     JsonWriter json_;
 };
 
+/// A unit that Home Assistant knows, of keys with that name which no command sets.
+struct Measure {
+    std::string_view key, device_class, unit, state_class;
+};
+constexpr Measure kMeasures[] = {{"power", "power", "W", "measurement"},
+                                 {"energy", "energy", "kWh", "total_increasing"}};
+
 /// Describes a key that the entity of its thing does not hold.
 MqttMessage describeKey(Entity entity, const MqttKey& key, const std::string& prefix) {
     entity.addTopics("", key);
-    if (key.spec == nullptr) return entity.message("sensor", prefix);
+    if (key.spec == nullptr) {
+        for (const Measure& measure : kMeasures) {
+            if (measure.key != key.name) continue;
+            entity.json().key("device_class").value(measure.device_class);
+            entity.json().key("unit_of_measurement").value(measure.unit);
+            entity.json().key("state_class").value(measure.state_class);
+        }
+        return entity.message("sensor", prefix);
+    }
     if (key.spec->type == KeyType::Flag) return entity.message("switch", prefix);
+    if (key.spec->type == KeyType::Choice) {
+        entity.json().key("options").beginArray();
+        for (const std::string& choice : key.spec->choices) entity.json().value(choice);
+        entity.json().endArray();
+        return entity.message("select", prefix);
+    }
     if (key.spec->type != KeyType::Number) return entity.message("text", prefix);
     const bool is_share = isShare(key.name);
     const double scale = is_share ? kPerCent : 1;
