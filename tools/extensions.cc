@@ -9,6 +9,10 @@
 #include "io/importers.h"
 #include "scene/placement_schemas.h"
 
+#ifdef ISPACE_HAS_APPLIANCES
+#include "extensions/appliances/appliance.h"
+#include "extensions/appliances/meter_role.h"
+#endif
 #ifdef ISPACE_HAS_CALIBRATION
 #include "extensions/calibration/calibrate.h"
 #endif
@@ -47,6 +51,10 @@ namespace {
 
 /// Adds the formats and records that extensions read. Returns true.
 bool addFormats() {
+#ifdef ISPACE_HAS_APPLIANCES
+    addSceneSchemas(applianceSchemas());
+    addAppliances();
+#endif
 #ifdef ISPACE_HAS_CALIBRATION
     addImporters(calibrationImporters());
 #endif
@@ -110,6 +118,9 @@ std::span<const MakeJudge> runJudges() {
 
 std::span<const MakeRoleService> roleServices() {
     static const std::vector<MakeRoleService> services = {
+#ifdef ISPACE_HAS_APPLIANCES
+        makeMeters,
+#endif
 #ifdef ISPACE_HAS_MEMORY
         makeMemory,
 #endif
