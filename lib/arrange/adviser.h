@@ -94,7 +94,8 @@ class Adviser {
     /// this state.
     std::vector<Suggestion> moves(const MeasuredState& now) {
         std::vector<Suggestion> found = turnAndShift(now);
-        for (Suggestion& suggestion : additions(now)) found.push_back(std::move(suggestion));
+        if (!is_repeating_ || mayAddingMend(now))
+            for (Suggestion& suggestion : additions(now)) found.push_back(std::move(suggestion));
         if (auto removal = withoutIntruder(now)) found.push_back(*std::move(removal));
         return found;
     }
@@ -180,6 +181,9 @@ class Adviser {
     std::vector<Suggestion> turnAndShift(const MeasuredState& now);
     void leaveOutNeedless(const MeasuredState& now, std::vector<Suggestion>& steps);
     std::vector<Suggestion> additions(const MeasuredState& now);
+    /// Returns false if one more sensor leaves no less floor missing: with privacy alone, unless
+    /// just small pieces of several cameras add up.
+    bool mayAddingMend(const MeasuredState& now);
     std::optional<Suggestion> addition(const MeasuredState& now,
                                        const std::vector<SensorGroup>& groups,
                                        const ArrangeOptions& options);

@@ -142,6 +142,10 @@ std::size_t Adviser::intruders(const Scene& scene) {
                       [&](const Sensor& sensor) { return floor.knownSight(sensor).broken > 0; }));
 }
 
+bool Adviser::mayAddingMend(const MeasuredState& now) {
+    return !options_.requirements.empty() || !options_.facing.empty() || intruders(now.scene) == 0;
+}
+
 std::optional<Suggestion> Adviser::withoutIntruder(const MeasuredState& now) {
     if (options_.privacy.empty() || now.missing == 0) return std::nullopt;
     struct Intruder {

@@ -145,8 +145,25 @@ std::vector<const CoarseSight::View*> CoarseSight::viewsOf(std::span<const Senso
     return views;
 }
 
+std::vector<KnownSight*> CoarseSight::knownFrom(const Sensor& sensor,
+                                                std::span<const Pose3> poses) {
+    constexpr std::size_t kMostPlaces = 2'000;
+    std::vector<KnownSight*> known(poses.size());
+    if (scansSlice(sensor)) return known;
+    if (known_from_.size() + poses.size() > kMostPlaces) known_from_.clear();
+    const Surfaces surfaces = kindOf(sensor.model).stopped_by;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const auto& [x, y, z] = poses[i].position;
+        KnownSight* const own =
+            &known_from_.try_emplace({surfaces, x, y, z}, target_.grid.size()).first->second;
+        if (std::find(known.begin(), known.end(), own) == known.end()) known[i] = own;
+    }
+    return known;
+}
+
 void CoarseSight::addSeen(const Sensor& sensor, std::span<const Pose3> poses, const Some& cells,
-                          std::span<double> floor) const {
+                          std::span<double> floor) {
+    const std::vector<KnownSight*> known = knownFrom(sensor, poses);
     std::vector<FieldOfView> views;
     views.reserve(poses.size());
     for (const Pose3& pose : poses)
@@ -160,7 +177,7 @@ void CoarseSight::addSeen(const Sensor& sensor, std::span<const Pose3> poses, co
         if (sight_.levelAt(place.z)->isInsideSolid(place.onFloor())) return;
         CellParts parts;
         cellsByView(target_.grid, sight_.meshFor(sensor.model), views, sight_.plane(), parts,
-                    {.window = cells.window, .counted = &cells.counted});
+                    {.window = cells.window, .counted = &cells.counted, .known = known[0]});
         for (std::size_t i = 0; i < poses.size(); ++i)
             floor[i] += cell_ * static_cast<double>(
                                     countCommon(cellsOf(parts, i, target_.grid.size()), cells.set));
@@ -170,7 +187,7 @@ void CoarseSight::addSeen(const Sensor& sensor, std::span<const Pose3> poses, co
         // A thread that waits for rows of cells in here must not begin with another pose.
         tbb::this_task_arena::isolate([&] {
             const Sensor moved{sensor.id, sensor.model, poses[i]};
-            const CellSet seen = sight_.cellsOf(target_.grid, moved, &cells.counted);
+            const CellSet seen = sight_.cellsOf(target_.grid, moved, &cells.counted, known[i]);
             floor[i] += cell_ * static_cast<double>(countCommon(seen, cells.set));
         });
     });

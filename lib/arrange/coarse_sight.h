@@ -94,7 +94,10 @@ class CoarseSight {
     [[nodiscard]] Some someOf(CellSet cells) const;
     /// Adds the floor of these cells that a sensor sees at each pose to `floor`.
     void addSeen(const Sensor& sensor, std::span<const Pose3> poses, const Some& cells,
-                 std::span<double> floor) const;
+                 std::span<double> floor);
+    /// Returns what is known from the place of each pose; null for all but the first at one place,
+    /// and for sensors that cast no rays to cells. Valid until the next call.
+    std::vector<KnownSight*> knownFrom(const Sensor& sensor, std::span<const Pose3> poses);
 
     Worlds worlds_;
     VisibleArea sight_;
@@ -113,6 +116,8 @@ class CoarseSight {
         double required;
     };
     std::multimap<PlaceAndHeading, Known> private_seen_;
+    /// By surfaces and place: rays from there are cast to each cell once.
+    std::map<std::tuple<Surfaces, double, double, double>, KnownSight> known_from_;
 };
 
 }  // namespace ispace

@@ -78,6 +78,25 @@ TEST(CoarseSight, CountsPrivateFloorAgainstACamera) {
     EXPECT_LT(gains[0].gained, 1) << "it faces the corner";
 }
 
+TEST(CoarseSight, EstimatesOfKnownPlacesAreThoseOfNewOnes) {
+    const Scene scene = roomWith(
+        "camera id=c at=-4,-3,2.5 fov=80 tilt=-35 heading=45\n"
+        "camera id=o at=4.5,3.5,2.6 fov=90 tilt=-30 heading=-140\n");
+    SuggestOptions options;
+    options.privacy = {parsePrivacy("corner,1")};
+    CoarseSight known(scene.environment, options, CoarseSight::Cells::Many);
+    for (const std::size_t others : {std::size_t{2}, std::size_t{1}}) {
+        CoarseSight fresh(scene.environment, options, CoarseSight::Cells::Many);
+        for (CoarseSight* const coarse : {&known, &fresh})
+            coarse->look(std::span(scene.sensors).first(others));
+        for (const Sensor& moving : scene.sensors) {
+            for (CoarseSight* const coarse : {&known, &fresh}) coarse->count(moving);
+            const std::vector<Pose3> poses = posesAround(moving.pose);
+            EXPECT_EQ(known.at(moving, poses), fresh.at(moving, poses)) << others;
+        }
+    }
+}
+
 TEST(CoarseSight, EstimatesNoRequirements) {
     EXPECT_TRUE(CoarseSight::estimates({}));
     SuggestOptions options;

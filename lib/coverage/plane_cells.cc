@@ -95,18 +95,31 @@ class RowLook {
           target_of_(target_of),
           scope_(scope) {}
 
-    /// Appends the cells of a row that each view sees to its runs.
+    /// Appends the cells of a row that each view sees to its runs, at the latest with finish().
+    /// Rays are cast to many cells at a time: rows of views are short.
     void add(int row, RunsByView& runs) {
+        constexpr std::size_t kAtOnce = 512;
         findTargets(row);
+        if (targets_.size() >= kAtOnce) finish(runs);
+    }
+    void finish(RunsByView& runs) {
         if (targets_.empty()) return;
-        if (scope_.known != nullptr) return addKnown(runs);
+        if (scope_.known != nullptr)
+            addKnown(runs);
+        else
+            addSeen(runs);
+        cells_.clear();
+        targets_.clear();
+        held_.clear();
+    }
+
+  private:
+    void addSeen(RunsByView& runs) {
         seen_.resize(targets_.size());
         mesh_.query(reach_.origin, targets_, seen_);
         for (std::size_t i = 0; i < targets_.size(); ++i)
             if (seen_[i] != 0 || targets_[i] == reach_.origin) runs.add(cells_[i], held_[i]);
     }
-
-  private:
     /// Casts rays to cells that are not known yet.
     void addKnown(RunsByView& runs) {
         unknown_cells_.clear();
@@ -126,11 +139,8 @@ class RowLook {
         for (std::size_t i = 0; i < targets_.size(); ++i)
             if (scope_.known->seen.test(cells_[i])) runs.add(cells_[i], held_[i]);
     }
-    /// Finds the cells of the row that lie in any view.
+    /// Appends the cells of the row that lie in any view.
     void findTargets(int row) {
-        cells_.clear();
-        targets_.clear();
-        held_.clear();
         const double y = grid_.rowCenter(row), dy = y - reach_.origin.y;
         if (!(std::fabs(dy) <= reach_.distance)) return;
         const double half = std::sqrt(reach_.distance * reach_.distance - dy * dy);
@@ -183,6 +193,7 @@ void addParts(const Grid& grid, const RayWorld& mesh, const Reach& reach, std::s
         for (int row = std::max(first, scope.window.first_row);
              row < std::min({first + rows, grid.rows, scope.window.end_row}); ++row)
             row_look.add(row, runs[band]);
+        row_look.finish(runs[band]);
     };
     if (bands == 1)
         look(0);
@@ -395,11 +406,11 @@ std::optional<TurnedViews> turnedViews(const FieldOfView& ahead, std::span<const
 }
 
 CellSet cellsOnPlane(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height,
-                     const CountedCells* counted) {
+                     const CountedCells* counted, KnownSight* known) {
     CellParts parts;
     parts.first.assign(1, 0);
     if (const auto view = fieldOfView(sensor))
-        cellsByView(grid, mesh, {&*view, 1}, height, parts, {.counted = counted});
+        cellsByView(grid, mesh, {&*view, 1}, height, parts, {.counted = counted, .known = known});
     else if (sensor.as<Laser>().sweep == SweepAxis::None)
         addScan(grid, mesh, sensor, parts);
     else

@@ -15,6 +15,8 @@
 
 namespace ispace {
 
+struct KnownSight;
+
 /// Returns the cells of the plane at `height` that a sensor which does not scan a level slice sees,
 /// tested one by one: the centre is in view, including its edges, and in range, and a float32 ray
 /// (see RayWorld::query) to it misses the mesh. The mesh holds Solid surfaces for receivers, Opaque
@@ -25,8 +27,9 @@ namespace ispace {
 /// between scans.
 ///
 /// \param counted as ViewScope::counted, unless the sensor sweeps or scans in a plane; null: all
+/// \param known as ViewScope::known
 CellSet cellsOnPlane(const Grid& grid, const RayWorld& mesh, const Sensor& sensor, double height,
-                     const CountedCells* counted = nullptr);
+                     const CountedCells* counted = nullptr, KnownSight* known = nullptr);
 
 /// Rows and columns of a grid.
 struct CellWindow {
@@ -37,7 +40,7 @@ struct CellWindow {
     static CellWindow of(const Grid& grid, const CellSet& cells);
 };
 
-/// Cells of a plane to which rays from one point were cast: views of several tilts share them.
+/// Cells of a plane to which rays from one point were cast: all views from there share them.
 struct KnownSight {
     CellSet tested, seen;
     explicit KnownSight(std::size_t cells) : tested(cells), seen(cells) {}

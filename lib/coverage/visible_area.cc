@@ -146,13 +146,13 @@ Box2 VisibleArea::boxOf(const Sensor& sensor) const {
     return box.empty() ? Box2() : Box2{box.low + way, box.high + way}.expanded(kRounding);
 }
 
-CellSet VisibleArea::cellsOf(const Grid& grid, const Sensor& sensor,
-                             const CountedCells* counted) const {
+CellSet VisibleArea::cellsOf(const Grid& grid, const Sensor& sensor, const CountedCells* counted,
+                             KnownSight* known) const {
     const Point3 place = sensor.pose.position;
     const std::shared_ptr<const Level> level = levelAt(place.z);
     if (scansSlice(sensor)) return cellsOfScan(grid, {*level, reach_}, sensor);
     if (level->isInsideSolid(place.onFloor())) return CellSet(grid.size());
-    return cellsOnPlane(grid, meshFor(sensor.model), sensor, plane_, counted);
+    return cellsOnPlane(grid, meshFor(sensor.model), sensor, plane_, counted, known);
 }
 
 }  // namespace ispace

@@ -22,6 +22,8 @@ namespace ispace {
 /// any other sensor on one level plane (see ShadowCaster). A sensor inside a solid, deeper than
 /// kRayEpsilon, sees no floor.
 ///
+struct KnownSight;
+
 /// The exact region is the reference; cells count if their centre lies in it, rasterised
 /// (cellsBySector) for slices and tested one by one (cellsOnPlane) for planes. The edges of a field
 /// of view and the maximum range count as inside, an occluding line does not.
@@ -49,8 +51,10 @@ class VisibleArea {
     [[nodiscard]] Box2 boxOf(const Sensor& sensor) const;
     /// Returns the cells with their centre in the view. Thread-safe. \pre prepare()
     /// \param counted if not null, the view holds those of these cells, and arbitrary others
+    /// \param known as ViewScope::known, of sensors that scan no slice
     [[nodiscard]] CellSet cellsOf(const Grid& grid, const Sensor& sensor,
-                                  const CountedCells* counted = nullptr) const;
+                                  const CountedCells* counted = nullptr,
+                                  KnownSight* known = nullptr) const;
 
     [[nodiscard]] double plane() const { return plane_; }
     [[nodiscard]] std::shared_ptr<const Level> levelAt(double height) const {
