@@ -310,6 +310,16 @@ AppliancePhase nextPhase(const ApplianceFigures& figures, const AppliancePhase& 
     return next;
 }
 
+AppliancePhase phaseAt(const ApplianceFigures& figures, AppliancePhase phase, SimTime time) {
+    for (int i = 0; i < kMostPhases; ++i) {
+        const auto end = endOf(figures, phase);
+        if (!end || *end > time) return phase;
+        phase = nextPhase(figures, phase);
+    }
+    phase.since = time;
+    return phase;
+}
+
 std::vector<Plug> plugsOf(const Scene& scene) {
     const auto appliances = appliancesIn(scene);
     std::map<std::string, std::string> owners;

@@ -81,6 +81,10 @@ AppliancePhase phaseAfterChange(const Appliance& now, const AppliancePhase* befo
 std::optional<SimTime> endOf(const ApplianceFigures& figures, const AppliancePhase& phase);
 /// Returns the phase that follows then. \pre endOf() is not empty
 AppliancePhase nextPhase(const ApplianceFigures& figures, const AppliancePhase& phase);
+/// Returns the phase at a time, after those that have ended by then: at most kMostPhases, from
+/// which a shorter cycle than that goes on at that time.
+AppliancePhase phaseAt(const ApplianceFigures& figures, AppliancePhase phase, SimTime time);
+constexpr int kMostPhases = 100;
 
 /// A plug between the mains and an appliance.
 struct Plug {

@@ -220,6 +220,18 @@ TEST(AppliancePhases, EndInTime) {
     EXPECT_EQ(phase.since, SimTime(seconds(2701)));
 }
 
+/// Cycles that are shorter than a nanosecond do not hold up a run.
+TEST(AppliancePhases, AreBounded) {
+    ApplianceFigures figures;
+    figures.hold_time = figures.rest_time = 1e-12;
+    const AppliancePhase phase =
+        phaseAt(figures, {true, ApplianceState::Hold, true, seconds(1)}, seconds(5));
+    EXPECT_EQ(phase.since, SimTime(seconds(5)));
+    const ApplianceFigures& kettle = figuresOf("kettle");
+    EXPECT_EQ(phaseAt(kettle, {true, ApplianceState::Start, true, {}}, seconds(1000)).since,
+              SimTime(seconds(175)));
+}
+
 /// A run in which changes are made as the server does.
 class MeterRole : public ::testing::Test {
   protected:

@@ -125,7 +125,7 @@ void Room::findDue() {
         if (const auto end = endOf(follower.figures, follower.phase)) due = std::min(due, *end);
 }
 
-/// Ends the phases that are over. Several may end within a step.
+/// Ends the phases that are over.
 void Room::goOn() {
     const SimTime now = world().time();
     if (now < due) return;
@@ -135,9 +135,7 @@ void Room::goOn() {
         const auto found = appliances.find(scene.ids[i]);
         if (found == appliances.end()) continue;
         auto& [name, follower] = *found;
-        for (auto end = endOf(follower.figures, follower.phase); end && *end <= now;
-             end = endOf(follower.figures, follower.phase))
-            follower.phase = nextPhase(follower.figures, follower.phase);
+        follower.phase = phaseAt(follower.figures, follower.phase, now);
         add(wanted, changeTo(name, follower.phase, applianceOf(scene.records[i])));
     }
     ask(*simulation, wanted);
