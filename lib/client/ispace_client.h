@@ -23,6 +23,7 @@
 #include <ispace_client/error.h>
 #include <ispace_client/floor.h>
 #include <ispace_client/memory.h>
+#include <ispace_client/meter.h>
 #include <ispace_client/mote.h>
 #include <ispace_client/node.h>
 #include <ispace_client/pir.h>

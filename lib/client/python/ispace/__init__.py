@@ -14,7 +14,8 @@
     print(report.coverage.exact)
 
 Robot and Person drive, LaserSensor, Camera and their kin read, World controls the clock, changes and events, Node is
-a computer of a sensor network, Memory holds contents at places, Floor feels weights; each is a separate connection to a running simrun, by its address
+a computer of a sensor network, Memory holds contents at places, Floor feels weights, Meter
+reads plugs; each is a separate connection to a running simrun, by its address
 ``"127.0.0.1:7001"``. Units are those of the protocol: metres, degrees, simulated seconds; frames are right-handed and
 headings counter-clockwise. Failures raise an Error with the server's text. The standard library is enough; arrays are numpy's if it is installed.
 
@@ -38,6 +39,7 @@ from .errors import (
 from .filters import CoverageReport, Figure, Layout, Object, Record, arrange, coverage, info, scan
 from .floor import Floor, Pressure
 from .memory import Memory, Touch
+from .meter import Meter, MeterReading
 from .mote import Mote, MoteReport
 from .movers import Bumper, End, Limits, Motion, Odometry, Person, Robot, Sonar, Status
 from .node import Node, NodeMessage
@@ -128,6 +130,8 @@ __all__ = [
     "Lux",
     "Mat",
     "Memory",
+    "Meter",
+    "MeterReading",
     "Message",
     "Microphone",
     "Mote",

@@ -17,6 +17,7 @@ from .filters import Option, Placed, Room, arguments_of, last_line, operands, to
 from .floor import Floor
 from .movers import Person, Robot
 from .memory import Memory
+from .meter import Meter
 from .node import Node
 from .sensors import Camera, LaserSensor, Ranger, Sensor
 from .world import World
@@ -115,6 +116,10 @@ class Simrun:
     def memory(self, tags: str = "*") -> Memory:
         """Keeps contents at places, and hears what these tags touch."""
         return Memory(self.address, tags)
+
+    def meter(self, plugs: str = "*") -> Meter:
+        """Reads plugs that meter appliances."""
+        return Meter(self.address, plugs)
 
     def floor(self, sensors: str = "*") -> Floor:
         """Reads floors, beds and chairs that feel weights."""
