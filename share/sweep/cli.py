@@ -11,10 +11,13 @@ import re
 import signal
 import sys
 import tempfile
-from typing import Iterable, Iterator, NoReturn, Sequence
+from typing import TYPE_CHECKING, Iterable, Iterator, NoReturn, Sequence
 
 from .errors import DataError, UsageError, did_you_mean
 from .model import CommandWriter, Job, Jobs, Sweep
+
+if TYPE_CHECKING:  # slow imports wait until an action requires them
+    from .parts import Part
 
 TOOL = "ispace-sweep"
 # The function of each action, and its options besides the common ones.
@@ -199,16 +202,23 @@ def _check(options: argparse.Namespace) -> None:
 
 def _run(options: argparse.Namespace, version: str, say: _Speaker) -> None:
     from .parts import is_part
-    from .reader import read_sweep  # slow imports wait until an action requires them
+    from .reader import read_sweep
 
     if options.output != "-" and options.sweep != "-" and _same_file(options.output, options.sweep):
         raise UsageError(f"{options.output} is the sweep itself")
     for part in options.parts:
         if options.output != "-" and _same_file(options.output, part):
             raise UsageError(f"{options.output} is one of the parts")
-    if options.action == "join" and options.sweep != "-" and is_part(options.sweep):
+    if options.sweep != "-" and is_part(options.sweep):
+        if options.action not in ("join", "status"):
+            raise UsageError(f"{options.sweep} is a part: the sweep comes first, "
+                             f"`{TOOL} {options.action} sweep.yaml`")
+        if options.only:
+            raise UsageError("--only: give the sweep before its parts")
         options.parts.insert(0, options.sweep)  # parts know their axes
-        return _join(None, options, version, say)
+        if options.action == "join":
+            return _join(None, options, version, say)
+        return _status(None, options, version)
     sweep = read_sweep(options.sweep)
     if options.action in ("commands", "names", "makefile"):
         with _output(options.output) as write:
@@ -244,13 +254,24 @@ def _cores() -> int:
     return int(given) if given.isdigit() and int(given) else len(os.sched_getaffinity(0))
 
 
-def _status(sweep: Sweep, options: argparse.Namespace, version: str) -> None:
+def _parts_of(sweep: Sweep | None, paths: Sequence[str]) -> list[Part]:
+    """The parts in the order of jobs. Throws DataError for those of another sweep."""
+    from . import parts
+
+    found = parts.in_order(paths)
+    if sweep is not None and found[0].head["digest"] != sweep.digest:
+        raise DataError([f"{found[0].path}: error: of another sweep than {sweep.file} (another file)"])
+    return found
+
+
+def _status(sweep: Sweep | None, options: argparse.Namespace, version: str) -> None:
     from . import status
 
     if not options.parts:
         raise UsageError("status needs the parts: the files of `run -o`")
-    lines = (status.failures(options.parts, options.json) if options.failed
-             else status.lines(options.parts, len(_chosen(sweep, options)), options.json, version))
+    found = _parts_of(sweep, options.parts)
+    jobs = len(_chosen(sweep, options)) if sweep is not None else sum(part.jobs for part in found)
+    lines = status.failures(found, options.json) if options.failed else status.lines(found, jobs, options.json, version)
     with _output(options.output) as write:
         for line in lines:
             write(line.encode("utf-8", "surrogateescape") + b"\n")
@@ -288,18 +309,14 @@ def _join(sweep: Sweep | None, options: argparse.Namespace, version: str, say: _
         raise UsageError("--raw is for csv")
     gaps = Gaps()
     if options.parts:
-        found = parts.in_order(options.parts)
+        found = _parts_of(sweep, options.parts)
         head = found[0].head
-        if sweep is not None and head["digest"] != sweep.digest:
-            raise DataError([f"{found[0].path}: error: of another sweep than {sweep.file} (another file)"])
         wanted = {}
         if sweep is not None:
             jobs = len(_chosen(sweep, options))
             wanted = _wanted(options)
-        elif options.only:
-            raise UsageError("--only: give the sweep before its parts")
         else:
-            jobs = sum(part.head["jobs"] for part in found)
+            jobs = sum(part.jobs for part in found)
         axes, name, digest = head["axes"], head["sweep"], head["digest"]
         rows = from_lines(parts.rows(found), head["suffixes"], gaps, wanted)
     else:

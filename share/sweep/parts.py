@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import base64
 import collections
+import fcntl
 import heapq
 import json
 import os
+import re
 from dataclasses import dataclass
 from typing import Any, BinaryIO, Iterator, Sequence
 
@@ -18,6 +20,7 @@ from .workers import Outcome
 
 SCHEMA = "ispace-results/1"
 LONGEST_HEADER = 1 << 20
+HEAD = re.compile(rb'\{"job":([0-9]+),"name":"(?:[^"\\]|\\.)*","status":(-?[0-9]+),')  # of a line
 
 
 @dataclass(frozen=True)
@@ -73,23 +76,61 @@ def _refuse(word: str) -> float:
 @dataclass
 class Part:
     """A file of results. Lines are read one at a time; a last one without its end was cut off by a kill, and is left
-    out."""
+    out. `count` is the number of lines that were read, `failed` that of failed jobs among them."""
 
     path: str
     head: dict[str, Any]
+    count: int = 0
+    failed: int = 0
 
-    def lines(self) -> Iterator[dict[str, Any]]:
+    def lines(self, briefly: bool = False) -> Iterator[dict[str, Any]]:
+        """All lines; with `briefly` their `job` and `status` alone, which are not parsed further."""
+        self.count = self.failed = 0
         with _open(self.path) as file:
             file.readline(LONGEST_HEADER)
             for number, row in enumerate(file, 2):
                 if not row.endswith(b"\n"):
                     return
-                try:
-                    found = json.loads(row.decode("utf-8", "surrogateescape"))
-                    found["job"], found["status"], found["values"]
-                except (ValueError, KeyError, TypeError, RecursionError):
-                    raise DataError([f"{self.path}:{number}:1: error: no line of {SCHEMA}"]) from None
+                begin = HEAD.match(row) if briefly else None
+                if begin:
+                    found: dict[str, Any] = {"job": int(begin[1]), "status": int(begin[2])}
+                else:
+                    found = parse_line(row, self.path, number)
+                self.count += 1
+                self.failed += found["status"] != 0
                 yield found
+
+    @property
+    def jobs(self) -> int:
+        """The number of its share's jobs, those without a line included."""
+        return int(self.head.get("jobs") or 0)
+
+    @property
+    def share(self) -> Share:
+        index, _, count = str(self.head.get("shard")).partition("/")
+        numbers = (int(index), int(count)) if index.isdigit() and count.isdigit() else (1, 1)
+        return Share(*numbers, tuple(self.head.get("only") or ()))
+
+    def is_locked(self) -> bool | None:
+        """Whether a run is writing it; unknown on a file system without locks."""
+        with _open(self.path) as file:
+            try:
+                fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+            except BlockingIOError:
+                return True
+            except OSError:
+                return None
+        return False
+
+
+def parse_line(row: bytes, path: str, number: int) -> dict[str, Any]:
+    """Throws DataError with the number of the line if it is no job's."""
+    try:
+        found: dict[str, Any] = json.loads(row.decode("utf-8", "surrogateescape"))
+        found["job"], found["status"], found["values"]
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise DataError([f"{path}:{number}:1: error: no line of {SCHEMA}"]) from None
+    return found
 
 
 def read_part(path: str) -> Part:
@@ -132,8 +173,33 @@ def in_order(paths: Sequence[str]) -> list[Part]:
     return parts
 
 
-def rows(parts: Sequence[Part]) -> Iterator[dict[str, Any]]:
-    """The lines of all parts in the order of jobs. Throws DataError for a job that is in two parts."""
+def absent(parts: Sequence[Part]) -> list[Share]:
+    """The shares of their run that these parts lack; an empty list for parts of several runs."""
+    shares = [part.share for part in parts]
+    if len({(share.count, share.only) for share in shares}) != 1:
+        return []
+    given = {share.index for share in shares}
+    return [Share(index, shares[0].count, shares[0].only) for index in range(1, shares[0].count + 1)
+            if index not in given]
+
+
+def extent(part: Part) -> str:
+    """How far a part is whose lines were read."""
+    share = part.share
+    which = f" of shard {share.index}/{share.count}" if share.count > 1 else ""
+    return f"{part.count} of {part.jobs} jobs{which}"
+
+
+def shard_list(shares: Sequence[Share], most: int = 5) -> str:
+    """The first of them, and the number of the others."""
+    told = ", ".join(f"{share.index}/{share.count}" for share in shares[:most])
+    more = f" and {len(shares) - most} more" if len(shares) > most else ""
+    return f"shard{'s' if len(shares) > 1 else ''} {told}{more}"
+
+
+def rows(parts: Sequence[Part], briefly: bool = False) -> Iterator[dict[str, Any]]:
+    """The lines of all parts in the order of jobs, or `briefly` their `job` and `status` alone. Throws DataError for a
+    job that is in two parts."""
     last, where = 0, ""
     waiting = collections.deque(parts)  # by their first jobs; opened when one is due
     due: list[tuple[int, int, Part, Iterator[dict[str, Any]], dict[str, Any]]] = []
@@ -146,7 +212,7 @@ def rows(parts: Sequence[Part]) -> Iterator[dict[str, Any]]:
     while waiting or due:
         while waiting and (not due or int(waiting[0].head.get("first") or 0) <= due[0][0]):
             part = waiting.popleft()
-            push(len(waiting), part, part.lines())
+            push(len(waiting), part, part.lines(briefly))
         if not due:
             break
         job, order, part, lines, row = heapq.heappop(due)

@@ -26,7 +26,7 @@ STATUS_EVERY = 2.0  # seconds
 
 
 class Tally:
-    """How far a run is, for the file beside its part."""
+    """How far a run is, for the file beside its part: the time it began, and what it has done since."""
 
     def __init__(self, path: str | None, jobs: int) -> None:
         self._path = path + STATUS if path else None
@@ -54,7 +54,7 @@ class Tally:
         now = time.time()
         text = dump({"schema": "ispace-run-status/1", "jobs": self.jobs, "done": self.done, "failed": self.failed,
                      "begin": round(self._begin, 3), "now": round(now, 3), "fresh": self.done - self._before,
-                     "ended": has_ended})
+                     "ended": has_ended, "host": os.uname().nodename})
         try:
             with open(self._path + ".tmp", "w", encoding="utf-8") as file:
                 file.write(text + "\n")
@@ -124,12 +124,16 @@ class _Target:
 
 def _lock(file: int, path: str) -> None:
     """Locks a part, until it is closed. Throws DataError if another run has it."""
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise DataError([f"{path}: error: another run is writing it"]) from None
-    except OSError:
-        pass  # a file system without locks
+    for attempt in range(10):  # `status` holds the lock for an instant
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return
+        except BlockingIOError:
+            if attempt == 9:
+                raise DataError([f"{path}: error: another run is writing it"]) from None
+            time.sleep(0.02)
+        except OSError:
+            return  # a file system without locks
 
 
 def _not_ours(path: str) -> DataError:
@@ -261,19 +265,17 @@ def run(sweep: Sweep, jobs: Jobs, share: parts.Share, path: str, version: str, s
                 if outcome.status else "")
         return Result(row, outcome.status, told)
 
-    has_ended = False
     try:
         for _, result in _in_order(jobs.behind(target.last), work, size, crew.kill):
             target.write(result.line)
             tally.take(result.status)
             if result.told:
                 say([result.told])
-        has_ended = True
         if earlier:
             os.replace(beside, path)
-    finally:
+    finally:  # of a signal as well
         crew.close()
-        tally.tell(has_ended)
+        tally.tell(has_ended=True)
         target.close()
         if earlier:
             earlier.close()

@@ -3,51 +3,84 @@
 
 from __future__ import annotations
 
+import os
 import time
 from typing import Any, Iterator, Sequence
 
 from . import parts
+from .errors import MOST_FINDINGS
 from .listing import dump
 from .run import failure, status_of
 
-ALIVE = 30.0  # seconds since the last sign of a run that has not ended
+ALIVE = 30.0  # seconds since the last sign of a run on another machine, or on a file system without locks
 
 
-def lines(paths: Sequence[str], jobs: int, as_json: bool, version: str) -> Iterator[str]:
-    """A summary of all parts; `jobs` are those of the whole sweep. Reads the small file beside each part, and the part
-    itself where there is none."""
+def lines(found: Sequence[parts.Part], jobs: int, as_json: bool, version: str) -> Iterator[str]:
+    """A summary of all parts; `jobs` are those of the whole sweep. Counts the lines of the parts: after a kill the
+    small file beside each is out of date, and serves the rate alone."""
     now = time.time()
-    done = failed = at_work = 0
+    done = failed = at_work = complete = 0
     rate = 0.0
-    for part in parts.in_order(paths):
-        state = status_of(part.path) or _counted(part)
-        done += state["done"]
-        failed += state["failed"]
-        if not state.get("ended", True) and now - state["now"] < ALIVE:
+    stopped: list[parts.Part] = []
+    for part in found:
+        state = status_of(part.path)
+        is_running = _is_running(part, state, now)  # before its lines are counted: it may end meanwhile
+        for _ in part.lines(briefly=True):
+            pass
+        done += part.count
+        failed += part.failed
+        if is_running:
             at_work += 1
-            took = state["now"] - state["begin"]
-            rate += state["fresh"] / took if took > 0 else 0.0
+            rate += _rate(part, state, now)
+        elif part.count < part.jobs:
+            stopped.append(part)
+        else:
+            complete += 1
     left = jobs - done
     seconds = left / rate if rate > 0 else None
     if as_json:
         yield dump({"schema": "ispace-sweep-status/1", "tool": "ispace-sweep", "version": version, "jobs": jobs,
-                    "done": done, "failed": failed, "left": left, "parts": len(paths), "running": at_work,
-                    "rate": round(rate, 3), "seconds_left": None if seconds is None else round(seconds)})
+                    "done": done, "failed": failed, "left": left, "parts": len(found), "running": at_work,
+                    "stopped": len(stopped), "rate": round(rate, 3),
+                    "seconds_left": None if seconds is None else round(seconds)})
         return
     yield f"jobs     {jobs}"
     yield f"done     {done} ({100 * done / jobs if jobs else 100:.1f}%)"
     yield f"failed   {failed}"
-    yield f"parts    {len(paths)}, of which {at_work} are being written"
-    yield f"rate     {rate:.1f} jobs a second" if at_work else "rate     no run is at work"
+    yield f"parts    {len(found)}: {complete} complete, {at_work} being written, {len(stopped)} stopped"
+    if rate > 0:
+        yield f"rate     {rate:.1f} jobs a second"
+    else:
+        yield "rate     no job has ended yet" if at_work else "rate     no run is at work"
     if left and seconds is not None:
         yield f"left     {left} jobs, {_duration(seconds)} at this rate"
     else:
         yield f"left     {left} jobs"
+    for part in stopped[:MOST_FINDINGS]:
+        yield f"stopped  {part.path}: {parts.extent(part)}; the same `run` continues it"
+    if len(stopped) > MOST_FINDINGS:
+        yield f"stopped  {len(stopped) - MOST_FINDINGS} more parts"
+    missing = parts.absent(found)
+    if missing:
+        yield f"absent   {parts.shard_list(missing)}: not among these parts"
 
 
-def _counted(part: parts.Part) -> dict[str, Any]:
-    statuses = [row["status"] for row in part.lines()]
-    return {"done": len(statuses), "failed": sum(status != 0 for status in statuses)}
+def _is_running(part: parts.Part, state: dict[str, Any] | None, now: float) -> bool:
+    """Whether a run holds the part's lock. The lock of another machine may be invisible here: its run has told how far
+    it is lately."""
+    is_locked = part.is_locked()
+    here = os.uname().nodename
+    if is_locked or state is None or (is_locked is False and state.get("host", here) == here):
+        return bool(is_locked)
+    return not state.get("ended", True) and now - state["now"] < ALIVE
+
+
+def _rate(part: parts.Part, state: dict[str, Any] | None, now: float) -> float:
+    """Jobs a second since the run began; 0 without its file, as during --retry."""
+    if state is None:
+        return 0.0
+    before = int(state["done"]) - int(state["fresh"])
+    return max(0, part.count - before) / max(now - float(state["begin"]), 0.001)
 
 
 def _duration(seconds: float) -> str:
@@ -56,9 +89,9 @@ def _duration(seconds: float) -> str:
     return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-def failures(paths: Sequence[str], as_json: bool) -> Iterator[str]:
+def failures(found: Sequence[parts.Part], as_json: bool) -> Iterator[str]:
     """A line for each job that failed, with its command and last message."""
-    for row in parts.rows(parts.in_order(paths)):
+    for row in parts.rows(found):
         if row["status"] == 0:
             continue
         if as_json:

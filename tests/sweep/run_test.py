@@ -228,6 +228,55 @@ def others(folder):
     check("run needs a relative folder" in folder.talk, folder.talk)
 
 
+STEPS = """
+run: sh -c 'until test -e {go} -o $0 -le 3; do sleep 0.02; done; echo $0' {n} > {out}.txt
+axes: {n: 1..12, go: GO}
+"""
+
+
+def states_of_parts(folder):
+    """`status` counts the lines of parts, and tells runs at work from those that a signal ended."""
+    folder.write("sweep.yaml", STEPS.replace("GO", "[" + json.dumps(folder / "go") + "]"))
+    for number in (signal.SIGKILL, signal.SIGINT):
+        with subprocess.Popen([PROGRAM, "run", "sweep.yaml", "--shard", "1/2", "-j", "1", "-o", "1.jsonl"],
+                              cwd=folder.path) as running:
+            until(lambda: folder_size(folder, "1.jsonl") and folder.read("1.jsonl").count(b"\n") == 4)
+            state = json.loads(sweep(folder, "status", "1.jsonl", "--json"))
+            same("at work", (12, 3, 9, 1, 0), tuple(state[key] for key in ("jobs", "done", "left", "running", "stopped")))
+            running.send_signal(number)
+            same("the status of a kill", -number, running.wait())
+        if number == signal.SIGINT:
+            same("the end is written", True, lines(folder.read("1.jsonl.status"))[0]["ended"])
+        # A signal between a line and the file beside the part.
+        told = lines(folder.read("1.jsonl.status"))[0]
+        folder.write("1.jsonl.status", json.dumps({**told, "done": 1, "fresh": 1, "now": time.time()}) + "\n")
+        state = json.loads(sweep(folder, "status", "1.jsonl", "--json"))
+        same("after it", (12, 3, 9, 0, 1, 0), tuple(state[key] for key in ("jobs", "done", "left", "running", "stopped",
+                                                                           "rate")))
+        found = sweep(folder, "status", "1.jsonl")
+        check("parts    1: 0 complete, 0 being written, 1 stopped\n" in found and "no run is at work" in found and
+              "stopped  1.jsonl: 3 of 6 jobs of shard 1/2; the same `run` continues it\n" in found and
+              "absent   shard 2/2: not among these parts\n" in found, found)
+        same("without the sweep", 6, json.loads(folder.run(PROGRAM, "status", "1.jsonl", "--json"))["jobs"])
+        os.unlink(folder / "1.jsonl")
+    # The lock of another machine may be invisible here: its run tells that it is alive.
+    folder.write("go", "")
+    sweep(folder, "run", "--shard", "1/2", "-o", "1.jsonl")
+    told = lines(folder.read("1.jsonl.status"))[0]
+    folder.write("1.jsonl", b"".join(folder.read("1.jsonl").splitlines(True)[:-2]))
+    for ago, running in ((1, 1), (3600, 0)):
+        far = {**told, "host": told["host"] + "x", "ended": False, "now": time.time() - ago}
+        folder.write("1.jsonl.status", json.dumps(far) + "\n")
+        same(f"{ago} s ago", running, json.loads(sweep(folder, "status", "1.jsonl", "--json"))["running"])
+    folder.run(PROGRAM, "status", "1.jsonl", "--only", "n=1", status=2)
+    check("give the sweep before its parts" in folder.talk, folder.talk)
+    folder.run(PROGRAM, "commands", "1.jsonl", status=2)
+    check("1.jsonl is a part: the sweep comes first, `ispace-sweep commands sweep.yaml`" in folder.talk, folder.talk)
+    folder.write("sweep.yaml", STEPS.replace("GO", "[" + json.dumps(folder / "go") + "]") + "# other\n")
+    sweep(folder, "status", "1.jsonl", status=1)
+    check("1.jsonl: error: of another sweep than sweep.yaml" in folder.talk, folder.talk)
+
+
 def inputs_stay(folder):
     """A job whose output is its room fails, as it would alone: no output replaces a file that was read."""
     folder.write("sweep.yaml", """
@@ -269,7 +318,7 @@ def errors(folder):
     check("stdout: error: No space left" in folder.talk, folder.talk)
 
 
-for part in (equals_files, shares, ends_in_the_middle, failures, others, inputs_stay, errors):
+for part in (equals_files, shares, ends_in_the_middle, failures, states_of_parts, others, inputs_stay, errors):
     with Folder() as scratch_folder:
         whole = scratch_folder.path
         rooms(scratch_folder)
