@@ -210,6 +210,12 @@ Schema humanSchema() {
     speed.default_value = 1.2;
     schema.keys.push_back(std::move(speed));
     schema.keys.push_back(tagKey());
+    schema.keys.push_back(
+        {.name = "prefers",
+         .type = KeyType::Text,
+         .help =
+             "the light (lux) and the temperature (degrees Celsius) that the person likes, as in "
+             "light:300;temp:21, for programs that serve it"});
     addCourse(schema.keys);
     return schema;
 }

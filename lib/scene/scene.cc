@@ -17,6 +17,7 @@
 #include "record/record.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
+#include "scene/preferences.h"
 #include "scene/robot.h"
 #include "scene/sensor/pose_on_carrier.h"
 #include "scene/sensor/sensor.h"
@@ -151,6 +152,7 @@ class Resolver {
             out_.robots.push_back(
                 {ids_[i], std::move(model), pose, record.place(), courseOf(record)});
         } else if (record.keyword() == "human") {
+            preferencesOf(record);  // rejects bad ones
             const Pose2 pose = floorPoseOf(record);
             out_.placed.push_back({i, onFloor(pose), out_.people.size()});
             out_.people.push_back({ids_[i], record.number("height"), record.number("speed"), pose,

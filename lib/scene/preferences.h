@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "record/record.h"
+
+namespace ispace {
+
+/// The light and the temperature that a person likes, by `prefers=light:300;temp:21` of its record.
+struct Preferences {
+    std::optional<double> lux = {};
+    std::optional<double> celsius = {};
+};
+
+/// \pre the record is a `human` \throws FormatError for an unknown name, a number out of bounds and
+/// one that is given twice
+Preferences preferencesOf(const Record& record);
+
+}  // namespace ispace
