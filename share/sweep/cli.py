@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import csv
 import json
 import os
 import re
+import shlex
 import signal
 import sys
 import tempfile
@@ -17,6 +19,7 @@ from .errors import DataError, UsageError, did_you_mean
 from .model import CommandWriter, Job, Jobs, Sweep
 
 if TYPE_CHECKING:  # slow imports wait until an action requires them
+    from .listing import Left
     from .parts import Part
 
 TOOL = "ispace-sweep"
@@ -27,12 +30,12 @@ ACTIONS = {
     "makefile": ("rules for GNU make", {"only", "threads"}),
     "run": ("run the jobs, with all results in one file", {"only", "shard", "threads", "retry"}),
     "status": ("how far the parts of a run are", {"only", "json", "failed"}),
-    "join": ("the results of all jobs as one table", {"only", "partial", "to", "raw"}),
+    "join": ("the results of all jobs as one table", {"only", "partial", "to", "raw", "columns"}),
     "plot": ("one picture of the results", {"only", "partial", "to", "x", "y", "by", "over"}),
 }
 DEFAULTS: dict[str, object] = {
     "only": [], "shard": None, "missing": False, "threads": None, "json": False, "suffix": None,
-    "retry": False, "failed": False, "partial": False, "raw": False, "to": None, "x": None, "y": None, "by": None, "over": None}
+    "retry": False, "failed": False, "partial": False, "raw": False, "columns": None, "to": None, "x": None, "y": None, "by": None, "over": None}
 
 
 def main(version: str, arguments: Sequence[str] | None = None) -> int:
@@ -141,6 +144,7 @@ def _parse(arguments: Sequence[str] | None, version: str) -> argparse.Namespace:
     add("--failed", action="store_true", default=None, help="status: a line for each job that failed")
     add("--suffix", metavar="SUFFIX", help="only the files with this suffix")
     add("--partial", action="store_true", default=None, help="do without the jobs that are not done")
+    add("--columns", metavar="NAME,...", help="join: these columns alone, in this order")
     add("--raw", action="store_true", default=None, help="CSV: leave texts that look like formulas")
     add("--to", metavar="FORMAT", help="csv, jsonl or npz; svg, png or pdf (default: the suffix of FILE)")
     add("--x", metavar="AXIS", help="what lies along the picture")
@@ -180,7 +184,9 @@ def _check(options: argparse.Namespace) -> None:
         parts = " PART..." if options.action in ("join", "plot", "status") else ""
         raise UsageError(f"{options.sweep} holds results: the sweep comes first, "
                          f"`{TOOL} {options.action} sweep.yaml{parts}`")
-    if options.parts and options.action not in ("join", "plot", "status"):
+    if options.parts and options.action in ("commands", "names") and not options.missing:
+        raise UsageError(f"{options.parts[0]}: `{options.action}` takes parts with --missing, to list what they lack")
+    if options.parts and options.action in ("makefile", "run"):
         raise UsageError(f"{options.parts[0]}: `{options.action}` takes one sweep")
     if options.sweep == "-" and sys.stdin.isatty():
         raise UsageError("the sweep would be read from a terminal")
@@ -277,19 +283,32 @@ def _status(sweep: Sweep | None, options: argparse.Namespace, version: str) -> N
             write(line.encode("utf-8", "surrogateescape") + b"\n")
 
 
+def _left(sweep: Sweep, options: argparse.Namespace) -> Left:
+    """The steps that are listed: all, or with --missing those without files, or all of jobs that parts lack."""
+    if not options.missing:
+        return lambda job: sweep.steps
+    if not options.parts:
+        return sweep.left
+    from . import parts
+
+    done = parts.DoneJobs(_parts_of(sweep, options.parts))
+    return lambda job: () if done.has(job.number) else sweep.steps
+
+
 def _lines(sweep: Sweep, jobs: Iterable[Job], options: argparse.Namespace, version: str) -> Iterator[str]:
     from . import listing
 
+    left = _left(sweep, options)
     if options.action == "names":
         if options.suffix is not None and options.suffix not in sweep.suffixes:
             raise UsageError(f"--suffix {options.suffix}: the jobs make {', '.join(sweep.suffixes)}")
-        return listing.names(sweep, jobs, options.missing, options.suffix)
+        return listing.names(jobs, left, options.suffix)
     writer = CommandWriter(sweep, None if options.threads is None else int(options.threads))
     if options.action == "makefile":
         return listing.makefile(sweep, jobs, writer)
     if options.json:
-        return listing.json_lines(sweep, jobs, writer, options.missing, version)
-    return listing.commands(sweep, jobs, writer, options.missing)
+        return listing.json_lines(sweep, jobs, writer, left, version)
+    return listing.commands(jobs, writer, left)
 
 
 def _join(sweep: Sweep | None, options: argparse.Namespace, version: str, say: _Speaker) -> None:
@@ -307,7 +326,10 @@ def _join(sweep: Sweep | None, options: argparse.Namespace, version: str, say: _
         raise UsageError(f"{form} is not for a terminal: name a file with -o")
     if options.raw and form != "csv":
         raise UsageError("--raw is for csv")
+    if options.columns is not None and form == "jsonl":
+        raise UsageError("--columns is for csv and npz")
     gaps = Gaps()
+    found: list[Part] = []
     if options.parts:
         found = _parts_of(sweep, options.parts)
         head = found[0].head
@@ -326,13 +348,21 @@ def _join(sweep: Sweep | None, options: argparse.Namespace, version: str, say: _
         axes, name, digest = [axis.name for axis in sweep.axes], sweep.file.rsplit("/", 1)[-1], sweep.digest
         rows = from_files(sweep, chosen, gaps)
     table = tables.Table(axes, rows)
-    if options.parts and jobs > table.count + gaps.count:
-        gaps.count += jobs - table.count - gaps.count
-    gaps.check(jobs, options.partial)
+    if found:
+        gaps.count = max(gaps.count, jobs - table.count)
+        gaps.explain(list(_short(name if sweep is None else sweep.file, found)))
+        gaps.check(jobs, options.partial, _listing(name if sweep is None else sweep.file, options))
+    else:
+        gaps.check(jobs, options.partial)
     if not table.count:
         raise DataError(["error: no job is done yet"])
     if table.count < jobs and not options.quiet:
         say([f"warning: {jobs - table.count} of {jobs} jobs are not done"])
+    absent = parts.absent(found) if sweep is None and found else []
+    if absent and not options.quiet:
+        say([f"warning: {parts.shard_list(absent)}: not among these parts"])
+    if options.columns is not None:
+        table.pick(next(csv.reader([options.columns]), []) or [""])
     if options.action == "plot":
         assert sweep is not None
         data = picture.draw(sweep, table, options.x, options.y, options.by, options.over, form)
@@ -345,6 +375,31 @@ def _join(sweep: Sweep | None, options: argparse.Namespace, version: str, say: _
             tables.to_jsonl(table, write, name, digest, version)
         else:
             tables.to_npz(table, write)
+
+
+def _short(sweep: str, found: Sequence[Part]) -> Iterator[str]:
+    """Errors about the parts that lack jobs, and the shares that are not among them, with the command that goes on."""
+    from . import parts
+
+    def run(share: parts.Share, output: str) -> str:
+        shard = f" --shard {share.index}/{share.count}" if share.count > 1 else ""
+        only = "".join(f" --only {shlex.quote(rule)}" for rule in share.only)
+        return f"`{TOOL} run {shlex.quote(sweep)}{shard}{only} -o {shlex.quote(output)}`"
+
+    for part in found:
+        if part.count < part.jobs:
+            yield f"{part.path}: error: {parts.extent(part)}: {run(part.share, part.path)} continues it"
+    absent = parts.absent(found)
+    if absent:
+        yield (f"error: {parts.shard_list(absent)}: not among these parts: "
+               f"{run(absent[0], f'part{absent[0].index}.jsonl')} runs {'it' if len(absent) == 1 else 'the first'}")
+
+
+def _listing(sweep: str, options: argparse.Namespace) -> str:
+    """The command that lists the jobs that parts lack."""
+    named = " ".join(map(shlex.quote, options.parts)) if len(options.parts) <= 4 else "PART..."
+    only = "".join(f" --only {shlex.quote(rule)}" for rule in options.only)
+    return f"{TOOL} commands {shlex.quote(sweep)} {named} --missing{only}"
 
 
 def _wanted(options: argparse.Namespace) -> dict[str, str | float | int]:

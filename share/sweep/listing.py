@@ -6,27 +6,28 @@ from __future__ import annotations
 import json
 import os
 import re
-from typing import Iterable, Iterator, Sequence
+from typing import Callable, Iterable, Iterator, Sequence
 
 from .errors import DataError
 from .model import CommandWriter, Job, Step, Sweep
 
+Left = Callable[[Job], Sequence[Step]]  # the steps of a job that are to be listed, asked in the order of jobs
 
-def commands(sweep: Sweep, jobs: Iterable[Job], writer: CommandWriter, missing: bool) -> Iterator[str]:
-    """A line for each job; with `missing` only incomplete ones."""
+
+def commands(jobs: Iterable[Job], writer: CommandWriter, left: Left) -> Iterator[str]:
+    """A line for each job that has steps left."""
     for job in jobs:
-        steps = _steps(sweep, job, missing)
+        steps = left(job)
         if steps:
             yield writer.line(job, steps)
 
 
-def json_lines(sweep: Sweep, jobs: Iterable[Job], writer: CommandWriter, missing: bool,
-               version: str) -> Iterator[str]:
+def json_lines(sweep: Sweep, jobs: Iterable[Job], writer: CommandWriter, left: Left, version: str) -> Iterator[str]:
     """The same with all there is to know of a job, for programs: schema ispace-jobs/1."""
     yield dump({"schema": "ispace-jobs/1", "tool": "ispace-sweep", "version": version,
                 "sweep": os.path.basename(sweep.file), "digest": sweep.digest})
     for job in jobs:
-        steps = _steps(sweep, job, missing)
+        steps = left(job)
         if steps:
             yield dump({"job": job.number, "name": job.name, "values": values(sweep, job),
                         "inputs": sweep.inputs(job),
@@ -34,17 +35,12 @@ def json_lines(sweep: Sweep, jobs: Iterable[Job], writer: CommandWriter, missing
                         "command": writer.line(job, steps)})
 
 
-def names(sweep: Sweep, jobs: Iterable[Job], missing: bool, suffix: str | None) -> Iterator[str]:
+def names(jobs: Iterable[Job], left: Left, suffix: str | None) -> Iterator[str]:
     """The files that the jobs make, a job's in the order of its steps."""
     for job in jobs:
-        steps = _steps(sweep, job, missing)
-        for made in (made for step in steps for made in step.files):
+        for made in (made for step in left(job) for made in step.files):
             if suffix is None or made == suffix:
                 yield job.path(made)
-
-
-def _steps(sweep: Sweep, job: Job, missing: bool) -> Sequence[Step]:
-    return sweep.left(job) if missing else sweep.steps
 
 
 def makefile(sweep: Sweep, jobs: Iterable[Job], writer: CommandWriter) -> Iterator[str]:

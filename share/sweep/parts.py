@@ -183,6 +183,20 @@ def absent(parts: Sequence[Part]) -> list[Share]:
             if index not in given]
 
 
+class DoneJobs:
+    """The jobs that have a line in these parts and did not fail."""
+
+    def __init__(self, found: Sequence[Part]) -> None:
+        self._numbers = (row["job"] for row in rows(found, briefly=True) if row["status"] == 0)
+        self._next: int | None = next(self._numbers, None)
+
+    def has(self, number: int) -> bool:
+        """To be asked in the order of jobs."""
+        while self._next is not None and self._next < number:
+            self._next = next(self._numbers, None)
+        return self._next == number
+
+
 def extent(part: Part) -> str:
     """How far a part is whose lines were read."""
     share = part.share

@@ -48,16 +48,21 @@ class Gaps:
         if len(self.missing) < MOST_FINDINGS - 1:
             self.missing.append(what)
 
-    def check(self, jobs: int, partial: bool) -> None:
-        """Throws DataError for damaged files; for missing results unless `partial`."""
+    def explain(self, reasons: Sequence[str]) -> None:
+        """Puts reasons before the names of what is missing."""
+        self.missing = [*reasons, *self.missing][:MOST_FINDINGS - 1]
+
+    def check(self, jobs: int, partial: bool, listing: str = "commands --missing") -> None:
+        """Throws DataError for damaged files; for missing results unless `partial`. `listing` is the command that lists
+        them."""
         if self.broken:
             raise DataError(self.broken[:MOST_FINDINGS])
         if self.count and self.count == jobs and not partial:
-            raise DataError([self.missing[0], "error: no job is done: run those of `ispace-sweep commands`, or name "
+            raise DataError([*self.missing[:1], "error: no job is done: run those of `ispace-sweep commands`, or name "
                                               "the parts of `ispace-sweep run`"])
         if self.count and not partial:
-            raise DataError([*self.missing, f"error: {self.count} of {jobs} jobs are not done: `commands --missing` "
-                                            "lists them, --partial does without them"])
+            raise DataError([*self.missing, f"error: {self.count} of {jobs} jobs are not done: `{listing}` lists "
+                                            "them, --partial does without them"])
 
 
 def from_files(sweep: Sweep, jobs: Iterable[Job], gaps: Gaps) -> Iterator[Row]:

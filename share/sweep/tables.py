@@ -16,6 +16,7 @@ import zipfile
 from dataclasses import dataclass
 from typing import IO, Any, Callable, Iterable, Iterator, Sequence
 
+from .errors import UsageError, did_you_mean
 from .listing import dump
 from .results import Row, Value
 
@@ -78,6 +79,18 @@ class Table:
         behind.append(Column("version", _versions))
         behind.append(Column("commands", lambda row: " && ".join(row.commands)))
         return before, behind
+
+    def pick(self, names: Sequence[str]) -> None:
+        """Keeps the columns of these names, in their order. Throws UsageError for an unknown name, or one given
+        twice."""
+        known = {column.name: column for column in self.columns}
+        for place, name in enumerate(names):
+            if name not in known:
+                hint = did_you_mean(name, known) or f"; there are {', '.join(known)}"
+                raise UsageError(f"--columns: no column `{name}`{hint}")
+            if name in names[:place]:
+                raise UsageError(f"--columns: `{name}` is given twice")
+        self.columns = [known[name] for name in names]
 
     def rows(self) -> Iterator[Row]:
         """All rows, again."""

@@ -8,6 +8,7 @@ import io
 import json
 import os
 import shutil
+import zipfile
 
 from sweeping import PROGRAM, Folder, check, same
 
@@ -70,6 +71,25 @@ def lines(folder, rows):
          [(row["name"], row["results"]["coverage.exact"]) for row in found])
     same("seeds", [3, 4] * 8, [row["seed"] for row in found])
     same("history", ["arrange ispace.env --sensor urg-04lx:1 --strategy random --seed 3"], found[0]["history"])
+
+
+def columns(folder, rows):
+    found = list(csv.reader(io.StringIO(folder.sweep("join", "--columns", 'count,seed,"coverage.exact"'))))
+    same("some columns", [["count", "seed", "coverage.exact"],
+                          *([row["count"], row["seed"], row["coverage.exact"]] for row in rows)], found)
+    for names, wanted in (("count,coverage.exat", "--columns: no column `coverage.exat`, did you mean `coverage.exact`?"),
+                          ("qqqqq", "--columns: no column `qqqqq`; there are job, name, "),
+                          ("", "--columns: no column ``; there are job, name, "),
+                          ("seed,count,seed", "--columns: `seed` is given twice")):
+        folder.sweep("join", "--columns", names, status=2)
+        check(wanted in folder.talk and folder.talk.count("\n") == 1, folder.talk)
+    folder.sweep("join", "--columns", "seed", "--to", "jsonl", status=2)
+    check("--columns is for csv and npz" in folder.talk, folder.talk)
+    folder.sweep("plot", "--x", "count", "--columns", "seed", status=2)
+    check("--columns is not for `plot`" in folder.talk, folder.talk)
+    folder.sweep("join", "-o", "some.npz", "--columns", "seed,name")
+    with zipfile.ZipFile(folder / "some.npz") as file:
+        same("arrays", ["seed.npy", "name.npy"], file.namelist())
 
 
 def arrays(folder, rows):
@@ -171,6 +191,7 @@ with Folder() as scratch:
     run_jobs(scratch)
     joined = table(scratch)
     lines(scratch, joined)
+    columns(scratch, joined)
     arrays(scratch, joined)
     pictures(scratch)
     gaps(scratch)

@@ -277,6 +277,54 @@ def states_of_parts(folder):
     check("1.jsonl: error: of another sweep than sweep.yaml" in folder.talk, folder.talk)
 
 
+def parts_that_lack_jobs(folder):
+    """`join` says which parts lack jobs; `commands --missing` lists these jobs, and so do `names` and JSON."""
+    text = "run: sh -c 'test $0 != 5 && echo $0' {n} > {out}.txt\naxes: {n: 1..9}\n"
+    folder.write("sweep.yaml", text)
+    for index in (1, 2, 3):
+        sweep(folder, "run", "--shard", f"{index}/3", "-q", "-o", f"part {index}.jsonl", status=index == 2)
+    second = folder.read("part 2.jsonl")
+    folder.write("part 2.jsonl", b"".join(second.splitlines(True)[:-1]))  # header, 4, and 5, which failed
+    for named in (["sweep.yaml"], []):
+        folder.run(PROGRAM, "join", *named, "part 1.jsonl", "part 2.jsonl", status=1)
+        lacks = 5 if named else 2
+        same("what is said", [
+            "ispace-sweep: part 2.jsonl: error: 2 of 3 jobs of shard 2/3: "
+            "`ispace-sweep run sweep.yaml --shard 2/3 -o 'part 2.jsonl'` continues it",
+            "ispace-sweep: error: shard 3/3: not among these parts: "
+            "`ispace-sweep run sweep.yaml --shard 3/3 -o part3.jsonl` runs it",
+            "ispace-sweep: error: job 5 (n5) failed with status 1",
+            f"ispace-sweep: error: {lacks} of {9 if named else 6} jobs are not done: `ispace-sweep commands sweep.yaml "
+            "'part 1.jsonl' 'part 2.jsonl' --missing` lists them, --partial does without them"], folder.talk.splitlines())
+    listing = folder.talk.split("`")[-2].removeprefix("ispace-sweep ")
+    found = folder.run("sh", "-c", f"{PROGRAM} {listing}").splitlines()
+    whole = sweep(folder, "commands").splitlines()
+    same("as it says", [whole[number - 1] for number in (5, 6, 7, 8, 9)], found)
+    same("by names", "".join(f"results/n{number}.txt\n" for number in (5, 6, 7, 8, 9)),
+         sweep(folder, "names", "part 2.jsonl", "part 1.jsonl", "--missing"))
+    told = lines(sweep(folder, "commands", "part 2.jsonl", "part 1.jsonl", "--missing", "--json", "--shard", "2/3"))
+    same("by JSON, of a shard", [5, 6], [job["job"] for job in told[1:]])
+    for number in (1, 2, 3, 4):
+        folder.write(f"results/n{number}.txt", "x\n")  # files do not count
+    same("with files", found, sweep(folder, "commands", "part 1.jsonl", "part 2.jsonl", "--missing").splitlines())
+    folder.run(PROGRAM, "commands", "sweep.yaml", "part 1.jsonl", status=2)
+    check("part 1.jsonl: `commands` takes parts with --missing" in folder.talk, folder.talk)
+    folder.run(PROGRAM, "join", "part 1.jsonl", "part 3.jsonl")
+    same("of a share that is not given", "ispace-sweep: warning: shard 2/3: not among these parts\n", folder.talk)
+    # A part with its header alone, and many parts.
+    folder.write("part 2.jsonl", second.splitlines(True)[0])
+    folder.run(PROGRAM, "join", "part 2.jsonl", status=1)
+    check("0 of 3 jobs of shard 2/3" in folder.talk and "no job is done" in folder.talk, folder.talk)
+    folder.write("sweep.yaml", "run: echo {n} > {out}.txt\naxes: {n: 1..9}\n")
+    parts = [f"{index}.jsonl" for index in (1, 2, 3, 4, 5)]
+    for index, part in enumerate(parts, 1):
+        sweep(folder, "run", "--shard", f"{index}/9", "-o", part)
+    sweep(folder, "join", *parts, status=1)
+    check("error: shards 6/9, 7/9, 8/9, 9/9: not among these parts: `ispace-sweep run sweep.yaml --shard 6/9 -o "
+          "part6.jsonl` runs the first\n" in folder.talk, folder.talk)
+    check("`ispace-sweep commands sweep.yaml PART... --missing`" in folder.talk, folder.talk)
+
+
 def inputs_stay(folder):
     """A job whose output is its room fails, as it would alone: no output replaces a file that was read."""
     folder.write("sweep.yaml", """
@@ -318,7 +366,8 @@ def errors(folder):
     check("stdout: error: No space left" in folder.talk, folder.talk)
 
 
-for part in (equals_files, shares, ends_in_the_middle, failures, states_of_parts, others, inputs_stay, errors):
+for part in (equals_files, shares, ends_in_the_middle, failures, states_of_parts,
+             parts_that_lack_jobs, others, inputs_stay, errors):
     with Folder() as scratch_folder:
         whole = scratch_folder.path
         rooms(scratch_folder)
