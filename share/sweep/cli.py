@@ -28,14 +28,15 @@ ACTIONS = {
     "commands": ("a line of the shell for each job", {"only", "shard", "missing", "threads", "json"}),
     "names": ("the files that the jobs make", {"only", "shard", "missing", "suffix"}),
     "makefile": ("rules for GNU make", {"only", "threads"}),
-    "run": ("run the jobs, with all results in one file", {"only", "shard", "threads", "retry"}),
+    "run": ("run the jobs, with all results in one file", {"only", "shard", "threads", "retry", "reuse"}),
     "status": ("how far the parts of a run are", {"only", "json", "failed"}),
     "join": ("the results of all jobs as one table", {"only", "partial", "to", "raw", "columns"}),
     "plot": ("one picture of the results", {"only", "partial", "to", "x", "y", "by", "over"}),
 }
 DEFAULTS: dict[str, object] = {
     "only": [], "shard": None, "missing": False, "threads": None, "json": False, "suffix": None,
-    "retry": False, "failed": False, "partial": False, "raw": False, "columns": None, "to": None, "x": None, "y": None, "by": None, "over": None}
+    "retry": False, "reuse": [], "failed": False, "partial": False, "raw": False, "columns": None,
+    "to": None, "x": None, "y": None, "by": None, "over": None}
 
 
 def main(version: str, arguments: Sequence[str] | None = None) -> int:
@@ -141,6 +142,7 @@ def _parse(arguments: Sequence[str] | None, version: str) -> argparse.Namespace:
     add("--json", action="store_true", default=None, help="JSON lines that describe the jobs")
     add("-j", "--threads", metavar="N", help="give the tools this number of threads; run: jobs at a time")
     add("--retry", action="store_true", default=None, help="run: do again what failed before")
+    add("--reuse", metavar="PART", action="append", help="run: take lines of equal jobs from this part; may be repeated")
     add("--failed", action="store_true", default=None, help="status: a line for each job that failed")
     add("--suffix", metavar="SUFFIX", help="only the files with this suffix")
     add("--partial", action="store_true", default=None, help="do without the jobs that are not done")
@@ -186,6 +188,9 @@ def _check(options: argparse.Namespace) -> None:
                          f"`{TOOL} {options.action} sweep.yaml{parts}`")
     if options.parts and options.action in ("commands", "names") and not options.missing:
         raise UsageError(f"{options.parts[0]}: `{options.action}` takes parts with --missing, to list what they lack")
+    if options.parts and options.reuse:  # --reuse old*.jsonl
+        options.reuse += options.parts
+        options.parts = []
     if options.parts and options.action in ("makefile", "run"):
         raise UsageError(f"{options.parts[0]}: `{options.action}` takes one sweep")
     if options.sweep == "-" and sys.stdin.isatty():
@@ -212,7 +217,7 @@ def _run(options: argparse.Namespace, version: str, say: _Speaker) -> None:
 
     if options.output != "-" and options.sweep != "-" and _same_file(options.output, options.sweep):
         raise UsageError(f"{options.output} is the sweep itself")
-    for part in options.parts:
+    for part in [*options.parts, *options.reuse]:
         if options.output != "-" and _same_file(options.output, part):
             raise UsageError(f"{options.output} is one of the parts")
     if options.sweep != "-" and is_part(options.sweep):
@@ -248,7 +253,8 @@ def _run_jobs(sweep: Sweep, options: argparse.Namespace, version: str, say: _Spe
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # of a tool that has ended; Popen gives jobs the default
     share = parts.Share(*(_shard(options.shard) if options.shard else (1, 1)), tuple(options.only))
     size = int(options.threads) if options.threads else _cores()
-    failed = run(sweep, _chosen(sweep, options), share, options.output, version, max(1, size), options.retry, say)
+    failed = run(sweep, _chosen(sweep, options), share, options.output, version, max(1, size), options.retry,
+                 options.reuse, say)
     if failed:
         raise DataError([f"error: {failed} {'job' if failed == 1 else 'jobs'} failed: `ispace-sweep status --failed` "
                          "lists them, --retry runs them again"])

@@ -20,7 +20,7 @@ from .workers import Outcome
 
 SCHEMA = "ispace-results/1"
 LONGEST_HEADER = 1 << 20
-HEAD = re.compile(rb'\{"job":([0-9]+),"name":"(?:[^"\\]|\\.)*","status":(-?[0-9]+),')  # of a line
+HEAD = re.compile(rb'\{"job":(?P<job>[0-9]+),"name":(?P<name>"(?:[^"\\]|\\.)*"),"status":(?P<status>-?[0-9]+),')  # of a line
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class Part:
                     return
                 begin = HEAD.match(row) if briefly else None
                 if begin:
-                    found: dict[str, Any] = {"job": int(begin[1]), "status": int(begin[2])}
+                    found: dict[str, Any] = {"job": int(begin["job"]), "status": int(begin["status"])}
                 else:
                     found = parse_line(row, self.path, number)
                 self.count += 1

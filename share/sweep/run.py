@@ -13,12 +13,12 @@ import queue
 import shlex
 import time
 from dataclasses import dataclass
-from typing import Any, Callable, Iterator
+from typing import Any, BinaryIO, Callable, Iterator, Sequence
 
 from . import parts
 from .errors import DataError, UsageError
-from .listing import dump
-from .model import Job, Jobs, Sweep
+from .listing import dump, values
+from .model import CommandWriter, Job, Jobs, Sweep
 from .workers import Outcome, Worker
 
 STATUS = ".status"  # the suffix of the small file beside a part that tells how far it is
@@ -79,7 +79,7 @@ class _Target:
         if self._first_line() == head + "\n":
             self._continue()
         elif os.fstat(self._file).st_size and not self._is_torn(head):
-            raise _not_ours(path)
+            raise _not_ours(path, self._first_line(), head)
         else:
             os.ftruncate(self._file, 0)
             self.write(head.encode() + b"\n")
@@ -136,9 +136,28 @@ def _lock(file: int, path: str) -> None:
             return  # a file system without locks
 
 
-def _not_ours(path: str) -> DataError:
-    return DataError([f"{path}: error: holds something else than this share of this sweep; move it away, or give -o "
-                      "another name"])
+def _not_ours(path: str, first: str, head: str) -> DataError:
+    """About a file that begins with another line than `head`."""
+    ours = json.loads(head)
+    try:
+        found = json.loads(first)
+        changed = [key for key in ("schema", "version", "digest", "shard", "only") if found.get(key) != ours[key]]
+    except (ValueError, AttributeError):
+        changed = ["schema"]
+    if not changed or changed[0] == "schema":
+        return DataError([f"{path}: error: holds something else than this share of this sweep; move it away, or give "
+                          "-o another name"])
+    if changed[0] == "version":
+        return DataError([f"{path}: error: made by version {found['version']}, this is {ours['version']}: give -o "
+                          "another name"])
+    if changed[0] == "digest":
+        what = f"made before {ours['sweep']} was changed"
+    elif changed[0] == "shard":
+        what = f"shard {found['shard']} of this sweep, not {ours['shard']}"
+    else:
+        what = "made with other rules of --only"
+    return DataError([f"{path}: error: {what}: give -o another name, and --reuse {shlex.quote(path)} to take over the "
+                      "lines of equal jobs"])
 
 
 def _job_and_status(row: bytes, path: str, number: int) -> tuple[int, int]:
@@ -205,6 +224,7 @@ class Result:
     line: bytes
     status: int
     told: str = ""  # about a failure
+    is_reused: bool = False
 
 
 class _Earlier:
@@ -214,8 +234,9 @@ class _Earlier:
         self._places: dict[int, tuple[int, int]] = {}
         self._file = open(path, "rb")
         _lock(self._file.fileno(), path)  # as of a run, or another retry
-        if self._file.readline(parts.LONGEST_HEADER).decode("utf-8", "replace").rstrip("\n") != head:
-            raise _not_ours(path)
+        first = self._file.readline(parts.LONGEST_HEADER).decode("utf-8", "replace").rstrip("\n")
+        if first != head:
+            raise _not_ours(path, first, head)
         begin = self._file.tell()
         for number, row in enumerate(self._file, 2):
             if not row.endswith(b"\n"):
@@ -233,12 +254,63 @@ class _Earlier:
         self._file.close()
 
 
+class _Reused:
+    """Lines of other parts, as of this sweep before it grew, for jobs that are the same but for their numbers."""
+
+    def __init__(self, paths: Sequence[str], sweep: Sweep, version: str) -> None:
+        self._sweep = sweep
+        self._writer = CommandWriter(sweep, None)
+        self._places: dict[bytes, tuple[int, int, int]] = {}  # by names: descriptor, begin, length
+        self._files: list[BinaryIO] = []
+        for path in paths:
+            made_by = parts.read_part(path).head.get("version")
+            if made_by != version:
+                raise DataError([f"{path}: error: made by version {made_by}: --reuse takes lines of {version} alone"])
+            self._files.append(open(path, "rb"))
+            self._find_lines(self._files[-1], path)
+
+    def _find_lines(self, file: BinaryIO, path: str) -> None:
+        file.readline(parts.LONGEST_HEADER)
+        begin = file.tell()
+        for number, row in enumerate(file, 2):
+            if not row.endswith(b"\n"):
+                break
+            head = parts.HEAD.match(row)
+            if head is None:
+                raise DataError([f"{path}:{number}:1: error: no line of {parts.SCHEMA}"])
+            if head["status"] == b"0":
+                self._places[head["name"]] = file.fileno(), begin, len(row)
+            begin += len(row)
+
+    def line(self, job: Job) -> bytes | None:
+        """The line that a run of the job would write, as far as its names, choices, commands and files tell."""
+        place = self._places.get(dump(job.name).encode("utf-8", "surrogateescape"))
+        if place is None:
+            return None
+        file, begin, length = place
+        row = os.pread(file, length, begin)
+        head = parts.HEAD.match(row)
+        found = json.loads(row.decode("utf-8", "surrogateescape"))
+        makes = [*found.get("reports", {}), *found.get("files", {}), *found.get("base64", {})]
+        if (head is None or found["values"] != values(self._sweep, job)
+                or found.get("commands") != [self._writer.words(job, step) for step in self._sweep.steps]
+                or sorted(makes) != sorted(self._sweep.suffixes)):
+            return None
+        return b'{"job":%d' % job.number + row[head.end("job"):]
+
+    def close(self) -> None:
+        for file in self._files:
+            file.close()
+
+
 def run(sweep: Sweep, jobs: Jobs, share: parts.Share, path: str, version: str, size: int, retry: bool,
-        say: Callable[[list[str]], None]) -> int:
+        reuse: Sequence[str], say: Callable[[list[str]], None]) -> int:
     """Runs jobs, `size` at a time, and writes their lines to `path`. Returns how many failed, those of earlier runs
-    included. With `retry` those that failed before run again. `say` gets a line for each that fails."""
+    included. With `retry` those that failed before run again. Jobs that have a line in the parts `reuse` do not run.
+    `say` gets a line for each that fails."""
     if path != "-" and os.path.exists(path) and not os.path.isfile(path):
         raise UsageError(f"-o {path}: a regular file, or standard output")
+    reused = _Reused(reuse, sweep, version)
     head = parts.header(sweep, share, len(jobs), jobs.number_at(0) if len(jobs) else 0, version)
     earlier = None
     if retry and path != "-" and os.path.exists(path) and os.path.getsize(path):
@@ -259,16 +331,21 @@ def run(sweep: Sweep, jobs: Jobs, share: parts.Share, path: str, version: str, s
     def work(job: Job) -> Result:
         if earlier and (row := earlier.line(job)):
             return Result(row, 0)
+        if row := reused.line(job):
+            return Result(row, 0, is_reused=True)
         outcome = crew.run(job)
         row = (parts.line(sweep, job, outcome) + "\n").encode("utf-8", "surrogateescape")
         told = (failure(job.number, job.name, outcome.status, outcome.commands, outcome.messages)
                 if outcome.status else "")
         return Result(row, outcome.status, told)
 
+    fresh = taken = 0
     try:
         for _, result in _in_order(jobs.behind(target.last), work, size, crew.kill):
             target.write(result.line)
             tally.take(result.status)
+            taken += result.is_reused
+            fresh += not result.is_reused
             if result.told:
                 say([result.told])
         if earlier:
@@ -277,8 +354,11 @@ def run(sweep: Sweep, jobs: Jobs, share: parts.Share, path: str, version: str, s
         crew.close()
         tally.tell(has_ended=True)
         target.close()
+        reused.close()
         if earlier:
             earlier.close()
+    if reuse and fresh and not taken:
+        say(["warning: --reuse: these parts have no job of this run with the same choices, commands and files"])
     return tally.failed
 
 

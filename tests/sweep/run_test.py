@@ -325,6 +325,62 @@ def parts_that_lack_jobs(folder):
     check("`ispace-sweep commands sweep.yaml PART... --missing`" in folder.talk, folder.talk)
 
 
+def grown(folder):
+    """--reuse takes the lines of a sweep before it grew: the bytes of a new run, and only new jobs run."""
+    text = "run: sh -c 'echo $0 $1 >>{log}; echo $0-$1' {n} {m} > {out}.txt\naxes:\n  n: 1..3\n  m: [M]\n  log: [LOG]\n"
+    text = text.replace("LOG", folder / "log")
+
+    def ran():
+        found = folder.read("log").decode().split("\n")[:-1] if os.path.exists(folder / "log") else []
+        folder.write("log", "")
+        return sorted(found)
+
+    folder.write("sweep.yaml", text.replace("M", "a, b"))
+    for index in (1, 2):
+        sweep(folder, "run", "--shard", f"{index}/2", "-o", f"old{index}.jsonl")
+    same("at first", ["1 a", "1 b", "2 a", "2 b", "3 a", "3 b"], ran())
+    folder.write("old2.jsonl", folder.read("old2.jsonl")[:-20])  # a kill cut off the line of the sixth job
+    folder.write("sweep.yaml", text.replace("M", "c, a, b"))
+    sweep(folder, "run", "--shard", "1/2", "-o", "old1.jsonl", status=1)
+    same("what is said", "ispace-sweep: old1.jsonl: error: made before sweep.yaml was changed: give -o another name, and "
+         "--reuse old1.jsonl to take over the lines of equal jobs\n", folder.talk)
+    sweep(folder, "run", "-o", "new.jsonl", "--reuse", "old1.jsonl", "old2.jsonl")
+    same("new jobs", ["1 c", "2 c", "3 b", "3 c"], ran())
+    same("reuse is silent", "", folder.talk)
+    same("the bytes of a new run", sweep(folder, "run").encode(), folder.read("new.jsonl"))
+    ran()
+    # Other shares of the same sweep.
+    sweep(folder, "run", "-o", "new.jsonl", "--shard", "2/3", status=1)
+    check("new.jsonl: error: shard 1/1 of this sweep, not 2/3: give -o another name, and --reuse" in folder.talk, folder.talk)
+    sweep(folder, "run", "-o", "new.jsonl", "--only", "m=a", status=1)
+    check("new.jsonl: error: made with other rules of --only: " in folder.talk, folder.talk)
+    for index in (1, 2, 3):
+        sweep(folder, "run", "--shard", f"{index}/3", "-o", f"{index}.jsonl", "--reuse", "new.jsonl")
+    same("no job runs again", [], ran())
+    same("the table", sweep(folder, "join", "new.jsonl"), sweep(folder, "join", "1.jsonl", "2.jsonl", "3.jsonl"))
+    # Other commands, and other files of the same commands, are other jobs; so is one that failed.
+    for other in (text.replace("$0-$1", "$1-$0"), text.replace("{out}.txt", "{out}.dat")):
+        folder.write("sweep.yaml", other.replace("M", "a"))
+        sweep(folder, "run", "-o", "other.jsonl", "--reuse", "new.jsonl")
+        same("all run", ["1 a", "2 a", "3 a"], ran())
+        check("warning: --reuse: these parts have no job of this run" in folder.talk, folder.talk)
+        os.unlink(folder / "other.jsonl")
+    folder.write("sweep.yaml", text.replace("M", "a"))
+    folder.write("failed.jsonl", folder.read("new.jsonl").replace(b'"status":0', b'"status":1'))
+    sweep(folder, "run", "-o", "other.jsonl", "--reuse", "failed.jsonl")
+    same("what failed runs again", ["1 a", "2 a", "3 a"], ran())
+    folder.write("failed.jsonl", folder.read("new.jsonl").replace(b'"version":"', b'"version":"9', 1))
+    for words, status, wanted in ((["-o", "x.jsonl", "--reuse", "failed.jsonl"], 1, "error: made by version 9"),
+                                  (["-o", "failed.jsonl"], 1, "error: made by version 9"),
+                                  (["-o", "other.jsonl", "--reuse", "other.jsonl"], 2, "is one of the parts"),
+                                  (["-o", "x.jsonl", "--reuse", "sweep.yaml"], 1, "no results of `ispace-sweep run`"),
+                                  (["-o", "x.jsonl", "--reuse", "none.jsonl"], 1, "none.jsonl: error: No such file")):
+        sweep(folder, "run", *words, status=status)
+        check(wanted in folder.talk and folder.talk.count("\n") == 1, folder.talk)
+    sweep(folder, "join", "--reuse", "new.jsonl", status=2)
+    check("--reuse is not for `join`" in folder.talk, folder.talk)
+
+
 def inputs_stay(folder):
     """A job whose output is its room fails, as it would alone: no output replaces a file that was read."""
     folder.write("sweep.yaml", """
@@ -367,7 +423,7 @@ def errors(folder):
 
 
 for part in (equals_files, shares, ends_in_the_middle, failures, states_of_parts,
-             parts_that_lack_jobs, others, inputs_stay, errors):
+             parts_that_lack_jobs, grown, others, inputs_stay, errors):
     with Folder() as scratch_folder:
         whole = scratch_folder.path
         rooms(scratch_folder)
