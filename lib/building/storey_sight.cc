@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <utility>
 #include <variant>
@@ -117,7 +118,7 @@ void StoreySight::look(std::size_t from, std::span<const Sensor> turned, std::si
     const auto& room = rooms_[to].get(
         [&] { return std::make_shared<const SurroundedRoom>(*coupling_.surroundings(to)); });
     cellsByView(grid, room->mesh(), views, plane_, parts, {.window = window});
-    const auto is_framed = [&](std::size_t cell) {
+    const auto is_in_frame = [&](std::size_t cell) {
         const Point2 place = grid.center(cell);
         return std::all_of(floors.begin(), floors.end(), [&](const Passed& floor) {
             const double share = (floor.height - eye.z) / (plane_ - eye.z);
@@ -125,6 +126,13 @@ void StoreySight::look(std::size_t from, std::span<const Sensor> turned, std::si
             return std::any_of(floor.outlines.begin(), floor.outlines.end(),
                                [p](const Polygon& outline) { return isWellInside(outline, p); });
         });
+    };
+    enum class Framed : std::uint8_t { Unknown, Yes, No };
+    std::vector<Framed> known(grid.size());  // several views hold a cell
+    const auto is_framed = [&](std::size_t cell) {
+        if (known[cell] == Framed::Unknown)
+            known[cell] = is_in_frame(cell) ? Framed::Yes : Framed::No;
+        return known[cell] == Framed::Yes;
     };
     CellParts framed;
     framed.first.push_back(0);

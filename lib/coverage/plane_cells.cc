@@ -155,7 +155,19 @@ class RowLook {
             return column +
                    static_cast<int>(scope_.counted->next(static_cast<std::uint32_t>(at)) - at);
         };
-        for (int column = next(first); column < end; column = next(column + 1)) {
+        const auto is_hidden = [&](int column) {
+            if (scope_.known == nullptr) return false;
+            const std::size_t at = grid_.cell(column, row);
+            return scope_.known->tested.test(at) && !scope_.known->seen.test(at);
+        };
+        int from = next(first), last = end - 1;
+        while (from < end && is_hidden(from)) from = next(from + 1);
+        while (last > from && is_hidden(last)) --last;
+        if (from >= end) return;
+        if constexpr (requires { target_of_.aim(row, from, last + 1); })
+            target_of_.aim(row, from, last + 1);
+        for (int column = from; column <= last; column = next(column + 1)) {
+            if (is_hidden(column)) continue;
             const CellTarget target = target_of_({columns_.center(column), y}, column, row);
             if (target.held == 0) continue;
             cells_.push_back(static_cast<std::uint32_t>(grid_.cell(column, row)));
@@ -287,17 +299,18 @@ class TurnedTargets {
           turned_(turned),
           foot_(foot),
           height_(height),
-          window_(window),
           row_(static_cast<std::size_t>(std::max(0, window.end_column - window.first_column))) {}
 
-    CellTarget operator()(Point2 center, int column, int row) {
-        if (row != known_row_) {
-            known_row_ = row;
-            turned_.find(columns_.center(window_.first_column) - foot_.x,
-                         columns_.extent / columns_.count, rows_.center(row) - foot_.y, row_);
-        }
-        const HeldViews::Verdict& verdict =
-            *row_[static_cast<std::size_t>(column - window_.first_column)];
+    /// Prepares for columns [first, end) of a row.
+    void aim(int row, int first, int end) {
+        first_ = first;
+        turned_.find(columns_.center(first) - foot_.x, columns_.extent / columns_.count,
+                     rows_.center(row) - foot_.y,
+                     std::span(row_).first(static_cast<std::size_t>(end - first)));
+    }
+
+    CellTarget operator()(Point2 center, int column, int /*row*/) const {
+        const HeldViews::Verdict& verdict = *row_[static_cast<std::size_t>(column - first_)];
         const Point3 place{center.x, center.y, height_};
         if (verdict.unsure == 0) return {place, verdict.held};
         return {place, verdict.held | views_.holding(place, verdict.unsure)};
@@ -309,8 +322,7 @@ class TurnedTargets {
     const TurnedViews& turned_;
     Point2 foot_;
     double height_;
-    CellWindow window_;
-    int known_row_ = -1;
+    int first_ = 0;  // column of the row
     std::vector<const HeldViews::Verdict*> row_;
 };
 

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/simd.h"
 #include "geom/interval.h"
 
 namespace ispace {
@@ -55,7 +56,7 @@ Verdict verdictOf(const HeldViews& view, Point3 foot, Interval radii, Interval a
 }
 
 /// A float32 angle in [0, 2 pi], accurate to 2e-5; its branches are selections.
-inline float angleOf(float x, float y) {
+ISPACE_INLINE float angleOf(float x, float y) {
     constexpr float kPi = std::numbers::pi_v<float>;
     const float ax = std::fabs(x), ay = std::fabs(y);
     const float z = std::min(ax, ay) / (std::max(ax, ay) + std::numeric_limits<float>::min());
@@ -140,23 +141,43 @@ TurnedViews::TurnedViews(const FieldOfView& ahead, std::span<const Angle> headin
     }
 }
 
+namespace {
+
+/// Rings and sectors of a table.
+struct Bins {
+    float rings_per_metre;
+    std::int32_t rings, sectors;
+};
+
+constexpr std::size_t kBlock = 64;  // points
+
+/// Finds the bins of points in a row, numbered ring by ring.
+ISPACE_SIMD_CLONES void findBins(const Bins& bins, float first, float apart, float up,
+                                 std::array<std::int32_t, kBlock>& places) {
+    const float per_radian = static_cast<float>(bins.sectors) / (2 * std::numbers::pi_v<float>);
+    const auto rings = static_cast<float>(bins.rings);
+    const auto last_sector = static_cast<float>(bins.sectors - 1);
+    for (std::size_t i = 0; i < kBlock; ++i) {
+        const float right = first + apart * static_cast<float>(static_cast<std::int32_t>(i));
+        const float far = std::sqrt(right * right + up * up) * bins.rings_per_metre;
+        const auto ring = static_cast<std::int32_t>(std::min(far, rings));
+        const auto sector =
+            static_cast<std::int32_t>(std::min(angleOf(right, up) * per_radian, last_sector));
+        places[i] = ring * bins.sectors + sector;
+    }
+}
+
+}  // namespace
+
 void TurnedViews::find(double x, double step, double y, std::span<const Verdict*> row) const {
-    constexpr float kPerRadian = kSectors / (2 * std::numbers::pi_v<float>);
-    constexpr std::size_t kBlock = 64;
-    std::array<std::int32_t, kBlock> places{};
+    const Bins bins{rings_per_metre_, kRings, kSectors};
+    std::array<std::int32_t, kBlock> places;  // NOLINT: filled by blocks
     const auto from = static_cast<float>(x), apart = static_cast<float>(step);
     const auto up = static_cast<float>(y);
     for (std::size_t begin = 0; begin < row.size(); begin += kBlock) {
         const std::size_t count = std::min(kBlock, row.size() - begin);
         const float first = from + apart * static_cast<float>(begin);
-        for (std::size_t i = 0; i < kBlock; ++i) {
-            const float right = first + apart * static_cast<float>(static_cast<std::int32_t>(i));
-            const float far = std::sqrt(right * right + up * up) * rings_per_metre_;
-            const auto ring = static_cast<std::int32_t>(std::min(far, static_cast<float>(kRings)));
-            const auto sector = static_cast<std::int32_t>(
-                std::min(angleOf(right, up) * kPerRadian, static_cast<float>(kSectors - 1)));
-            places[i] = ring * kSectors + sector;
-        }
+        findBins(bins, first, apart, up, places);
         for (std::size_t i = 0; i < count; ++i)
             row[begin + i] = &verdicts_[pattern_[static_cast<std::size_t>(places[i])]];
     }
