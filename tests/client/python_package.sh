@@ -31,6 +31,20 @@ cmake --install "$binary_dir" --prefix "$scratch/prefix" >log
 folder=$(find prefix -type d -name ispace -path '*dist-packages*')
 [ -n "$folder" ] || fail "not installed"
 check "$scratch/${folder%/ispace}"
+# The lines of the page for a prefix that Python does not search.
+sed -n '/^    export PATH=\$prefix/,/^$/s/^    //p' "$source_dir/docs/install.md" >lines
+[ "$(wc -l <lines)" -eq 3 ] || fail "docs/install.md has other lines: $(cat lines)"
+(
+    export prefix=$scratch/prefix
+    # shellcheck disable=SC1091
+    . ./lines
+    cd scenes
+    "$python" -B -c 'import ispace; print(ispace.coverage("crowded.env", ispace.arrange("crowded.env", sensor="urg-04lx:1")))'
+    [ "$(command -v arrange)" = "$prefix/bin/arrange" ]
+) >log 2>&1 || fail "the lines of docs/install.md: $(cat log)"
+for name in "" scenes/crowded.env examples/shares examples/rules examples/ci-github.yaml; do
+    [ -e "prefix/share/ispace/$name" ] || fail "no share/ispace/$name"
+done
 if find prefix -name '*.pyc' | grep .; then fail "compiled files are installed"; fi
 # For /usr it goes into the folder of Debian's own packages, whatever prefix was configured.
 DESTDIR=$scratch/usr cmake --install "$binary_dir" --prefix /usr >log

@@ -61,7 +61,7 @@ for building in "${ISPACE_TEST_DATA:-/nonexistent}"/strangers/ifc/{duplex,fzk-ha
     envc once.ifc -o twice.env 2>/dev/null
     same_area "$(indoor once.env)" "$(indoor twice.env)" 0.002
     contents once.env >once
-    # Floor outside of all rooms is a space of its own in IFC.
+    # Floor outside of all rooms is a separate space in IFC.
     sed -i '/^zone id=indoor\(-[0-9]*\)\? /d' twice.env
     contents twice.env | cmp - once || fail "$building comes back with $(contents twice.env), not $(cat once)"
 done

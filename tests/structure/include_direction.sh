@@ -53,7 +53,7 @@ violations() {
             report("lib/" folder " must not include " target)
         if (in_lib && index($0, "\"") && !(parts[1] in known) && !(in_test && parts[1] == "support"))
             report("name the folder: " target)
-        # Rooms inside of folders have fences of their own.
+        # Rooms inside of folders have separate fences.
         if (!in_test && FILENAME ~ /^lib\/arrange\/search\// && index($0, "\"") && target !~ /^(base|arrange\/search)\//)
             report("lib/arrange/search knows sets of cells alone: " target)
         if (!in_test && FILENAME ~ /^lib\/arrange\/gallery\// && index($0, "\"") &&

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# test_folders.sh [ROOT]: unit tests write into a TestFolder of their own. Tests run beside each other, and two that
+# test_folders.sh [ROOT]: unit tests write into separate TestFolders. Tests run beside each other, and two that
 # share a name among the temporary files remove each other's. It first shows on a made-up tree that it can fail.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}

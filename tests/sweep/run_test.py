@@ -180,7 +180,7 @@ def failures(folder):
     check(listed.startswith("job 3 ") and "sh -c" in listed and listed.count("\n") == 1, listed)
     same("as JSON", 3, lines(sweep(folder, "status", "part.jsonl", "--failed", "--json"))[0]["job"])
     same("rows", 5, sweep(folder, "join", "part.jsonl", "--partial", "-q").count("\n"))
-    sweep(folder, "run", "-o", "part.jsonl", status=1)  # again: nothing to do
+    sweep(folder, "run", "-o", "part.jsonl", status=1)  # again: all is done
     folder.write("fixed", "")
     sweep(folder, "run", "-o", "part.jsonl", "--retry")
     same("after --retry", [0] * 5, [job["status"] for job in lines(folder.read("part.jsonl"))[1:]])

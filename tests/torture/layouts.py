@@ -262,7 +262,7 @@ FAMILIES = {f"{way}_of_{row}": (row, way) for row in ROWS for way in COMMANDS
             if way in ONLY.get(row, EVERYWHERE) and not (way == "scan" and row in NOT_SCANNED)}
 
 
-# Pages of long layouts, whose memory has a bound of its own: bytes of the layout, and of the memory.
+# Pages of long layouts, whose memory has a separate bound: bytes of the layout, and of the memory.
 LONG_PAGES, MOST_MEMORY = 96_000, 300e6
 PAGES = ("report_of_lasers", "report_of_pir", "report_of_radars", "report_of_cameras", "report_of_rangers",
          "report_of_uwb")
