@@ -2,6 +2,7 @@
 #include "io/plan/parallel_lines.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -49,6 +50,18 @@ ParallelLines::ParallelLines(std::span<const Segment2> lines) : lines_(lines) {
     for (std::size_t i = 0; i < lines.size(); ++i)
         if (lines[i].a != lines[i].b) ways[wayOf(lines[i])].push_back(i);
     for (auto& [way, own] : ways) {
+        // Lines upon each other, as copies of a symbol leave them, have one distance.
+        const auto ends_of = [&](std::size_t i) {
+            const auto [a, b] = lines[i];
+            return std::array{a.x, a.y, b.x, b.y};
+        };
+        std::sort(own.begin(), own.end(), [&](std::size_t i, std::size_t k) {
+            return std::pair(ends_of(i), i) < std::pair(ends_of(k), k);
+        });
+        own.erase(
+            std::unique(own.begin(), own.end(),
+                        [&](std::size_t i, std::size_t k) { return ends_of(i) == ends_of(k); }),
+            own.end());
         const Vec2 along = unitVector(Angle::radians((static_cast<double>(way) + 0.5) * kStep));
         std::vector<Box2> boxes;
         boxes.reserve(own.size());

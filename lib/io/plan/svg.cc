@@ -208,14 +208,13 @@ class SvgReader {
 
     /// Collects ids and rules of style.
     void listElements(pugi::xml_node root) {
-        std::vector<pugi::xml_node> styles;
+        std::vector<std::string_view> styles;
         forEachElement(root, [&](pugi::xml_node node) {
             if (const pugi::xml_attribute id = node.attribute("id")) ids_.emplace(id.value(), node);
-            if (svgName(node) == "style") styles.push_back(node);
+            if (svgName(node) != "style") return;
+            for (const pugi::xml_node text : node.children()) styles.emplace_back(text.value());
         });
-        if (styles.empty()) return;
-        for (const pugi::xml_node style : styles)
-            for (const pugi::xml_node text : style.children()) sheet_.add(text.value());
+        sheet_ = SvgSheet(styles);
     }
 
     /// Calls visit(node) for all elements, without recursion for deep nesting.

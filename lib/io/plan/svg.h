@@ -8,10 +8,11 @@
 #include <map>
 #include <optional>
 #include <pugixml.hpp>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <unordered_map>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -143,8 +144,11 @@ struct SvgStyle {
 /// part of CSS that draws lines.
 class SvgSheet {
   public:
-    /// Adds the rules of a style element. O(length)
-    void add(std::string_view css);
+    SvgSheet() = default;
+    /// \param styles texts of style elements, in their order. O(n log n) in their length
+    explicit SvgSheet(std::span<const std::string_view> styles);
+    SvgSheet(SvgSheet&&) = default;  // not copied: views of texts_
+    SvgSheet& operator=(SvgSheet&&) = default;
     /// Sets `properties`, those of the attribute `style`, by these rules: the attribute wins over
     /// rules, important rules over it; the more specific rule over others, and the later of two.
     /// \return units of Budget for the selectors that were compared, at most those of all rules
@@ -169,10 +173,17 @@ class SvgSheet {
     struct Rule {
         std::vector<Compound> selector;  ///< the subject last
         std::array<int, 3> specificity{};
-        SvgProperties declared;
+        std::size_t block = 0;  ///< in blocks_
+    };
+    /// What an element needs at least for a rule: an id, else a class, else a name, or "".
+    struct Subject {
+        Simple::Kind kind = Simple::Kind::Name;
+        std::string_view name = {};
+        auto operator<=>(const Subject&) const = default;
     };
     void addRules(std::string_view css, int depth);
-    void addRule(std::string_view selector, const SvgProperties& declared);
+    /// Adds a rule for the last of the blocks.
+    void addRule(std::string_view selector);
     static std::optional<std::vector<Compound>> parse(std::string_view selector, int depth = 0);
     static std::optional<Simple> parsePseudoClass(std::string_view& selector, int depth);
     static void count(const Simple& part, std::array<int, 3>& specificity);
@@ -186,9 +197,9 @@ class SvgSheet {
     static bool matches(pugi::xml_node node, const std::vector<Compound>& selector,
                         std::size_t last, Steps& steps);
 
-    std::deque<std::string> texts_;  // without comments
-    // By the subject's id, class or name, as "#a", ".b" and "c"; "" for others.
-    std::unordered_map<std::string, std::vector<std::size_t>> by_subject_;
+    std::deque<std::string> texts_;                          // without comments
+    std::vector<std::pair<Subject, std::size_t>> subjects_;  // of the rules, in their order
+    std::vector<SvgProperties> blocks_;  // what the rules of a list of selectors share
     std::vector<Rule> rules_;
     std::map<std::string, std::size_t> unread_;
 };

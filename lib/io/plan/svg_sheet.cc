@@ -156,13 +156,19 @@ void SvgProperties::addStronger(const SvgProperties& others) {
         set(i, others.values_[i], others.important_[i]);
 }
 
-void SvgSheet::add(std::string_view css) { addRules(texts_.emplace_back(withoutComments(css)), 0); }
+SvgSheet::SvgSheet(std::span<const std::string_view> styles) {
+    for (const std::string_view css : styles)
+        addRules(texts_.emplace_back(withoutComments(css)), 0);
+    std::sort(subjects_.begin(), subjects_.end());
+}
 
 void SvgSheet::addRules(std::string_view css, int depth) {
     while (!trimmed(css).empty()) {
-        const std::size_t open = css.find('{'), end = css.find(';');
+        const std::size_t open = css.find('{');
         std::string_view head = trimmed(css.substr(0, open));
-        if (head.starts_with('@') && end < open) {  // @import, @charset, @namespace
+        const std::size_t end =
+            head.starts_with('@') ? css.substr(0, open).find(';') : std::string_view::npos;
+        if (end != std::string_view::npos) {  // @import, @charset, @namespace
             head = trimmed(css.substr(0, end));
             if (head.starts_with("@import")) ++unread_["@import"];
             css.remove_prefix(end + 1);
@@ -193,30 +199,30 @@ void SvgSheet::addRules(std::string_view css, int depth) {
         declared.declare(block);
         if (declared.dropVariables()) ++unread_[std::string(head.substr(0, 40)) + " { var() }"];
         if (declared.isEmpty()) continue;
-        while (!head.empty()) addRule(trimmed(takeItem(head)), declared);
+        blocks_.push_back(declared);
+        while (!head.empty()) addRule(trimmed(takeItem(head)));
     }
 }
 
-void SvgSheet::addRule(std::string_view selector, const SvgProperties& declared) {
+void SvgSheet::addRule(std::string_view selector) {
     auto parsed = parse(selector);
     if (!parsed) {
         ++unread_[std::string(selector.substr(0, 40))];
         return;
     }
-    Rule rule{std::move(*parsed), {}, declared};
+    Rule rule{std::move(*parsed), {}, blocks_.size() - 1};
     for (const Compound& compound : rule.selector)
         for (const Simple& part : compound.parts) {
             if (part.kind == Simple::Kind::Never) return;
             count(part, rule.specificity);
         }
-    std::string subject;
-    for (const Simple& part : rule.selector.back().parts) {
-        if (part.kind == Simple::Kind::Id) subject = '#' + std::string(part.name);
-        if (part.kind == Simple::Kind::Class && !subject.starts_with('#'))
-            subject = '.' + std::string(part.name);
-        if (part.kind == Simple::Kind::Name && subject.empty()) subject = part.name;
-    }
-    by_subject_[subject].push_back(rules_.size());
+    using Kind = Simple::Kind;
+    Subject subject;
+    for (const Simple& part : rule.selector.back().parts)
+        if (part.kind == Kind::Id || (part.kind == Kind::Class && subject.kind != Kind::Id) ||
+            (part.kind == Kind::Name && subject.kind == Kind::Name))
+            subject = {part.kind, part.name};
+    subjects_.emplace_back(subject, rules_.size());
     rules_.push_back(std::move(rule));
 }
 
@@ -426,19 +432,21 @@ std::size_t SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) cons
     if (rules_.empty()) return 0;
     std::vector<std::size_t> found;
     Steps steps;
-    const auto collect = [&](const std::string& subject) {
-        const auto rules = by_subject_.find(subject);
-        if (rules == by_subject_.end()) return;
-        for (const std::size_t i : rules->second) {
+    const auto collect = [&](Simple::Kind kind, std::string_view name) {
+        const Subject subject{kind, name};
+        for (auto own = std::lower_bound(subjects_.begin(), subjects_.end(),
+                                         std::pair(subject, std::size_t{0}));
+             own != subjects_.end() && own->first == subject; ++own) {
+            const Rule& rule = rules_[own->second];
             steps.elements = kMaxSelectorSteps;
             ++steps.work;
-            if (matches(node, rules_[i].selector, rules_[i].selector.size() - 1, steps))
-                found.push_back(i);
+            if (matches(node, rule.selector, rule.selector.size() - 1, steps))
+                found.push_back(own->second);
         }
     };
-    collect("");
-    collect(std::string(svgName(node)));
-    if (const pugi::xml_attribute id = node.attribute("id")) collect('#' + std::string(id.value()));
+    collect(Simple::Kind::Name, "");
+    collect(Simple::Kind::Name, svgName(node));
+    if (const pugi::xml_attribute id = node.attribute("id")) collect(Simple::Kind::Id, id.value());
     std::string_view classes = node.attribute("class").value();
     std::vector<std::string_view> seen;
     while (!classes.empty()) {
@@ -448,13 +456,13 @@ std::size_t SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) cons
         classes.remove_prefix(std::min(end + 1, classes.size()));
         if (name.empty() || isOneOf(seen, name)) continue;
         seen.push_back(name);
-        collect('.' + std::string(name));
+        collect(Simple::Kind::Class, name);
     }
     std::sort(found.begin(), found.end(), [this](std::size_t a, std::size_t b) {
         return std::pair(rules_[a].specificity, a) < std::pair(rules_[b].specificity, b);
     });
     SvgProperties all;
-    for (const std::size_t i : found) all.addStronger(rules_[i].declared);
+    for (const std::size_t i : found) all.addStronger(blocks_[rules_[i].block]);
     all.addStronger(properties);
     properties = all;
     return (steps.work + found.size()) / kStepsPerUnit;
