@@ -70,12 +70,7 @@ void Level::prepareSight() const {
 
 bool Level::isFree(Point2 p) const {
     if (room_->walls->indoorIndex().locate(p) != Side::Inside || solids().holder(p)) return false;
-    const std::vector<Segment2>& sheets = slice().sheets;
-    bool is_on_sheet = false;
-    cut().sheets.get([&] { return SegmentTree(sheets); }).search({p, p}, 0, [&](std::size_t i) {
-        is_on_sheet = is_on_sheet || intersects(sheets[i], {p, p});
-    });
-    return !is_on_sheet;
+    return !cut().sheets.get([this] { return SheetIndex(slice().sheets); }).holds(p);
 }
 
 bool Level::isInsideSolid(Point2 p) const { return solids().containsWithMargin(p, kRayEpsilon); }

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "env/environment.h"
 #include "env/point_location.h"
+#include "env/sheet_index.h"
 #include "geom/visibility/visibility.h"
 
 namespace ispace {
@@ -51,7 +52,7 @@ class Level {
         Slice slice;
         Lazy<std::vector<Region>> free_floor;
         Lazy<PolygonIndex> solids;
-        Lazy<SegmentTree> sheets;
+        Lazy<SheetIndex> sheets;
         Lazy<VisibilityMap> sight;
     };
     /// The cuts of an environment that levels hold. Thread-safe.
