@@ -10,6 +10,7 @@ STEEPEST = 1.3
 # A list of 32 kB is some 1000 records: more than a building has sensors.
 SMALLEST, MOST_BYTES, LONG_BYTES = 2_000, 32_000, 256_000
 WIDTH, DEPTH = 40.0, 30.0
+CAMERA, TABLE = "camera at={x},{y},2.4 tilt=-40 range=6 pixels=64,48", "table at={x},{y} size=0.3,0.3"
 LASERS = "laser at=-3,-3 range=8\nlaser at=4,4 heading=90 range=8\n"
 
 
@@ -43,6 +44,19 @@ def heard(sensor, tag):
         places = enumerate(spread(count))
         return "", "".join((tag if i % 2 else sensor).format(x=x, y=y, i=i) + "\n" for i, (x, y) in places), []
     return row
+
+
+def watched(count):
+    """Cameras and tables side by side, on a floor that grows with them: each sees the same number."""
+    wide = math.sqrt(7 * count)  # 14 m2 for a camera and a table
+    places = [(round(x * wide / WIDTH, 3), round(y * wide / DEPTH, 3)) for x, y in spread(count)]
+    return (f"ispace size={wide:.3f},{wide:.3f}\n", "".join((TABLE if i % 2 else CAMERA).format(x=x, y=y) + "\n"
+                                                          for i, (x, y) in enumerate(places)), [])
+
+
+def crowded(count):
+    """The same on one floor: each camera sees more and more, up to the work that exact areas may take."""
+    return *heard(CAMERA, TABLE)(count)[:2], ["--max-work", "40000"]
 
 
 def zoned(row):
@@ -222,7 +236,8 @@ ROWS = {
     "worn_tags": heard("uwb at={x},{y},2", "human at={x},{y} height=0.6 tag=T{i}"),
     "read_tags": heard("rfid at={x},{y},1", "human at={x},{y} height=0.6 tag=T{i}"),
     "furnished": heard("laser at={x},{y} range=6", "cube at={x},{y} size=0.3"),
-    "watched": heard("camera at={x},{y},2.4 tilt=-40 range=6 pixels=64,48", "table at={x},{y} size=0.3,0.3"),
+    "watched": watched,
+    "crowded": crowded,
     "pir_people": heard("pir at={x},{y},2.2", "human at={x},{y} height=0.6"),
     "pending": pending,
     "nodes": nodes,
@@ -237,12 +252,12 @@ ROWS = {
     "rules": of_options("--keep-out", "z{i}"),
     "weights": of_options("--weight", "z{i}=2"),
 }
-BUILDINGS = ("storeys", "lifts", "stairs", "shafts")
+WITH_FLOOR = ("storeys", "lifts", "stairs", "shafts", "watched")  # rooms that state their own
 # Rows of options go to the command that has them.
 ONLY = {"requirements": ("coverage", "suggest"), "privacy": ("coverage", "arrange"), "rules": ("arrange",),
         "weights": ("arrange",), "star_crowds": ("arrange",), "pending": ("place",),
         "run": ("coverage",), "long_run": ("coverage",), "judged": ("coverage",), "judged_at_length": ("coverage",),
-        "judged_false": ("coverage",)}
+        "judged_false": ("coverage",), "crowded": ("coverage", "suggest", "report")}
 
 # Words of the command; {room} and {layout} are the files, {out} is a file to write.
 COMMANDS = {
@@ -294,7 +309,7 @@ def files(family, size):
     floor = f"#env 1\nispace size={WIDTH:g},{DEPTH:g}\n"
     named = {"floor.env": floor, "layout.3dm": "#3dm 1\n" + layout, "words": "\n".join(words),
              **{name: text for files in more for name, text in files.items()}}
-    return {"room.env": "#env 1\n" + room if row in BUILDINGS else floor + room, **named}
+    return {"room.env": "#env 1\n" + room if row in WITH_FLOOR else floor + room, **named}
 
 
 def command(tools, family, operand):
