@@ -4,9 +4,12 @@
 // `--help`.
 #include "extensions.h"
 
+#include <initializer_list>
+#include <string_view>
 #include <vector>
 
 #include "io/importers.h"
+#include "record/missing_keywords.h"
 #include "scene/placement_schemas.h"
 
 #ifdef ISPACE_HAS_APPLIANCES
@@ -49,6 +52,15 @@ namespace ispace {
 
 namespace {
 
+/// What an extension would bring that this build lacks: an option of a tool, or a record.
+struct MissingOffer {
+    std::string_view extension, owner, name;
+};
+
+constexpr std::initializer_list<MissingOffer> kMissing = {
+#include "missing_offers.inc"
+};
+
 /// Adds the formats and records that extensions read. Returns true.
 bool addFormats() {
 #ifdef ISPACE_HAS_APPLIANCES
@@ -68,6 +80,8 @@ bool addFormats() {
     addSceneSchemas(pressureSchemas());
     addPressureChecks();
 #endif
+    for (const auto& [extension, owner, name] : kMissing)
+        if (owner == "record") addMissingKeyword(name, extension);
     return true;
 }
 
@@ -75,26 +89,31 @@ bool addFormats() {
 
 std::span<const ToolExtension> toolExtensions() {
     [[maybe_unused]] static const bool formats = addFormats();
-    static const std::vector<ToolExtension> extensions = {
+    static const std::vector<ToolExtension> extensions = [] {
+        std::vector<ToolExtension> rows = {
 #ifdef ISPACE_HAS_CALIBRATION
-        {"calibration", "envc", makeCalibration},
+            {"calibration", "envc", makeCalibration},
 #endif
 #ifdef ISPACE_HAS_JUDGE
-        {"judge", "coverage", makeTrackJudge},
+            {"judge", "coverage", makeTrackJudge},
 #endif
 #ifdef ISPACE_HAS_LEARNING
-        {"learning", "simrun", makeLearning},
+            {"learning", "simrun", makeLearning},
 #endif
 #ifdef ISPACE_HAS_NAVIGATION
-        {"navigation", "coverage", makeNavigationJudge},
+            {"navigation", "coverage", makeNavigationJudge},
 #endif
 #ifdef ISPACE_HAS_PRESSURE
-        {"pressure", "scan", makePressureOptions},
+            {"pressure", "scan", makePressureOptions},
 #endif
 #ifdef ISPACE_HAS_REALITY
-        {"reality", "scan", makeRealityOptions},
+            {"reality", "scan", makeRealityOptions},
 #endif
-    };
+        };
+        for (const auto& [extension, owner, name] : kMissing)
+            if (owner != "record") rows.push_back({extension, owner, nullptr, name});
+        return rows;
+    }();
     return extensions;
 }
 

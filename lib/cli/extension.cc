@@ -27,8 +27,13 @@ std::vector<std::string> commonNames() {
 }  // namespace
 
 ToolExtensions::ToolExtensions(std::span<const ToolExtension> rows, std::string_view tool) {
-    for (const ToolExtension& row : rows)
-        if (row.tool == tool) members_.push_back({std::string(row.extension), row.make()});
+    for (const ToolExtension& row : rows) {
+        if (row.tool != tool) continue;
+        if (row.make == nullptr)
+            missing_.push_back(row);
+        else
+            members_.push_back({std::string(row.extension), row.make()});
+    }
 }
 
 void ToolExtensions::declare(CommandLine& line) {
@@ -40,6 +45,10 @@ void ToolExtensions::declare(CommandLine& line) {
         const std::vector<std::string> names = line.names();
         member.options.assign(names.begin() + static_cast<std::ptrdiff_t>(before), names.end());
     }
+    for (const ToolExtension& row : missing_)
+        line.renamed(std::string(row.missing), "it belongs to the extension " +
+                                                   std::string(row.extension) +
+                                                   ", which this build lacks");
 }
 
 ExtensionTask ToolExtensions::task(const CommandLine& line, TaskInput input) const {

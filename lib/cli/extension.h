@@ -58,7 +58,8 @@ class OptionGroup {
 /// A row of tools/extensions.cc.
 struct ToolExtension {
     std::string_view extension, tool;
-    std::unique_ptr<OptionGroup> (*make)();
+    std::unique_ptr<OptionGroup> (*make)();  ///< null for an option that this build lacks
+    std::string_view missing = {};           ///< that option, by its long name
 };
 
 /// The extensions of a tool's command line.
@@ -67,6 +68,8 @@ class ToolExtensions {
     /// \param rows of all tools, in the order of `--help`
     ToolExtensions(std::span<const ToolExtension> rows, std::string_view tool);
 
+    /// Declares the groups. An option of an extension that this build lacks is an error that names
+    /// the extension.
     void declare(CommandLine& line);
 
     /// Returns the task that the parsed options ask for, with its history line; empty for the
@@ -81,6 +84,7 @@ class ToolExtensions {
         std::vector<std::string> options = {};  ///< declared by the group
     };
     std::vector<Member> members_;
+    std::vector<ToolExtension> missing_;
 };
 
 }  // namespace ispace

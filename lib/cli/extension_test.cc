@@ -62,7 +62,8 @@ std::unique_ptr<OptionGroup> make() {
 
 constexpr ToolExtension kRows[] = {{"scales", "scan", make<Scales>},
                                    {"abacus", "scan", make<Abacus>},
-                                   {"scales", "envc", make<Scales>}};
+                                   {"scales", "envc", make<Scales>},
+                                   {"rulers", "envc", nullptr, "--measure"}};
 
 /// Parses a command of a tool with an option of its own, --select, and one that no task honours,
 /// --frames.
@@ -116,6 +117,14 @@ TEST(ToolExtensions, OptionsWithoutAMeaningAreRefused) {
 TEST(ToolExtensions, AToolHasItsOwnRowsAlone) {
     EXPECT_TRUE(errorOf({"room.env", "--count"}, "envc").starts_with("unknown option --count"));
     EXPECT_FALSE(taskOf({"room.env"}, "arrange"));
+}
+
+TEST(ToolExtensions, AnOptionOfAMissingExtensionNamesIt) {
+    EXPECT_EQ(
+        errorOf({"room.env", "--measure"}, "envc"),
+        "unknown option --measure: it belongs to the extension rulers, which this build lacks "
+        "(see scan --help)");
+    EXPECT_TRUE(errorOf({"room.env", "--measure"}).starts_with("unknown option --measure"));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/message.h"
+#include "record/missing_keywords.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -281,6 +282,9 @@ std::string otherPlace(const SourcePosition& other, const SourcePosition& here) 
 }
 
 std::string spellingHint(std::string_view word, const std::vector<std::string>& known) {
+    if (const std::string_view extension = missingExtension(word); !extension.empty())
+        return ", which the extension " + std::string(extension) +
+               " reads: this build lacks that extension";
     std::string near = didYouMean(word, known);
     if (!near.empty()) return near;
     std::string all;

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string_view>
+
+namespace ispace {
+
+/// States a keyword of records that an extension would read, which this program was built without:
+/// the error about the keyword names it. Called before records are read, as addSceneSchemas() is.
+/// \param keyword, extension literals
+void addMissingKeyword(std::string_view keyword, std::string_view extension);
+
+/// Returns the extension that would read a keyword; "" for others.
+[[nodiscard]] std::string_view missingExtension(std::string_view keyword);
+
+}  // namespace ispace

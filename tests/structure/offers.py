@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""offers.py SOURCES TOOLS: fails if an extension's offers.txt does not list the options of its groups and its records.
+
+Builds without the extension name it to those who ask for one of them.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+TOOLS = ("envc", "arrange", "scan", "coverage", "simrun")
+extensions, folder = pathlib.Path(sys.argv[1]) / "lib/extensions", pathlib.Path(sys.argv[2])
+faults = []
+
+
+def said(tool, *words, text=""):
+    done = subprocess.run([folder / tool, *words], input=text, capture_output=True, text=True, check=False)
+    return done.stdout + done.stderr
+
+
+def options_of(text):
+    return re.findall(r"^  (?:-\w, )?(--[a-z-]+)", text, re.MULTILINE)
+
+
+offers = {one.name: [tuple(line.split()) for line in (one / "offers.txt").read_text().splitlines()]
+          for one in sorted(extensions.iterdir())}
+known = {tool: options_of(said(tool, "--help", "all")) for tool in TOOLS}
+for name, rows in offers.items():
+    for owner, offer in rows:
+        if owner == "record":
+            about = said("envc", "--check", "-", text=f"#env 1\n{offer}\n")
+            if "unknown keyword" in about and f"the extension {name} reads" not in about:
+                faults.append(f"{name} has no record {offer}: {about}")
+        elif offer not in known[owner] and f"the extension {name}, which" not in said(owner, offer):
+            faults.append(f"{name}: {owner} has no {offer}")
+
+# Groups that the tools list under an extension.
+for tool in TOOLS:
+    short = re.sub(r"\s+", " ", said(tool, "--help").split("More options", 1)[-1])
+    for word, name in re.findall(r" (\w+) [^()]*\(extension (\w+)\)", short):
+        faults += [f"{name} does not list {tool} {option}" for option in options_of(said(tool, "--help", word))
+                   if (tool, option) not in offers[name]]
+
+print("\n".join(faults) or f"{sum(map(len, offers.values()))} offers of {len(offers)} extensions")
+sys.exit(bool(faults))
