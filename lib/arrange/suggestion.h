@@ -28,7 +28,7 @@ struct Suggestion {
         Furniture,  ///< a piece moved by at most two metres
         Replace,    ///< a cheaper device of the scene, by `cost`
         Remove,     ///< of a sensor that adds hardly any floor
-        Together,   ///< additions, turns and shifts that meet all requirements
+        Together,   ///< additions, turns and shifts that meet all requirements, but for `unmet`
     };
     Kind kind = Kind::Add;
     std::string text;         ///< "turn l1 by 35 degrees"
@@ -37,6 +37,7 @@ struct Suggestion {
     double share = 0;         ///< covered share of the indoor floor after it
     double saved = 0;         ///< cost, of Replace and Remove
     double required = 0;      ///< missingFloor() before the change, less that after it, m2
+    double unmet = 0;         ///< missingFloor() after it, m2, of Together in a building
 };
 
 /// Returns the word of reports: "add".

@@ -5,14 +5,18 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "base/error.h"
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "building/building_sight.h"
 #include "building/storey_sight.h"
 #include "coverage/outside_view.h"
+#include "record/text.h"
 #include "report/coverage_report.h"
 #include "report/map/map.h"
 #include "report/run_report.h"
@@ -223,6 +227,24 @@ CoverageReport sumOfStoreys(const BuildingCoverage& coverage) {
                 zone.densities.assign(sum.densities.indoor.size(), {0.0, 0.0});
     }
     return sum;
+}
+
+Coverage subjectOf(const Requirement& requirement, const BuildingScene& building,
+                   const BuildingCoverage& coverage) {
+    if (requirement.of != Requirement::Of::Zone) {
+        Coverage sum;
+        sum.report = sumOfStoreys(coverage);
+        return sum;
+    }
+    std::vector<std::string> known;
+    for (const Coverage& storey : coverage.storeys)
+        for (const ZoneMetrics& zone : storey.report.zones) {
+            if (zone.id == requirement.zone) return storey;
+            known.push_back(zone.id);
+        }
+    throw UsageError("the building has no zone `" + printable(requirement.zone) + '`' +
+                     didYouMean(requirement.zone, known) + "; the storey comes first, as in " +
+                     building.document.storeys.front().id + "/NAME");
 }
 
 void compareStoreys(BuildingCoverage& coverage, const BuildingCoverage& other,

@@ -13,6 +13,7 @@
 #include "building/building_scene.h"
 #include "coverage/camera_rules.h"
 #include "coverage/coverage.h"
+#include "coverage/requirement.h"
 #include "report/camera_rules_report.h"
 #include "report/coverage_report.h"
 #include "report/suggestion_report.h"
@@ -72,6 +73,11 @@ std::uint32_t redundancyScale(const BuildingCoverage& coverage);
 /// Returns the figures of the building as those of one floor: sums, shares of all floor, and the
 /// zones of all storeys in their order, with whole ids.
 CoverageReport sumOfStoreys(const BuildingCoverage& coverage);
+
+/// Returns the coverage that a requirement is about: of a zone `ID/NAME` that of its storey, else
+/// the sums of the building. \throws UsageError for a zone that the building does not have
+Coverage subjectOf(const Requirement& requirement, const BuildingScene& building,
+                   const BuildingCoverage& coverage);
 
 /// Compares the storeys and their sums with those of another layout of the same building.
 void compareStoreys(BuildingCoverage& coverage, const BuildingCoverage& other,

@@ -119,7 +119,14 @@ std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
         return missingFloor(
             measureBuildingRules(of, by, options.measure, options.facing, options.privacy));
     };
+    const auto uncovered_of = [&](const BuildingCoverage& by) {
+        double sum = 0;
+        for (const Requirement& requirement : options.requirements)
+            sum += checkRequirement(requirement, subjectOf(requirement, building, by)).missing;
+        return sum;
+    };
     const double before = seenShare(coverage), missing = missing_of(building, coverage);
+    const double uncovered = uncovered_of(coverage);
     constexpr double kRounding = 1e-6;  // m2
     std::vector<Suggestion> gains, savings;
     std::optional<Suggestion> whole_change;
@@ -150,7 +157,9 @@ std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
                 continue;
             }
             const BuildingCoverage measured = measureBuilding(changed, options.measure);
-            if (missing_of(changed, measured) > missing + kRounding) continue;
+            const double left = uncovered_of(measured);
+            if (missing_of(changed, measured) + left > missing + uncovered + kRounding) continue;
+            one.required += uncovered - left;
             one.share = seenShare(measured);
             one.gained = (one.share - before) * coverage.indoor_area;
             const double most = saves ? one.gained : std::max(one.gained, one.required);
@@ -165,7 +174,8 @@ std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
     if (whole_change && !progress.stopped()) {
         const BuildingCoverage measured = measureBuilding(after_all, options.measure);
         if (missing_of(after_all, measured) == 0) {
-            whole_change->required = missing;
+            whole_change->unmet = uncovered_of(measured);
+            whole_change->required = missing + uncovered - whole_change->unmet;
             whole_change->share = seenShare(measured);
             whole_change->gained = (whole_change->share - before) * coverage.indoor_area;
             // Told once if it is a single change.

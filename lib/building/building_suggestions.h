@@ -35,7 +35,8 @@ BuildingScene editedStorey(const BuildingScene& building, std::size_t storey, co
 /// building, by measureBuilding(), so the floor counts that sensors see on other storeys. Rules of
 /// cameras come first, by the floor that cameras of a storey miss in it; changes by which the
 /// building misses more are left out. Together joins those of all storeys with such rules, if they
-/// meet all. \param coverage of the building, by options.measure
+/// meet all; the floor that requirements of coverage miss then is its `unmet`. \param coverage of
+/// the building, by options.measure
 std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
                                            const BuildingCoverage& coverage,
                                            const SuggestOptions& options, Progress& progress);

@@ -101,6 +101,25 @@ TEST(BuildingSuggestions, MeetRulesOfPrivacyOnAllStoreys) {
     for (const Suggestion& one : found) EXPECT_GE(one.required, 0) << one.text;
 }
 
+/// Changes that meet the rules of cameras do not claim to meet what coverage still misses.
+TEST(BuildingSuggestions, TellTheFloorThatRequirementsStillMiss) {
+    const BuildingScene building = privateHouse();
+    SuggestOptions options;
+    options.privacy = {parsePrivacy("*/desk")};
+    options.requirements = {parseRequirement("free:99%")};
+    const BuildingCoverage coverage = measureBuilding(building, options.measure);
+    SilentProgress silent;
+    const auto found = suggestForBuilding(building, coverage, options, silent);
+    ASSERT_FALSE(found.empty());
+    ASSERT_EQ(found[0].kind, Suggestion::Kind::Together);
+    EXPECT_GT(found[0].unmet, 1);
+    EXPECT_EQ(gainText(found[0]).find("all requirements"), std::string::npos);
+    options.requirements = {parseRequirement("free:1%")};
+    const auto easy = suggestForBuilding(building, coverage, options, silent);
+    EXPECT_EQ(easy.at(0).unmet, 0);
+    EXPECT_NE(gainText(easy[0]).find("; meets all requirements"), std::string::npos);
+}
+
 TEST(BuildingSuggestions, RegardRulesOfOneStorey) {
     const BuildingScene building = privateHouse();
     SuggestOptions options;

@@ -12,7 +12,10 @@ std::string gainText(const Suggestion& suggestion) {
     if (text.front() != '-') text.insert(0, 1, '+');
     text += " m2, to " + percentText(suggestion.share);
     if (suggestion.saved > 0) text += "; saves " + formatDouble(suggestion.saved);
-    if (suggestion.kind == Suggestion::Kind::Together)
+    if (suggestion.kind == Suggestion::Kind::Together && suggestion.unmet > 0)
+        text += "; meets all rules of cameras, " + formatFixed(suggestion.unmet, 2) +
+                " m2 of required floor stay missing";
+    else if (suggestion.kind == Suggestion::Kind::Together)
         text += "; meets all requirements";
     else if (suggestion.required > 0)
         text += "; " + formatFixed(suggestion.required, 2) + " m2 less are missing";

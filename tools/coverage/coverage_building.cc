@@ -65,26 +65,6 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
                          std::string(options.format->suffix) + "'), or choose one with --storey");
 }
 
-/// Returns the coverage that a requirement is about: of a zone `ID/NAME` that of its storey, else
-/// the sums of the building.
-Coverage subjectOf(const Requirement& requirement, const BuildingScene& building,
-                   const BuildingCoverage& coverage) {
-    if (requirement.of != Requirement::Of::Zone) {
-        Coverage sum;
-        sum.report = sumOfStoreys(coverage);
-        return sum;
-    }
-    for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
-        for (const ZoneMetrics& zone : coverage.storeys[i].report.zones)
-            if (zone.id == requirement.zone) return coverage.storeys[i];
-    std::vector<std::string> known;
-    for (const Coverage& storey : coverage.storeys)
-        for (const ZoneMetrics& zone : storey.report.zones) known.push_back(zone.id);
-    throw UsageError("the building has no zone `" + printable(requirement.zone) + '`' +
-                     didYouMean(requirement.zone, known) + "; the storey comes first, as in " +
-                     building.document.storeys.front().id + "/NAME");
-}
-
 std::vector<JunitCase> judgeBuilding(const CoverageToolOptions& options,
                                      const BuildingScene& building,
                                      const BuildingCoverage& coverage) {
@@ -294,6 +274,7 @@ std::optional<Advice> adviceFor(const CoverageToolOptions& options, const Buildi
     if (!options.suggestions) return std::nullopt;
     SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
                           .measure = options.measure,
+                          .requirements = options.requirements,
                           .facing = options.facing,
                           .privacy = options.privacy};
     std::erase_if(wanted.facing, [](const FacingRule& rule) { return !rule.required; });
@@ -305,7 +286,8 @@ std::optional<Advice> adviceFor(const CoverageToolOptions& options, const Buildi
     signal = watch.signal();
     advice.is_short = missingFloor(coverage.rules) > 0 &&
                       (advice.suggestions.empty() ||
-                       advice.suggestions.front().kind != Suggestion::Kind::Together);
+                       advice.suggestions.front().kind != Suggestion::Kind::Together ||
+                       advice.suggestions.front().unmet > 0);
     return advice;
 }
 
