@@ -71,10 +71,14 @@ std::optional<double> priceIn(std::string text, char mark) {
 std::string mountOf(const Scene& scene, const Installation& installation) {
     constexpr double kDown = -60, kLow = 0.3;  // degrees, metres
     const Pose3& pose = scene.sensors[installation.sensor].pose;
-    const bool is_high = pose.position.z >= scene.environment.height() - kAtCeiling;
+    const double below = scene.environment.height() - pose.position.z;
+    const bool is_high = below <= kAtCeiling;
+    // A camera in a corner of wall and ceiling hangs from the nearer one.
+    const double reach = is_high ? std::min(kAtWall, below) : kAtWall;
     const bool is_at_wall =
-        std::any_of(installation.walls.begin(), installation.walls.end(),
-                    [](const auto& wall) { return !wall.end && wall.distance <= kAtWall; });
+        std::any_of(installation.walls.begin(), installation.walls.end(), [&](const auto& wall) {
+            return !wall.end && wall.distance <= kAtWall && (wall.distance < reach || !is_high);
+        });
     if (is_at_wall && pose.tilt.degrees() > kDown && pose.position.z > kLow) return "wall mount";
     return is_high ? "ceiling mount" : "stand";
 }

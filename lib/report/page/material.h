@@ -39,8 +39,8 @@ struct MaterialItem {
 
 /// Counts devices, then mounts and metres of cable. A price of the list counts before `cost` of a
 /// record; mounts cost what the list says. A sensor that stands still is mounted at a wall within
-/// kAtWall of one, unless it looks down or is near the floor; else at the ceiling within kAtCeiling
-/// of the top of the highest wall or above; else on a stand.
+/// kAtWall of one, unless it looks down, is near the floor, or is nearer to the ceiling; else at
+/// the ceiling within kAtCeiling of the top of the highest wall or above; else on a stand.
 std::vector<MaterialItem> materialOf(const Scene& scene, const std::vector<Cable>& cables,
                                      const PriceList& prices);
 /// A room with its cables.

@@ -19,6 +19,19 @@ const std::string kRoom =
     "camera id=down at=0,0,2.4 tilt=-90 cost=80\ncamera id=wall at=-3.9,2,2.2 tilt=-20 cost=90\n"
     "laser id=l at=1,1\nrobot id=r at=2,2\nlaser id=rider on=r\n";
 
+/// In the corner of a wall and the ceiling a camera hangs from the nearer one.
+TEST(Material, TheNearerSurfaceHoldsACamera) {
+    const auto mounts_of = [](const std::string& at) {
+        const Scene scene = sceneOf("ispace size=8,6,3.1\ncamera at=" + at + " tilt=-45\n");
+        return materialOf(scene, {}, {}).at(1).item;
+    };
+    EXPECT_EQ(mounts_of("-3.8,0,3.05"), "ceiling mount");
+    EXPECT_EQ(mounts_of("-3.95,0,2.9"), "wall mount");
+    EXPECT_EQ(mounts_of("-3.95,0,2.4"), "wall mount");
+    EXPECT_EQ(mounts_of("0,0,3.05"), "ceiling mount");
+    EXPECT_EQ(mounts_of("0,0,2.4"), "stand");
+}
+
 TEST(Material, CountsDevicesMountsAndCables) {
     const Scene scene = sceneOf(kRoom);
     const auto items = materialOf(scene, cablesOf(scene), {});
