@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -135,6 +136,32 @@ TEST(IfcBuilding, LiftsWithOneDoorAreLeftOut) {
     for (const std::string& note : building.notes)
         is_told = is_told || note.find("1 transport element left out") != std::string::npos;
     EXPECT_TRUE(is_told);
+}
+
+TEST(IfcBuilding, HasTheStoreysThatAPatternMatches) {
+    IfcBoxes ifc;
+    for (int i = 0; i < 3; ++i) {
+        ifc.storey(i == 2 ? "Roof" : "Level " + std::to_string(i), 3 * i);
+        addHall(ifc, i != 1);
+    }
+    ImportOptions options;
+    options.storey = "level *";
+    const StoreyedDocument building = readIfcBuilding(ifc.text(), "tower.ifc", options);
+    EXPECT_EQ(building.storeyList(), "level-0, level-1");
+    EXPECT_EQ(building.storeys[1].record.number("height"), 3) << "up to the roof";
+    EXPECT_NE(std::find(building.notes.begin(), building.notes.end(), "left out by --storey: Roof"),
+              building.notes.end());
+    options.storey = "Attic*";
+    std::string error;
+    try {
+        (void)readIfcBuilding(ifc.text(), "tower.ifc", options);
+    } catch (const FormatError& failure) {
+        error = failure.diagnostics().front().text();
+    }
+    EXPECT_EQ(
+        error,
+        "tower.ifc: error: no storey is called `attic*`; those with spaces or walls: Level 0, "
+        "Level 1, Roof");
 }
 
 TEST(IfcBuilding, ComparingLiftsWithDoorsIsBounded) {

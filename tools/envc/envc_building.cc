@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/glob.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
@@ -176,7 +177,8 @@ std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
                                                   const InputRequest& request) {
     const std::string& storey = request.import.storey;
     const auto is_whole = [&](const RawInput& input) {
-        return storey.empty() ? isBuilding(input.bytes) : storey == "all" && isIfc(input.bytes);
+        if (storey.empty()) return isBuilding(input.bytes);
+        return (storey == "all" || Glob(storey).isPattern()) && isIfc(input.bytes);
     };
     const auto found = std::find_if(raw.begin(), raw.end(), is_whole);
     if (found == raw.end()) return std::nullopt;

@@ -214,10 +214,10 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
                 "take the points of a cloud between two heights as walls (default: IFC is cut 1 m "
                 "above the floor, SDF at 0.3 m where its boxes enclose no room)",
                 Enters::History);
-    line.text("--storey", "ID|NAME|NUMBER|all", import.storey,
+    line.text("--storey", "ID|NAME|NUMBER|GLOB|all", import.storey,
               "storey of a building to take out: its id or name (default: all of them); of IFC its "
-              "name, its number from 1 for the lowest, or all (default: the lowest that has spaces "
-              "or doors)",
+              "name, its number from 1 for the lowest (default: the lowest that has spaces or "
+              "doors), or a building of all, or of those that a pattern matches ('Level *')",
               Enters::History);
     line.texts("--wall-layer", "GLOB", import.wall_layers,
                "layers of a drawing that hold walls (default: all others)", Enters::History);
