@@ -534,6 +534,18 @@ std::string signature(const CLI::Option& option, const std::string& value) {
     return value.empty() ? names : names + ' ' + value;
 }
 
+/// True if a text has an option's name, and not a longer one that begins with it.
+bool mentions(std::string_view text, std::string_view name) {
+    for (std::size_t at = text.find(name); at != std::string_view::npos;
+         at = text.find(name, at + 1)) {
+        const std::size_t end = at + name.size();
+        const bool is_whole =
+            end == text.size() || (text[end] != '-' && (text[end] < 'a' || text[end] > 'z'));
+        if (is_whole) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 std::string CommandLine::historyLine(const std::vector<std::string>& operands) const {
@@ -599,9 +611,16 @@ std::string CommandLine::helpText(const std::string& about) const {
         add_group(found.front());
         return ispace::helpText(page);
     }
+    // An option, and those that speak of it.
+    const auto is_named = [&](std::size_t i) {
+        const CLI::Option& option = *d.entries[i].option;
+        return option.check_name(about) || option.check_name("--" + about);
+    };
     for (std::size_t i = 0; i < d.entries.size() && found.empty(); ++i)
-        if (d.entries[i].option->check_name(about) || d.entries[i].option->check_name("--" + about))
-            add(i, "Option");
+        if (is_named(i)) add(i, "Option");
+    const std::string name = about.starts_with('-') ? about : "--" + about;
+    for (std::size_t i = 0; i < d.entries.size() && !page.options.empty(); ++i)
+        if (!is_named(i) && mentions(d.entries[i].help, name)) add(i, "");
     if (!page.options.empty()) return ispace::helpText(page);
     std::string words;
     for (std::size_t group = 0; group < d.groups.size(); ++group)

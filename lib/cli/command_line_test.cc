@@ -229,7 +229,7 @@ TEST(CommandLine, HelpListsTheEssentialOptionsAndGroupsOfTheOthers) {
     line.flag("--width", flag, "its width", Enters::Nothing);
     line.extension("judge");
     line.group("Tracks of a run");
-    line.flag("--tracks", flag, "the tracks", Enters::Nothing);
+    line.flag("--tracks", flag, "the tracks, beside --width or --drawn", Enters::Nothing);
     line.extension("");
     line.group("The run");
     line.flag("--until", flag, "its end", Enters::Nothing);
@@ -252,6 +252,8 @@ TEST(CommandLine, HelpListsTheEssentialOptionsAndGroupsOfTheOthers) {
     EXPECT_EQ(line.helpText("judge"), line.helpText("tracks"));
     EXPECT_NE(line.helpText("width").find("its width"), std::string::npos);
     EXPECT_EQ(line.helpText("width").find("--draw"), std::string::npos);
+    EXPECT_NE(line.helpText("width").find("--tracks"), std::string::npos) << "it speaks of it";
+    EXPECT_EQ(line.helpText("draw").find("--tracks"), std::string::npos);
     // The heading that begins with the word comes before those that contain it.
     EXPECT_NE(line.helpText("run").find("--until"), std::string::npos);
     // A heading of one word is that group; another group with the word has one of its own.

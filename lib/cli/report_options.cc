@@ -42,8 +42,8 @@ void addReportOptions(CommandLine& line, ReportWords& words) {
                 Enters::Nothing);
     line.file(
         "--prices", "FILE", words.prices,
-        "prices for the material, lines ITEM,PRICE (CSV): devices, ceiling mount, wall mount, "
-        "stand, cable",
+        "prices for the material of --report and --material, lines ITEM,PRICE (CSV): devices, "
+        "ceiling mount, wall mount, stand, cable",
         Enters::Nothing);
     line.file("--material", "FILE", words.material,
               "write devices, mounts and cables there, with prices and sums, as CSV",
