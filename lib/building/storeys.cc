@@ -270,6 +270,10 @@ const Storey& StoreyedDocument::storey(const std::string& called) const {
         if (storey.id == called) return storey;
     for (const Storey& storey : storeys)
         if (storey.record.has("name") && storey.record.text("name") == called) return storey;
+    if (called.starts_with("door:"))
+        throw UsageError("the building has no storey " + excerpt(called) +
+                         ": the storey comes first, as in " + storeys.front().id + "/door:NAME (" +
+                         storeyList() + ')');
     throw UsageError("the building has no storey " + excerpt(called) +
                      didYouMean(called, idsOf(storeys)) + " (" + storeyList() + ')');
 }

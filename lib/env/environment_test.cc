@@ -177,7 +177,7 @@ TEST(Environment, ALooseWallOutsideIsNoLeak) {
 TEST(Environment, NoWallsAtAll) {
     EXPECT_EQ(findings(""),
               "error: no walls: nothing encloses a room; add an ispace, wall or fence "
-              "record\n");
+              "record, or read a layout beside its room (ROOM LAYOUT)\n");
     EXPECT_NE(findings("desk\n").find("room.env: error: no walls"), std::string::npos);
     EXPECT_NE(findings("wall from=0,0 to=1,0\n").find("not enclosed"), std::string::npos);
 }

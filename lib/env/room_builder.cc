@@ -109,6 +109,9 @@ class Builder {
         const bool has_mesh =
             std::any_of(elements_.begin(), elements_.end(),
                         [](const Element& element) { return element.record.keyword() == "mesh"; });
+        if (elements_.empty())
+            return "no walls: nothing encloses a room; add an ispace, wall or fence record, or "
+                   "read a layout beside its room (ROOM LAYOUT)";
         return std::string("no walls: nothing encloses a room; ") +
                (has_mesh
                     ? "envc --slice-walls 1.2 cuts walls out of the mesh of a room, 1.2 m above "

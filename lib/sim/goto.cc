@@ -92,19 +92,22 @@ std::string World::findWay(std::size_t mover, Command& command) {
     assert(command.verb == Verb::Goto && !command.course.path.empty());
     Data& data = *data_;
     const Point2 goal = command.course.path.back();
-    const auto goal_text = [goal] { return formatDouble(goal.x) + ',' + formatDouble(goal.y); };
+    const auto text_of = [](Point2 p) { return formatDouble(p.x) + ',' + formatDouble(p.y); };
     const Mover& who = data.movers[mover];
     const Point2 at = data.motions[mover].pose.position;
     if (const auto body = data.states[mover].obstacles->overlap(goal, who.model.radius)) {
         const auto near = data.nearestRoom(mover, goal);
-        return who.id + " has no room at " + goal_text() + ": " + data.elements()[*body].id +
-               " stands there" +
-               (near ? "; the nearest point with room is " + formatDouble(near->x) + ',' +
-                           formatDouble(near->y)
-                     : "");
+        return who.id + " has no room at " + text_of(goal) + ": " + data.elements()[*body].id +
+               " stands there" + (near ? "; the nearest point with room is " + text_of(*near) : "");
     }
     std::vector<Point2> way = data.finderOf(mover).wayBetween(at, goal);
-    if (way.empty()) return "no way for " + who.id + " to " + goal_text();
+    if (way.empty()) {
+        const bool is_inside = data.scene->environment.indoor().locate(goal) != Side::Outside;
+        const auto near = data.nearestRoom(mover, goal);
+        return "no way for " + who.id + " to " + text_of(goal) +
+               (is_inside ? ": walls or bodies are between" : ": it is outside of the room") +
+               (near ? "; the nearest point with a way is " + text_of(*near) : "");
+    }
     command.value = lengthOf(at, way);
     command.course.path = std::move(way);
     return "";

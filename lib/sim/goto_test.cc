@@ -98,7 +98,7 @@ TEST(Goto, SaysWhyThereIsNoWay) {
         narrow.c_str(), "robot id=wide at=1,1 radius=0.25\nrobot id=slim at=1,3 radius=0.15\n");
     World world(rooms, kStep);
     Command command = goTo({7, 1});
-    EXPECT_EQ(world.findWay(0, command), "no way for wide to 7,1");
+    EXPECT_EQ(world.findWay(0, command), "no way for wide to 7,1: walls or bodies are between");
     EXPECT_EQ(command.course.path, std::vector<Point2>{(Point2{7, 1})});
     EXPECT_EQ(world.findWay(1, command), "");
     command = goTo({6, 2.4});
@@ -108,7 +108,7 @@ TEST(Goto, SaysWhyThereIsNoWay) {
     EXPECT_EQ(world.findWay(0, command), "wide has no room at 6,2.4: desk1 stands there")
         << "it comes nowhere near";
     command = goTo({20, 1});
-    EXPECT_EQ(world.findWay(1, command), "no way for slim to 20,1");
+    EXPECT_EQ(world.findWay(1, command), "no way for slim to 20,1: it is outside of the room");
 }
 
 TEST(Goto, IsNotMisledToTheOtherSideOfAThinWall) {
@@ -119,7 +119,9 @@ TEST(Goto, IsNotMisledToTheOtherSideOfAThinWall) {
         "robot id=r at=1,1 radius=0.25\n");
     World world(rooms, kStep);
     Command command = goTo({6, 3.72});
-    EXPECT_EQ(world.findWay(0, command), "no way for r to 6,3.72");
+    EXPECT_EQ(
+        world.findWay(0, command),
+        "no way for r to 6,3.72: it is outside of the room; the nearest point with a way is 6,3.1");
 }
 
 TEST(Goto, TakesAnotherWayRoundRobotsThatStand) {
@@ -189,7 +191,7 @@ TEST(Goto, OfAScriptWithoutAWayIsAnEvent) {
         simulation.run(WallTime(std::chrono::hours(1)), std::chrono::hours(1));
     const EventLog& events = simulation.events();
     ASSERT_EQ(events.next(), 2);
-    EXPECT_EQ(events.at(0).text, "script: no way for r to 20,1");
+    EXPECT_EQ(events.at(0).text, "script: no way for r to 20,1: it is outside of the room");
     EXPECT_EQ(events.at(1).kind, EventKind::Unreached);
     EXPECT_EQ(events.at(1).id, "r");
     EXPECT_EQ(events.at(1).time, SimTime(0));
