@@ -474,8 +474,13 @@ void ActivityDirector::beginUse(Simulation& simulation, Doer& doer) const {
     doer.after_use = set(changes.end);
 }
 
-void ActivityDirector::endUse(Simulation& simulation, Doer& doer) {
-    if (!doer.after_use.empty()) simulation.askChange(std::exchange(doer.after_use, ""));
+/// The last of several users ends it.
+void ActivityDirector::endUse(Simulation& simulation, Doer& doer) const {
+    const std::string change = std::exchange(doer.after_use, "");
+    const bool is_last = std::none_of(doers_.begin(), doers_.end(), [&](const auto& other) {
+        return other.second.after_use == change;
+    });
+    if (!change.empty() && is_last) simulation.askChange(change);
 }
 
 /// Gives up a stay if the person was led away, or the thing was.

@@ -101,7 +101,7 @@ class ActivityDirector {
     bool isThere(const World& world, std::size_t mover, const Doer& doer);
     void stay(const World& world, std::size_t mover, Doer& doer) const;
     void beginUse(Simulation& simulation, Doer& doer) const;
-    static void endUse(Simulation& simulation, Doer& doer);
+    void endUse(Simulation& simulation, Doer& doer) const;
     void watchStay(const World& world, std::size_t mover, Doer& doer);
     [[nodiscard]] std::vector<GoalWays::Spot> spotsOfOthers(const World& world,
                                                             std::size_t mover) const;
