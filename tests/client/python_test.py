@@ -6,6 +6,7 @@ import inspect
 import json
 import math
 import os
+import pydoc
 import subprocess
 import sys
 import tempfile
@@ -50,6 +51,14 @@ class Lines(unittest.TestCase):
             message.data = message.data or data
             return kind.from_message(message)
 
+        scan = read(readings.Scan, "SCAN l1 t=0 seq=1 angle_min=-90 angle_max=90 step=60 n=4 r=-,2.5,0.5,0.5")
+        self.assertEqual((list(scan.ranges), scan.angle_max, scan.step), ([math.inf, 2.5, 0.5, 0.5], 90, 60))
+        self.assertEqual(scan.nearest(), (0.5, 30))
+        self.assertIs(type(scan.nearest().range), float)
+        for values in ("n=2 r=-,-", "n=0 r="):
+            alone = read(readings.Scan, f"SCAN l1 t=0 seq=1 angle_min=0 angle_max=0 step=0 {values}").nearest()
+            self.assertEqual(alone.range, math.inf)
+            self.assertTrue(math.isnan(alone.angle))
         head = "SCAN k t=0 seq=3 pose=1,2,3,90,-10,0 width=2 height=1 "
         mm = read(readings.Depths, head + "format=depth16 base64=3AUAAA==")
         m = read(readings.Depths, head + "format=depth32 bytes=8", b"\0\0\xc0\x3f\0\0\x80\x7f")
@@ -133,13 +142,14 @@ class Roles(unittest.TestCase):
 
     def test_laser(self):
         with self.run_.laser("l1") as laser:
-            self.assertEqual(laser.rate, 10)
+            self.assertEqual((laser.rate, laser.range_min, laser.range_max), (10, 0, 5))
             binary = laser.scan()
             laser.binary(False)
             text = laser.scan()
             for a, b in zip(binary.ranges, text.ranges):
                 self.assertAlmostEqual(a, b, delta=5.1e-4)
             self.assertEqual(text.angle(1), 0)
+            self.assertAlmostEqual(text.nearest().range, min(binary.ranges), delta=5.1e-4)
             for binary in (True, False):
                 laser.binary(binary)
                 before = laser.scan().seq
@@ -608,6 +618,17 @@ class Complete(unittest.TestCase):
                     if not inspect.getdoc(value):
                         silent.append(f"{name}.{key}")
         self.assertEqual(silent, [])
+
+    def test_help_tells_what_a_program_gets(self):
+        text = pydoc.render_doc(ispace.Scan, renderer=pydoc.plaintext)
+        for told in ("ranges\n", "infinity: no return", "nearest(self)", "range_min", "angle_min\n"):
+            self.assertIn(told, text)
+        self.assertLessEqual({"ranges", "nearest", "angle_min", "angle_max", "step"}, set(dir(ispace.Scan)))
+        self.assertLessEqual({"range_min", "range_max", "rate"}, set(dir(ispace.LaserSensor)))
+        self.assertIn("End(done=False, reason=", inspect.getdoc(ispace.Robot.wait))
+        self.assertIn("unreached", inspect.getdoc(ispace.Robot.goto))
+        for told in ("another client holds", "no way"):
+            self.assertIn(told, inspect.getdoc(ispace.Refused))
 
     def test_records_are_those_of_the_world(self):
         with ispace.simrun(DATA / "square.env", DATA / "session.3dm", clock="step") as run:

@@ -45,7 +45,7 @@ from .movers import Bumper, End, Limits, Motion, Odometry, Person, Robot, Sonar,
 from .node import Node, NodeMessage
 from .pir import Pir, Presence
 from .radar import Detection, Detections, Radar
-from .readings import Burst, Cloud, Depths, Fix, Load, Passages, Picture, Reading, Scan
+from .readings import Beam, Burst, Cloud, Depths, Fix, Load, Passages, Picture, Reading, Scan
 from .sensors import (
     Camera,
     CloudSensor,
@@ -100,6 +100,7 @@ def __getattr__(name: str) -> Any:
 
 __all__ = [
     "Address",
+    "Beam",
     "Bumper",
     "Burst",
     "Camera",

@@ -28,8 +28,11 @@ class ProtocolError(Error):
 class Refused(Error):
     """The server answered ``ERR code text``; the text is the exception's.
 
-    400 syntax, 401 token, 403 not allowed, 404 unknown name, 405 not in this role, 408 no role in time,
-    409 held by another client, 413 too long, 416 out of range, 429 too many.
+    400 syntax, 401 token, 403 not allowed, 404 unknown name, 405 not in this role, 408 no role in time, 413 too long,
+    416 out of range, 429 too many.
+
+    409 not possible now: another client holds the robot or person; goto() has no way there, or the mover is in a lift
+    or on stairs; a change of the world would put things into each other, or exceed a limit.
     """
 
     def __init__(self, code: int, text: str) -> None:

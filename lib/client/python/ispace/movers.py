@@ -87,7 +87,7 @@ class End:
 
     id: int
     done: bool  #: it got where it was to go
-    reason: str  #: otherwise: stall, unreached, replaced, stopped or deleted
+    reason: str  #: otherwise: stall, unreached, replaced, stopped or deleted, see Mover.wait()
     time: float  #: simulated seconds
 
 
@@ -146,7 +146,11 @@ class Mover(Client):
         """To a point in m round walls, furniture and robots that stand; there it turns to ``heading`` in degrees.
 
         ``storey`` is that of the point in the run of a building, by default that on which it is; ``speed`` in m/s.
-        Raises Refused (409) without a way.
+        Raises Refused (409) if there is no way, which the map of walls and furniture decides at once.
+
+        After 10 s without progress it takes another way, round robots and people that stand; after the third such
+        failure it gives up, and wait() returns ``End(done=False, reason="unreached")``, also if a landing at the end
+        of a lift stays occupied for 30 s. Any other motion replaces it.
         """
         request = f"GOTO {storey}{'/' if storey else ''}{text_of(x)},{text_of(y)}"
         if heading is not None:
@@ -193,7 +197,13 @@ class Mover(Client):
         )
 
     def wait(self, motion: Motion, timeout: float = math.inf) -> End:
-        """Waits for the end of a motion, for seconds of wall time; raises Timeout."""
+        """Waits for the end of a motion; raises Timeout after ``timeout`` seconds of wall time.
+
+        A motion that fails raises no exception: it returns ``End(done=False, reason=...)``, with the reason
+        ``stall`` (it has run into something), ``unreached`` (goto() and path() gave up), ``replaced`` by another
+        motion, ``stopped`` (by stop(), or the end of the run) or ``deleted`` (removed from the world). Therefore
+        check: ``assert robot.wait(robot.goto(2, 1)).done``.
+        """
         end = self.connection.take(lambda: self._known().pop(motion.id, None), timeout)
         if end is None:
             raise Timeout(f"{self.id} is still moving (motion {motion.id})")

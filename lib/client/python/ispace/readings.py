@@ -12,7 +12,7 @@ import math
 import os
 import sys
 from dataclasses import dataclass, field
-from typing import Any, Callable, Iterator, List, Protocol, Tuple, Type, TypeVar, Union
+from typing import Any, Callable, Iterator, List, NamedTuple, Protocol, Tuple, Type, TypeVar, Union
 
 from ._message import Fields, Message, Pose3
 from .errors import ProtocolError
@@ -98,23 +98,64 @@ class Reading:
         return Pose3(*numbers)
 
 
+class Beam(NamedTuple):
+    """One beam of a scan: its range in m, infinity without a return, and its direction in degrees,
+    counter-clockwise from straight ahead."""
+
+    range: float
+    angle: float
+
+
 @dataclass
 class Scan(Reading):
-    """One scan of a laser."""
+    """One scan of a laser: ``ranges[k]`` is that of the beam at ``angle(k)``.
+
+    A range is in metres, or infinity: no return. The beam then hit no surface up to the laser's maximum range, or
+    one nearer than its minimum; LaserSensor has both as ``range_max`` and ``range_min``.
+    """
 
     def _check(self) -> None:
         fields = self.fields
-        self.angle_min = fields.number("angle_min")  #: degrees, counter-clockwise from straight ahead
-        self.angle_max = fields.number("angle_max")
-        self.step = fields.number("step")
-        #: m; infinity: no return
-        self.ranges: Floats = _floats(fields.numbers("r") if "r" in fields else self.data)
-        if len(self.ranges) != fields.integer("n"):
-            raise ProtocolError(f"a scan of {self.sensor} has {len(self.ranges)} ranges, says n={fields['n']}")
+        self._angle_min = fields.number("angle_min")
+        self._angle_max = fields.number("angle_max")
+        self._step = fields.number("step")
+        self._ranges: Floats = _floats(fields.numbers("r") if "r" in fields else self.data)
+        if len(self._ranges) != fields.integer("n"):
+            raise ProtocolError(f"a scan of {self.sensor} has {len(self._ranges)} ranges, says n={fields['n']}")
+
+    @property
+    def ranges(self) -> Floats:
+        """Range of each beam, m, float32; infinity: no return. An array of numpy's or of the standard library's."""
+        return self._ranges
+
+    @property
+    def angle_min(self) -> float:
+        """Direction of the first beam, degrees, counter-clockwise from straight ahead."""
+        return self._angle_min
+
+    @property
+    def angle_max(self) -> float:
+        """Direction of the last beam, degrees."""
+        return self._angle_max
+
+    @property
+    def step(self) -> float:
+        """Degrees from each beam to the next."""
+        return self._step
 
     def angle(self, k: int) -> float:
         """Direction of beam k, degrees."""
-        return self.angle_min + k * self.step
+        return self._angle_min + k * self._step
+
+    def nearest(self) -> Beam:
+        """The beam with the least range, of several the first; if no beam has a return: infinity, and NaN as its
+        angle."""
+        ranges: Any = self._ranges
+        if len(ranges) == 0:
+            return Beam(math.inf, math.nan)
+        k = int(ranges.argmin()) if numpy is not None else min(range(len(ranges)), key=ranges.__getitem__)
+        least = float(ranges[k])
+        return Beam(least, self.angle(k) if math.isfinite(least) else math.nan)
 
 
 @dataclass

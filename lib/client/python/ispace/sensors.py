@@ -80,10 +80,23 @@ class LaserSensor(SensorOf[Scan]):
 
     def __init__(self, address: Address, id: str, timeout: float = 10, token: str = "") -> None:
         super().__init__(address, id, timeout, token, "LASER")
-        self.range_min = self.info.number("range_min")  #: m
-        self.range_max = self.info.number("range_max")  #: m
-        self.rate = self.info.number("rate")  #: scans a simulated second
+        self._range_min, self._range_max, self._rate = map(self.info.number, ("range_min", "range_max", "rate"))
         self.binary(True)
+
+    @property
+    def range_min(self) -> float:
+        """Minimum range, m: a beam that hits a nearer surface has no return."""
+        return self._range_min
+
+    @property
+    def range_max(self) -> float:
+        """Maximum range, m: a beam that hits no surface up to there has no return."""
+        return self._range_max
+
+    @property
+    def rate(self) -> float:
+        """Scans a simulated second."""
+        return self._rate
 
     def __enter__(self) -> LaserSensor:
         return self
