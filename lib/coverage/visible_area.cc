@@ -93,6 +93,20 @@ class VisibleArea::KnownRegions {
         if (regions_.size() < kMost)
             regions_.emplace(keyOf(sensor.pose), Known{sensor, std::move(region)});
     }
+    /// Returns make(), computed once for sensors that differ in their place on the plan alone.
+    template <typename Make>
+    Box2 boxAboutFoot(Sensor sensor, Make make) {
+        constexpr std::size_t kMost = 20'000;
+        sensor.pose.position = {0, 0, sensor.pose.position.z};
+        const std::lock_guard lock(mutex_);
+        const auto [first, last] = boxes_.equal_range(keyOf(sensor.pose));
+        const auto known = std::find_if(
+            first, last, [&](const auto& one) { return seeAlike(one.second.first, sensor); });
+        if (known != last) return known->second.second;
+        const Box2 box = make();
+        if (boxes_.size() < kMost) boxes_.emplace(keyOf(sensor.pose), std::pair(sensor, box));
+        return box;
+    }
 
   private:
     struct Known {
@@ -106,6 +120,7 @@ class VisibleArea::KnownRegions {
 
     std::mutex mutex_;
     std::multimap<Key, Known> regions_;
+    std::multimap<Key, std::pair<Sensor, Box2>> boxes_;
 };
 
 void VisibleArea::keepRegions() { known_ = std::make_shared<KnownRegions>(); }
@@ -141,7 +156,8 @@ Box2 VisibleArea::boxOf(const Sensor& sensor) const {
     if (!view || scansSlice(sensor)) return all;
     const double drop = plane_ - sensor.pose.position.z;
     if (std::fabs(drop) <= kRayEpsilon) return all;
-    const Box2 box = Footprint(*view, drop, false).box;
+    const auto about_foot = [&] { return Footprint(*view, drop, false).box; };
+    const Box2 box = known_ != nullptr ? known_->boxAboutFoot(sensor, about_foot) : about_foot();
     const Vec2 way = foot - Point2{};
     return box.empty() ? Box2() : Box2{box.low + way, box.high + way}.expanded(kRounding);
 }

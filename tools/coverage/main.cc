@@ -48,7 +48,10 @@ SceneInput readInput(const CoverageToolOptions& options) {
         if (const std::string scene = sceneOfRecord(options.run); !scene.empty())
             operands.push_back(scene);
     }
-    keepFreedMemory(operands);
+    if (!options.report.empty() || options.suggestions)
+        keepFreedMemory();  // of one picture or trial for the next
+    else
+        keepFreedMemory(operands);
     SceneInput input = readScene({operands, options.rules, true});
     addZones(options.zones, input);
     return input;
