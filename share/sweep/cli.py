@@ -220,9 +220,9 @@ def _run(options: argparse.Namespace, version: str, say: _Speaker) -> None:
     for part in [*options.parts, *options.reuse]:
         if options.output != "-" and _same_file(options.output, part):
             raise UsageError(f"{options.output} is one of the parts")
-    if options.sweep != "-" and is_part(options.sweep):
+    if options.sweep != "-" and (is_part(options.sweep) or options.sweep.endswith(".jsonl")):
         if options.action not in ("join", "status"):
-            raise UsageError(f"{options.sweep} is a part: the sweep comes first, "
+            raise UsageError(f"{options.sweep} holds results: the sweep comes first, "
                              f"`{TOOL} {options.action} sweep.yaml`")
         if options.only:
             raise UsageError("--only: give the sweep before its parts")

@@ -271,7 +271,14 @@ def states_of_parts(folder):
     folder.run(PROGRAM, "status", "1.jsonl", "--only", "n=1", status=2)
     check("give the sweep before its parts" in folder.talk, folder.talk)
     folder.run(PROGRAM, "commands", "1.jsonl", status=2)
-    check("1.jsonl is a part: the sweep comes first, `ispace-sweep commands sweep.yaml`" in folder.talk, folder.talk)
+    check("1.jsonl holds results: the sweep comes first, `ispace-sweep commands sweep.yaml`" in folder.talk, folder.talk)
+    folder.write("table.jsonl", sweep(folder, "join", "1.jsonl", "--partial", "-q", "--to", "jsonl"))
+    for action in ("status", "join"):  # a table, and a file that a kill left empty
+        for name in ("table.jsonl", "empty.jsonl"):
+            folder.write("empty.jsonl", "")
+            folder.run(PROGRAM, action, name, status=1)
+            check(folder.talk.startswith(f"ispace-sweep: {name}:1:1: error: no results of `ispace-sweep run`") and
+                  folder.talk.count("\n") == 1, folder.talk)
     folder.write("sweep.yaml", STEPS.replace("GO", "[" + json.dumps(folder / "go") + "]") + "# other\n")
     sweep(folder, "status", "1.jsonl", status=1)
     check("1.jsonl: error: of another sweep than sweep.yaml" in folder.talk, folder.talk)
