@@ -79,6 +79,10 @@ class Lines(unittest.TestCase):
         self.assertEqual(read(readings.Load, "SCAN m1 t=1 seq=2 n=2 on=h1,r1").on, ["h1", "r1"])
         gate = read(readings.Passages, "SCAN g1 t=1 seq=2 in=3 out=2 last=- way=- broken=0")
         self.assertEqual((gate.in_, gate.out, gate.last), (3, 2, ""))
+        for reading in (scan, mm, picture, cloud, fix, gate):
+            for name in vars(reading):  # those that a method assigns stand in help() by the class alone
+                if not name.startswith("_") and name not in ispace.Reading.__dataclass_fields__:
+                    self.assertIn(f"``{name}``", inspect.getdoc(type(reading)))
 
     def test_addresses(self):
         from ispace._connection import host_and_port

@@ -160,7 +160,10 @@ class Scan(Reading):
 
 @dataclass
 class Picture(Reading):
-    """A picture of a camera, or a ranger's depths as a picture."""
+    """A picture of a camera, or a ranger's depths as a picture.
+
+    ``format`` is png, jpeg or rgb, ``width`` and ``height`` are pixels, ``data`` the bytes as they came.
+    """
 
     def _check(self) -> None:
         self.format = self.fields["format"]  #: png, jpeg or rgb (8 bits each, rows from the top)
@@ -186,7 +189,8 @@ class Picture(Reading):
 class Depths(Reading):
     """Depths of a ranger (formats depth32 and depth16), rows from the top.
 
-    They are along its axis, or, if its projection is spherical, distances.
+    They are along its axis, or, if its projection is spherical, distances. ``depths`` are metres, infinity: no return;
+    an array of (``height``, ``width``) with numpy, else one row after the other.
     """
 
     def _check(self) -> None:
@@ -213,7 +217,10 @@ class Depths(Reading):
 
 @dataclass
 class Cloud(Reading):
-    """A point a pixel of a ranger (format cloud), in its frame: x ahead, y left, z up; m; NaN: no return."""
+    """A point a pixel of a ranger (format cloud), in its frame: x ahead, y left, z up; m; NaN: no return.
+
+    ``points`` is an array of (n, 3) with numpy, else a list of triples.
+    """
 
     def _check(self) -> None:
         values = _floats(self.data)
@@ -237,7 +244,11 @@ class Burst(Reading):
 
 @dataclass
 class Fix(Reading):
-    """Position of a tag, computed by the receivers."""
+    """Position of a tag, computed by the receivers.
+
+    ``x``, ``y``, ``z`` and ``residual`` are metres, and infinity unless it is ``solved``; ``heard`` receivers heard the
+    tag.
+    """
 
     def _check(self) -> None:
         self.heard = self.fields.integer("heard")  #: receivers that heard it
@@ -257,7 +268,11 @@ class Load(Reading):
 
 @dataclass
 class Passages(Reading):
-    """Movers that have passed a gate since the start of the run."""
+    """Movers that have passed a gate since the start of the run: ``in_`` and ``out``.
+
+    ``last`` is the id of the last one, and ``way`` its way, in or out; both are empty before the first. ``broken``: an
+    object or a mover stands in the beam now.
+    """
 
     def _check(self) -> None:
         self.in_ = self.fields.integer("in")
