@@ -229,7 +229,7 @@ TEST(CommandLine, HelpListsTheEssentialOptionsAndGroupsOfTheOthers) {
     line.flag("--width", flag, "its width", Enters::Nothing);
     line.extension("judge");
     line.group("Tracks of a run");
-    line.flag("--tracks", flag, "the tracks, beside --width or --drawn", Enters::Nothing);
+    line.flag("--tracks", flag, "the tracks, beside --width", Enters::Nothing);
     line.extension("");
     line.group("The run");
     line.flag("--until", flag, "its end", Enters::Nothing);
