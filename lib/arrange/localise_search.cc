@@ -5,8 +5,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -55,6 +59,34 @@ std::uint64_t concaveWorth(const SpotInformation& spot, double limit) {
     return upwards(times < 2.25 ? 4 * times / 27 : 1 - 1 / std::sqrt(times));
 }
 
+/// Ends work when the search is to stop, or some time later: a bound is worth a short wait.
+class Grace {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    /// \param sites visited at most, of each kind
+    explicit Grace(const Progress& progress, Clock::duration time = {},
+                   std::size_t sites = std::numeric_limits<std::size_t>::max())
+        : progress_(progress), time_(time), sites_(sites) {}
+
+    [[nodiscard]] std::size_t sites() const { return sites_; }
+
+    /// Thread-safe.
+    [[nodiscard]] bool isOver() const {
+        if (!progress_.stopped()) return false;
+        const auto now = Clock::now().time_since_epoch().count();
+        Clock::rep none = 0;
+        const bool is_first = since_.compare_exchange_strong(none, now);
+        return now - (is_first ? now : none) >= time_.count();
+    }
+
+  private:
+    const Progress& progress_;
+    Clock::duration time_;
+    std::size_t sites_;
+    mutable std::atomic<Clock::rep> since_ = 0;  // when it was first asked after the end
+};
+
 class LocaliseSearch {
   public:
     explicit LocaliseSearch(const CoverageModel& model)
@@ -100,10 +132,11 @@ class LocaliseSearch {
     }
 
     /// Computes the gain of one more sensor on each candidate of a kind, site by site: the
-    /// information about a cell does not depend on the heading.
+    /// information about a cell does not depend on the heading. Those of sites after the end of
+    /// `grace` are 0.
     /// \param rounding subtracted from the worth that cells have without it
     [[nodiscard]] std::vector<std::uint64_t> gainsOf(std::size_t kind, const Spots& spots,
-                                                     Worth worth,
+                                                     Worth worth, const Grace& grace,
                                                      std::uint64_t rounding = 0) const {
         std::vector<std::uint64_t> before(spots.size());
         for (std::size_t i = 0; i < spots.size(); ++i) {
@@ -112,7 +145,8 @@ class LocaliseSearch {
         }
         const CandidateSet& set = *problem_.kinds[kind].candidates;
         std::vector<std::uint64_t> gains(set.size());
-        forEachSite(kind, [&](std::size_t site, std::vector<std::uint64_t>& sums) {
+        forEachSite(kind, grace.sites(), [&](std::size_t site, std::vector<std::uint64_t>& sums) {
+            if (grace.isOver()) return;
             const Sensor sensor = sensorOf({kind, set.firstOf(site)});
             std::fill(sums.begin(), sums.end(), 0);
             forEachSeen(set, site, [&](std::uint32_t cell) {
@@ -132,22 +166,24 @@ class LocaliseSearch {
     }
 
     /// Adds sensors one by one, the best first; where none gains, the one with the most
-    /// information.
-    [[nodiscard]] std::vector<Choice> greedy(const Progress& progress) const {
+    /// information. After the end of `grace` others anywhere.
+    [[nodiscard]] std::vector<Choice> greedy(const Grace& grace) const {
         std::vector<Choice> chosen;
-        while (!progress.stopped()) {
+        while (!grace.isOver()) {
             const Spots spots = spotsOf(chosen);
             std::uint64_t most = 0;
-            std::optional<Choice> best = bestOf(chosen, spots, worthOf, most);
-            if (!best) best = bestOf(chosen, spots, concaveWorth, most);
+            std::optional<Choice> best = bestOf(chosen, spots, worthOf, grace, most);
+            if (!best) best = bestOf(chosen, spots, concaveWorth, grace, most);
             if (!best) break;
             chosen.push_back(*best);
         }
+        if (grace.isOver()) fillUp(chosen);
         return chosen;
     }
 
     /// Moves single sensors while the value grows.
     void improve(Solution& solution, const Progress& progress) const {
+        const Grace grace(progress);
         for (bool moves = true; moves;) {
             moves = false;
             for (std::size_t i = 0; i < solution.chosen.size() && !progress.stopped(); ++i) {
@@ -155,7 +191,7 @@ class LocaliseSearch {
                 const std::size_t kind = others[i].kind;
                 others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
                 const Spots spots = spotsOf(others);
-                std::vector<std::uint64_t> gains = gainsOf(kind, spots, worthOf);
+                std::vector<std::uint64_t> gains = gainsOf(kind, spots, worthOf, grace);
                 for (const Choice& other : others)
                     if (other.kind == kind) gains[other.candidate] = 0;
                 const auto best = static_cast<std::size_t>(
@@ -169,12 +205,16 @@ class LocaliseSearch {
         }
     }
 
-    /// Bounds the value of all layouts by the gains of this one.
-    [[nodiscard]] std::uint64_t boundBeside(const std::vector<Choice>& chosen) const {
+    /// Bounds the value of all layouts by the gains of this one; by total() after the end of
+    /// `grace`.
+    [[nodiscard]] std::uint64_t boundBeside(const std::vector<Choice>& chosen,
+                                            const Grace& grace) const {
         const Spots spots = spotsOf(chosen);
         std::uint64_t bound = valueOf(spots, concaveWorth);
         for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
-            std::vector<std::uint64_t> gains = gainsOf(k, spots, concaveWorth, kWorthRounding);
+            std::vector<std::uint64_t> gains =
+                gainsOf(k, spots, concaveWorth, grace, kWorthRounding);
+            if (grace.isOver()) return total();
             const auto most =
                 std::min(gains.size(), static_cast<std::size_t>(problem_.kinds[k].most));
             std::partial_sort(gains.begin(), gains.begin() + static_cast<std::ptrdiff_t>(most),
@@ -186,11 +226,16 @@ class LocaliseSearch {
 
     /// Searches for coverage by weights that bound the worth of covered cells; its bound holds for
     /// this problem, too.
-    [[nodiscard]] SearchResult searchCover(Progress& progress) const {
+    [[nodiscard]] SearchResult searchCover(Progress& progress, const Grace& grace) const {
         Problem cover = problem_;
         const std::uint64_t times =
             std::clamp<std::uint64_t>(0xffffffffU / problem_.totalWeight(), 1, 1024);
-        const std::vector<std::uint64_t> most = mostByCell();
+        const std::vector<std::uint64_t> most = mostByCell(grace);
+        if (grace.isOver()) {
+            SearchResult found;
+            found.bound = total();
+            return found;
+        }
         for (std::size_t i = 0; i < most.size(); ++i)
             cover.weights[i] = static_cast<std::uint32_t>(
                 (problem_.weights[i] * times * most[i] + kNoError - 1) / kNoError);
@@ -211,14 +256,39 @@ class LocaliseSearch {
         spot.add(sensor, informationOf(sensor.model, sensor.pose.position, at));
     }
 
-    /// Calls visit(site, buffer of cells + 1) in parallel.
+    /// Adds candidates that lie far apart until all sensors are placed.
+    void fillUp(std::vector<Choice>& chosen) const {
+        for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
+            const std::size_t count = problem_.kinds[k].candidates->size();
+            auto placed = static_cast<std::size_t>(std::count_if(
+                chosen.begin(), chosen.end(), [k](const Choice& c) { return c.kind == k; }));
+            for (std::size_t i = 0;
+                 i < count && placed < static_cast<std::size_t>(problem_.kinds[k].most); ++i) {
+                const Choice choice{k, scattered(i, count)};
+                if (std::find(chosen.begin(), chosen.end(), choice) != chosen.end()) continue;
+                chosen.push_back(choice);
+                ++placed;
+            }
+        }
+    }
+
+    /// Returns the i-th of `count` numbers in an order in which each part is spread over all.
+    static std::size_t scattered(std::size_t i, std::size_t count) {
+        auto step = static_cast<std::size_t>(0.618 * static_cast<double>(count)) | 1U;
+        while (std::gcd(step, count) != 1) step += 2;
+        return i * step % count;
+    }
+
+    /// Calls visit(site, buffer of cells + 1) in parallel, for sites far apart one after the other:
+    /// visits that are cut short have been all over the room.
     template <typename Visit>
-    void forEachSite(std::size_t kind, Visit visit) const {
+    void forEachSite(std::size_t kind, std::size_t most, Visit visit) const {
         const CandidateSet& set = *problem_.kinds[kind].candidates;
         tbb::enumerable_thread_specific<std::vector<std::uint64_t>> buffers(
             std::vector<std::uint64_t>(problem_.cells() + 1));
-        tbb::parallel_for(std::size_t{0}, set.sites(),
-                          [&](std::size_t site) { visit(site, buffers.local()); });
+        tbb::parallel_for(std::size_t{0}, std::min(most, set.sites()), [&](std::size_t i) {
+            visit(scattered(i, set.sites()), buffers.local());
+        });
     }
 
     /// Calls visit(cell) for the cells that any candidate of a site sees, some repeatedly.
@@ -230,14 +300,14 @@ class LocaliseSearch {
     }
 
     [[nodiscard]] std::optional<Choice> bestOf(const std::vector<Choice>& chosen,
-                                               const Spots& spots, Worth worth,
+                                               const Spots& spots, Worth worth, const Grace& grace,
                                                std::uint64_t& most) const {
         std::optional<Choice> best;
         for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
             const auto placed = std::count_if(chosen.begin(), chosen.end(),
                                               [k](const Choice& c) { return c.kind == k; });
             if (placed >= problem_.kinds[k].most) continue;
-            const std::vector<std::uint64_t> gains = gainsOf(k, spots, worth);
+            const std::vector<std::uint64_t> gains = gainsOf(k, spots, worth, grace);
             for (std::size_t i = 0; i < gains.size(); ++i) {
                 const Choice choice{k, i};
                 if (gains[i] <= most ||
@@ -250,8 +320,9 @@ class LocaliseSearch {
         return best;
     }
 
-    /// Bounds the worth of each cell if all sensors stand on its best candidate.
-    [[nodiscard]] std::vector<std::uint64_t> mostByCell() const {
+    /// Bounds the worth of each cell if all sensors stand on its best candidate; no bounds if
+    /// `grace` ends before.
+    [[nodiscard]] std::vector<std::uint64_t> mostByCell(const Grace& grace) const {
         std::vector<double> traces(problem_.cells());
         for (std::size_t i = 0; i < traces.size(); ++i) traces[i] = traceOf(standing_[i]);
         for (std::size_t k = 0; k < problem_.kinds.size(); ++k) {
@@ -259,6 +330,7 @@ class LocaliseSearch {
             tbb::enumerable_thread_specific<std::vector<double>> best(
                 std::vector<double>(problem_.cells()));
             tbb::parallel_for(std::size_t{0}, set.sites(), [&](std::size_t site) {
+                if (grace.isOver()) return;
                 const Sensor sensor = sensorOf({k, set.firstOf(site)});
                 std::vector<double>& own = best.local();
                 forEachSeen(set, site, [&](std::uint32_t cell) {
@@ -299,10 +371,20 @@ std::uint64_t localisedValue(const CoverageModel& model, std::span<const Counted
 
 SearchResult searchLocalised(const CoverageModel& model, Progress& progress) {
     const LocaliseSearch search(model);
-    SearchResult result = search.searchCover(progress);
+    constexpr std::chrono::milliseconds kForBounds(300);
+    const Grace grace(progress, kForBounds);
+    // Of some sites first, for the case that there is no time for all, nor for bounds.
+    constexpr std::chrono::milliseconds kForLayout(300);
+    constexpr std::size_t kSome = 1000;
+    std::vector<Choice> greedy = search.greedy(Grace(progress, kForLayout, kSome));
+    if (!progress.stopped()) {
+        std::vector<Choice> of_all = search.greedy(Grace(progress));
+        if (!progress.stopped()) greedy = std::move(of_all);
+    }
+    SearchResult result = search.searchCover(progress, grace);
     const bool moves = model.options().search.optimizer != Optimizer::Greedy;
     Solution best;
-    for (std::vector<Choice> chosen : {result.best.chosen, search.greedy(progress)}) {
+    for (std::vector<Choice> chosen : {result.best.chosen, std::move(greedy)}) {
         std::set<Choice> once;
         std::erase_if(chosen, [&once](const Choice& one) { return !once.insert(one).second; });
         Solution solution{std::move(chosen), 0};
@@ -311,7 +393,8 @@ SearchResult searchLocalised(const CoverageModel& model, Progress& progress) {
         if (solution.value > best.value || best.chosen.empty()) best = std::move(solution);
     }
     result.best = std::move(best);
-    result.bound = std::min({result.bound, search.total(), search.boundBeside(result.best.chosen)});
+    result.bound =
+        std::min({result.bound, search.total(), search.boundBeside(result.best.chosen, grace)});
     result.is_complete = result.is_complete && !progress.stopped();
     return result;
 }
