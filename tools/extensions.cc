@@ -4,7 +4,6 @@
 // `--help`.
 #include "extensions.h"
 
-#include <initializer_list>
 #include <string_view>
 #include <vector>
 
@@ -57,9 +56,12 @@ struct MissingOffer {
     std::string_view extension, owner, name;
 };
 
-constexpr std::initializer_list<MissingOffer> kMissing = {
+const std::vector<MissingOffer>& missingOffers() {
+    static const std::vector<MissingOffer> offers = {
 #include "missing_offers.inc"
-};
+    };
+    return offers;
+}
 
 /// Adds the formats and records that extensions read. Returns true.
 bool addFormats() {
@@ -80,7 +82,7 @@ bool addFormats() {
     addSceneSchemas(pressureSchemas());
     addPressureChecks();
 #endif
-    for (const auto& [extension, owner, name] : kMissing)
+    for (const auto& [extension, owner, name] : missingOffers())
         if (owner == "record") addMissingKeyword(name, extension);
     return true;
 }
@@ -110,7 +112,7 @@ std::span<const ToolExtension> toolExtensions() {
             {"reality", "scan", makeRealityOptions},
 #endif
         };
-        for (const auto& [extension, owner, name] : kMissing)
+        for (const auto& [extension, owner, name] : missingOffers())
             if (owner != "record") rows.push_back({extension, owner, nullptr, name});
         return rows;
     }();
