@@ -244,6 +244,13 @@ class LocaliseSearch {
         return found;
     }
 
+    /// Returns the number of sites of the kind with the most.
+    [[nodiscard]] std::size_t mostSites() const {
+        std::size_t most = 0;
+        for (const auto& kind : problem_.kinds) most = std::max(most, kind.candidates->sites());
+        return most;
+    }
+
     [[nodiscard]] std::uint64_t total() const { return problem_.totalWeight() * kNoError; }
 
   private:
@@ -377,7 +384,7 @@ SearchResult searchLocalised(const CoverageModel& model, Progress& progress) {
     constexpr std::chrono::milliseconds kForLayout(300);
     constexpr std::size_t kSome = 1000;
     std::vector<Choice> greedy = search.greedy(Grace(progress, kForLayout, kSome));
-    if (!progress.stopped()) {
+    if (search.mostSites() > kSome && !progress.stopped()) {
         std::vector<Choice> of_all = search.greedy(Grace(progress));
         if (!progress.stopped()) greedy = std::move(of_all);
     }
