@@ -59,4 +59,11 @@ class UnreadItems {
     std::int64_t missed_ = 0;
 };
 
+/// Takes what a client may read now: the line about missed items, and the lines that are left.
+inline std::string takeLines(UnreadItems<std::string>& unread, std::string_view time) {
+    std::string lines = unread.missedLine(time);
+    for (const std::string& line : unread.take()) lines += line;
+    return lines;
+}
+
 }  // namespace ispace

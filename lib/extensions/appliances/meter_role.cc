@@ -202,11 +202,7 @@ class MeterClient : public ClientRole {
     }
     [[nodiscard]] bool waits() const override { return false; }
     std::string stepped(bool has_room) override {
-        std::string lines;
-        if (!has_room) return lines;
-        lines = unread_.missedLine(formatMilliseconds(run_.now()));
-        for (const std::string& line : unread_.take()) lines += line;
-        return lines;
+        return has_room ? takeLines(unread_, formatMilliseconds(run_.now())) : "";
     }
     /// Meters are no sensors.
     [[nodiscard]] std::span<const std::string> sensors() const override { return {}; }

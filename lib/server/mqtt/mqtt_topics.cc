@@ -8,6 +8,7 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "server/role_answer.h"
 
 namespace ispace {
 
@@ -129,10 +130,7 @@ std::string wantedPayload(std::string_view key, const KeySpec* spec, std::string
         const auto& choices = spec->choices;
         const std::string word = valueOfPayload(key, payload);
         if (std::find(choices.begin(), choices.end(), word) != choices.end()) return "";
-        std::string wanted = "one of ";
-        for (const std::string& choice : choices)
-            wanted.append(choice).append(&choice == &choices.back() ? "" : ", ");
-        return wanted;
+        return "one of " + joined(choices, ", ");
     }
     if (spec->type != KeyType::Number) return "";
     const double scale = isShare(key) ? kPerCent : 1;
