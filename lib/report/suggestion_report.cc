@@ -39,6 +39,7 @@ void writeSuggestions(JsonWriter& json, const Advice& advice) {
         if (suggestion.saved > 0) json.key("saved").value(suggestion.saved);
         if (suggestion.required > 0)
             json.key("required").value(roundSignificant(suggestion.required));
+        if (suggestion.unmet > 0) json.key("unmet").value(roundSignificant(suggestion.unmet));
         json.key("command").value(commandOf(advice.command, suggestion.edits));
         json.endObject();
     }

@@ -47,6 +47,9 @@ arrange "$data/square.env" --sensor laser,range=2:2 --sensor ranger:1 --strategy
     --trace tried.jsonl -o best.3dm
 printf '%s\n' "$data/square.env" missing.env | arrange --batch - --sensor laser --strategy grid -X 2 -Y 2 -o by/ \
     >arranged.jsonl && fail "a list with a missing room passes"
+expect_status 3 coverage "$scenes/house/house.env" "$data/house.3dm" -q --require free:99% --suggest 3 --json
+mv out advice.json
+grep -q '"required":' advice.json || fail "no suggestion tells the floor that is required"
 printf '%s\n' "$data/square.env $data/half.3dm" | scan --batch - -q -o by/ >scanned.jsonl
 simrun "$data/square.env" "$data/session.3dm" -q --clock fast --until 0.5 --record run >simrun.json
 for tool in envc arrange scan coverage simrun; do
