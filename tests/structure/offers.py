@@ -36,10 +36,12 @@ for name, rows in offers.items():
 
 # Groups that the tools list under an extension.
 for tool in TOOLS:
-    short = re.sub(r"\s+", " ", said(tool, "--help").split("More options", 1)[-1])
-    for word, name in re.findall(r" (\w+) [^()]*\(extension (\w+)\)", short):
-        faults += [f"{name} does not list {tool} {option}" for option in options_of(said(tool, "--help", word))
-                   if (tool, option) not in offers[name]]
+    for word, title in re.findall(r"^  (\w+) {2,}(.*(?:\n {10,}.*)*)", said(tool, "--help"), re.MULTILINE):
+        about = re.search(r"\(extension\s+(\w+)\)", title)
+        found = options_of(said(tool, "--help", word)) if about else []
+        if about and not found:
+            faults.append(f"{tool} --help {word} lists no option")
+        faults += [f"{about[1]} does not list {tool} {option}" for option in found if (tool, option) not in offers[about[1]]]
 
 print("\n".join(faults) or f"{sum(map(len, offers.values()))} offers of {len(offers)} extensions")
 sys.exit(bool(faults))
