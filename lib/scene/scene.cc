@@ -357,12 +357,15 @@ std::vector<Edit> parseEdits(std::string_view request) {
     std::vector<Edit> edits;
     if (verb == "ACT") {
         std::string id(takeWord(rest));
+        std::string attribute;
         while (!rest.empty()) {
-            const std::string word(takeWord(rest));
-            if (word == ";")
+            const std::string_view word = takeWord(rest);
+            if (word == ";") {
                 id = takeWord(rest);
-            else
-                edits.push_back(parseEdit(Edit::Kind::Set, id + '.' + word));
+                continue;
+            }
+            attribute.assign(id).append(1, '.').append(word);
+            edits.push_back(parseEdit(Edit::Kind::Set, attribute));
         }
         return edits;
     }
