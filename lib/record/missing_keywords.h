@@ -5,8 +5,9 @@
 
 namespace ispace {
 
-/// States a keyword of records that an extension would read, which this program was built without:
-/// the error about the keyword names it. Called before records are read, as addSceneSchemas() is.
+/// States a keyword of records, or a key of others as KEYWORD.KEY, that an extension would read,
+/// which this program was built without: the error about it names the extension. Called before
+/// records are read, as addSceneSchemas() is.
 /// \param keyword, extension literals
 void addMissingKeyword(std::string_view keyword, std::string_view extension);
 

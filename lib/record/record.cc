@@ -281,10 +281,21 @@ std::string otherPlace(const SourcePosition& other, const SourcePosition& here) 
     return (same ? "" : displayName(*other.file) + ' ') + "line " + std::to_string(other.line);
 }
 
+namespace {
+
+/// Returns the hint for a keyword, or a key as KEYWORD.KEY, of an extension that is not built in;
+/// "" for others.
+std::string missingHint(std::string_view name) {
+    const std::string_view extension = missingExtension(name);
+    if (extension.empty()) return "";
+    return ", which the extension " + std::string(extension) +
+           " reads: this build lacks that extension";
+}
+
+}  // namespace
+
 std::string spellingHint(std::string_view word, const std::vector<std::string>& known) {
-    if (const std::string_view extension = missingExtension(word); !extension.empty())
-        return ", which the extension " + std::string(extension) +
-               " reads: this build lacks that extension";
+    if (std::string missing = missingHint(word); !missing.empty()) return missing;
     std::string near = didYouMean(word, known);
     if (!near.empty()) return near;
     std::string all;
@@ -318,7 +329,10 @@ const KeySpec* RecordCollector::key(std::string_view name, LineColumn spot) {
     const KeySpec* const spec = schema.find(name);
     if (spec == nullptr) {
         finding(spot, [&] {
-            return "unknown key " + excerpt(name) + spellingHint(name, schema.keyNames());
+            std::string full = schema.keyword + '.';
+            const std::string missing = missingHint(full.append(name));
+            return "unknown key " + excerpt(name) +
+                   (missing.empty() ? spellingHint(name, schema.keyNames()) : missing);
         });
         return nullptr;
     }

@@ -2,6 +2,7 @@
 #include "scene/placement_schemas.h"
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -376,10 +377,24 @@ std::vector<Schema>& addedSchemas() {
     return added;
 }
 
+struct AddedKeys {
+    std::string keyword;
+    std::vector<KeySpec> keys;
+};
+
+std::vector<AddedKeys>& addedKeys() {
+    static std::vector<AddedKeys> added;
+    return added;
+}
+
 }  // namespace
 
 void addSceneSchemas(std::vector<Schema> schemas) {
     std::move(schemas.begin(), schemas.end(), std::back_inserter(addedSchemas()));
+}
+
+void addSceneKeys(std::string_view keyword, std::vector<KeySpec> keys) {
+    addedKeys().push_back({std::string(keyword), std::move(keys)});
 }
 
 const Schemas& sceneSchemas() {
@@ -388,6 +403,13 @@ const Schemas& sceneSchemas() {
         std::vector<Schema> placements = layoutSchemas();
         std::move(placements.begin(), placements.end(), std::back_inserter(all));
         std::copy(addedSchemas().begin(), addedSchemas().end(), std::back_inserter(all));
+        for (const AddedKeys& added : addedKeys()) {
+            const auto of = std::find_if(all.begin(), all.end(), [&added](const Schema& schema) {
+                return schema.keyword == added.keyword;
+            });
+            assert(of != all.end());
+            of->keys.insert(of->keys.end(), added.keys.begin(), added.keys.end());
+        }
         return Schemas(std::move(all));
     }();
     return schemas;

@@ -27,8 +27,14 @@ bool mayBeCarried(const Schema& schema);
 std::string carrierOf(const Record& record);
 
 /// Adds keywords of an extension to those of `.3dm`; the program does so before it first calls
-/// sceneSchemas(). Such records are placements, which the core keeps and writes, and no more.
+/// sceneSchemas(). Such records are placements, which the core keeps and writes, and no more; or
+/// elements of the room with a body, see addBodyShape().
 void addSceneSchemas(std::vector<Schema> schemas);
+
+/// Adds keys of an extension to the records of a keyword, behind those that it has: states, and
+/// what these need. The program does so before it first calls sceneSchemas().
+/// \pre the keyword is known, and has no such keys
+void addSceneKeys(std::string_view keyword, std::vector<KeySpec> keys);
 
 /// Returns the schema of every keyword of `.env` and `.3dm`: environmentSchemas(), layoutSchemas()
 /// and those of extensions. A constant.

@@ -28,8 +28,9 @@ known = {tool: options_of(said(tool, "--help", "all")) for tool in TOOLS}
 for name, rows in offers.items():
     for owner, offer in rows:
         if owner == "record":
-            about = said("envc", "--check", "-", text=f"#env 1\n{offer}\n")
-            if "unknown keyword" in about and f"the extension {name} reads" not in about:
+            keyword, _, key = offer.partition(".")
+            about = said("envc", "--check", "-", text=f"#env 1\n{keyword}{f' {key}=1' if key else ''}\n")
+            if f"unknown key{'' if key else 'word'} " in about and f"the extension {name} reads" not in about:
                 faults.append(f"{name} has no record {offer}: {about}")
         elif offer not in known[owner] and f"the extension {name}, which" not in said(owner, offer):
             faults.append(f"{name}: {owner} has no {offer}")

@@ -127,17 +127,17 @@ void checkCollisions(CheckContext& context, std::size_t record, std::vector<Find
 }
 
 /// The checks of extensions, by keyword.
-std::map<std::string, RecordCheck, std::less<>>& recordChecks() {
-    static std::map<std::string, RecordCheck, std::less<>> checks;
+std::multimap<std::string, RecordCheck, std::less<>>& recordChecks() {
+    static std::multimap<std::string, RecordCheck, std::less<>> checks;
     return checks;
 }
 
 void checkRecords(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
     if (record >= context.scene.records.size() || recordChecks().empty()) return;
-    const auto check = recordChecks().find(context.scene.records[record].keyword());
-    if (check == recordChecks().end()) return;
-    if (auto finding = check->second(context.scene, record))
-        findings.push_back(std::move(*finding));
+    const auto [first, last] = recordChecks().equal_range(context.scene.records[record].keyword());
+    for (auto check = first; check != last; ++check)
+        if (auto finding = check->second(context.scene, record))
+            findings.push_back(std::move(*finding));
 }
 
 constexpr std::array<SceneCheck, 10> kChecks{{{"walls", checkWalls},
@@ -209,7 +209,7 @@ Diagnostic Finding::diagnostic() const {
 std::span<const SceneCheck> sceneChecks() { return kChecks; }
 
 void addRecordCheck(std::string_view keyword, RecordCheck check) {
-    recordChecks().insert_or_assign(std::string(keyword), check);
+    recordChecks().emplace(keyword, check);
 }
 
 std::vector<Finding> checkScene(const Scene& scene, const FindingFilter& filter) {

@@ -69,8 +69,8 @@ std::span<const SceneCheck> sceneChecks();
 /// Checks the record of a scene with this index. Returns empty if it is right.
 using RecordCheck = std::optional<Finding> (*)(const Scene& scene, std::size_t record);
 
-/// Adds the check of the records with a keyword, for the program: call it before any scene is
-/// checked.
+/// Adds a check of the records with a keyword to those that it has, for the program: call it before
+/// any scene is checked.
 void addRecordCheck(std::string_view keyword, RecordCheck check);
 
 /// Selects findings; by default all.
