@@ -21,6 +21,7 @@ constexpr StateKey kStateKeys[] = {
 
 std::string valueText(const Record& record, std::string_view key) {
     const KeySpec& spec = *record.schema().find(key);
+    if (spec.type == KeyType::Flag && record.find(key) == nullptr) return "0";
     if (spec.type == KeyType::Flag) return record.flag(key) ? "1" : "0";
     if (spec.type == KeyType::Number) return formatDouble(record.number(key));
     if (spec.type == KeyType::Choice) return record.text(key);
@@ -30,7 +31,11 @@ std::string valueText(const Record& record, std::string_view key) {
     return text;
 }
 
-std::vector<std::string> keysOf(std::string_view keyword) {
+}  // namespace
+
+std::span<const StateKey> stateKeys() { return kStateKeys; }
+
+std::vector<std::string> stateKeysOf(std::string_view keyword) {
     std::vector<std::string> keys;
     for (const StateKey& state : kStateKeys)
         if (state.keyword == keyword) keys.emplace_back(state.key);
@@ -38,10 +43,6 @@ std::vector<std::string> keysOf(std::string_view keyword) {
         keys.insert(keys.end(), kind->states.begin(), kind->states.end());
     return keys;
 }
-
-}  // namespace
-
-std::span<const StateKey> stateKeys() { return kStateKeys; }
 
 bool isActuator(std::string_view keyword) {
     const ThingKind* const kind = thingKind(keyword);
@@ -58,7 +59,8 @@ std::vector<RoomState> roomStates(const Scene& scene) {
         for (const StateKey& state : kStateKeys)
             if (record.keyword() == state.keyword)
                 states.push_back({id, std::string(state.key), valueText(record, state.key)});
-        if (const ThingKind* const kind = thingKind(record.keyword()))
+        const ThingKind* const kind = thingKind(record.keyword());
+        if (kind != nullptr && (kind->has_states == nullptr || kind->has_states(record)))
             for (const std::string& key : kind->states)
                 states.push_back({id, key, valueText(record, key)});
         if (const auto emission = emissionOf(record))
@@ -75,7 +77,7 @@ std::string stateEdit(const Scene& scene, std::string_view id, std::string_view 
     if (found == scene.ids.end())
         throw UsageError("no record has the id " + excerpt(id) + didYouMean(id, actuators));
     const Record& record = scene.records[static_cast<std::size_t>(found - scene.ids.begin())];
-    const std::vector<std::string> keys = keysOf(record.keyword());
+    const std::vector<std::string> keys = stateKeysOf(record.keyword());
     if (keys.empty())
         throw UsageError(std::string(id) + " is a " + record.keyword() + ", which has no state");
     const std::size_t equals = assignment.find('=');

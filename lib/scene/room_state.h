@@ -21,6 +21,8 @@ struct StateKey {
 /// Returns those of the core, the keys of a keyword one after another; extensions have others, see
 /// ThingKind.
 std::span<const StateKey> stateKeys();
+/// Returns the keys of the states of records with this keyword, also those of its ThingKind.
+std::vector<std::string> stateKeysOf(std::string_view keyword);
 /// Returns true if records with this keyword have a state.
 bool isActuator(std::string_view keyword);
 

@@ -22,6 +22,7 @@
 #include "scene/sensor/pose_on_carrier.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
+#include "scene/thing_kind.h"
 
 namespace ispace {
 
@@ -130,9 +131,10 @@ class Resolver {
 
     Placements resolve(Diagnostics& findings) {
         for (std::size_t i = 0; i < records_.size(); ++i) {
-            if (records_[i].schema().type != RecordType::Placement) continue;
+            const ThingKind* const kind = thingKind(records_[i].keyword());
             try {
-                add(i);
+                if (kind != nullptr && kind->check != nullptr) kind->check(records_[i]);
+                if (records_[i].schema().type == RecordType::Placement) add(i);
             } catch (const FormatError& error) {
                 findings.add(error);
             }

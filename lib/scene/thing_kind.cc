@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/thing_kind.h"
 
-#include <functional>
-#include <map>
 #include <utility>
 
 namespace ispace {
@@ -26,10 +24,17 @@ const ThingKind* thingKind(std::string_view keyword) {
     return found == known.end() ? nullptr : &found->second;
 }
 
+const std::map<std::string, ThingKind, std::less<>>& thingKinds() { return kinds(); }
+
 std::optional<Emission> emissionOf(const Record& record) {
     const ThingKind* const kind = thingKind(record.keyword());
     if (kind == nullptr || kind->emission == nullptr) return std::nullopt;
     return kind->emission(record);
+}
+
+std::string_view barrierOf(const Record& record) {
+    const ThingKind* const kind = thingKind(record.keyword());
+    return kind == nullptr || kind->barrier == nullptr ? "" : kind->barrier(record);
 }
 
 }  // namespace ispace

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records of extensions that act on a room: they take power, sound, warm and shine, and people use
-// them. Sensors, states and activities ask here, and know no keyword.
+// Records of extensions that act on a room: they take power, sound, warm and shine, people use
+// them, and they let people pass or not. Sensors, states and activities ask here, and know no
+// keyword. A record of the core has a kind, too, once an extension adds keys to it.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,12 +31,41 @@ struct UseChanges {
     std::string begin, end;
 };
 
+/// What comes of an act of a person on a thing.
+struct ActResult {
+    std::string changes;  ///< of its states, `key=value key=value`
+    std::string refusal;  ///< the reason for no change: "it is locked"; else ""
+};
+
+/// Tells home automation more about a state than its name.
+struct StateEntity {
+    std::string key;
+    std::string component, device_class;  ///< of Home Assistant, the class may be ""
+};
+
 /// Records with a keyword.
 struct ThingKind {
     std::vector<std::string> states = {};  ///< keys whose values may change while the world runs
     std::vector<std::string> told = {};    ///< further states, numbers that events of a run tell
+    /// Returns true for records whose states are told: a door with a lock. Null: all.
+    bool (*has_states)(const Record& record) = nullptr;
     Emission (*emission)(const Record& record) = nullptr;  ///< null: none
     UseChanges (*use)(const Record& record) = nullptr;     ///< null: it stays as it is
+    /// Throws FormatError if values of a record contradict each other: such a scene is rejected,
+    /// and so is a change that leads to it. Null: all go together.
+    void (*check)(const Record& record) = nullptr;
+    /// Verbs for what people do to it, as `locks` in a plan of days.
+    std::vector<std::string> verbs = {};
+    /// Returns what comes of one of these verbs, or of `opens`, `closes` and `switches`, for which
+    /// `changes` are those without the kind. Null: these.
+    ActResult (*act)(const Record& record, std::string_view verb, const Record& person,
+                     std::string changes) = nullptr;
+    /// Returns the changes that let a person pass a shut door, and those behind the person; `begin`
+    /// is "" if it does not. Null: it does not.
+    UseChanges (*pass)(const Record& record, const Record& person) = nullptr;
+    /// Returns the word for a door that lets no person pass: "locked". Null, or "": "shut".
+    std::string_view (*barrier)(const Record& record) = nullptr;
+    std::vector<StateEntity> entities = {};
 };
 
 /// Adds the kind of a keyword, for the program: call it before any scene is read.
@@ -42,7 +74,11 @@ void addThingKind(std::string_view keyword, ThingKind kind);
 /// Returns the kind of a keyword; null for keywords of the core and others without one.
 /// Thread-safe.
 const ThingKind* thingKind(std::string_view keyword);
+/// Returns all kinds, by keyword.
+const std::map<std::string, ThingKind, std::less<>>& thingKinds();
 /// Returns the emission of a record; empty if its keyword has none. Thread-safe.
 std::optional<Emission> emissionOf(const Record& record);
+/// Returns the word for a door that lets no person pass, "" for others. Thread-safe.
+std::string_view barrierOf(const Record& record);
 
 }  // namespace ispace

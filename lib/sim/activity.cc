@@ -51,6 +51,8 @@ class DayLineReader {
     void readDuration(DayAction& action, std::string_view text, std::size_t at) const;
     void readAct(DayAction& action, std::string_view id, std::string_view state,
                  std::size_t at) const;
+    [[nodiscard]] std::vector<std::string> thingsWith(std::string_view verb) const;
+    [[nodiscard]] bool takesVerb(std::string_view id, std::string_view verb) const;
 
     std::string_view line_;
     std::vector<Piece> words_;
@@ -116,10 +118,29 @@ void DayLineReader::readAct(DayAction& action, std::string_view id, std::string_
                             std::size_t at) const {
     try {
         const std::string edit = stateEdit(world_->scene(), id, state);
-        action.change = "SET " + edit;
+        action.target = id;
+        action.changes = edit.substr(id.size() + 1);
     } catch (const UsageError& error) {
         fail(at, error.what());
     }
+}
+
+/// Returns the things of the scene that have a verb.
+std::vector<std::string> DayLineReader::thingsWith(std::string_view verb) const {
+    const Scene& scene = world_->scene();
+    std::vector<std::string> things;
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        const ThingKind* const kind = thingKind(scene.records[i].keyword());
+        if (kind != nullptr &&
+            std::find(kind->verbs.begin(), kind->verbs.end(), verb) != kind->verbs.end())
+            things.push_back(scene.ids[i]);
+    }
+    return things;
+}
+
+bool DayLineReader::takesVerb(std::string_view id, std::string_view verb) const {
+    const std::vector<std::string> things = thingsWith(verb);
+    return std::find(things.begin(), things.end(), id) != things.end();
 }
 
 DayAction DayLineReader::readAction(std::string_view text, std::size_t first) const {
@@ -132,7 +153,11 @@ DayAction DayLineReader::readAction(std::string_view text, std::size_t first) co
             fail(first, excerpt(action.text) + " is no action, wanted one like " + example);
     };
     const std::string_view verb = parts.front().text;
-    if (verb == "goes") {
+    action.act = verb;
+    if (parts.size() == 2 && takesVerb(parts[1].text, verb)) {
+        action.verb = DayAction::Verb::Acts;
+        action.target = parts[1].text;
+    } else if (verb == "goes") {
         wants(2, "goes kitchen");
         action.verb = DayAction::Verb::Goes;
         readTarget(action, parts[1].text, first);
@@ -155,8 +180,14 @@ DayAction DayLineReader::readAction(std::string_view text, std::size_t first) co
             fail(first, "wanted on or off, found " + excerpt(parts[2].text));
         readAct(action, parts[1].text, parts[2].text == "on" ? "on=yes" : "on=no", first);
     } else {
-        fail(first, excerpt(verb) + " is no action" +
-                        didYouMean(verb, {"goes", "uses", "stays", "opens", "closes", "switches"}));
+        std::vector<std::string> known = {"goes", "uses", "stays", "opens", "closes", "switches"};
+        for (const auto& [keyword, kind] : thingKinds())
+            known.insert(known.end(), kind.verbs.begin(), kind.verbs.end());
+        if (std::find(known.begin(), known.end(), verb) == known.end())
+            fail(first, excerpt(verb) + " is no action" + didYouMean(verb, known));
+        wants(2, "opens door1");
+        fail(first, "no thing that one " + std::string(verb) + " has the id " +
+                        excerpt(parts[1].text) + didYouMean(parts[1].text, thingsWith(verb)));
     }
     return action;
 }
@@ -280,6 +311,7 @@ void ActivityDirector::stepped(Simulation& simulation) {
         if (!doer.waits) goOn(simulation, doer);
     for (Doer* const doer : first) doer->waits = false;
     for (Doer* const doer : waiting_) doer->waits = true;
+    if (!opened_.empty()) closeDoors(simulation);
 }
 
 void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
@@ -302,7 +334,8 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
             tell(simulation, doer, 1);
             doer.is_begun = true;
             doer.gave_up = false;
-            doer.tries = 0;
+            doer.tries = doer.asks = 0;
+            doer.to_door = false;
             doer.until = world.time();
             if (!begin(simulation, doer)) return;
         } else {
@@ -314,7 +347,7 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
             if (work_left_ <= 0) return waiting_.push_back(&doer);
             if (!depart(simulation, *mover, doer)) {
                 doer.walks = false;
-                if (doer.gave_up) tellUnreached(simulation, doer);
+                if (doer.gave_up) tellUnreached(simulation, *mover, doer);
             }
         }
         if (!doer.walks && !was_there && !doer.gave_up) beginUse(simulation, doer);
@@ -341,11 +374,59 @@ bool ActivityDirector::begin(Simulation& simulation, Doer& doer) const {
             doer.until = world.time() + action.lasts;
             return true;
         case DayAction::Verb::Acts:
+            if (!act(simulation, doer)) return true;
             // The world changes before its next step.
-            simulation.askChange(action.change);
             doer.until = world.time() + world.stepLength();
             return false;
     }
+    return true;
+}
+
+namespace {
+
+/// Returns the record with an id, or null.
+const Record* recordNamed(const Scene& scene, const std::string& id) {
+    const auto found = std::find(scene.ids.begin(), scene.ids.end(), id);
+    return found == scene.ids.end()
+               ? nullptr
+               : &scene.records[static_cast<std::size_t>(found - scene.ids.begin())];
+}
+
+/// Returns the changes that let a person pass a shut door.
+UseChanges passageOf(const ShutDoor& door, const Record& person) {
+    const ThingKind* const kind = thingKind(door.record.keyword());
+    return kind == nullptr || kind->pass == nullptr ? UseChanges{}
+                                                    : kind->pass(door.record, person);
+}
+
+/// Returns the request that sets some states of a thing.
+std::string changeOf(const std::string& id, const std::string& changes) {
+    if (changes.find(' ') != std::string::npos) return "ACT " + id + ' ' + changes;
+    return "SET " + id + '.' + changes;
+}
+
+}  // namespace
+
+/// Asks for the changes of an act. \returns false, and gives it up, if the thing refuses it, of
+/// which it tells
+bool ActivityDirector::act(Simulation& simulation, Doer& doer) const {
+    const DayAction& action = actionOf(doer);
+    const Scene& scene = simulation.world().scene();
+    const std::string& person = plan_.lines[*doer.line].person;
+    const Record* const record = recordNamed(scene, action.target);
+    const Record* const who = recordNamed(scene, person);
+    const ThingKind* const kind = record == nullptr ? nullptr : thingKind(record->keyword());
+    ActResult result{action.changes, ""};
+    if (kind != nullptr && kind->act != nullptr && who != nullptr)
+        result = kind->act(*record, action.act, *who, action.changes);
+    if (!result.refusal.empty()) {
+        std::string text = "script: " + person;
+        text.append(" ").append(action.text).append(": ").append(result.refusal);
+        simulation.events().add(EventKind::Mark, std::move(text), person);
+        doer.gave_up = true;
+        return false;
+    }
+    if (!result.changes.empty()) simulation.askChange(changeOf(action.target, result.changes));
     return true;
 }
 
@@ -357,14 +438,32 @@ bool ActivityDirector::goOnWalking(World& world, std::size_t mover, Doer& doer) 
     return true;
 }
 
-/// Returns the ways of people of a height: doors that are low for one are high enough for another.
-const GoalWays& ActivityDirector::waysOf(const World& world, double height) {
-    constexpr std::size_t kMaxHeights = 16;  // bounds memory
-    if (std::exchange(ways_of_, world.changes()) != world.changes()) ways_.clear();
-    if (ways_.size() >= kMaxHeights && !ways_.contains(height)) ways_.clear();
-    auto& ways = ways_[height];
-    if (!ways) ways = std::make_shared<const GoalWays>(world.scene(), humanRadius(height), height);
-    return *ways;
+/// Returns the ways of a person: doors that are low for one are high enough for another, and doors
+/// that are shut for one open for another.
+ActivityDirector::Ways ActivityDirector::waysOf(const World& world, std::size_t mover) {
+    constexpr std::size_t kMaxWays = 16;  // bounds memory
+    if (std::exchange(ways_of_, world.changes()) != world.changes()) {
+        ways_.clear();
+        shut_doors_ = shutDoorsOf(world.scene());
+    }
+    const PlacedPerson& person = world.people()[mover - world.robots().size()];
+    Ways found;
+    std::pair<double, std::string> key{person.height, ""};
+    if (!shut_doors_.empty()) {
+        const Record* const record = recordNamed(world.scene(), person.id);
+        for (const ShutDoor& door : shut_doors_) {
+            if (record == nullptr || passageOf(door, *record).begin.empty()) continue;
+            found.doors.push_back(door);
+            key.second.append(door.id).append(1, '\n');
+        }
+    }
+    if (ways_.size() >= kMaxWays && !ways_.contains(key)) ways_.clear();
+    auto& ways = ways_[key];
+    if (!ways)
+        ways = std::make_shared<const GoalWays>(world.scene(), withOpen(world.scene(), found.doors),
+                                                humanRadius(person.height), person.height);
+    found.goals = ways;
+    return found;
 }
 
 /// Returns the spots where other movers stand or to which a plan sends them.
@@ -384,11 +483,110 @@ std::vector<GoalWays::Spot> ActivityDirector::spotsOfOthers(const World& world,
     return spots;
 }
 
+namespace {
+
+/// Room that a person leaves to a door that opens.
+constexpr double kBeforeDoor = 0.15;
+
+/// Returns the beginning of a way, up to a distance from a door.
+std::vector<Point2> wayBefore(const ShutDoor& door, Point2 from, const std::vector<Point2>& way,
+                              double reach) {
+    constexpr double kStep = 0.05;
+    std::vector<Point2> before;
+    Point2 last = from;
+    for (const Point2 next : way) {
+        const double leg = distance(last, next);
+        for (double along = 0; along < leg; along += kStep) {
+            const Point2 p = last + along / leg * (next - last);
+            if (distance(p, door.line) >= reach) continue;
+            before.push_back(p);
+            return before;
+        }
+        before.push_back(next);
+        last = next;
+    }
+    return before;
+}
+
+Turn sideOf(const ShutDoor& door, Point2 p) { return orientation(door.line.a, door.line.b, p); }
+
+}  // namespace
+
+/// Opens the door in front of a person, which goes on once it is open. \returns false if it stays
+/// shut
+bool ActivityDirector::awaitDoor(Simulation& simulation, std::size_t mover, Doer& doer,
+                                 const ShutDoor& door) {
+    const World& world = simulation.world();
+    const std::string& person = plan_.lines[*doer.line].person;
+    const UseChanges changes = passageOf(door, *recordNamed(world.scene(), person));
+    const bool is_first = doer.asks == 0;
+    doer.gave_up = doer.asks++ >= kMaxTries;
+    if (doer.gave_up) return false;
+    simulation.askChange(changeOf(door.id, changes.begin));
+    OpenedDoor& opened =
+        opened_.try_emplace(door.id, OpenedDoor{door, changes.end, {}}).first->second;
+    opened.users[person] = sideOf(door, world.status(mover).pose.position);
+    --doer.tries;
+    doer.until = world.time() + (is_first ? world.stepLength() : kPause);
+    return true;
+}
+
+/// Keeps the open doors on a way open for a person that they let pass.
+void ActivityDirector::passOpened(const World& world, std::size_t mover,
+                                  const std::vector<Point2>& way) {
+    if (opened_.empty()) return;
+    const std::string& person = world.movers()[mover].id;
+    const Point2 from = world.status(mover).pose.position;
+    const Record* const record = recordNamed(world.scene(), person);
+    for (auto& [id, opened] : opened_)
+        if (!crossings(from, way, {&opened.door, 1}).empty() && record != nullptr &&
+            !passageOf(opened.door, *record).begin.empty())
+            opened.users[person] = sideOf(opened.door, from);
+}
+
+/// Returns true until a person that opened a door has passed it, or goes elsewhere.
+bool ActivityDirector::isPassing(const World& world, const std::string& person,
+                                 const OpenedDoor& opened) const {
+    const auto mover = world.moverNamed(person);
+    const auto doer = doers_.find(person);
+    if (!mover || doer == doers_.end() || !doer->second.line || !doer->second.walks) return false;
+    const Point2 at = world.status(*mover).pose.position;
+    return sideOf(opened.door, at) == opened.users.at(person) ||
+           distance(at, opened.door.line) <
+               world.movers()[*mover].model.radius + opened.door.thickness / 2 + kBeforeDoor;
+}
+
+/// Shuts the doors that people have passed, once their doorways are free.
+void ActivityDirector::closeDoors(Simulation& simulation) {
+    constexpr double kSpare = 0.05;
+    const World& world = simulation.world();
+    for (auto it = opened_.begin(); it != opened_.end();) {
+        OpenedDoor& opened = it->second;
+        std::vector<std::string> done;
+        for (const auto& [person, side] : opened.users)
+            if (!isPassing(world, person, opened)) done.push_back(person);
+        for (const std::string& person : done) opened.users.erase(person);
+        bool is_free = opened.users.empty();
+        for (std::size_t i = 0; is_free && i < world.movers().size(); ++i)
+            is_free = distance(world.status(i).pose.position, opened.door.line) >
+                      world.movers()[i].model.radius + opened.door.thickness / 2 + kSpare;
+        if (!is_free) {
+            ++it;
+            continue;
+        }
+        const Record* const now = recordNamed(world.scene(), it->first);
+        if (now != nullptr && now->keyword() == opened.door.record.keyword() && now->flag("open"))
+            simulation.askChange(changeOf(it->first, opened.after));
+        it = opened_.erase(it);
+    }
+}
+
 /// Sends a person on the way. \returns false if there is none, or the person has arrived
 bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& doer) {
     const DayAction& action = actionOf(doer);
     World& world = simulation.world();
-    const GoalWays& ways = waysOf(world, world.people()[mover - world.robots().size()].height);
+    const Ways of_person = waysOf(world, mover);
+    const GoalWays& ways = *of_person.goals;
     const Point2 from = world.status(mover).pose.position;
     if (doer.tries++ >= kMaxTries) {
         // A crowd may leave no point of a zone free, or of the floor beside a thing: a person that
@@ -410,6 +608,17 @@ bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& d
         stay(world, mover, doer);
         return false;
     }
+    doer.to_door = false;
+    if (const auto doors = crossings(from, way, of_person.doors); !doors.empty()) {
+        const ShutDoor& door = of_person.doors[doors.front().door];
+        const double reach = humanRadius(world.people()[mover - world.robots().size()].height) +
+                             door.thickness / 2 + kBeforeDoor;
+        way = wayBefore(door, from, way, reach);
+        constexpr double kAtDoor = 0.2;
+        if (distance(from, way.back()) < kAtDoor) return awaitDoor(simulation, mover, doer, door);
+        doer.to_door = true;
+    }
+    passOpened(world, mover, way);
     doer.goal = way.back();
     // Steering round others needs short steps; turns and straight lines are exact in any. Where
     // these run into others, every other try steers.
@@ -436,6 +645,11 @@ void ActivityDirector::arrive(World& world, std::size_t mover, Doer& doer) {
     });
     if (is_done && !doer.rest.empty() && goOnWalking(world, mover, doer)) return;
     doer.command = 0;
+    if (is_done && std::exchange(doer.to_door, false)) {
+        doer.tries = doer.asks = 0;
+        doer.until = world.time();
+        return;
+    }
     // A noisy walk may end beside its goal, and the thing may have moved.
     doer.walks = !is_done || !isThere(world, mover, doer);
     if (doer.walks)
@@ -445,8 +659,8 @@ void ActivityDirector::arrive(World& world, std::size_t mover, Doer& doer) {
 }
 
 bool ActivityDirector::isThere(const World& world, std::size_t mover, const Doer& doer) {
-    const double height = world.people()[mover - world.robots().size()].height;
-    return waysOf(world, height).isAt(world.status(mover).pose.position, actionOf(doer).target);
+    return waysOf(world, mover)
+        .goals->isAt(world.status(mover).pose.position, actionOf(doer).target);
 }
 
 /// Begins the stay at the target of an action.
@@ -505,10 +719,26 @@ void ActivityDirector::tell(Simulation& simulation, const Doer& doer, int value)
                               .text = line.actions[doer.action].text});
 }
 
-void ActivityDirector::tellUnreached(Simulation& simulation, const Doer& doer) const {
+/// Tells the states of the shut doors that keep a person from its goal; "" if others do.
+std::string ActivityDirector::barriersOf(const World& world, std::size_t mover, const Doer& doer) {
+    if (shut_doors_.empty()) return "";
+    const PlacedPerson& person = world.people()[mover - world.robots().size()];
+    const Point2 from = world.status(mover).pose.position;
+    const GoalWays all(world.scene(), withOpen(world.scene(), shut_doors_),
+                       humanRadius(person.height), person.height);
+    const std::vector<Point2> way = all.way(from, actionOf(doer).target);
+    const Record* const record = recordNamed(world.scene(), person.id);
+    std::vector<ShutDoor> barriers;
+    for (const ShutDoor& door : shut_doors_)
+        if (record == nullptr || passageOf(door, *record).begin.empty()) barriers.push_back(door);
+    return barriersText(from, way, barriers);
+}
+
+void ActivityDirector::tellUnreached(Simulation& simulation, std::size_t mover, const Doer& doer) {
     simulation.events().tell({.kind = EventKind::Unreached,
                               .id = plan_.lines[*doer.line].person,
-                              .other = actionOf(doer).target});
+                              .other = actionOf(doer).target,
+                              .text = barriersOf(simulation.world(), mover, doer)});
 }
 
 }  // namespace ispace

@@ -7,11 +7,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "geom/point.h"
+#include "geom/predicates.h"
 #include "sim/command.h"
 #include "sim/goal_ways.h"
+#include "sim/shut_doors.h"
 #include "sim/sim_time.h"
 
 namespace ispace {
@@ -25,11 +28,13 @@ struct DayAction {
         Goes,   ///< to the zone or element `target`
         Uses,   ///< likewise, and stays there
         Stays,  ///< where the person is
-        Acts    ///< on an actuator: `change` is the request
+        Acts    ///< on the actuator `target`, at once
     };
     Verb verb = Verb::Stays;
     std::string text;  ///< as in the script: "uses kettle 3min"
-    std::string target, change;
+    std::string target;
+    std::string act;      ///< of Acts: the verb, "opens"
+    std::string changes;  ///< likewise, of its states, unless its kind has others: "open=yes"
     SimTime lasts{};
 };
 
@@ -55,8 +60,9 @@ bool isDayLine(std::string_view line);
 ///     daily HH:MM[:SS] PERSON [NAME:] ACTION; ACTION …
 ///
 /// DAY counts from 1. An action is `goes ID`, `uses ID DURATION`, `stays DURATION`, `opens DOOR`,
-/// `closes DOOR`, or `switches ID on|off`; zones and elements are named by their ids. Without a
-/// NAME an activity has the name of its first action. \throws FormatError with all findings
+/// `closes DOOR`, `switches ID on|off`, or a verb of a thing (see ThingKind) with its ID; zones and
+/// elements are named by their ids. Without a NAME an activity has the name of its first action.
+/// \throws FormatError with all findings
 DayPlan readDayPlan(std::string_view text, const std::string& file, const World& world);
 
 /// Makes people follow their days: each does the activities of a plan one after another, each at
@@ -64,6 +70,9 @@ DayPlan readDayPlan(std::string_view text, const std::string& file, const World&
 /// and shut doors, and ends it beside the thing, see GoalWays::isAt(); one that is blocked tries
 /// again five times, a second apart, and then gives the action up. So does a person that is led
 /// away from the thing it uses.
+///
+/// Shut doors that let the person pass (see ThingKind) are on its way, too: in front of one it
+/// stands and opens it, and the door is shut behind it once the doorway is free.
 ///
 /// Searches for ways are limited in each step, by the cells that they look at: the others of a
 /// crowd that sets out at once stand until it is their turn, which they get in the order in which
@@ -91,6 +100,19 @@ class ActivityDirector {
         std::int64_t changes = 0;  // of the world then
         bool waits = false;        // for its turn to look for a way
         std::string after_use;     // the change that ends the use of a thing; "" for none
+        bool to_door = false;      // the way ends in front of a door, which it then opens
+        int asks = 0;              // for a door to open, since the person came to it
+    };
+    /// The ways of a person, through the shut doors that let it pass.
+    struct Ways {
+        std::vector<ShutDoor> doors;
+        std::shared_ptr<const GoalWays> goals;
+    };
+    /// A door that is open for people.
+    struct OpenedDoor {
+        ShutDoor door;                      // as it was before
+        std::string after;                  // the changes behind them
+        std::map<std::string, Turn> users;  // the side from which each one comes
     };
     void enqueue(SimTime now);
     void goOn(Simulation& simulation, Doer& doer);
@@ -105,9 +127,16 @@ class ActivityDirector {
     void watchStay(const World& world, std::size_t mover, Doer& doer);
     [[nodiscard]] std::vector<GoalWays::Spot> spotsOfOthers(const World& world,
                                                             std::size_t mover) const;
-    const GoalWays& waysOf(const World& world, double height);
+    Ways waysOf(const World& world, std::size_t mover);
+    bool awaitDoor(Simulation& simulation, std::size_t mover, Doer& doer, const ShutDoor& door);
+    void passOpened(const World& world, std::size_t mover, const std::vector<Point2>& way);
+    void closeDoors(Simulation& simulation);
+    [[nodiscard]] bool isPassing(const World& world, const std::string& person,
+                                 const OpenedDoor& opened) const;
+    bool act(Simulation& simulation, Doer& doer) const;
+    std::string barriersOf(const World& world, std::size_t mover, const Doer& doer);
     void tell(Simulation& simulation, const Doer& doer, int value) const;
-    void tellUnreached(Simulation& simulation, const Doer& doer) const;
+    void tellUnreached(Simulation& simulation, std::size_t mover, const Doer& doer);
     [[nodiscard]] const DayAction& actionOf(const Doer& doer) const {
         return plan_.lines[*doer.line].actions[doer.action];
     }
@@ -118,8 +147,11 @@ class ActivityDirector {
     std::map<std::string, Doer> doers_;
     std::vector<Doer*> waiting_;  // for their turn, the first one longest
     std::int64_t work_left_;      // cells to look at before others wait; negative: a debt
-    std::map<double, std::shared_ptr<const GoalWays>> ways_;  // by the height of people
-    std::int64_t ways_of_ = -1;                               // changes of the world then
+    // By the height of people, and the ids of the shut doors that let them pass.
+    std::map<std::pair<double, std::string>, std::shared_ptr<const GoalWays>> ways_;
+    std::vector<ShutDoor> shut_doors_;  // of the world
+    std::int64_t ways_of_ = -1;         // changes of the world then
+    std::map<std::string, OpenedDoor> opened_;
 };
 
 }  // namespace ispace

@@ -53,8 +53,10 @@ TEST(DayPlan, ReadsTimesNamesAndActions) {
         "s.txt", world);
     ASSERT_EQ(plan.lines.size(), 3U);
     EXPECT_EQ(plan.lines[0].name, "tea");
-    EXPECT_EQ(plan.lines[0].actions[0].change, "SET l.on=yes");
-    EXPECT_EQ(plan.lines[0].actions[1].change, "SET d.open=no");
+    EXPECT_EQ(plan.lines[0].actions[0].target, "l");
+    EXPECT_EQ(plan.lines[0].actions[0].changes, "on=yes");
+    EXPECT_EQ(plan.lines[0].actions[1].act, "closes");
+    EXPECT_EQ(plan.lines[0].actions[1].changes, "open=no");
     EXPECT_EQ(plan.lines[1].time, hours(7) + minutes(30));
     EXPECT_TRUE(plan.lines[1].is_daily);
     ASSERT_EQ(plan.lines[1].actions.size(), 3U);

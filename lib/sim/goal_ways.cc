@@ -30,12 +30,17 @@ std::optional<Point2> middleOf(const Element& element) {
     return Point2{(box.low.x + box.high.x) / 2, (box.low.y + box.high.y) / 2};
 }
 
+/// Returns true for the things of extensions, which are no elements.
+bool isThing(const Record& record) {
+    return !record.schema().isEnvironment() && thingKind(record.keyword()) != nullptr;
+}
+
 /// Returns the things of extensions to which people go, as elements. One that stands in or on
 /// another element is beside a person as soon as that element is.
 std::vector<Element> thingsOf(const Scene& scene) {
     std::vector<Element> things;
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
-        if (thingKind(scene.records[i].keyword()) == nullptr) continue;
+        if (!isThing(scene.records[i])) continue;
         const auto place = placeOf(scene.records[i]);
         if (!place) continue;
         auto shape = std::make_shared<const Body>();
@@ -149,16 +154,15 @@ std::vector<std::string> goalIds(const Scene& scene) {
     for (const Element& element : scene.environment.elements())
         if (middleOf(element)) ids.push_back(element.id);
     for (std::size_t i = 0; i < scene.records.size(); ++i)
-        if (thingKind(scene.records[i].keyword()) != nullptr && placeOf(scene.records[i]))
-            ids.push_back(scene.ids[i]);
+        if (isThing(scene.records[i]) && placeOf(scene.records[i])) ids.push_back(scene.ids[i]);
     return ids;
 }
 
-GoalWays::GoalWays(const Scene& scene, double radius, double height)
+GoalWays::GoalWays(const Scene& scene, Environment environment, double radius, double height)
     : radius_(radius),
-      environment_(scene.environment),
+      environment_(std::move(environment)),
       obstacles_(environment_, height, nullptr),
-      walls_(dividersOf(environment_, height)),
+      walls_(dividersOf(scene.environment, height)),
       things_(thingsOf(scene)) {}
 
 std::vector<const Element*> GoalWays::named(const std::string& id) const {

@@ -21,7 +21,11 @@ namespace ispace {
 class GoalWays {
   public:
     /// \param radius,height of the person
-    GoalWays(const Scene& scene, double radius, double height);
+    GoalWays(const Scene& scene, double radius, double height)
+        : GoalWays(scene, scene.environment, radius, height) {}
+    /// \param environment for ways, instead of the scene's: of the same records, but for doors that
+    /// are open. isAt() looks at the scene.
+    GoalWays(const Scene& scene, Environment environment, double radius, double height);
     GoalWays(const GoalWays&) = delete;
     GoalWays& operator=(const GoalWays&) = delete;
 

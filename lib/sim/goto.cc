@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/number.h"
+#include "sim/shut_doors.h"
 #include "sim/world.h"
 #include "sim/world_state.h"
 
@@ -88,6 +89,16 @@ std::optional<Point2> World::Data::nearestRoom(std::size_t mover, Point2 goal) {
     return std::nullopt;
 }
 
+std::string World::Data::doorsBetween(std::size_t mover, Point2 goal) const {
+    const std::vector<ShutDoor> doors = shutDoorsOf(*scene);
+    if (doors.empty()) return "";
+    const Environment opened = withOpen(*scene, doors);
+    const Obstacles bodies(opened, movers[mover].model.height, nullptr);
+    const WayFinder finder(bodies, bounds(opened.indoor()), movers[mover].model.radius);
+    const Point2 at = motions[mover].pose.position;
+    return barriersText(at, finder.wayBetween(at, goal), doors);
+}
+
 std::string World::findWay(std::size_t mover, Command& command) {
     assert(command.verb == Verb::Goto && !command.course.path.empty());
     Data& data = *data_;
@@ -104,8 +115,11 @@ std::string World::findWay(std::size_t mover, Command& command) {
     if (way.empty()) {
         const bool is_inside = data.scene->environment.indoor().locate(goal) != Side::Outside;
         const auto near = data.nearestRoom(mover, goal);
-        return "no way for " + who.id + " to " + text_of(goal) +
-               (is_inside ? ": walls or bodies are between" : ": it is outside of the room") +
+        const std::string doors = data.doorsBetween(mover, goal);
+        std::string reason =
+            is_inside ? "walls or bodies are between" : "it is outside of the room";
+        if (!doors.empty()) reason = doors;
+        return "no way for " + who.id + " to " + text_of(goal) + ": " + reason +
                (near ? "; the nearest point with a way is " + text_of(*near) : "");
     }
     command.value = lengthOf(at, way);

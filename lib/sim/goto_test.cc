@@ -111,6 +111,20 @@ TEST(Goto, SaysWhyThereIsNoWay) {
     EXPECT_EQ(world.findWay(1, command), "no way for slim to 20,1: it is outside of the room");
 }
 
+TEST(Goto, NamesTheShutDoorsInTheWay) {
+    const std::string flat =
+        "fence id=f path=0,0;12,0;12,4;0,4 closed=yes\nfence id=a path=4,0;4,4\n"
+        "fence id=b path=8,0;8,4\ndoor id=da wall=a at=4,2\ndoor id=db wall=b at=8,2 open=yes\n"
+        "door id=dout wall=f at=6,0\ninside at=1,1\ninside at=5,1\n";
+    const Scene rooms = scene(flat.c_str(), "robot id=r at=1,1 radius=0.25\n");
+    World world(rooms, kStep);
+    Command command = goTo({11, 1});
+    EXPECT_EQ(world.findWay(0, command), "no way for r to 11,1: da is shut");
+    command = goTo({20, 1});
+    EXPECT_EQ(world.findWay(0, command), "no way for r to 20,1: it is outside of the room")
+        << "no door leads there";
+}
+
 TEST(Goto, IsNotMisledToTheOtherSideOfAThinWall) {
     // The corridor behind the wall leaves the robot 3 cm at each side, less than ways keep.
     const Scene rooms = scene(

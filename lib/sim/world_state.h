@@ -166,6 +166,10 @@ struct World::Data {
     /// Returns the nearest point about a goal, in whole decimetres and up to 2 m away, where a
     /// mover has room and to which it has a way. Tries few ways.
     std::optional<Point2> nearestRoom(std::size_t mover, Point2 goal);
+    /// Tells the states of the shut doors on the way that a mover would have if all doors were
+    /// open;
+    /// "" if that does not help.
+    [[nodiscard]] std::string doorsBetween(std::size_t mover, Point2 goal) const;
     [[nodiscard]] std::vector<WayFinder::Spot> standingBeside(std::size_t mover) const;
     /// Goes on with a Goto whose way came to an end. \returns false if that ends the command
     bool continueTrip(std::size_t mover, Outcome outcome);

@@ -170,6 +170,7 @@ class PlanDrawing {
     void drawZoneName(const Element& element, std::size_t index);
     void drawWall(const Element& element);
     void drawOpening(const Element& element, const ElementLines& lines);
+    void drawBolt(const Segment2& leaf, double width);
     void drawPlacedNames();
 
     /// Returns a pen with a width in text sizes.

@@ -9,6 +9,7 @@
 #include "env/level.h"
 #include "geom/arrangement.h"
 #include "geom/predicates.h"
+#include "scene/thing_kind.h"
 
 namespace ispace {
 
@@ -28,6 +29,8 @@ std::string titleOf(const Element& element) {
         title.append(": ").append(element.record.keyword());
     if (top > 0)
         title.append(", up to ").append(formatDouble(std::round(top * 1000) / 1000) + " m");
+    if (const std::string_view barrier = barrierOf(element.record); !barrier.empty())
+        title.append(", ").append(barrier);
     return title;
 }
 
@@ -215,6 +218,17 @@ void PlanDrawing::drawOpenings() {
             drawOpening(elements[i], lines[i]);
 }
 
+/// Draws the bolt of a shut door that lets no person pass: a square at the end of its leaf.
+void PlanDrawing::drawBolt(const Segment2& leaf, double width) {
+    const double side = std::max(width, metres(6 * wall_pen_)), length = distance(leaf.a, leaf.b);
+    const Vec2 along = 1 / length * (leaf.b - leaf.a);
+    const Vec2 half = side / 2 * along, across{-half.y, half.x};
+    const Point2 middle = leaf.b - std::min(side, length / 2) * along;
+    picture_.area(Polygon{middle - half - across, middle + half - across, middle + half + across,
+                          middle - half + across},
+                  {kDoor});
+}
+
 /// Draws a window's frame and pane; a door's leaf, open or in its frame, and its swing: about the
 /// start of the opening, to the left of its wall. The side is arbitrary, since records do not store
 /// it.
@@ -239,6 +253,7 @@ void PlanDrawing::drawOpening(const Element& element, const ElementLines& lines)
         picture_.area(gapOf(line, width), {kWhite});
         picture_.lines(swing, {is_open ? pen(kDoor, 0.05) : pen(kDoor, 0.05, {0.15, 0.2})});
         picture_.line(line.a, is_open ? swing.back() : line.b, pen(kDoor, 0.2));
+        if (!barrierOf(element.record).empty()) drawBolt(line, width);
     }
     picture_.pop();
 }

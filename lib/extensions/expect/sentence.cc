@@ -12,6 +12,8 @@
 #include "base/number.h"
 #include "record/schema.h"
 #include "record/text.h"
+#include "scene/placement_schemas.h"
+#include "scene/thing_kind.h"
 #include "sim/command.h"
 
 namespace ispace {
@@ -38,6 +40,17 @@ constexpr auto kThingWords = std::to_array<ThingWord>({{"on", "on"},
                                                        {"touched", "touched"},
                                                        {"opens", "open"},
                                                        {"closes", "open", true}});
+
+/// Returns true for a state of things of extensions that is yes or no, which is a word, too.
+bool isFlagOfThings(const std::string& word) {
+    return std::any_of(thingKinds().begin(), thingKinds().end(), [&word](const auto& each) {
+        const auto& [keyword, kind] = each;
+        const Schema* const schema = sceneSchemas().find(keyword);
+        const KeySpec* const key = schema == nullptr ? nullptr : schema->find(word);
+        return key != nullptr && key->type == KeyType::Flag &&
+               std::find(kind.states.begin(), kind.states.end(), word) != kind.states.end();
+    });
+}
 
 const std::vector<std::string>& stateWords() {
     static const std::vector<std::string> words = {
@@ -294,6 +307,10 @@ class SentenceReader {
                 made.is_opposite = known.is_opposite;
                 return;
             }
+        if (!atEnd() && isFlagOfThings(words_[next_])) {
+            made.key = words_[next_++];
+            return;
+        }
         if (turns || made.subject.find('.') == std::string::npos)
             want(
                 "a state (within, in zone, seen, unseen, stalled, still, faster than, slower than; "

@@ -137,7 +137,8 @@ void MqttBridge::publish(const RoomState& state) {
     const std::string topic = topicOf(state.id, state.key);
     const auto found = topics_.find(topic);
     const bool is_actuator = found != topics_.end() && found->second.is_actuator;
-    client_->publish({topic, payloadOf(state.key, state.value, is_actuator), true});
+    const KeySpec* const spec = is_actuator ? found->second.spec : nullptr;
+    client_->publish({topic, payloadOf(state.key, state.value, is_actuator, spec), true});
 }
 
 void MqttBridge::serve() {

@@ -8,6 +8,7 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "scene/thing_kind.h"
 #include "server/role_answer.h"
 
 namespace ispace {
@@ -95,13 +96,15 @@ std::string topicId(std::string_view id) {
     return escapedId(id, [](char c) { return c != '+' && c != '#'; });
 }
 
-std::string payloadOf(std::string_view key, std::string_view value, bool is_actuator) {
+std::string payloadOf(std::string_view key, std::string_view value, bool is_actuator,
+                      const KeySpec* spec) {
     std::string scaled_value;
     if (is_actuator && isShare(key)) scaled_value = scaled(value, kPerCent, false);
     if (is_actuator && isColor(key)) scaled_value = scaled(value, kFullColor, true);
     if (!scaled_value.empty()) return scaled_value;
-    if (isFlag(key) && value == "1") return "ON";
-    if (isFlag(key) && value == "0") return "OFF";
+    const bool is_flag = isFlag(key) || (spec != nullptr && spec->type == KeyType::Flag);
+    if (is_flag && value == "1") return "ON";
+    if (is_flag && value == "0") return "OFF";
     return std::string(value);
 }
 
@@ -188,6 +191,29 @@ struct Measure {
 constexpr Measure kMeasures[] = {{"power", "power", "W", "measurement"},
                                  {"energy", "energy", "kWh", "total_increasing"}};
 
+/// Returns the entity that a kind names for a state, or null.
+const StateEntity* entityOf(std::string_view keyword, std::string_view key) {
+    const ThingKind* const kind = thingKind(keyword);
+    if (kind == nullptr) return nullptr;
+    const auto found = std::find_if(kind->entities.begin(), kind->entities.end(),
+                                    [key](const StateEntity& one) { return one.key == key; });
+    return found == kind->entities.end() ? nullptr : &*found;
+}
+
+/// Describes a key as the entity that its kind names. Only locks and switches take commands.
+MqttMessage describeAs(const StateEntity& named, Entity entity, MqttKey key,
+                       const std::string& prefix) {
+    const bool is_lock = named.component == "lock";
+    if (!is_lock && named.component != "switch") key.spec = nullptr;
+    entity.addTopics("", key);
+    if (!named.device_class.empty()) entity.json().key("device_class").value(named.device_class);
+    if (is_lock) {
+        entity.json().key("payload_lock").value("ON").key("payload_unlock").value("OFF");
+        entity.json().key("state_locked").value("ON").key("state_unlocked").value("OFF");
+    }
+    return entity.message(named.component, prefix);
+}
+
 /// Describes a key that the entity of its thing does not hold.
 MqttMessage describeKey(Entity entity, const MqttKey& key, const std::string& prefix) {
     entity.addTopics("", key);
@@ -262,10 +288,13 @@ std::vector<MqttMessage> discoveryOf(const MqttThing& thing, const std::string& 
         messages.push_back(entity.message(component.component, prefix));
     }
     // No escaped id has three underscores.
-    for (; held < thing.keys.size(); ++held)
-        messages.push_back(describeKey(
-            Entity(thing.id + ' ' + thing.keys[held].name, plain + "___" + thing.keys[held].name),
-            thing.keys[held], prefix));
+    for (; held < thing.keys.size(); ++held) {
+        const MqttKey& key = thing.keys[held];
+        Entity entity(thing.id + ' ' + key.name, plain + "___" + key.name);
+        const StateEntity* const named = entityOf(thing.keyword, key.name);
+        messages.push_back(named == nullptr ? describeKey(std::move(entity), key, prefix)
+                                            : describeAs(*named, std::move(entity), key, prefix));
+    }
     return messages;
 }
 

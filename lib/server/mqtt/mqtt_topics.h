@@ -18,8 +18,9 @@ namespace ispace {
 std::string topicId(std::string_view id);
 
 /// Converts a state to its payload: ON or OFF, of an actuator per cent or R,G,B to 255, or the
-/// value itself.
-std::string payloadOf(std::string_view key, std::string_view value, bool is_actuator);
+/// value itself. \param spec of the key; null unless an actuator's record has it
+std::string payloadOf(std::string_view key, std::string_view value, bool is_actuator,
+                      const KeySpec* spec = nullptr);
 /// Returns what a command has to be, in the words of its topic, if the payload is not that: "ON or
 /// OFF", "0 to 100"; "" for a good one, and for a state whose values the records know alone.
 /// \param spec of the key
@@ -40,7 +41,8 @@ struct MqttThing {
 };
 
 /// Returns the messages of Home Assistant's discovery for a thing, retained: an entity of its
-/// keyword, and one for each key that this entity does not hold, such as the `pan` of a projector.
+/// keyword, and one for each key that this entity does not hold, such as the `pan` of a projector:
+/// of the component that the kind of the thing names (ThingKind::entities), else of the key's type.
 std::vector<MqttMessage> discoveryOf(const MqttThing& thing, const std::string& prefix);
 
 }  // namespace ispace

@@ -152,7 +152,7 @@ function takeScene(scene) {
   cameras.list(movers.sensors);
   layers.show(movers.sensors, kind => movers.colorOfKind(kind));
   marks.list(scene.marks ?? [], scene.colors);
-  states.know(movers.sensors, zoneOf);
+  states.know(movers.sensors, zoneOf, scene.switched ?? []);
   editor.open(link, scene);
 }
 

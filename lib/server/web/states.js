@@ -17,7 +17,8 @@ function changeOf(line) {
   return (room ?? '') === Link.room ? [[id, ...Object.entries(state)[0]]] : [];
 }
 
-const SWITCHES = new Set(['on', 'open', 'blind', 'motion']);
+/** Keys of states that are on or off: those of sensors, and those of actuators, which the scene names. */
+const SWITCHES = new Set(['open', 'motion']);
 
 /** #rrggbb of a colour in shares, and back. */
 function hexOf(color) {
@@ -49,7 +50,7 @@ export class States {
     if (!answer.startsWith('OK')) return;
     const states = statesOf(answer), t = Number(keysOf(answer).t);
     // Those of a changed room are mostly the same: a field keeps its text.
-    const names = states.map(([id, key]) => `${id}.${key} ${this.sensors.has(id)} ${this.roomOf(id)}`).join();
+    const names = states.map(([id, key]) => `${id}.${key} ${this.sensors.has(id)} ${this.roomOf(id)}`).concat(...SWITCHES).join();
     if (names !== this.names) {
       this.list.replaceChildren();
       this.lists.clear();
@@ -60,8 +61,12 @@ export class States {
     this.take(states, t);
   }
 
-  /** Sensors report, and nobody presses them. roomOf(id): the zone in which something is, '' in none */
-  know(sensors, roomOf) {
+  /**
+   * Sensors report, and nobody presses them. roomOf(id): the zone in which something is, '' in none; switched: the
+   * keys of actuators that are on or off
+   */
+  know(sensors, roomOf, switched) {
+    for (const key of switched) SWITCHES.add(key);
     this.sensors = new Set(sensors.map(({id}) => id));
     this.roomOf = roomOf;
     if (this.link) this.open(this.link);

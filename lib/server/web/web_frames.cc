@@ -7,6 +7,8 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -107,6 +109,17 @@ void addActuators(JsonWriter& json, const Scene& scene) {
     json.endArray();
 }
 
+/// The states of actuators that are on or off, by their keys.
+void addSwitched(JsonWriter& json, const Scene& scene) {
+    std::set<std::string> keys;
+    for (const Record& record : scene.records)
+        for (const std::string& key : stateKeysOf(record.keyword()))
+            if (record.schema().find(key)->type == KeyType::Flag) keys.insert(key);
+    json.key("switched").beginArray();
+    for (const std::string& key : keys) json.value(key);
+    json.endArray();
+}
+
 void addPassages(JsonWriter& json, const std::vector<PassageOutline>& passages) {
     json.key("passages").beginArray();
     for (const PassageOutline& passage : passages) {
@@ -147,6 +160,7 @@ std::string webScene(const Scene& scene, std::int64_t version, const WebSceneFac
     addMovers(json, scene);
     addSensors(json, scene);
     addActuators(json, scene);
+    addSwitched(json, scene);
     addPassages(json, facts.passages);
     addMarks(json, facts.marks);
     addAdditions(json, facts.additions);
