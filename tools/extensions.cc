@@ -18,6 +18,9 @@
 #ifdef ISPACE_HAS_CALIBRATION
 #include "extensions/calibration/calibrate.h"
 #endif
+#ifdef ISPACE_HAS_CURTAINS
+#include "extensions/curtains/curtain.h"
+#endif
 #ifdef ISPACE_HAS_EXPECT
 #include "extensions/expect/expectations.h"
 #endif
@@ -71,6 +74,10 @@ bool addFormats() {
 #endif
 #ifdef ISPACE_HAS_CALIBRATION
     addImporters(calibrationImporters());
+#endif
+#ifdef ISPACE_HAS_CURTAINS
+    addSceneSchemas(curtainSchemas());
+    addCurtains();
 #endif
 #ifdef ISPACE_HAS_MEMORY
     addSceneSchemas(volumeSchemas());

@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "env/body_shapes.h"
 #include "env/element_schemas.h"
 #include "env/mesh.h"
 #include "env/walls.h"
@@ -134,11 +135,19 @@ constexpr Shape kShapes[] = {{"ispace", roomBody, false}, {"wall", wallBody, fal
                              {"infra", infraBody},        {"switch", switchBody, false},
                              {"boxes", boxesBody},        {"screen", screenBody}};
 
+std::vector<Shape>& addedShapes() {
+    static std::vector<Shape> added;
+    return added;
+}
+
 /// Returns null if the record has no body.
 const Shape* shapeOf(const Record& record) {
     const auto* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
                                      [&](const Shape& s) { return s.keyword == record.keyword(); });
-    return shape == std::end(kShapes) ? nullptr : shape;
+    if (shape != std::end(kShapes)) return shape;
+    const auto added = std::find_if(addedShapes().begin(), addedShapes().end(),
+                                    [&](const Shape& s) { return s.keyword == record.keyword(); });
+    return added == addedShapes().end() ? nullptr : &*added;
 }
 
 }  // namespace
@@ -146,6 +155,10 @@ const Shape* shapeOf(const Record& record) {
 Body bodyOf(const Record& record) {
     const Shape* const shape = shapeOf(record);
     return shape == nullptr ? Body{} : shape->body(record);
+}
+
+void addBodyShape(std::string_view keyword, Body (*body)(const Record& record)) {
+    addedShapes().push_back({keyword, body, false});
 }
 
 bool standsByItself(const Record& record) {

@@ -12,6 +12,7 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "env/body_shapes.h"
 #include "env/level.h"
 #include "env/mesh.h"
 #include "env/room_builder.h"
@@ -43,7 +44,8 @@ Slice cutOf(std::span<const Element> elements, const std::span<const std::size_t
     const auto stands = [&](const auto& part) { return part.bottom <= top && bottom <= part.top; };
     forEachOf(elements, which, [&](const Element& element, std::size_t owner) {
         for (const Sheet& sheet : element.body.sheets) {
-            if (!stands(sheet) || (is_slice && !isAmong(Surfaces::Opaque, sheet))) continue;
+            if (!stands(sheet) || (is_slice ? !isAmong(Surfaces::Opaque, sheet) : isSoft(sheet)))
+                continue;
             cut.sheets.push_back(sheet.line);
             cut.sheet_owners.push_back(owner);
         }

@@ -6,6 +6,7 @@
 
 #include "base/number.h"
 #include "drawing/plan/plan.h"
+#include "env/body_shapes.h"
 #include "env/level.h"
 #include "geom/arrangement.h"
 #include "geom/predicates.h"
@@ -180,11 +181,12 @@ void PlanDrawing::drawWalls() {
 void PlanDrawing::drawWall(const Element& element) {
     const double cut = style_.cut;
     const bool neutral = style_.neutral;
-    std::vector<Segment2> low, at_cut, high, glass;
+    std::vector<Segment2> low, at_cut, high, glass, cloth;
     for (const Sheet& sheet : element.body.sheets)
         (sheet.bottom > cut ? high
          : sheet.top < cut  ? low
          : sheet.clear      ? glass
+         : isSoft(sheet)    ? cloth
                             : at_cut)
             .push_back(sheet.line);
     picture_.pushGroup(element.id, titleOf(element));
@@ -201,6 +203,7 @@ void PlanDrawing::drawWall(const Element& element) {
         }
     }
     picture_.lines(glass, {pen(kGlass, wall_pen_)});
+    picture_.lines(cloth, {pen(displayColor(Material::Cloth), wall_pen_, {0.08, 0.04})});
     picture_.lines(at_cut, {pen(kWall, wall_pen_)});
     picture_.lines(high, {pen(neutral ? kOpening : kFaintInk, 0.05, {0.3, 0.25})});
     picture_.pop();
