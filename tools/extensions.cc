@@ -30,6 +30,10 @@
 #ifdef ISPACE_HAS_LEARNING
 #include "extensions/learning/learning.h"
 #endif
+#ifdef ISPACE_HAS_LOCKS
+#include "extensions/locks/lock.h"
+#include "extensions/locks/lock_role.h"
+#endif
 #ifdef ISPACE_HAS_MEMORY
 #include "extensions/memory/memory.h"
 #endif
@@ -78,6 +82,9 @@ bool addFormats() {
 #ifdef ISPACE_HAS_CURTAINS
     addSceneSchemas(curtainSchemas());
     addCurtains();
+#endif
+#ifdef ISPACE_HAS_LOCKS
+    addLocks();
 #endif
 #ifdef ISPACE_HAS_MEMORY
     addSceneSchemas(volumeSchemas());
@@ -148,6 +155,9 @@ std::span<const MakeRoleService> roleServices() {
     static const std::vector<MakeRoleService> services = {
 #ifdef ISPACE_HAS_APPLIANCES
         makeMeters,
+#endif
+#ifdef ISPACE_HAS_LOCKS
+        makeLocks,
 #endif
 #ifdef ISPACE_HAS_MEMORY
         makeMemory,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lists: jobs of `coverage --batch` and sites of `arrange --places`.
+// Lists: jobs of `coverage --batch`, sites of `arrange --places` and tags of doors.
 #include "arrange/placement_rules.h"
 #include "cli/batch.h"
+#include "extensions/locks/lock.h"
 #include "fuzz.h"
 
 namespace {
@@ -18,6 +19,13 @@ void tryJobs(std::string_view bytes) {
     }
 }
 
+void tryTags(std::string_view text) {
+    std::string again;
+    for (const std::string& tag : parseAccess(text))
+        again.append(again.empty() ? "" : ",").append(tag);
+    fuzz::require(again == text, "other tags");
+}
+
 void tryPlaces(const std::string& text) {
     for (const Site& site : readSites(text, "places.csv", headingsAround(4)))
         fuzz::require(!site.headings.empty(), "a place without a heading");
@@ -30,6 +38,11 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         tryJobs(bytes);
     } catch (const FormatError&) {
         // It may be a list of sites.
+    }
+    try {
+        tryTags(bytes);
+    } catch (const FormatError&) {
+        // Likewise.
     }
     tryPlaces(std::string(bytes));
 }

@@ -38,6 +38,7 @@ from .errors import (
 )
 from .filters import CoverageReport, Figure, Layout, Object, Record, arrange, coverage, info, scan
 from .floor import Floor, Pressure
+from .locks import LockReading, Locks
 from .memory import Memory, Touch
 from .meter import Meter, MeterReading
 from .mote import Mote, MoteReport
@@ -128,6 +129,8 @@ __all__ = [
     "Lift",
     "Limits",
     "Load",
+    "LockReading",
+    "Locks",
     "Lux",
     "Mat",
     "Memory",

@@ -16,6 +16,7 @@ from .errors import ToolError
 from .filters import Option, Placed, Room, arguments_of, last_line, operands, tool
 from .floor import Floor
 from .movers import Person, Robot
+from .locks import Locks
 from .memory import Memory
 from .meter import Meter
 from .node import Node
@@ -120,6 +121,10 @@ class Simrun:
     def meter(self, plugs: str = "*") -> Meter:
         """Reads plugs that meter appliances."""
         return Meter(self.address, plugs)
+
+    def locks(self, doors: str = "*") -> Locks:
+        """Shows tags to doors with locks."""
+        return Locks(self.address, doors)
 
     def floor(self, sensors: str = "*") -> Floor:
         """Reads floors, beds and chairs that feel weights."""
