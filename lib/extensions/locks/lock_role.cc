@@ -72,8 +72,8 @@ struct Run {
             if (glob.matches(each.first)) names.push_back(each.first);
         return names;
     }
-    void read(std::size_t room);
-    void forceDoors(std::size_t room);
+    void read(std::size_t index);
+    void forceDoors(std::size_t index);
     void shutDoors();
 };
 
