@@ -99,7 +99,8 @@ void addCurtains() {
     addThingKind("curtain", {.states = {"drawn"},
                              .check = checkCurtain,
                              .verbs = {"opens", "closes"},
-                             .act = actOnCurtain});
+                             .act = actOnCurtain,
+                             .entities = {{"drawn", "cover", "curtain"}}});
 }
 
 }  // namespace ispace

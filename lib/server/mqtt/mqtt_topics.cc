@@ -200,9 +200,26 @@ const StateEntity* entityOf(std::string_view keyword, std::string_view key) {
     return found == kind->entities.end() ? nullptr : &*found;
 }
 
-/// Describes a key as the entity that its kind names. Only locks and switches take commands.
+/// Describes a share of cloth that is drawn, 1 where it is shut, as a cover with a position.
+MqttMessage describeCover(const StateEntity& named, Entity entity, const MqttKey& key,
+                          const std::string& prefix) {
+    const std::string command = key.topic + "/set";
+    JsonWriter& json = entity.json();
+    if (!named.device_class.empty()) json.key("device_class").value(named.device_class);
+    json.key("command_topic").value(command).key("payload_open").value("0");
+    json.key("payload_close").value("1").key("payload_stop").null();
+    json.key("position_topic").value(key.topic);
+    json.key("position_template").value("{{ (100 - 100 * (value | float)) | round }}");
+    json.key("set_position_topic").value(command);
+    json.key("set_position_template").value("{{ (100 - position) / 100 }}");
+    return entity.message(named.component, prefix);
+}
+
+/// Describes a key as the entity that its kind names. Only covers, locks and switches take
+/// commands.
 MqttMessage describeAs(const StateEntity& named, Entity entity, MqttKey key,
                        const std::string& prefix) {
+    if (named.component == "cover") return describeCover(named, std::move(entity), key, prefix);
     const bool is_lock = named.component == "lock";
     if (!is_lock && named.component != "switch") key.spec = nullptr;
     entity.addTopics("", key);
