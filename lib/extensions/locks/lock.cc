@@ -208,11 +208,12 @@ std::optional<Finding> checkExit(const Scene& scene, std::size_t record) {
     std::string doors;
     for (const std::string& id : barred) doors.append(doors.empty() ? "" : ", ").append(id);
     doors += barred.size() == 1 ? " is locked" : " are locked";
-    return Finding{.element = scene.ids[record],
-                   .at = place,
-                   .message = "human " + scene.ids[record] + " cannot leave the room: " + doors,
-                   .hint = "name its tag in `access` of a door, or set locked=no",
-                   .source = person.place()};
+    return Finding{
+        .element = scene.ids[record],
+        .at = place,
+        .message = "no door lets human " + scene.ids[record] + " out of the room: " + doors,
+        .hint = "name its tag in `access` of a door, or set locked=no",
+        .source = person.place()};
 }
 
 void addLocks() {

@@ -316,9 +316,10 @@ TEST(LockChecks, FindPeopleWhoCannotLeave) {
         return findingOf(checkExit, scene, person);
     };
     const Scene closed = sceneOf(flat(doors, doors), kPeople);
-    EXPECT_EQ(found(closed, "bob"),
-              "human bob cannot leave the room: d, a are locked; name its tag in `access` of a "
-              "door, or set locked=no");
+    EXPECT_EQ(
+        found(closed, "bob"),
+        "no door lets human bob out of the room: d, a are locked; name its tag in `access` of a "
+        "door, or set locked=no");
     EXPECT_EQ(found(closed, "ann"), "");
     EXPECT_EQ(found(sceneOf(flat(doors, ""), kPeople), "bob"), "") << "round by the lobby";
     // A door to the outside that is not locked.
