@@ -88,6 +88,30 @@ TEST(Motion, GoesStraight) {
     expectNear(motion.pose, 1, 4.4, 90);
 }
 
+TEST(Motion, SteadyWaysHaveTheBitsOfOthers) {
+    const MotionLimits limits = limitsOf(kModel, 0);
+    for (const double speed : {0.0, -0.0, 0.7, -0.3})
+        for (const double heading : {0.0, -0.0, 33.7, -179.9, 180.0}) {
+            Motion motion = moving(speed);
+            motion.pose = {{0.1, -0.2}, Angle::degrees(heading)};
+            motion.turn_end = motion.pose.heading + Angle();
+            Motion turned = motion;  // by no angle
+            turned.turn.goal.kind = AxisGoal::Kind::Distance;
+            const Advance steady = advance(motion, limits, 0.1),
+                          other = advance(turned, limits, 0.1);
+            EXPECT_EQ(steady.motion.pose, other.motion.pose);
+            EXPECT_EQ(std::signbit(steady.motion.pose.heading.degrees()),
+                      std::signbit(other.motion.pose.heading.degrees()));
+            EXPECT_EQ(steady.motion.drive.speed, other.motion.drive.speed);
+            EXPECT_EQ(std::signbit(steady.motion.drive.speed),
+                      std::signbit(other.motion.drive.speed));
+            EXPECT_EQ(steady.motion.drive.accel, other.motion.drive.accel);
+            EXPECT_EQ(steady.path, other.path);
+            EXPECT_EQ(steady.bulge, other.bulge);
+            EXPECT_EQ(steady.lag, other.lag);
+        }
+}
+
 TEST(Motion, TurnsOnTheSpot) {
     const Motion motion = after(moving(0, 100), 2.5);
     EXPECT_EQ(motion.pose.position, Point2());

@@ -191,17 +191,18 @@ void Navigator::wander(const SteeringState& helm, Motion& motion) {
     }
     has_aim_ = true;
     double pace = speed_;
-    FreeHeading free = lookAbout(helm, pace).choose(aim_, horizon(pace));
+    std::optional<Steering> steering(std::in_place, helm, pace, horizon(pace));
+    FreeHeading free = steering->choose(aim_, horizon(pace));
     const auto suits = [&] {
         return free.time >= horizon(pace) &&
                std::abs(degreesOff(free.direction, motion.pose.heading)) < kWide;
     };
     while (pace >= 2 * kPace && !suits()) {
         pace /= 2;
-        free = lookAbout(helm, pace).choose(aim_, horizon(pace));
+        steering.emplace(helm, pace, horizon(pace));
+        free = steering->choose(aim_, horizon(pace));
     }
-    if (free.time < kMinValue)
-        free = lookAbout(helm, pace).choose(aim_ + Angle::degrees(180), horizon(pace));
+    if (free.time < kMinValue) free = steering->choose(aim_ + Angle::degrees(180), horizon(pace));
     if (free.time < kMinValue) {
         aim_ = aim_ + Angle::degrees(360 * random());
         return stand(motion);

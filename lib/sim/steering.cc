@@ -13,24 +13,78 @@ namespace ispace {
 namespace {
 
 /// Metres to keep between circles and obstacles if there is room.
-constexpr double kGap = 0.05;
-/// Usual numbers, of little memory.
-constexpr std::size_t kUsualNeighbours = 16, kUsualLines = 24;
+constexpr double kGap = FreeStrip::kGap;
+/// Usual number, of little memory.
+constexpr std::size_t kUsualLines = 24;
 constexpr double kHair = 1e-6;
 /// Share of the horizon in which obstacles matter where a mover turns aside, and the least that is
 /// tested.
 constexpr double kAside = 0.25, kLeastShare = 1.0 / 8;
 /// Metres: nearer lines are not tested by lanes.
 constexpr double kLeastReach = 1e-3;
+/// Square metres: exceeds all rounding of coordinates of a town.
+constexpr double kDoubt = 1e-7;
+/// Metres: farther than all coordinates of a town.
+constexpr double kFarAway = 1e6;
+/// Metres to either side of a strip's middle line, for a mover that bends while it turns, and where
+/// that is too much.
+constexpr double kWide = 0.08, kNarrow = 1e-3;
+/// Metres by which a strip keeps farther from obstacles than its half width: exceeds all rounding.
+constexpr double kStripGap = 1e-4;
+/// Metres beyond the horizon that the strip of a way may have.
+constexpr double kMore = 2;
+/// Degrees from the desired heading.
+constexpr std::array<double, 11> kTurns = {0, -15, 15, -30, 30, -50, 50, -75, 75, -100, 100};
 
 double square(double x) { return x * x; }
 
-/// Sets the lanes up to a multiple of kLanes.
-void pad(LineLanes& lanes) {
-    for (std::size_t i = lanes.count; i % LineLanes::kLanes != 0; ++i)
-        for (LineLanes::Lane* const lane :
-             {&lanes.ax, &lanes.ay, &lanes.dx, &lanes.dy, &lanes.per_square, &lanes.reach_square})
-            (*lane)[i] = 0;
+/// Returns the share of a line at which it is nearest to a point, from its product with the line.
+ISPACE_INLINE double shareAt(double along) {
+    const double least = simd::choose(along > 0, along, 0.0);
+    return simd::choose(least < 1, least, 1.0);
+}
+
+/// Returns the least of `count` numbers, a multiple of kLanes; infinite without any.
+ISPACE_INLINE double leastOf(const double* numbers, std::size_t count) {
+    constexpr std::size_t kLanes = LineLanes::kLanes;
+    std::array<double, kLanes> least;
+    least.fill(kForever);
+    for (std::size_t i = 0; i < count; i += kLanes)
+        for (std::size_t k = 0; k < kLanes; ++k)
+            least[k] = numbers[i + k] < least[k] ? numbers[i + k] : least[k];
+    double result = least[0];
+    for (std::size_t k = 1; k < kLanes; ++k) result = least[k] < result ? least[k] : result;
+    return result;
+}
+
+/// Sets lanes to lines relative to a place, but for their reaches, and `squares` to their squared
+/// distances. Returns the least of these.
+ISPACE_SIMD_CLONES double fill(const ObstacleIndex::Line* __restrict all,
+                               const std::uint32_t* __restrict which, std::size_t count,
+                               double place_x, double place_y, LineLanes* __restrict lanes,
+                               double* __restrict squares) {
+    constexpr std::size_t kLanes = LineLanes::kLanes;
+    for (std::size_t i = 0; i < count; ++i) {
+        const ObstacleIndex::Line& line = all[which[i]];
+        lanes->ax[i] = line.begin.x - place_x;
+        lanes->ay[i] = line.begin.y - place_y;
+        lanes->dx[i] = line.along.x;
+        lanes->dy[i] = line.along.y;
+        lanes->per_square[i] = line.per_square;
+    }
+    const std::size_t end = (count + kLanes - 1) / kLanes * kLanes;
+    for (std::size_t i = count; i < end; ++i) {
+        lanes->ax[i] = lanes->ay[i] = kFarAway;
+        lanes->dx[i] = lanes->dy[i] = lanes->per_square[i] = 0;
+    }
+    lanes->count = end;
+    for (std::size_t i = 0; i < end; ++i) {
+        const double ax = lanes->ax[i], ay = lanes->ay[i], dx = lanes->dx[i], dy = lanes->dy[i];
+        const double t = shareAt(-(ax * dx + ay * dy) * lanes->per_square[i]);
+        const double x = ax + t * dx, y = ay + t * dy;
+        squares[i] = x * x + y * y;
+    }
+    return leastOf(squares, end);
 }
 
 Vec2 velocityOf(const Motion& motion) {
@@ -52,33 +106,67 @@ bool comesNear(const Segment2& way, const Segment2& line, double reach) {
     return least < reach * reach || intersects(way, line);
 }
 
-/// Computes for each line the least squared distance of the way to it, less that at which it comes
-/// near; -1 if they cross. Rounds otherwise than comesNear().
-ISPACE_SIMD_CLONES void findRoom(const LineLanes& lanes, double x, double y, double* room) {
-    const double per_square = 1 / (x * x + y * y);
-    const std::size_t end =
-        (lanes.count + LineLanes::kLanes - 1) / LineLanes::kLanes * LineLanes::kLanes;
-    for (std::size_t i = 0; i < end; ++i) {
-        const double ax = lanes.ax[i], ay = lanes.ay[i], dx = lanes.dx[i], dy = lanes.dy[i];
-        const double bx = ax + dx, by = ay + dy;
-        const auto share = [](double along) {
-            const double least = simd::choose(along > 0, along, 0.0);
-            return simd::choose(least < 1, least, 1.0);
-        };
-        // The end of the way to the line, then the line's ends to the way.
-        const double t = share(((x - ax) * dx + (y - ay) * dy) * lanes.per_square[i]);
-        const double ex = x - ax - t * dx, ey = y - ay - t * dy;
-        const double s = share((ax * x + ay * y) * per_square);
-        const double fx = ax - s * x, fy = ay - s * y;
-        const double u = share((bx * x + by * y) * per_square);
-        const double gx = bx - u * x, gy = by - u * y;
-        const double e = ex * ex + ey * ey, f = fx * fx + fy * fy, g = gx * gx + gy * gy;
-        const double fg = simd::choose(f < g, f, g);
-        const double least = simd::choose(e < fg, e, fg) - lanes.reach_square[i];
-        const double sides = (x * ay - y * ax) * (x * by - y * bx);
-        const double ends = (dy * ax - dx * ay) * (dx * (y - ay) - dy * (x - ax));
-        room[i] = simd::choose(sides < 0, simd::choose(ends < 0, -1.0, least), least);
+/// Returns the least squared distance of the way (x, y) to a line, less that at which it comes
+/// near; -1 if they cross. Rounds otherwise than comesNear(). \param per_way inverse of its squared
+/// length
+ISPACE_INLINE double roomBeside(double ax, double ay, double dx, double dy, double per_square,
+                                double reach_square, double x, double y, double per_way) {
+    const double bx = ax + dx, by = ay + dy;
+    // The end of the way to the line, then the line's ends to the way.
+    const double t = shareAt(((x - ax) * dx + (y - ay) * dy) * per_square);
+    const double ex = x - ax - t * dx, ey = y - ay - t * dy;
+    const double s = shareAt((ax * x + ay * y) * per_way);
+    const double fx = ax - s * x, fy = ay - s * y;
+    const double u = shareAt((bx * x + by * y) * per_way);
+    const double gx = bx - u * x, gy = by - u * y;
+    const double e = ex * ex + ey * ey, f = fx * fx + fy * fy, g = gx * gx + gy * gy;
+    const double fg = simd::choose(f < g, f, g);
+    const double least = simd::choose(e < fg, e, fg) - reach_square;
+    const double sides = (x * ay - y * ax) * (x * by - y * bx);
+    const double ends = (dy * ax - dx * ay) * (dx * (y - ay) - dy * (x - ax));
+    return simd::choose(sides < 0, simd::choose(ends < 0, -1.0, least), least);
+}
+
+/// Computes roomBeside() of each line. Returns the least.
+ISPACE_SIMD_CLONES double findRoom(const LineLanes* __restrict lanes, double x, double y,
+                                   double* __restrict room) {
+    const double per_way = 1 / (x * x + y * y);
+    const std::size_t count = lanes->count;
+    for (std::size_t i = 0; i < count; ++i)
+        room[i] = roomBeside(lanes->ax[i], lanes->ay[i], lanes->dx[i], lanes->dy[i],
+                             lanes->per_square[i], lanes->reach_square[i], x, y, per_way);
+    return leastOf(room, count);
+}
+
+/// Counts the points within a distance, of a multiple of kLanes.
+ISPACE_SIMD_CLONES std::int64_t countNear(const double* __restrict x, const double* __restrict y,
+                                          std::size_t count, double place_x, double place_y,
+                                          double square) {
+    std::int64_t near = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double dx = x[i] - place_x, dy = y[i] - place_y;
+        near += dx * dx + dy * dy <= square ? 1 : 0;
     }
+    return near;
+}
+
+/// Returns the length of a strip along a unit vector that the lines leave free, at most `most`.
+/// \param reach distance that its middle line keeps from them
+double freeLength(const LineLanes& lanes, Vec2 along, double most, double reach) {
+    LineLanes::Lane room;
+    findRoom(&lanes, most * along.x, most * along.y, room.data());
+    double length = most;
+    for (std::size_t i = 0; i < lanes.count; ++i) {
+        if (room[i] + lanes.reach_square[i] - reach * reach > kDoubt) continue;
+        const Vec2 begin{lanes.ax[i], lanes.ay[i]}, line{lanes.dx[i], lanes.dy[i]};
+        // Before its nearer end, and before the way comes so near to the line without ends.
+        const double first = dot(begin, along) + std::min(0.0, dot(line, along)) - reach;
+        const double off = cross(line, begin), gain = cross(line, along);
+        const double margin = std::abs(off) - reach / std::sqrt(lanes.per_square[i]);
+        const double meets = margin > 0 && off * gain > 0 ? margin / std::abs(gain) : 0;
+        length = std::min(length, std::max(first, meets));
+    }
+    return length;
 }
 
 }  // namespace
@@ -92,9 +180,41 @@ Steering::Steering(const SteeringState& helm, double speed, double horizon)
     findNeighbours(*helm.around, helm.mover);
 }
 
+void FewMovers::set(Traffic& traffic, std::span<const Mover> movers,
+                    std::span<const Motion> motions) {
+    traffic_ = &traffic;
+    motions_ = motions;
+    is_built_ = false;
+    const std::size_t end =
+        (motions.size() + LineLanes::kLanes - 1) / LineLanes::kLanes * LineLanes::kLanes;
+    x_.assign(end, kFarAway);
+    y_.assign(end, kFarAway);
+    fastest_ = widest_ = 0;
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+        const Motion& motion = motions[i];
+        x_[i] = motion.pose.position.x;
+        y_[i] = motion.pose.position.y;
+        fastest_ = std::max(fastest_, std::abs(motion.drive.speed) + std::abs(motion.side.speed));
+        widest_ = std::max(widest_, movers[i].model.radius);
+    }
+}
+
+const Traffic* FewMovers::about(Point2 p, double reach) {
+    if (countNear(x_.data(), y_.data(), x_.size(), p.x, p.y, square(reach)) < 2) return nullptr;
+    if (!std::exchange(is_built_, true)) traffic_->rebuild(motions_);
+    return traffic_;
+}
+
 void Steering::findNeighbours(const Surroundings& around, std::size_t mover) {
+    const Traffic* traffic = around.traffic;
+    if (around.few != nullptr) {
+        const double fastest = speed_ + around.few->fastest();
+        traffic = around.few->about(
+            place_, (radius_ + around.few->widest() + kGap + fastest * horizon_) * (1 + 2 * kHair));
+        if (traffic == nullptr) return;
+    }
     const double sight = radius_ + std::min(kMoverSight, 2 * speed_ * horizon_);
-    around.traffic->forEachNear(place_, sight, [&](std::size_t other) {
+    traffic->forEachNear(place_, sight, [&](std::size_t other) {
         if (other == mover) return;
         const Motion& motion = around.motions[other];
         const Vec2 offset = motion.pose.position - place_;
@@ -103,9 +223,49 @@ void Steering::findNeighbours(const Surroundings& around, std::size_t mover) {
         const double fastest = speed_ + std::abs(motion.drive.speed) + std::abs(motion.side.speed);
         const double farthest = (reach + fastest * horizon_) * (1 + kHair);
         if (dot(offset, offset) > farthest * farthest) return;
-        if (neighbours_.empty()) neighbours_.reserve(kUsualNeighbours);
-        neighbours_.push_back({offset, velocityOf(motion), reach});
+        const Vec2 velocity = velocityOf(motion);
+        const Neighbour found{offset.x, offset.y, velocity.x, velocity.y, reach};
+        if (count_ < kUsualNeighbours) {
+            few_[count_++] = found;
+            return;
+        }
+        if (many_.empty()) many_.assign(few_.begin(), few_.end());
+        many_.push_back(found);
     });
+}
+
+Steering::Course Steering::courseTo(Angle direction) const {
+    return {direction, speed_ * unitVector(direction)};
+}
+
+/// Returns a course that deviates from the desired one by one of kTurns.
+Steering::Course Steering::courseTo(Angle desired, Vec2 forward, std::size_t turn) const {
+    const Angle direction = desired + Angle::degrees(kTurns[turn]);
+    if (turn == 0) return {direction, speed_ * forward};
+    // Without a neighbour the velocity decides on obstacles alone, in doubt by the exact one.
+    if (helm_->index == nullptr || has_lines_ || count_ > 0) return courseTo(direction);
+    static const std::array<Vec2, kTurns.size()> vectors = [] {
+        std::array<Vec2, kTurns.size()> made;
+        for (std::size_t i = 0; i < made.size(); ++i)
+            made[i] = unitVector(Angle::degrees(kTurns[i]));
+        return made;
+    }();
+    const Vec2 by = vectors[turn];
+    return {direction,
+            {speed_ * (by.x * forward.x - by.y * forward.y),
+             speed_ * (by.y * forward.x + by.x * forward.y)},
+            false};
+}
+
+/// Returns the unit vector along the desired heading, which is mostly that of the last choice.
+Vec2 Steering::forwardOf(Angle desired) const {
+    SteeringMemory* const memory = helm_->memory;
+    if (memory == nullptr) return unitVector(desired);
+    if (memory->heading != desired) {
+        memory->heading = desired;
+        memory->forward = unitVector(desired);
+    }
+    return memory->forward;
 }
 
 void Steering::findLines() const {
@@ -122,8 +282,8 @@ void Steering::findLines() const {
 
 double Steering::untilNeighbour(Vec2 velocity) const {
     double least = kForever;
-    for (const auto& [offset, others, reach] : neighbours_) {
-        const Vec2 closing = velocity - others;
+    for (const auto& [x, y, x_velocity, y_velocity, reach] : neighbours()) {
+        const Vec2 offset{x, y}, closing = velocity - Vec2{x_velocity, y_velocity};
         const double b = dot(offset, closing);
         if (b <= 0) continue;  // they part
         const double c = dot(offset, offset) - reach * reach;
@@ -135,108 +295,186 @@ double Steering::untilNeighbour(Vec2 velocity) const {
     return least;
 }
 
-/// Fills lanes with the lines of the index about p that are nearer than `farthest` to the mover.
-/// \returns false if the index does not know them, they are too many, or one is too near to decide
-/// by lanes
-bool Steering::fillFromIndex(Point2 p, double farthest, LineLanes& lanes) const {
+/// Returns the distance at which obstacles are passed if there is room.
+double Steering::usualReach() const { return radius_ + kGap; }
+
+/// Returns true only if all obstacles are at least that far away.
+bool Steering::isApart() const { return nearest_ >= usualReach() + 2 * kHair; }
+
+/// Fills lanes with the lines of the index about p. Returns the mover's distance to the nearest of
+/// them; empty if the index does not know them, they are too many, or one is too near to the mover
+/// to decide by lanes.
+std::optional<double> Steering::fillAt(Point2 p, LineLanes& lanes) const {
     const auto near = helm_->index->near(p);
-    if (!near || near->which.size() > LineLanes::kMost) return false;
-    const double usual = radius_ + kGap, apart = usual + 2 * kHair;
-    double nearest = kForever;
-    std::size_t count = 0;
-    for (const std::uint32_t i : near->which) {
-        const ObstacleIndex::Line& line = near->all[i];
-        const Vec2 begin = line.begin - place_;
-        const double share = std::clamp(-dot(begin, line.along) * line.per_square, 0.0, 1.0);
-        const Vec2 foot = begin + share * line.along;
-        const double square = dot(foot, foot);
-        double reach = usual;
-        if (square < apart * apart) reach = std::min(usual, std::sqrt(square) - kHair);
-        lanes.ax[count] = begin.x;
-        lanes.ay[count] = begin.y;
-        lanes.dx[count] = line.along.x;
-        lanes.dy[count] = line.along.y;
-        lanes.per_square[count] = line.per_square;
-        lanes.reach_square[count] = reach * reach;
-        nearest = std::min(nearest, square);
-        count += square < farthest * farthest ? 1 : 0;
+    if (!near || near->which.size() > LineLanes::kMost) return std::nullopt;
+    LineLanes::Lane squares;
+    const double least = fill(near->all.data(), near->which.data(), near->which.size(), place_.x,
+                              place_.y, &lanes, squares.data());
+    if (!(least > square(kLeastReach))) return std::nullopt;
+    const double usual = usualReach(), apart = square(usual + 2 * kHair);
+    std::fill_n(lanes.reach_square.begin(), lanes.count, square(usual));
+    // A hair less than their distance, so that the way along them is free.
+    for (std::size_t i = 0; i < lanes.count && least < apart; ++i)
+        if (squares[i] < apart)
+            lanes.reach_square[i] = square(std::min(usual, std::sqrt(squares[i]) - kHair));
+    return std::sqrt(least);
+}
+
+/// Fills the lanes with the lines about the mover, unless all are beyond short ways. \returns false
+/// as fillAt()
+bool Steering::fillHere() const {
+    const double usual = usualReach();
+    const double farthest =
+        usual + std::max(kAside * speed_ * horizon_ + 2 * kHair, kNarrow + kStripGap + kLeastReach);
+    lanes_.count = 0;
+    if (nearest_ > farthest) {
+        known_ = nearest_;
+        return true;
     }
-    lanes.count = count;
-    pad(lanes);
-    is_apart_ = is_apart_ && nearest >= apart * apart;
-    return nearest > kLeastReach * kLeastReach;
+    known_ = ObstacleIndex::kNear;
+    const std::optional<double> nearest = fillAt(place_, lanes_);
+    if (!nearest) return false;
+    nearest_ = std::max(nearest_, std::min(ObstacleIndex::kNear, *nearest) - kDoubt);
+    if (helm_->memory != nullptr) helm_->memory->nearest = nearest_;
+    return true;
 }
 
-/// Nearer lines to the mover are in the lanes.
-double Steering::reachOfLanes() const {
-    return kAside * speed_ * horizon_ + radius_ + kGap + kHair;
+/// Tests a share of the horizon by the last choices; empty if they do not tell.
+std::optional<bool> Steering::isFreeByMemory(Vec2 way, double share) const {
+    const SteeringMemory* const memory = helm_->memory;
+    if (memory == nullptr) return std::nullopt;
+    if (memory->strip.contains({place_, place_ + way})) return true;
+    if (share <= kAside || !memory->has_wall) return std::nullopt;
+    const ObstacleIndex::Line& wall = memory->wall;
+    const Vec2 begin = wall.begin - place_;
+    const Vec2 foot = begin + shareAt(-dot(begin, wall.along) * wall.per_square) * wall.along;
+    const double apart = std::sqrt(dot(foot, foot)) - kHair;
+    if (apart < kLeastReach) return std::nullopt;
+    const double room =
+        roomBeside(begin.x, begin.y, wall.along.x, wall.along.y, wall.per_square,
+                   square(std::min(usualReach(), apart)), way.x, way.y, 1 / dot(way, way));
+    return room < -kDoubt ? std::optional(false) : std::nullopt;
 }
 
-/// Fills the lanes with the lines that come near ways of kAside. \returns false as fillFromIndex()
-bool Steering::fillLanes() const {
-    const double farthest = reachOfLanes();
-    if (helm_->clearance > farthest - radius_) return true;
-    return farthest <= ObstacleIndex::kNear && fillFromIndex(place_, farthest, lanes_);
+/// Returns the length of a strip along a unit vector that circles without obstacles cover, at most
+/// `most` and the last of their radii.
+double Steering::freeAhead(Vec2 along, double most) const {
+    constexpr double kLeastStep = 0.08;
+    const double reach = usualReach() + kWide + kStripGap;
+    double gone = 0, room = nearest_ - reach;
+    while (room >= kLeastStep && gone < most) {
+        gone += room;
+        room = helm_->index->least(place_ + gone * along) - reach;
+    }
+    return gone;
 }
 
-/// Tests a share of the horizon; empty in doubt, and without an index, for which lanes do not pay.
-std::optional<bool> Steering::isFreeByLanes(Vec2 velocity, double share) const {
-    if (helm_->index == nullptr || has_lines_) return std::nullopt;
-    if (!std::exchange(has_lanes_, true)) are_in_lanes_ = fillLanes();
-    if (!are_in_lanes_) return std::nullopt;
-    // Exceeds all rounding of coordinates of a town.
-    constexpr double kDoubt = 1e-7;
-    const auto least_room = [](const LineLanes& lanes, Vec2 way) {
-        std::array<double, LineLanes::kMost> room;
-        findRoom(lanes, way.x, way.y, room.data());
-        double least = 1;
-        for (std::size_t i = 0; i < lanes.count; ++i) least = std::min(least, room[i]);
-        return least;
+/// Tests a share of the horizon by lines of the index; empty in doubt.
+std::optional<bool> Steering::isFreeByLanes(Vec2 way, double share) const {
+    const double usual = usualReach(), end = std::sqrt(dot(way, way));
+    const bool is_long = share > kAside;
+    SteeringMemory* const memory = is_long ? helm_->memory : nullptr;
+    if (nearest_ < 0)
+        nearest_ = std::max({0.0, helm_->clearance > 0 ? helm_->clearance + radius_ : 0,
+                             helm_->index->least(place_)});
+    bool is_looked_at = false;
+    const auto is_blocked = [&] {
+        if (!is_long || is_looked_at || !isApart()) return false;
+        is_looked_at = true;
+        for (const double part : {1.0, 0.75, 0.5})
+            if (helm_->index->most(place_ + part * way) < usual - kDoubt) return true;
+        return false;
     };
-    const Vec2 way = share * horizon_ * velocity;
-    const double room = least_room(lanes_, way);
-    if (room < -kDoubt) return false;
-    if (room <= kDoubt) return std::nullopt;
-    if (share <= kAside) return true;
-    const double usual = radius_ + kGap, end = length(way);
-    for (const double part : {1.0, 0.75, 0.5})
-        if (is_apart_ && helm_->index->most(place_ + part * way) < usual - kDoubt) return false;
-    // The point of a line that is nearest to the way lies beside it or about its end. The index is
-    // asked from the end on back to the lines in the lanes.
-    const double reach = usual + kHair;
+    // Circles without obstacles about points of the way.
+    if (!is_long) {
+        const auto is_clear = [&](double part, double half) {
+            return helm_->index->least(place_ + part * way) > usual + half * end + kHair;
+        };
+        if (is_clear(1.0 / 2, 1.0 / 2) ||
+            (is_clear(1.0 / 4, 1.0 / 4) && is_clear(3.0 / 4, 1.0 / 4)))
+            return true;
+    } else if (is_blocked()) {
+        return false;
+    } else if (memory != nullptr) {
+        const double free = freeAhead(1 / end * way, end + kMore);
+        if (free > end) {
+            memory->strip = {place_, 1 / end * way, free, kWide};
+            return true;
+        }
+    }
+    if (!std::exchange(has_lanes_, true)) are_in_lanes_ = fillHere();
+    if (!are_in_lanes_) return std::nullopt;
+    LineLanes::Lane room;
+    const auto test = [&](const LineLanes& lanes) -> std::optional<bool> {
+        const double least = findRoom(&lanes, way.x, way.y, room.data());
+        if (least > kDoubt) return true;
+        if (least >= -kDoubt) return std::nullopt;
+        if (memory != nullptr) {
+            const auto i = static_cast<std::size_t>(
+                std::min_element(room.begin(), room.begin() + lanes.count) - room.begin());
+            memory->wall = {place_ + Vec2{lanes.ax[i], lanes.ay[i]},
+                            {lanes.dx[i], lanes.dy[i]},
+                            lanes.per_square[i]};
+            memory->has_wall = true;
+        }
+        return false;
+    };
+    if (const auto is_free = test(lanes_); is_free != std::optional(true)) return is_free;
+    // The point of a line that is nearest to the way lies beside it or about its end: lines about
+    // points of the way tell of it as far as `each`, and of its end as far as `ahead`.
+    const double apart = usual + kNarrow + kStripGap, reach = apart + kHair;
     const auto beside = [reach](double radius) {
         return std::sqrt(std::max(0.0, square(radius) - square(reach)));
     };
-    const double known = beside(reachOfLanes()), each = beside(ObstacleIndex::kNear);
-    double ahead = ObstacleIndex::kNear - reach;
-    if (!(ahead > kLeastReach && each > kLeastReach && known > 0)) return std::nullopt;
-    LineLanes lanes;
-    for (double left = end; left > known; ahead = each) {
-        const double middle = left - ahead;
-        if (!fillFromIndex(place_ + middle / end * way, kForever, lanes)) return std::nullopt;
-        const double least = least_room(lanes, way);
-        if (least < -kDoubt) return false;
-        if (least <= kDoubt) return std::nullopt;
-        left = middle - each;
+    const double ahead = ObstacleIndex::kNear - reach, each = beside(ObstacleIndex::kNear);
+    if (!(ahead > kLeastReach && each > kLeastReach)) return std::nullopt;
+    if (end <= known_ - usual - kHair) return true;
+    if (is_blocked()) return false;
+    constexpr std::size_t kMost = 3;
+    std::array<LineLanes, kMost> lanes;
+    std::size_t count = 0;
+    const Vec2 along = 1 / end * way;
+    double middle = beside(known_) + each;
+    for (;; middle += 2 * each) {
+        LineLanes& here = lanes[std::min(count++, kMost - 1)];
+        if (!fillAt(place_ + middle * along, here)) return std::nullopt;
+        if (const auto is_free = test(here); is_free != std::optional(true)) return is_free;
+        if (middle + ahead >= end) break;
     }
+    if (memory == nullptr || count > kMost || nearest_ < apart) return true;
+    // The strip may be longer: then the next ways lie in it.
+    if (count < kMost && fillAt(place_ + (middle + 2 * each) * along, lanes[count])) {
+        middle += 2 * each;
+        ++count;
+    }
+    double free = freeLength(lanes_, along, middle + ahead, apart);
+    for (std::size_t i = 0; i < count && free > end; ++i)
+        free = std::min(free, freeLength(lanes[i], along, middle + ahead, apart));
+    if (free > end) memory->strip = {place_, along, free, kNarrow};
     return true;
 }
 
 /// Tests a share of the horizon.
-bool Steering::isFreeOfLines(Vec2 velocity, double share) const {
-    if (const auto is_free = isFreeByLanes(velocity, share)) return *is_free;
+bool Steering::isFreeOfLines(const Course& course, double share) const {
+    const bool is_indexed = helm_->index != nullptr && !has_lines_;
+    if (is_indexed) {
+        const Vec2 way = share * horizon_ * course.velocity;
+        if (const auto is_free = isFreeByMemory(way, share)) return *is_free;
+        if (const auto is_free = isFreeByLanes(way, share)) return *is_free;
+    }
+    const Vec2 velocity = course.is_exact ? course.velocity : courseTo(course.direction).velocity;
     const Segment2 way{place_, place_ + share * horizon_ * velocity};
-    if (helm_->index != nullptr && !has_lines_) return isFreeByIndex(way);
+    if (is_indexed) return isFreeByIndex(way);
     findLines();
     return std::none_of(lines_.begin(), lines_.end(),
                         [&](const Line& line) { return comesNear(way, line.line, line.reach); });
 }
 
 /// Tests the first `most` of the horizon. A result below `needed` may be too small.
-double Steering::untilLine(Vec2 velocity, double most, double needed) const {
-    if (isFreeOfLines(velocity, most)) return kForever;
+double Steering::untilLine(const Course& course, double most, double needed) const {
+    if (isFreeOfLines(course, most)) return kForever;
     for (double share = most / 2; share >= kLeastShare && share * horizon_ >= needed; share /= 2)
-        if (isFreeOfLines(velocity, share)) return share * horizon_;
+        if (isFreeOfLines(course, share)) return share * horizon_;
     return 0;
 }
 
@@ -256,9 +494,9 @@ bool Steering::isFreeByIndex(const Segment2& way) const {
 }
 
 double Steering::freeTime(Angle direction) const {
-    const Vec2 velocity = speed_ * unitVector(direction);
-    const double time = std::min(horizon_, untilNeighbour(velocity));
-    return time == 0 ? 0 : std::min(time, untilLine(velocity, 1, 0));
+    const Course course = courseTo(direction);
+    const double time = std::min(horizon_, untilNeighbour(course.velocity));
+    return time == 0 ? 0 : std::min(time, untilLine(course, 1, 0));
 }
 
 bool Steering::isFree(Vec2 way) const {
@@ -269,29 +507,29 @@ bool Steering::isFree(Vec2 way) const {
         const double reach = std::min(line.reach, std::max(radius_, at_end) - kHair);
         return !comesNear(path, line.line, reach);
     });
-    return is_clear &&
-           std::all_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& other) {
-               const double apart = std::min(other.reach, length(other.offset) - kHair);
-               return squaredDistance(place_ + other.offset, path) >= apart * apart;
+    const std::span<const Neighbour> others = neighbours();
+    return is_clear && std::all_of(others.begin(), others.end(), [&](const Neighbour& other) {
+               const Vec2 offset{other.x, other.y};
+               const double apart = std::min(other.reach, length(offset) - kHair);
+               return squaredDistance(place_ + offset, path) >= apart * apart;
            });
 }
 
 FreeHeading Steering::choose(Angle desired, double needed) const {
-    constexpr std::array<double, 11> kTurns = {0, -15, 15, -30, 30, -50, 50, -75, 75, -100, 100};
     // Degrees of turning that a second of free way is worth.
     constexpr double kWorth = 120;
     // Most often one of them is free. Without any, all times are compared.
     std::array<double, kTurns.size()> most;  // upper bounds of these times
     const auto share_of = [](double turn) { return turn == 0 ? 1 : kAside; };
+    const Vec2 forward = forwardOf(desired);
     for (std::size_t i = 0; i < kTurns.size(); ++i) {
-        const Angle direction = desired + Angle::degrees(kTurns[i]);
-        const Vec2 velocity = speed_ * unitVector(direction);
-        most[i] = std::min(horizon_, untilNeighbour(velocity));
+        const Course course = courseTo(desired, forward, i);
+        most[i] = std::min(horizon_, untilNeighbour(course.velocity));
         if (most[i] < needed) continue;
-        if (most[i] == 0) return {direction, 0};  // as long as needed: no time at all
+        if (most[i] == 0) return {course.direction, 0};  // as long as needed: no time at all
         const double share = share_of(kTurns[i]);
-        const double time = std::min(most[i], untilLine(velocity, share, needed));
-        if (time >= needed) return {direction, time};
+        const double time = std::min(most[i], untilLine(course, share, needed));
+        if (time >= needed) return {course.direction, time};
         most[i] = std::min(most[i], share / 2 * horizon_);
     }
     FreeHeading best{desired, 0};
@@ -299,14 +537,12 @@ FreeHeading Steering::choose(Angle desired, double needed) const {
     for (std::size_t i = 0; i < kTurns.size(); ++i) {
         const double turn = kTurns[i], price = std::abs(turn) / kWorth;
         if (most[i] - price <= best_worth) continue;
-        const Angle direction = desired + Angle::degrees(turn);
+        const Course course = courseTo(desired, forward, i);
         const double time =
-            most[i] == 0
-                ? 0
-                : std::min(most[i], untilLine(speed_ * unitVector(direction), share_of(turn), 0));
+            most[i] == 0 ? 0 : std::min(most[i], untilLine(course, share_of(turn), 0));
         const double worth = time - price;
         if (worth > best_worth && (time > 0 || turn == 0)) {
-            best = {direction, time};
+            best = {course.direction, time};
             best_worth = worth;
         }
     }

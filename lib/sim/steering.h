@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,11 +17,32 @@
 
 namespace ispace {
 
+/// The movers of a small world, which one thread steps: traffic is only built if some are near each
+/// other.
+class FewMovers {
+  public:
+    /// \pre all outlive the queries
+    void set(Traffic& traffic, std::span<const Mover> movers, std::span<const Motion> motions);
+    /// Returns the traffic, built, if two of the movers are within `reach` of p; else null.
+    [[nodiscard]] const Traffic* about(Point2 p, double reach);
+    /// Returns upper bounds of their speeds and radii.
+    [[nodiscard]] double fastest() const { return fastest_; }
+    [[nodiscard]] double widest() const { return widest_; }
+
+  private:
+    Traffic* traffic_ = nullptr;
+    std::span<const Motion> motions_;
+    bool is_built_ = false;
+    double fastest_ = 0, widest_ = 0;
+    std::vector<double> x_, y_;  // in lanes
+};
+
 /// All movers at one moment, and the obstacles around them.
 struct Surroundings {
     std::span<const Mover> movers;
     std::span<const Motion> motions;
-    const Traffic* traffic = nullptr;  ///< built for that moment
+    const Traffic* traffic = nullptr;  ///< built for that moment; not used with `few`
+    FewMovers* few = nullptr;
 };
 
 /// An index of obstacles for worlds that look at the same ones often. Results do not depend on it.
@@ -52,8 +74,44 @@ class ObstacleIndex {
     static constexpr double kNear = 1;
     /// Returns the lines nearer to p than kNear, once each, and possibly others; empty if unknown.
     [[nodiscard]] virtual std::optional<Some> near(Point2 p) const = 0;
+    /// Returns a distance that no obstacle is nearer to p than; 0 if unknown.
+    [[nodiscard]] virtual double least(Point2 p) const = 0;
     /// Returns a distance from p within which an obstacle lies; infinite if unknown.
     [[nodiscard]] virtual double most(Point2 p) const = 0;
+};
+
+/// A straight strip of the floor in which the centre of a mover is farther from all obstacles than
+/// they are passed.
+struct FreeStrip {
+    /// Metres that the mover's circle keeps from obstacles there.
+    static constexpr double kGap = 0.05;
+
+    Point2 begin;
+    Vec2 along{1, 0};    ///< unit vector
+    double length = -1;  ///< none: below 0
+    double half_width = 0;
+
+    [[nodiscard]] bool contains(Point2 p) const {
+        const Vec2 way = p - begin;
+        const double ahead = dot(along, way);
+        return ahead >= -kEnd && ahead <= length && std::abs(cross(along, way)) <= half_width;
+    }
+    [[nodiscard]] bool contains(const Segment2& way) const {
+        return contains(way.a) && contains(way.b);
+    }
+    /// The beginning lies in the strip, rounded in any way.
+    static constexpr double kEnd = 1e-7;
+};
+
+/// Findings of the last choices of a mover among the same obstacles, by which the next ones take
+/// less time. Results do not depend on it.
+struct SteeringMemory {
+    FreeStrip strip;
+    ObstacleIndex::Line wall;  ///< that blocked the way ahead
+    bool has_wall = false;
+    Angle heading;       ///< that was desired
+    Vec2 forward{1, 0};  ///< along it
+    double nearest = 0;  ///< no obstacle is nearer to where the mover stands; 0 if unknown
 };
 
 /// Pose and surroundings of a mover that is steered.
@@ -65,9 +123,10 @@ struct SteeringState {
     double clearance = 0;  ///< no obstacle is nearer to the mover's circle
     SimTime time{}, step{};
     const ObstacleIndex* index = nullptr;  ///< of the obstacles; may be null
+    SteeringMemory* memory = nullptr;      ///< of the mover, for an index; may be null
 };
 
-/// Lines about a point, relative to it, in lanes of equal length.
+/// Lines relative to a mover, in lanes of equal length.
 struct LineLanes {
     static constexpr std::size_t kLanes = 8, kMost = 6 * kLanes;
     using Lane = std::array<double, kMost>;
@@ -75,7 +134,7 @@ struct LineLanes {
     Lane ax, ay, dx, dy;    ///< beginning and extent
     Lane per_square;        ///< inverse of the squared length
     Lane reach_square;      ///< of the distance at which a way comes near
-    std::size_t count = 0;  ///< of lines; lanes up to a multiple of kLanes are set
+    std::size_t count = 0;  ///< a multiple of kLanes: the last ones are points far away
 };
 
 /// A direction, and the seconds for which it is free.
@@ -110,34 +169,56 @@ class Steering {
 
   private:
     struct Neighbour {
-        Vec2 offset, velocity;
+        double x, y;  // offset
+        double x_velocity, y_velocity;
         double reach;  // of both circles and the gap
     };
     struct Line {
         Segment2 line;
         double reach;
     };
+    /// A heading, and its velocity.
+    struct Course {
+        Angle direction;
+        Vec2 velocity;
+        bool is_exact = true;  // else it deviates by rounding
+    };
+    /// Usual number of neighbours.
+    static constexpr std::size_t kUsualNeighbours = 16;
+
     void findNeighbours(const Surroundings& around, std::size_t mover);
+    [[nodiscard]] std::span<const Neighbour> neighbours() const {
+        return many_.empty() ? std::span(few_).first(count_) : std::span(many_);
+    }
+    [[nodiscard]] Course courseTo(Angle direction) const;
+    [[nodiscard]] Course courseTo(Angle desired, Vec2 forward, std::size_t turn) const;
+    [[nodiscard]] Vec2 forwardOf(Angle desired) const;
     void findLines() const;
-    [[nodiscard]] bool fillLanes() const;
-    [[nodiscard]] double reachOfLanes() const;
-    [[nodiscard]] bool fillFromIndex(Point2 p, double farthest, LineLanes& lanes) const;
-    [[nodiscard]] std::optional<bool> isFreeByLanes(Vec2 velocity, double share) const;
+    [[nodiscard]] double usualReach() const;
+    [[nodiscard]] bool isApart() const;
+    [[nodiscard]] std::optional<double> fillAt(Point2 p, LineLanes& lanes) const;
+    [[nodiscard]] bool fillHere() const;
+    [[nodiscard]] double freeAhead(Vec2 along, double most) const;
+    [[nodiscard]] std::optional<bool> isFreeByMemory(Vec2 way, double share) const;
+    [[nodiscard]] std::optional<bool> isFreeByLanes(Vec2 way, double share) const;
     [[nodiscard]] double untilNeighbour(Vec2 velocity) const;
-    [[nodiscard]] double untilLine(Vec2 velocity, double most, double needed) const;
-    [[nodiscard]] bool isFreeOfLines(Vec2 velocity, double share) const;
+    [[nodiscard]] double untilLine(const Course& course, double most, double needed) const;
+    [[nodiscard]] bool isFreeOfLines(const Course& course, double share) const;
     [[nodiscard]] bool isFreeByIndex(const Segment2& way) const;
 
     Point2 place_;
     double radius_, speed_, horizon_;
-    std::vector<Neighbour> neighbours_;
+    std::array<Neighbour, kUsualNeighbours> few_;
+    std::size_t count_ = 0;        // of these
+    std::vector<Neighbour> many_;  // all of them, if they are more
     const SteeringState* helm_;
     mutable std::vector<Line> lines_;
     mutable bool has_lines_ = false;        // lines_ are found
     mutable std::vector<Segment2> nearby_;  // of an index, for one way
-    mutable bool has_lanes_ = false;        // fillLanes() was called
+    mutable bool has_lanes_ = false;        // fillHere() was called
     mutable bool are_in_lanes_ = false;     // its result
-    mutable bool is_apart_ = true;          // no line of the lanes is as near as others are passed
+    mutable double known_ = 0;              // nearer lines are in the lanes
+    mutable double nearest_ = -1;           // no line is nearer; unknown below 0
     mutable LineLanes lanes_;
 };
 

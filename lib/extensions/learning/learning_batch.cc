@@ -145,8 +145,10 @@ void LearningBatch::step() {
             throw UsageError("world " + std::to_string(i) +
                              " has no episode: reset it before the next step");
     buffer_ ^= 1U;
-    forEachWorld(
-        [this](std::size_t world, LearningScratch& scratch) { stepWorld(world, scratch); });
+    forEachWorld([this](std::size_t world, LearningScratch& scratch) {
+        if (world + 1 < worlds_.size()) worlds_[world + 1].prefetch();
+        stepWorld(world, scratch);
+    });
 }
 
 std::size_t LearningBatch::bytesOfWorld() const {

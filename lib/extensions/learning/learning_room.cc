@@ -104,7 +104,7 @@ std::optional<double> WaysTo::from(Point2 p) const {
     for (int row = std::max(0, bottom); row <= std::min(rows_ - 1, bottom + 1); ++row)
         for (int column = std::max(0, left); column <= std::min(columns_ - 1, left + 1); ++column) {
             const std::uint16_t cost = costAt(column, row);
-            if (cost == kNoWay) continue;
+            if (cost == kNoWay || (best && cost * kMetres >= *best)) continue;
             const double way = cost * kMetres + FloorCells::kSide * std::hypot(x - column, y - row);
             if (!best || way < *best) best = way;
         }
@@ -144,23 +144,21 @@ Vicinity* SharedVicinities::at(Point2 p) const {
 }
 
 ClearanceField::ClearanceField(const Obstacles& obstacles, const Box2& box) : low_(box.low) {
-    constexpr double kLeastSide = 0.1, kMostCells = 4e5, kFarthest = 3;
+    constexpr double kLeastSide = 0.1, kMostCells = 4e5;
     side_ = std::max(kLeastSide, std::sqrt(box.width() * box.depth() / kMostCells));
     per_metre_ = 1 / side_;
     columns_ = static_cast<int>(std::ceil(box.width() / side_)) + 1;
     rows_ = static_cast<int>(std::ceil(box.depth() / side_)) + 1;
-    least_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
-    // From the centre of a cell, less half its diagonal.
-    const double half = side_ * 0.7072;
-    slack_ = 2.001 * half;
+    const auto tiles_of = [](int cells) { return static_cast<std::size_t>(cells) / kTile + 1; };
+    tiles_ = tiles_of(columns_);
+    least_.resize(tiles_ * tiles_of(rows_) * kTile * kTile);
+    // From the centre of a cell, rounded down.
     tbb::parallel_for(0, rows_, [&](int row) {
         for (int column = 0; column < columns_; ++column) {
             const Point2 center{low_.x + side_ * (column + 0.5), low_.y + side_ * (row + 0.5)};
-            const double bound = std::max(-half, obstacles.nearest(center, kFarthest) - half);
-            // Rounded down.
-            least_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                   static_cast<std::size_t>(column)] =
-                std::nextafter(static_cast<float>(bound), -1.0F);
+            const double least = obstacles.nearest(center, kFarthest);
+            least_[indexOf(static_cast<std::size_t>(column), static_cast<std::size_t>(row))] =
+                least < kFarthest ? static_cast<std::uint8_t>(least / kUnit) : kUnknown;
         }
     });
     addLines(obstacles, box);
@@ -255,12 +253,26 @@ void ClearanceField::findIn(const Box2& box, std::vector<Segment2>& lines) const
     });
 }
 
-double ClearanceField::most(Point2 p) const {
+inline ClearanceField::Bounds ClearanceField::boundsAt(Point2 p) const {
     const double x = (p.x - low_.x) * per_metre_, y = (p.y - low_.y) * per_metre_;
     if (!(x >= 0 && y >= 0 && x < columns_ && y < rows_))
-        return std::numeric_limits<double>::infinity();
-    return at(p) + slack_;
+        return {0, std::numeric_limits<double>::infinity()};
+    const auto column = static_cast<std::size_t>(x), row = static_cast<std::size_t>(y);
+    const double across = std::abs(x - (static_cast<double>(column) + 0.5));
+    const double along = std::abs(y - (static_cast<double>(row) + 0.5));
+    // At least the distance to the centre.
+    constexpr double kRoot = 0.4143, kRounding = 1e-6;
+    const double off =
+        side_ * (std::max(across, along) + kRoot * std::min(across, along)) + kRounding;
+    const std::uint8_t stored = least_[indexOf(column, row)];
+    const double distance = stored * kUnit;
+    return {distance - off,
+            stored == kUnknown ? std::numeric_limits<double>::infinity() : distance + kUnit + off};
 }
+
+double ClearanceField::least(Point2 p) const { return boundsAt(p).least; }
+
+double ClearanceField::most(Point2 p) const { return boundsAt(p).most; }
 
 double ClearanceField::clearanceAt(Point2 p) const {
     constexpr double kRounding = 1e-9;
@@ -293,14 +305,6 @@ bool ClearanceField::isClear(const Segment2& way, double reach) const {
            });
 }
 
-double ClearanceField::at(Point2 p) const {
-    const double x = (p.x - low_.x) * per_metre_, y = (p.y - low_.y) * per_metre_;
-    if (!(x >= 0 && y >= 0 && x < columns_ && y < rows_)) return 0;
-    return static_cast<double>(
-        least_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
-               static_cast<std::size_t>(x)]);
-}
-
 ObstacleIndex::Way ClearanceField::look(const Segment2& way, double reach) const {
     // From circle to circle in which all is clear; where they are narrow, in short steps that only
     // look for an obstacle. The margin exceeds those that steering leaves for rounding.
@@ -311,17 +315,17 @@ ObstacleIndex::Way ClearanceField::look(const Segment2& way, double reach) const
         const double x = (p.x - low_.x) * per_metre_, y = (p.y - low_.y) * per_metre_;
         return x >= 0 && y >= 0 && x < columns_ && y < rows_;
     };
-    const double start_room = at(way.a) - reach - kMargin;
+    const double start_room = boundsAt(way.a).least - reach - kMargin;
     if (!(start_room >= 0) || !is_inside(way.b)) return Way::Unknown;
     if (start_room >= end) return Way::Clear;
-    const auto is_blocked = [&](double least) { return least + slack_ < reach - kMargin; };
-    if (is_blocked(at(way.b))) return Way::Blocked;
+    const auto is_blocked = [&](const Bounds& of) { return of.most < reach - kMargin; };
+    if (is_blocked(boundsAt(way.b))) return Way::Blocked;
     const Vec2 unit = 1 / end * along;
     bool is_clear = start_room >= kLeastStep;
     for (double gone = is_clear ? start_room : kShortStep; gone < end;) {
-        const double least = at(way.a + gone * unit);
-        if (is_blocked(least)) return Way::Blocked;
-        const double room = least - reach - kMargin;
+        const Bounds here = boundsAt(way.a + gone * unit);
+        if (is_blocked(here)) return Way::Blocked;
+        const double room = here.least - reach - kMargin;
         is_clear = is_clear && room >= kLeastStep;
         if (is_clear && room >= end - gone) return Way::Clear;
         gone += is_clear ? room : std::max(room, kShortStep);

@@ -136,8 +136,7 @@ class ClearanceField : public ObstacleIndex {
   public:
     ClearanceField() = default;
     ClearanceField(const Obstacles& obstacles, const Box2& box);
-    /// Returns a distance that no obstacle is nearer to p than; 0 outside of the box.
-    [[nodiscard]] double at(Point2 p) const;
+    [[nodiscard]] double least(Point2 p) const override;
     [[nodiscard]] Way look(const Segment2& way, double reach) const override;
     void findIn(const Box2& box, std::vector<Segment2>& lines) const override;
     [[nodiscard]] std::optional<Some> near(Point2 p) const override;
@@ -168,11 +167,27 @@ class ClearanceField : public ObstacleIndex {
     void addLines(const Obstacles& obstacles, const Box2& box);
     void addNear(const std::vector<Segment2>& lines);
 
+    /// Farther obstacles are taken to be so far away, metres.
+    static constexpr double kFarthest = 3;
+    static constexpr double kUnit = kFarthest / 255;  // of the stored distances
+    static constexpr std::uint8_t kUnknown = 255;     // for those
+    /// Cells of a tile along each side, which share a line of cache.
+    static constexpr std::size_t kTile = 8;
+    [[nodiscard]] std::size_t indexOf(std::size_t column, std::size_t row) const {
+        return (row / kTile * tiles_ + column / kTile) * (kTile * kTile) + row % kTile * kTile +
+               column % kTile;
+    }
+    /// Bounds of the distance to the nearest obstacle.
+    struct Bounds {
+        double least, most;
+    };
+    [[nodiscard]] Bounds boundsAt(Point2 p) const;
+
     Point2 low_;
     double side_ = 1, per_metre_ = 1;
-    double slack_ = 0;  // the nearest obstacle is at most so much farther than at()
     int columns_ = 0, rows_ = 0;
-    std::vector<float> least_;  // by cell
+    std::size_t tiles_ = 1;            // in a row of them
+    std::vector<std::uint8_t> least_;  // of the centres of cells, tile by tile, in kUnits
     Cells line_cells_, near_cells_;
     std::vector<std::uint32_t> first_;              // of each cell of lines, and the end
     std::vector<Segment2> lines_;                   // of all cells, one after another

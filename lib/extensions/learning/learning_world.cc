@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/number.h"
+#include "base/simd.h"
 #include "geom/tolerance.h"
 #include "record/text.h"
 #include "scene/robot.h"
@@ -25,6 +26,31 @@ double toMillimetre(double x) {
 }
 
 double distanceOf(Point2 a, Point2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+double speedOf(const Motion& motion) {
+    const double side = motion.side.speed;  // mostly 0, and a root is slow
+    return side == 0 ? std::abs(motion.drive.speed) : std::hypot(motion.drive.speed, side);
+}
+
+/// Lanes of movers; the last ones are far away.
+constexpr std::size_t kLanes = 8;
+constexpr double kFarAway = 1e9;
+
+/// Sets `meets` to 1 for circles that overlap others, and possibly for those that are about to.
+ISPACE_SIMD_CLONES void findMeeting(const double* __restrict x, const double* __restrict y,
+                                    const double* __restrict reach, std::size_t count,
+                                    std::uint8_t* __restrict meets) {
+    constexpr double kMore = 1 + 1e-9;
+    const std::size_t end = (count + kLanes - 1) / kLanes * kLanes;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::int64_t met = 0;  // itself included
+        for (std::size_t k = 0; k < end; ++k) {
+            const double far = (reach[i] + reach[k]) * kMore, dx = x[i] - x[k], dy = y[i] - y[k];
+            met += dx * dx + dy * dy <= far * far ? 1 : 0;
+        }
+        meets[i] = met > 1 ? 1 : 0;
+    }
+}
 
 }  // namespace
 
@@ -143,6 +169,7 @@ void LearningWorld::place(const LearningSetting& setting) {
     motions_.assign(movers, Motion());
     clearances_.assign(movers, 0);
     gaits_.assign(movers - room.robots(), Gait());
+    memories_.assign(movers - room.robots(), SteeringMemory());
     pilots_.clear();
     for (std::size_t i = 0; i < movers; ++i) {
         motions_[i].pose = {starts_[i].position, wrapped(starts_[i].heading)};
@@ -191,7 +218,7 @@ void LearningWorld::propose(const LearningSetting& setting, LearningScratch& scr
     scratch.moves.resize(count);
     scratch.limits.resize(count);
     scratch.blocked.assign(count, std::nullopt);
-    Surroundings around{room.movers().first(count), motions_, nullptr};
+    Surroundings around{room.movers().first(count), motions_};
     if (!pilots_.empty()) {
         auto traffic = scratch.traffic.find({&room, count});
         if (traffic == scratch.traffic.end())
@@ -200,8 +227,8 @@ void LearningWorld::propose(const LearningSetting& setting, LearningScratch& scr
                     .emplace(std::pair(&room, count), Traffic(room.fastest().first(count),
                                                               room.order(count), seconds(length)))
                     .first;
-        traffic->second.rebuild(motions_);
-        around.traffic = &traffic->second;
+        scratch.few.set(traffic->second, around.movers, motions_);
+        around.few = &scratch.few;
     }
     for (std::size_t i = 0; i < count; ++i) {
         Motion& motion = motions_[i];
@@ -219,10 +246,14 @@ void LearningWorld::propose(const LearningSetting& setting, LearningScratch& scr
                 Vicinity* const shared =
                     room.vicinitiesOfPerson(i - robots_.size()).at(motion.pose.position);
                 if (shared == nullptr) scratch.vicinity = Vicinity();
+                SteeringMemory& memory = memories_[i - robots_.size()];
+                memory.nearest = 0;
                 pilot.steer(
                     {&around, &room.obstaclesOf(i), shared == nullptr ? &scratch.vicinity : shared,
-                     i, clearances_[i], now, length, &room.clearanceOf(i)},
+                     i, clearances_[i], now, length, &room.clearanceOf(i), &memory},
                     motion);
+                clearances_[i] =
+                    std::max(clearances_[i], memory.nearest - model.radius - kContactTolerance);
             }
         }
         if (motion.arrived()) {
@@ -253,8 +284,13 @@ void LearningWorld::propose(const LearningSetting& setting, LearningScratch& scr
         if (move.to.path == 0) continue;
         // As World does: the clearance is measured anew only once it may be used up.
         double& clearance = clearances_[i];
+        if (is_person && clearance < move.to.path && move.to.bulge <= FreeStrip::kGap &&
+            memories_[i - robots_.size()].strip.contains(move.chord())) {
+            clearance = std::max(FreeStrip::kGap, clearance - move.to.path);
+            continue;
+        }
         if (clearance < move.to.path)
-            clearance = room.clearanceOf(i).at(move.start()) - move.radius - kContactTolerance;
+            clearance = room.clearanceOf(i).least(move.start()) - move.radius - kContactTolerance;
         if (clearance < move.to.path) {
             const ClearanceField& field = room.clearanceOf(i);
             clearance = field.clearanceAt(move.start()) - move.radius - kContactTolerance;
@@ -274,22 +310,21 @@ void LearningWorld::settle(LearningScratch& scratch) {
     const std::vector<std::size_t>& order = room.order(count);
     scratch.next.resize(count);
     // Pairs that are farther apart than both can come do not collide.
-    scratch.reaches.resize(count);
+    for (std::vector<double>* const list : {&scratch.x, &scratch.y, &scratch.reach})
+        list->resize(count + kLanes);
     for (std::size_t i = 0; i < count; ++i) {
         const Move& move = scratch.moves[i];
-        scratch.reaches[i] = {move.start().x, move.start().y,
-                              move.radius + move.to.lag + move.to.path};
+        scratch.x[i] = move.start().x;
+        scratch.y[i] = move.start().y;
+        scratch.reach[i] = move.radius + move.to.lag + move.to.path;
     }
-    scratch.meets.assign(count, 0);
-    for (std::size_t i = 0; i < count; ++i) {
-        constexpr double kMore = 1 + 1e-9;
-        const auto& [x, y, reach] = scratch.reaches[i];
-        for (std::size_t k = 0; k < i; ++k) {
-            const auto& [other_x, other_y, other_reach] = scratch.reaches[k];
-            const double far = (reach + other_reach) * kMore, dx = x - other_x, dy = y - other_y;
-            if (dx * dx + dy * dy <= far * far) scratch.meets[i] = scratch.meets[k] = 1;
-        }
+    for (std::size_t i = count; i < count + kLanes; ++i) {
+        scratch.x[i] = scratch.y[i] = kFarAway;
+        scratch.reach[i] = 0;
     }
+    scratch.meets.resize(count);
+    findMeeting(scratch.x.data(), scratch.y.data(), scratch.reach.data(), count,
+                scratch.meets.data());
     for (std::size_t rank = 0; rank < count; ++rank) {
         const std::size_t i = order[rank];
         Move& move = scratch.moves[i];
@@ -307,13 +342,28 @@ void LearningWorld::settle(LearningScratch& scratch) {
         scratch.next[i] = move.to.motion;
         if (i < robots_.size()) continue;
         const Motion& motion = scratch.next[i];
-        const double speed = std::hypot(motion.drive.speed, motion.side.speed);
+        const double speed = speedOf(motion);
         const double path = move.to.path;
         gaits_[i - robots_.size()].walk(room.movers()[i].model.height,
                                         motion.drive.speed < 0 ? -path : path, speed);
         (void)pilots_[i - robots_.size()].takeUnreached();
     }
     std::swap(motions_, scratch.next);
+}
+
+void LearningWorld::prefetch() const {
+    constexpr std::size_t kLine = 64;
+    const auto fetch = [](const auto& list) {
+        const char* const begin = reinterpret_cast<const char*>(list.data());
+        const std::size_t bytes = std::min(4 * kLine, list.size() * sizeof(list[0]));
+        for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(begin + at);
+    };
+    fetch(motions_);
+    fetch(pilots_);
+    fetch(memories_);
+    fetch(clearances_);
+    fetch(gaits_);
+    fetch(robots_);
 }
 
 void LearningWorld::step(const LearningSetting& setting, std::span<const float> actions,
@@ -398,7 +448,7 @@ void LearningWorld::observe(const LearningSetting& setting, std::size_t robot, s
                 continue;
             }
             const std::size_t person = i - robots_.size();
-            const double speed = std::hypot(motions_[i].drive.speed, motions_[i].side.speed);
+            const double speed = speedOf(motions_[i]);
             addHumanBodies(body.height, at, kFirstPerson + static_cast<std::uint32_t>(person),
                            gaits_[person].swing(speed), {&height, 1}, scratch.bodies);
         }
@@ -530,6 +580,7 @@ std::size_t LearningWorld::bytes() const {
     add(motions_);
     add(clearances_);
     add(pilots_);
+    add(memories_);
     add(gaits_);
     add(robots_);
     add(patrolled_);

@@ -43,11 +43,12 @@ struct LearningScratch {
     std::vector<Move> moves;
     std::vector<MotionLimits> limits;
     std::vector<std::optional<std::size_t>> blocked;
-    std::vector<std::array<double, 3>> reaches;  // x, y, and how far a move comes
-    std::vector<std::uint8_t> meets;             // 1: it may come as far as another
+    std::vector<double> x, y, reach;  // of each move: its start, and how far it comes
+    std::vector<std::uint8_t> meets;  // 1: it may come as far as another
     std::vector<MovingBody> bodies;
     MovingBodies moving;
     Vicinity vicinity;  // outside of the shared ones
+    FewMovers few;
     std::map<std::pair<const LearningRoom*, std::size_t>, Traffic> traffic;
 };
 
@@ -73,6 +74,8 @@ class LearningWorld {
     /// Advances by a step. \pre started, not over; actions of all robots, finite
     void step(const LearningSetting& setting, std::span<const float> actions,
               LearningScratch& scratch);
+    /// Asks the processor for the memory with which the next step begins.
+    void prefetch() const;
     /// Writes what a robot observes, and stores the ranges' minimum for the signals.
     void observe(const LearningSetting& setting, std::size_t robot, std::span<float> out,
                  LearningScratch& scratch);
@@ -138,7 +141,8 @@ class LearningWorld {
     const LearningRoom* in_ = nullptr;  // of room_
     std::vector<Motion> motions_;       // robots, then people
     std::vector<double> clearances_;
-    std::vector<Navigator> pilots_;  // of people
+    std::vector<Navigator> pilots_;         // of people
+    std::vector<SteeringMemory> memories_;  // of people
     std::vector<Gait> gaits_;
     std::vector<Robot> robots_;
     std::vector<std::uint64_t> patrolled_;  // bits of patrol points
