@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <random>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -270,6 +273,75 @@ TEST(LockedDoors, AreForced) {
     home.act("ACT d forced=no locked=yes");
     EXPECT_EQ(home.stateOf("d"), "open=0 locked=1 forced=0 ");
     EXPECT_THROW(home.act("SET d.open=yes"), FormatError) << "locked";
+}
+
+/// A row of three rooms with a door between each two, and people of all tags who go about.
+TEST(LockedDoors, KeepTheirWordInRandomFlats) {
+    constexpr int kFlats = 60, kTrips = 3;
+    std::mt19937 random(7);
+    const auto pick = [&random](int count) {
+        return std::uniform_int_distribution<int>(0, count - 1)(random);
+    };
+    int passed = 0, given_up = 0, locked = 0;
+    for (int flat = 0; flat < kFlats; ++flat) {
+        std::ostringstream room, people, script;
+        room << "#env 1\nfence id=f path=0,0;12,0;12,4;0,4 closed=yes\n";
+        for (int i = 0; i < 3; ++i) {
+            room << "inside at=" << 4 * i + 2 << ",1\nzone id=z" << i << " at=" << 4 * i + 2
+                 << ",2 size=4,4\n";
+            if (i == 0) continue;
+            room << "wall id=w" << i << " from=" << 4 * i << ",0 to=" << 4 * i
+                 << ",4 thickness=" << (pick(2) == 0 ? "0" : "0.2");
+            room << "\ndoor id=d" << i << " wall=w" << i << " offset=" << 1 + pick(3)
+                 << " locked=yes access=" << (pick(2) == 0 ? "1" : "1,2") << '\n';
+        }
+        for (int i = 0; i < 3; ++i) {
+            people << "human id=p" << i << " at=" << 4 * i + 1 + pick(2);
+            people << ',' << 1 + pick(2) << " tag=" << i + 1 << '\n';
+            script << "at 00:00:0" << pick(9) << " p" << i << ' ';
+            for (int trip = 0; trip < kTrips; ++trip) script << "goes z" << pick(3) << "; ";
+            script << '\n';
+        }
+        const int step = std::array{20, 100, 250}[static_cast<std::size_t>(pick(3))];
+        LockedFlat home(room.str(), script.str(), people.str(), milliseconds(step));
+        std::array<double, 3> before{};
+        std::array<bool, 3> was_open{};
+        for (int i = 0; i < 240'000 / step; ++i) {
+            for (std::size_t p = 0; p < before.size(); ++p)
+                before[p] = home.at("p" + std::to_string(p)).x;
+            home.run(1);
+            for (const std::size_t door : {1U, 2U}) {
+                const bool is_open =
+                    home.stateOf("d" + std::to_string(door)).starts_with("open=1 locked=0 ");
+                for (std::size_t p = 0; p < before.size(); ++p) {
+                    const double now = home.at("p" + std::to_string(p)).x;
+                    const double wall = 4.0 * static_cast<double>(door);
+                    if ((before[p] < wall) == (now < wall)) continue;
+                    EXPECT_TRUE(is_open || was_open[door]) << flat << " p" << p;
+                    ++passed;
+                }
+                was_open[door] = is_open;
+            }
+        }
+        for (const std::size_t door : {1U, 2U}) {
+            bool is_free = true;  // a person that has given up may stand in a doorway
+            for (std::size_t p = 0; p < before.size(); ++p) {
+                const double off =
+                    home.at("p" + std::to_string(p)).x - 4.0 * static_cast<double>(door);
+                is_free = is_free && std::abs(off) > 0.45;
+            }
+            const std::string state = home.stateOf("d" + std::to_string(door));
+            if (is_free) {
+                EXPECT_EQ(state, "open=0 locked=1 forced=0 ") << flat << " d" << door;
+            }
+            locked += state == "open=0 locked=1 forced=0 " ? 1 : 0;
+        }
+        for (const std::string& reason : home.events(EventKind::Unreached))
+            given_up += reason.ends_with(" is locked") ? 1 : 0;
+    }
+    EXPECT_GT(passed, 100);
+    EXPECT_GT(given_up, 50);
+    EXPECT_GT(locked, 2 * kFlats * 9 / 10);
 }
 
 TEST(LockedDoors, TellPlansWhatDoesNotGo) {
