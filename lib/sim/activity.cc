@@ -438,31 +438,36 @@ bool ActivityDirector::goOnWalking(World& world, std::size_t mover, Doer& doer) 
     return true;
 }
 
+/// Returns the ways of people of a height, as if these shut doors of the world were open.
+std::shared_ptr<const GoalWays> ActivityDirector::waysThrough(const World& world, double height,
+                                                              std::span<const ShutDoor> doors) {
+    constexpr std::size_t kMaxWays = 16;  // bounds memory
+    std::pair<double, std::string> key{height, ""};
+    for (const ShutDoor& door : doors) key.second.append(door.id).append(1, '\n');
+    if (ways_.size() >= kMaxWays && !ways_.contains(key)) ways_.clear();
+    auto& ways = ways_[key];
+    if (!ways)
+        ways = std::make_shared<const GoalWays>(world.scene(), withOpen(world.scene(), doors),
+                                                humanRadius(height), height);
+    return ways;
+}
+
 /// Returns the ways of a person: doors that are low for one are high enough for another, and doors
 /// that are shut for one open for another.
 ActivityDirector::Ways ActivityDirector::waysOf(const World& world, std::size_t mover) {
-    constexpr std::size_t kMaxWays = 16;  // bounds memory
     if (std::exchange(ways_of_, world.changes()) != world.changes()) {
         ways_.clear();
         shut_doors_ = shutDoorsOf(world.scene());
     }
     const PlacedPerson& person = world.people()[mover - world.robots().size()];
     Ways found;
-    std::pair<double, std::string> key{person.height, ""};
     if (!shut_doors_.empty()) {
         const Record* const record = recordNamed(world.scene(), person.id);
-        for (const ShutDoor& door : shut_doors_) {
-            if (record == nullptr || passageOf(door, *record).begin.empty()) continue;
-            found.doors.push_back(door);
-            key.second.append(door.id).append(1, '\n');
-        }
+        for (const ShutDoor& door : shut_doors_)
+            if (record != nullptr && !passageOf(door, *record).begin.empty())
+                found.doors.push_back(door);
     }
-    if (ways_.size() >= kMaxWays && !ways_.contains(key)) ways_.clear();
-    auto& ways = ways_[key];
-    if (!ways)
-        ways = std::make_shared<const GoalWays>(world.scene(), withOpen(world.scene(), found.doors),
-                                                humanRadius(person.height), person.height);
-    found.goals = ways;
+    found.goals = waysThrough(world, person.height, found.doors);
     return found;
 }
 
@@ -724,9 +729,10 @@ std::string ActivityDirector::barriersOf(const World& world, std::size_t mover, 
     if (shut_doors_.empty()) return "";
     const PlacedPerson& person = world.people()[mover - world.robots().size()];
     const Point2 from = world.status(mover).pose.position;
-    const GoalWays all(world.scene(), withOpen(world.scene(), shut_doors_),
-                       humanRadius(person.height), person.height);
-    const std::vector<Point2> way = all.way(from, actionOf(doer).target);
+    std::size_t work = 0;
+    const std::vector<Point2> way =
+        waysThrough(world, person.height, shut_doors_)->way(from, actionOf(doer).target, {}, &work);
+    work_left_ -= static_cast<std::int64_t>(work);
     const Record* const record = recordNamed(world.scene(), person.id);
     std::vector<ShutDoor> barriers;
     for (const ShutDoor& door : shut_doors_)

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -76,7 +77,7 @@ DayPlan readDayPlan(std::string_view text, const std::string& file, const World&
 ///
 /// Searches for ways are limited in each step, by the cells that they look at: the others of a
 /// crowd that sets out at once stand until it is their turn, which they get in the order in which
-/// they wanted to go.
+/// they wanted to go. So do those of a crowd that give up, and look for the doors in their way.
 class ActivityDirector {
   public:
     explicit ActivityDirector(DayPlan plan);
@@ -128,6 +129,8 @@ class ActivityDirector {
     [[nodiscard]] std::vector<GoalWays::Spot> spotsOfOthers(const World& world,
                                                             std::size_t mover) const;
     Ways waysOf(const World& world, std::size_t mover);
+    std::shared_ptr<const GoalWays> waysThrough(const World& world, double height,
+                                                std::span<const ShutDoor> doors);
     bool awaitDoor(Simulation& simulation, std::size_t mover, Doer& doer, const ShutDoor& door);
     void passOpened(const World& world, std::size_t mover, const std::vector<Point2>& way);
     void closeDoors(Simulation& simulation);
@@ -147,7 +150,7 @@ class ActivityDirector {
     std::map<std::string, Doer> doers_;
     std::vector<Doer*> waiting_;  // for their turn, the first one longest
     std::int64_t work_left_;      // cells to look at before others wait; negative: a debt
-    // By the height of people, and the ids of the shut doors that let them pass.
+    // By the height of people, and the ids of the shut doors that are taken as open.
     std::map<std::pair<double, std::string>, std::shared_ptr<const GoalWays>> ways_;
     std::vector<ShutDoor> shut_doors_;  // of the world
     std::int64_t ways_of_ = -1;         // changes of the world then

@@ -445,5 +445,35 @@ TEST(ActivityDirector, ACrowdSetsOutInTurns) {
     EXPECT_GT(underway.back(), kPeople * 9 / 10);
 }
 
+/// A closet whose ways are soon searched, and a long way behind its door.
+TEST(ActivityDirector, ACrowdGivesUpInTurns) {
+    std::string people, script;
+    constexpr int kPeople = 30;
+    for (int i = 0; i < kPeople; ++i) {
+        const std::string id = "p" + std::to_string(i);
+        people += "human id=" + id + " at=" + formatDouble(-18 + 0.6 * (i % 6)) + ',' +
+                  formatDouble(-10 + 0.6 * (i / 6)) + '\n';
+        script += "at 00:00 " + id + " goes far\n";
+    }
+    const Scene hall = testing::scene(
+        "ispace size=40,24\nwall id=v from=-14,-12 to=-14,-6\nwall id=h from=-20,-6 to=-14,-6\n"
+        "door id=d wall=v offset=3\ninside at=-15,-7\ninside at=0,0\n"
+        "zone id=far at=18,10 size=2,2\n",
+        people);
+    Lived day(script, hall, milliseconds(100));
+    day.simulation.events().want({EventKind::Unreached});
+    day.simulation.events().unwant({EventKind::Activity});
+    const EventLog& log = day.simulation.events();
+    std::int64_t most = 0;
+    for (int step = 0; step < 200; ++step) {
+        const std::int64_t before = log.next();
+        day.run(1);
+        most = std::max(most, log.next() - before);
+    }
+    EXPECT_LE(most, kPeople / 2);
+    ASSERT_EQ(log.next(), kPeople);
+    for (std::int64_t i = 0; i < kPeople; ++i) EXPECT_EQ(log.at(i).text, "d is shut") << i;
+}
+
 }  // namespace
 }  // namespace ispace
