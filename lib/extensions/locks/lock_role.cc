@@ -39,6 +39,8 @@ struct LockedDoor {
     double thickness = 0;
     std::optional<SimTime> until;  // a tag holds it open
     bool locks_again = false;      // then
+    std::string asked;             // the change that opens it, which a tag asked for last
+    SimTime asked_at{};
 };
 
 /// A world of the run.
@@ -206,7 +208,13 @@ class LockClient : public ClientRole {
         if (!door.is_open) {
             // A second tag of the same moment finds it opening.
             if (!door.until) door.locks_again = door.lock.is_locked;
-            room.ask("ACT " + door.id + (door.lock.is_locked ? " locked=no" : "") + " open=yes");
+            std::string opening =
+                "ACT " + door.id + (door.lock.is_locked ? " locked=no" : "") + " open=yes";
+            if (door.asked_at != run_.now() || door.asked != opening) {
+                room.ask(opening);
+                door.asked = std::move(opening);
+                door.asked_at = run_.now();
+            }
             door.until = run_.now() + simSeconds(kHeldOpen);
         } else if (door.until) {
             door.until = run_.now() + simSeconds(kHeldOpen);

@@ -471,6 +471,16 @@ TEST_F(LockRole, OpensToTagsForAWhile) {
                               "ACT d open=no locked=yes", "SET l.on=yes"}));
 }
 
+TEST_F(LockRole, AsksForOneChangeInAStep) {
+    Session session(state_);
+    ask(session, "LOCK d");
+    for (int i = 0; i < 50; ++i)
+        EXPECT_EQ(ask(session, i % 2 == 0 ? "TRY d 42" : "TRY d 43"),
+                  "OK TRY id=d t=0.000 opens=1\n");
+    run(1);
+    EXPECT_EQ(changes_, Rows{"ACT d locked=no open=yes"});
+}
+
 /// 40 kg at 0.9 m/s are 16.2 J; at 1.1 m/s 24.2 J, of which 12.1 J across the door at 45 degrees.
 TEST_F(LockRole, RobotsForceIt) {
     const auto stalls = [this](const char* robot, double speed) {
