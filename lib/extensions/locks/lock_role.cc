@@ -33,6 +33,7 @@ struct LockedDoor {
     std::size_t room = 0;
     Lock lock;
     bool is_open = false;
+    bool was_open = false;           // in the step before
     std::optional<double> strength;  // J
     std::string drive;
     Segment2 line;
@@ -74,12 +75,19 @@ struct Run {
             if (glob.matches(each.first)) names.push_back(each.first);
         return names;
     }
+    void readChanged();
     void read(std::size_t index);
+    void switchDrives();
     void forceDoors(std::size_t index);
     void shutDoors();
 };
 
-/// Reads the doors of a world after a change: one that has moved switches its drive on.
+/// Reads the doors of the worlds that have changed.
+void Run::readChanged() {
+    for (std::size_t room = 0; room < rooms.size(); ++room)
+        if (rooms[room].changes != rooms[room].world().changes()) read(room);
+}
+
 void Run::read(std::size_t index) {
     Room& room = rooms[index];
     const Scene& scene = room.world().scene();
@@ -99,7 +107,10 @@ void Run::read(std::size_t index) {
         const std::string name = room.id.empty() ? doorway.id : room.id + '/' + doorway.id;
         const auto before = known.find(name);
         LockedDoor& door = doors[name];
-        if (before != known.end()) door = before->second;
+        if (before != known.end())
+            door = before->second;
+        else
+            door.was_open = record.flag("open");
         door.id = doorway.id;
         door.room = index;
         door.lock = lockOf(record);
@@ -110,10 +121,15 @@ void Run::read(std::size_t index) {
         door.drive = record.has("drive") ? record.text("drive") : "";
         room.has_strength = room.has_strength || door.strength.has_value();
         const bool was_open = std::exchange(door.is_open, record.flag("open"));
-        if (!door.is_open && door.until && was_open) door.until.reset();
-        if (before != known.end() && was_open != door.is_open && !door.drive.empty())
-            room.ask("SET " + door.drive + ".on=yes");
+        if (was_open && !door.is_open) door.until.reset();
     }
+}
+
+/// Switches the drives of the doors on that have moved since the step before.
+void Run::switchDrives() {
+    for (auto& [name, door] : doors)
+        if (std::exchange(door.was_open, door.is_open) != door.is_open && !door.drive.empty())
+            rooms[door.room].ask("SET " + door.drive + ".on=yes");
 }
 
 /// Forces the locked doors into which robots have run hard enough.
@@ -173,6 +189,7 @@ class LockClient : public ClientRole {
 
     [[nodiscard]] std::span<const RoleRequest> requests() const override { return kRequests; }
     RoleAnswer request(std::span<const std::string_view> words) override {
+        run_.readChanged();
         const auto found = run_.doors.find(words[1]);
         if (found == run_.doors.end() || !glob_.matches(words[1]))
             return {errorText(404, "no door with `access`, `drive` or `strength` is " +
@@ -206,8 +223,7 @@ class LockClient : public ClientRole {
         const Room& room = run_.rooms[door.room];
         if (room.simulation->isReplay()) return true;
         if (!door.is_open) {
-            // A second tag of the same moment finds it opening.
-            if (!door.until) door.locks_again = door.lock.is_locked;
+            door.locks_again = door.lock.is_locked;
             std::string opening =
                 "ACT " + door.id + (door.lock.is_locked ? " locked=no" : "") + " open=yes";
             if (door.asked_at != run_.now() || door.asked != opening) {
@@ -228,25 +244,22 @@ class LockClient : public ClientRole {
 
 class Locks : public RoleService {
   public:
-    explicit Locks(Run run) : run_(std::move(run)), time_(run_.now()) {
-        for (std::size_t room = 0; room < run_.rooms.size(); ++room) run_.read(room);
-    }
+    explicit Locks(Run run) : run_(std::move(run)), time_(run_.now()) { run_.readChanged(); }
     [[nodiscard]] std::string_view verb() const override { return "LOCK"; }
 
     std::unique_ptr<ClientRole> take(std::string_view glob, std::string& answer) override {
+        run_.readChanged();
         answer.append("OK LOCK ").append(glob).append(" t=");
         answer.append(formatMilliseconds(run_.now())).append(" doors=");
         answer.append(joined(run_.doorsThatMatch(Glob(glob)), ",")).append("\n");
         return std::make_unique<LockClient>(run_, glob);
     }
 
-    /// Changes between steps are read in the next one, before which all are made.
     void stepped() override {
         if (std::exchange(time_, run_.now()) == run_.now()) return;
-        for (std::size_t room = 0; room < run_.rooms.size(); ++room) {
-            if (run_.rooms[room].changes != run_.rooms[room].world().changes()) run_.read(room);
-            run_.forceDoors(room);
-        }
+        run_.readChanged();
+        run_.switchDrives();
+        for (std::size_t room = 0; room < run_.rooms.size(); ++room) run_.forceDoors(room);
         run_.shutDoors();
     }
 

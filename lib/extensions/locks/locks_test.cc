@@ -427,15 +427,17 @@ class LockRole : public ::testing::Test {
         for (int i = 0; i < steps; ++i) {
             while (simulation_.isChangeDue()) {
                 changes_.push_back(simulation_.takeScriptedChange());
-                world_.change(
-                    makeScene(editedRecords(world_.scene(), parseEdits(changes_.back()),
-                                            [](const std::string&) { return std::nullopt; }),
-                              world_.scene(), shippedDevices()));
+                change(changes_.back());
             }
             simulation_.allow(1);
             simulation_.run(std::chrono::steady_clock::now(), seconds(10));
             service_->stepped();
         }
+    }
+    void change(const std::string& request) {
+        world_.change(makeScene(editedRecords(world_.scene(), parseEdits(request),
+                                              [](const std::string&) { return std::nullopt; }),
+                                world_.scene(), shippedDevices()));
     }
     static std::string ask(Session& session, const std::string& line) {
         session.request(line);
@@ -479,6 +481,26 @@ TEST_F(LockRole, AsksForOneChangeInAStep) {
                   "OK TRY id=d t=0.000 opens=1\n");
     run(1);
     EXPECT_EQ(changes_, Rows{"ACT d locked=no open=yes"});
+}
+
+/// Requests know the changes since the step before.
+TEST_F(LockRole, AnswersFromTheDoorAsItIs) {
+    Session session(state_);
+    ask(session, "LOCK d");
+    change("SET d.access=99");
+    EXPECT_EQ(ask(session, "TRY d 42"), "OK TRY id=d t=0.000 opens=0\n");
+    change("ACT d locked=no access=42");
+    EXPECT_EQ(ask(session, "READ d"), "OK READ id=d t=0.000 open=0 locked=0 forced=0\n");
+    run(1);
+    EXPECT_EQ(changes_, Rows{});
+    change("SET d.locked=yes");
+    EXPECT_EQ(ask(session, "TRY d 42"), "OK TRY id=d t=0.100 opens=1\n");
+    run(1);
+    EXPECT_EQ(ask(session, "READ d"), "OK READ id=d t=0.200 open=1 locked=0 forced=0\n");
+    change("SET d.open=no");
+    EXPECT_EQ(ask(session, "READ d"), "OK READ id=d t=0.200 open=0 locked=0 forced=0\n");
+    run(2);
+    EXPECT_EQ(changes_, (Rows{"ACT d locked=no open=yes", "SET l.on=yes", "SET l.on=yes"}));
 }
 
 /// 40 kg at 0.9 m/s are 16.2 J; at 1.1 m/s 24.2 J, of which 12.1 J across the door at 45 degrees.
