@@ -63,6 +63,9 @@ struct ThingKind {
     /// Returns the changes that let a person pass a shut door, and those behind the person; `begin`
     /// is "" if it does not. Null: it does not.
     UseChanges (*pass)(const Record& record, const Record& person) = nullptr;
+    /// Returns the changes that shut an open door behind people: `changes` are those of pass(), and
+    /// the door may have become another one since. Null: these.
+    std::string (*shut)(const Record& record, std::string changes) = nullptr;
     /// Returns the word for a door that lets no person pass: "locked". Null, or "": "shut".
     std::string_view (*barrier)(const Record& record) = nullptr;
     std::vector<StateEntity> entities = {};

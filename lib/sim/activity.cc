@@ -529,8 +529,9 @@ bool ActivityDirector::awaitDoor(Simulation& simulation, std::size_t mover, Doer
     if (doer.gave_up) return false;
     simulation.askChange(changeOf(door.id, changes.begin));
     OpenedDoor& opened =
-        opened_.try_emplace(door.id, OpenedDoor{door, changes.end, {}}).first->second;
+        opened_.try_emplace(door.id, OpenedDoor{door, changes.end, {}, false}).first->second;
     opened.users[person] = sideOf(door, world.status(mover).pose.position);
+    opened.is_shutting = false;
     --doer.tries;
     doer.until = world.time() + (is_first ? world.stepLength() : kPause);
     return true;
@@ -567,6 +568,14 @@ void ActivityDirector::closeDoors(Simulation& simulation) {
     const World& world = simulation.world();
     for (auto it = opened_.begin(); it != opened_.end();) {
         OpenedDoor& opened = it->second;
+        const Record* const now = recordNamed(world.scene(), it->first);
+        const bool is_open =
+            now != nullptr && now->keyword() == opened.door.record.keyword() && now->flag("open");
+        // A change that is refused, as the lock was forced meanwhile, is asked for once more.
+        if (std::exchange(opened.is_shutting, false) && !is_open) {
+            it = opened_.erase(it);
+            continue;
+        }
         std::vector<std::string> done;
         for (const auto& [person, side] : opened.users)
             if (!isPassing(world, person, opened)) done.push_back(person);
@@ -575,14 +584,18 @@ void ActivityDirector::closeDoors(Simulation& simulation) {
         for (std::size_t i = 0; is_free && i < world.movers().size(); ++i)
             is_free = distance(world.status(i).pose.position, opened.door.line) >
                       world.movers()[i].model.radius + opened.door.thickness / 2 + kSpare;
-        if (!is_free) {
-            ++it;
+        if (is_free && !is_open) {
+            it = opened_.erase(it);
             continue;
         }
-        const Record* const now = recordNamed(world.scene(), it->first);
-        if (now != nullptr && now->keyword() == opened.door.record.keyword() && now->flag("open"))
-            simulation.askChange(changeOf(it->first, opened.after));
-        it = opened_.erase(it);
+        if (is_free) {
+            const ThingKind* const kind = thingKind(now->keyword());
+            simulation.askChange(changeOf(it->first, kind == nullptr || kind->shut == nullptr
+                                                         ? opened.after
+                                                         : kind->shut(*now, opened.after)));
+            opened.is_shutting = true;
+        }
+        ++it;
     }
 }
 

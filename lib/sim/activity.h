@@ -114,6 +114,7 @@ class ActivityDirector {
         ShutDoor door;                      // as it was before
         std::string after;                  // the changes behind them
         std::map<std::string, Turn> users;  // the side from which each one comes
+        bool is_shutting = false;           // asked for in the step before
     };
     void enqueue(SimTime now);
     void goOn(Simulation& simulation, Doer& doer);

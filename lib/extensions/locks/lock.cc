@@ -116,6 +116,10 @@ UseChanges passOfLock(const Record& door, const Record& person) {
     return {.begin = "locked=no open=yes", .end = "open=no locked=yes"};
 }
 
+std::string shutOfLock(const Record& door, std::string changes) {
+    return door.flag("forced") || !hasLock(door) ? "open=no" : std::move(changes);
+}
+
 std::optional<Finding> checkAccess(const Scene& scene, std::size_t record) {
     const Record& door = scene.records[record];
     if (!door.has("access")) return std::nullopt;
@@ -248,6 +252,7 @@ void addLocks() {
                   .verbs = {std::string(kLocks), std::string(kUnlocks), std::string(kForces)},
                   .act = actOnLock,
                   .pass = passOfLock,
+                  .shut = shutOfLock,
                   .barrier = [](const Record& door) -> std::string_view {
                       return isLocked(door) ? "locked" : "";
                   },

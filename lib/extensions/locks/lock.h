@@ -43,6 +43,10 @@ ActResult actOnLock(const Record& door, std::string_view verb, const Record& per
 /// person pass unless it is open. \pre the door is shut
 UseChanges passOfLock(const Record& door, const Record& person);
 
+/// Returns the changes that shut an open door again, of those that passOfLock() told when it was
+/// opened: a door whose lock was forced or taken away since is shut, but does not lock.
+std::string shutOfLock(const Record& door, std::string changes);
+
 /// Checks the tags of a door. Returns a warning if no record carries one of them.
 std::optional<Finding> checkAccess(const Scene& scene, std::size_t record);
 

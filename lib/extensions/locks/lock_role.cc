@@ -170,16 +170,19 @@ void Run::shutDoors() {
     constexpr double kSpare = 0.05;
     for (auto& [name, door] : doors) {
         if (!door.until || now() < *door.until) continue;
+        if (!door.is_open) {
+            door.until.reset();
+            continue;
+        }
         const World& world = rooms[door.room].world();
         bool is_free = true;
         for (std::size_t i = 0; is_free && i < world.movers().size(); ++i)
             is_free = distance(world.status(i).pose.position, door.line) >
                       world.movers()[i].model.radius + door.thickness / 2 + kSpare;
-        if (!is_free) continue;
-        door.until.reset();
-        if (door.is_open)
+        // A change that is refused, as the lock was forced meanwhile, is asked for once more.
+        if (is_free)
             rooms[door.room].ask("ACT " + door.id + " open=no" +
-                                 (door.locks_again ? " locked=yes" : ""));
+                                 (door.locks_again && !door.lock.is_forced ? " locked=yes" : ""));
     }
 }
 

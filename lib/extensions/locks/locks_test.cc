@@ -158,7 +158,13 @@ class LockedFlat {
     }
     void run(int steps) {
         for (int i = 0; i < steps; ++i) {
-            while (simulation_.isChangeDue()) act(simulation_.takeScriptedChange());
+            while (simulation_.isChangeDue()) {
+                try {
+                    act(simulation_.takeScriptedChange());
+                } catch (const FormatError&) {
+                    changes.back() += " is refused";
+                }
+            }
             simulation_.allow(1);
             simulation_.run(std::chrono::steady_clock::now(), seconds(10));
         }
@@ -169,6 +175,7 @@ class LockedFlat {
                                               [](const std::string&) { return std::nullopt; }),
                                 world_.scene(), shippedDevices()));
     }
+    [[nodiscard]] bool isChangeDue() const { return simulation_.isChangeDue(); }
     [[nodiscard]] Point2 at(std::string_view person) const {
         return world_.status(*world_.moverNamed(person)).pose.position;
     }
@@ -273,6 +280,23 @@ TEST(LockedDoors, AreForced) {
     home.act("ACT d forced=no locked=yes");
     EXPECT_EQ(home.stateOf("d"), "open=0 locked=1 forced=0 ");
     EXPECT_THROW(home.act("SET d.open=yes"), FormatError) << "locked";
+}
+
+/// One forced while it is open, or in the moment in which it is to shut.
+TEST(LockedDoors, ShutOnceTheyWereForced) {
+    for (const bool is_late : {false, true}) {
+        LockedFlat home(flat("locked=yes access=42"), "at 00:00 ann goes office\n", kPeople);
+        const auto is_open = [&] { return home.stateOf("d").starts_with("open=1"); };
+        for (int i = 0; i < 100 && !(is_open() && (!is_late || home.isChangeDue())); ++i)
+            home.run(1);
+        home.act("SET d.forced=yes");
+        home.run(100);
+        EXPECT_EQ(home.stateOf("d"), "open=0 locked=0 forced=1 ");
+        Rows changes{"ACT d locked=no open=yes", "SET d.forced=yes"};
+        if (is_late) changes.emplace_back("ACT d open=no locked=yes is refused");
+        changes.emplace_back("SET d.open=no");
+        EXPECT_EQ(home.changes, changes);
+    }
 }
 
 /// A row of three rooms with a door between each two, and people of all tags who go about.
@@ -427,7 +451,11 @@ class LockRole : public ::testing::Test {
         for (int i = 0; i < steps; ++i) {
             while (simulation_.isChangeDue()) {
                 changes_.push_back(simulation_.takeScriptedChange());
-                change(changes_.back());
+                try {
+                    change(changes_.back());
+                } catch (const FormatError&) {
+                    changes_.back() += " is refused";
+                }
             }
             simulation_.allow(1);
             simulation_.run(std::chrono::steady_clock::now(), seconds(10));
@@ -501,6 +529,27 @@ TEST_F(LockRole, AnswersFromTheDoorAsItIs) {
     EXPECT_EQ(ask(session, "READ d"), "OK READ id=d t=0.200 open=0 locked=0 forced=0\n");
     run(2);
     EXPECT_EQ(changes_, (Rows{"ACT d locked=no open=yes", "SET l.on=yes", "SET l.on=yes"}));
+}
+
+TEST_F(LockRole, ShutsADoorThatWasForced) {
+    Session session(state_);
+    ask(session, "LOCK d");
+    ask(session, "TRY d 42");
+    run(3);
+    change("SET d.forced=yes");
+    run(60);
+    EXPECT_EQ(ask(session, "READ d"), "OK READ id=d t=6.300 open=0 locked=0 forced=1\n");
+    change("ACT d forced=no locked=yes");
+    ask(session, "TRY d 42");
+    run(3);
+    while (!simulation_.isChangeDue()) run(1);
+    change("SET d.forced=yes");
+    run(3);
+    EXPECT_EQ(ask(session, "READ d").substr(22), "open=0 locked=0 forced=1\n");
+    EXPECT_EQ(changes_,
+              (Rows{"ACT d locked=no open=yes", "SET l.on=yes", "ACT d open=no", "SET l.on=yes",
+                    "ACT d locked=no open=yes", "SET l.on=yes",
+                    "ACT d open=no locked=yes is refused", "ACT d open=no", "SET l.on=yes"}));
 }
 
 /// 40 kg at 0.9 m/s are 16.2 J; at 1.1 m/s 24.2 J, of which 12.1 J across the door at 45 degrees.
