@@ -580,7 +580,7 @@ void ActivityDirector::closeDoors(Simulation& simulation) {
         for (const auto& [person, side] : opened.users)
             if (!isPassing(world, person, opened)) done.push_back(person);
         for (const std::string& person : done) opened.users.erase(person);
-        bool is_free = opened.users.empty();
+        bool is_free = opened.users.empty() && !simulation.isKeptOpen(it->first);
         for (std::size_t i = 0; is_free && i < world.movers().size(); ++i)
             is_free = distance(world.status(i).pose.position, opened.door.line) >
                       world.movers()[i].model.radius + opened.door.thickness / 2 + kSpare;

@@ -73,7 +73,8 @@ DayPlan readDayPlan(std::string_view text, const std::string& file, const World&
 /// away from the thing it uses.
 ///
 /// Shut doors that let the person pass (see ThingKind) are on its way, too: in front of one it
-/// stands and opens it, and the door is shut behind it once the doorway is free.
+/// stands and opens it, and the door is shut behind it once the doorway is free, and no program
+/// keeps the door open, see Simulation::keepOpen().
 ///
 /// Searches for ways are limited in each step, by the cells that they look at: the others of a
 /// crowd that sets out at once stand until it is their turn, which they get in the order in which
@@ -85,6 +86,8 @@ class ActivityDirector {
     ActivityDirector& operator=(const ActivityDirector&) = delete;
     /// Starts and ends actions, and raises their events. Call it after each step.
     void stepped(Simulation& simulation);
+    /// Returns true for a door that people have opened, and that is shut behind them.
+    [[nodiscard]] bool hasOpened(const std::string& door) const { return opened_.contains(door); }
 
   private:
     struct Doer {

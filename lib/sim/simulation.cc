@@ -152,6 +152,21 @@ void Simulation::follow(DayPlan plan) {
     if (!plan.lines.empty()) director_ = std::make_shared<ActivityDirector>(std::move(plan));
 }
 
+void Simulation::keepOpen(const std::string& door, SimTime until) {
+    kept_open_[door] = {world_->time(), until};
+}
+
+bool Simulation::isKeptOpen(const std::string& door) const {
+    const auto found = kept_open_.find(door);
+    // A reset of the world turns its time back.
+    return found != kept_open_.end() && world_->time() >= found->second.first &&
+           world_->time() < found->second.second;
+}
+
+bool Simulation::isOpenForPeople(const std::string& door) const {
+    return director_ != nullptr && director_->hasOpened(door);
+}
+
 std::string Simulation::takeScriptedChange() {
     if (due_changes_.empty()) return "";
     std::string change = std::move(due_changes_.front());

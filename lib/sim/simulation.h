@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,6 +81,11 @@ class Simulation {
     void follow(DayPlan plan);
     /// Returns true if people do, so that the time of day matters.
     [[nodiscard]] bool followsDays() const { return director_ != nullptr; }
+    /// Keeps an open door from being shut behind people on their days until then.
+    void keepOpen(const std::string& door, SimTime until);
+    [[nodiscard]] bool isKeptOpen(const std::string& door) const;
+    /// Returns true for a door that people on their days have opened, and that is shut behind them.
+    [[nodiscard]] bool isOpenForPeople(const std::string& door) const;
     /// Asks for a change of the world, as the script does: a request of the protocol.
     void askChange(std::string request) { due_changes_.push_back(std::move(request)); }
     /// Returns the next change of the script that is due, a request of the protocol, and removes
@@ -223,7 +229,8 @@ class Simulation {
     std::vector<std::string> scripted_;  // ids of the movers that the script commands by index
     std::size_t next_ = 0;               // of script_
     std::shared_ptr<ActivityDirector> director_;  // of people with a plan; null: none
-    std::deque<std::string> due_changes_;         // of the script
+    std::map<std::string, std::pair<SimTime, SimTime>> kept_open_;  // doors: since when, until when
+    std::deque<std::string> due_changes_;                           // of the script
     std::vector<Event> script_events_;  // of its commands, told in the next step at the latest
     Recorder* recorder_ = nullptr;
     Replay* replay_ = nullptr;

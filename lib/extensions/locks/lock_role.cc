@@ -170,7 +170,8 @@ void Run::shutDoors() {
     constexpr double kSpare = 0.05;
     for (auto& [name, door] : doors) {
         if (!door.until || now() < *door.until) continue;
-        if (!door.is_open) {
+        // A door that people have opened, too, is shut behind them.
+        if (!door.is_open || rooms[door.room].simulation->isOpenForPeople(door.id)) {
             door.until.reset();
             continue;
         }
@@ -225,6 +226,7 @@ class LockClient : public ClientRole {
         if (std::find(access.begin(), access.end(), tag) == access.end()) return false;
         const Room& room = run_.rooms[door.room];
         if (room.simulation->isReplay()) return true;
+        room.simulation->keepOpen(door.id, run_.now() + simSeconds(kHeldOpen));
         if (!door.is_open) {
             door.locks_again = door.lock.is_locked;
             std::string opening =

@@ -552,6 +552,44 @@ TEST_F(LockRole, ShutsADoorThatWasForced) {
                     "ACT d open=no locked=yes is refused", "ACT d open=no", "SET l.on=yes"}));
 }
 
+/// Of two that hold a door open the later one counts: ann passes it in less than 5 s.
+TEST_F(LockRole, KeepsADoorOpenThatAPersonOpened) {
+    simulation_.follow(readDayPlan("at 00:00 ann goes office\n", "s.txt", world_));
+    Session session(state_);
+    ask(session, "LOCK d");
+    const auto is_open = [&] { return ask(session, "READ d").find("open=1") != std::string::npos; };
+    for (int i = 0; i < 100 && !is_open(); ++i) run(1);
+    run(5);
+    const SimTime tried = world_.time();
+    ask(session, "TRY d 42");
+    while (is_open()) {
+        run(1);
+        ASSERT_LT(world_.time() - tried, seconds(20));
+    }
+    EXPECT_GE(world_.time() - tried, seconds(5));
+    EXPECT_LT(world_.time() - tried, milliseconds(5500));
+    EXPECT_EQ(changes_,
+              (Rows{"ACT d locked=no open=yes", "SET l.on=yes", "ACT d open=no locked=yes"}));
+}
+
+/// A tag in the moment in which ann opens the door; after 5 s she is on her way back.
+TEST_F(LockRole, KeepsADoorOpenForPeople) {
+    simulation_.follow(readDayPlan("at 00:00 ann goes office; goes hall\n", "s.txt", world_));
+    Session session(state_);
+    ask(session, "LOCK d");
+    while (!simulation_.isChangeDue()) {
+        run(1);
+        ASSERT_LT(world_.time(), seconds(20));
+    }
+    EXPECT_EQ(ask(session, "TRY d 42").substr(0, 10), "OK TRY id=");
+    run(52);
+    EXPECT_GT(world_.status(*world_.moverNamed("ann")).pose.position.x, 5.4);
+    EXPECT_NE(ask(session, "READ d").find("open=1"), std::string::npos);
+    run(60);
+    EXPECT_NE(ask(session, "READ d").find("open=0 locked=1"), std::string::npos);
+    EXPECT_LT(world_.status(*world_.moverNamed("ann")).pose.position.x, 4.6);
+}
+
 /// 40 kg at 0.9 m/s are 16.2 J; at 1.1 m/s 24.2 J, of which 12.1 J across the door at 45 degrees.
 TEST_F(LockRole, RobotsForceIt) {
     const auto stalls = [this](const char* robot, double speed) {
