@@ -84,6 +84,8 @@ ActResult actOnLock(const Record& door, std::string_view verb, const Record& per
     const auto refused = [](std::string reason) { return ActResult{"", std::move(reason)}; };
     const std::string no_right =
         hasTag(person) ? "its lock does not know the person's tag" : "the person has no tag";
+    const bool is_of_lock = verb == kLocks || verb == kUnlocks || verb == kForces;
+    if (is_of_lock && !hasLock(door)) return refused("it has no lock");
     if (verb == kOpens) {
         if (!lock.is_locked) return {std::move(changes), ""};
         if (!lock.opensTo(person)) return refused("it is locked, and " + no_right);

@@ -122,6 +122,11 @@ TEST(Lock, OpensToItsTags) {
         {"access=42", "bob", "unlocks", "", ""},
         {"access=42 locked=yes", "bob", "forces", "forced=yes locked=no open=yes", ""},
         {"access=42", "bob", "forces", "", "it is not locked"},
+        {"locked=no", "bob", "forces", "", "it is not locked"},
+        {"", "ann", "locks", "", "it has no lock"},
+        {"strength=5", "eve", "locks", "", "it has no lock"},
+        {"", "ann", "unlocks", "", "it has no lock"},
+        {"", "bob", "forces", "", "it has no lock"},
         {"open=yes", "bob", "closes", "open=yes", ""}};
     for (const Case& one : cases) {
         const Scene scene = sceneOf(flat(one.door), kPeople + "human id=eve at=3,1\n");
