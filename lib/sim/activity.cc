@@ -148,7 +148,7 @@ DayAction DayLineReader::readAction(std::string_view text, std::size_t first) co
     DayAction action;
     for (const Piece& part : parts)
         action.text.append(action.text.empty() ? "" : " ").append(part.text);
-    const auto wants = [&](std::size_t count, const char* example) {
+    const auto wants = [&](std::size_t count, const std::string& example) {
         if (parts.size() != count)
             fail(first, excerpt(action.text) + " is no action, wanted one like " + example);
     };
@@ -170,7 +170,7 @@ DayAction DayLineReader::readAction(std::string_view text, std::size_t first) co
         wants(2, "stays 20min");
         readDuration(action, parts[1].text, first);
     } else if (verb == "opens" || verb == "closes") {
-        wants(2, "opens door1");
+        wants(2, std::string(verb) + " door1");
         action.verb = DayAction::Verb::Acts;
         readAct(action, parts[1].text, verb == "opens" ? "open=yes" : "open=no", first);
     } else if (verb == "switches") {
@@ -185,9 +185,10 @@ DayAction DayLineReader::readAction(std::string_view text, std::size_t first) co
             known.insert(known.end(), kind.verbs.begin(), kind.verbs.end());
         if (std::find(known.begin(), known.end(), verb) == known.end())
             fail(first, excerpt(verb) + " is no action" + didYouMean(verb, known));
-        wants(2, "opens door1");
+        const std::vector<std::string> things = thingsWith(verb);
+        wants(2, std::string(verb) + ' ' + (things.empty() ? "door1" : things.front()));
         fail(first, "no thing that one " + std::string(verb) + " has the id " +
-                        excerpt(parts[1].text) + didYouMean(parts[1].text, thingsWith(verb)));
+                        excerpt(parts[1].text) + didYouMean(parts[1].text, things));
     }
     return action;
 }

@@ -468,10 +468,12 @@ std::string ExpectationJudge::Data::keyOf(const Thing& thing, const Condition& c
     if (condition.key == "occupied" && !has("occupied") && has("n")) return "n";  // of a mat
     if (!condition.key.empty()) return condition.key;
     if (thing.keys.size() == 1) return thing.keys.front();
-    throw SentenceError(thing.name + " has " +
-                            (thing.keys.empty() ? std::string("no state by itself")
-                                                : "several states: give one, such as " +
-                                                      thing.name + '.' + thing.keys.front()),
+    if (thing.keys.empty())
+        throw SentenceError(thing.name + " has no state by itself", condition.offset);
+    std::string states;
+    for (const std::string& key : thing.keys) states.append(states.empty() ? "" : ", ").append(key);
+    throw SentenceError(thing.name + " has the states " + states + ": give one, such as " +
+                            thing.name + '.' + thing.keys.front(),
                         condition.offset);
 }
 

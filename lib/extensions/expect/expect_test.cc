@@ -411,7 +411,7 @@ TEST_F(RuleTest, NamesWhatIsNotThere) {
     EXPECT_EQ(why("l1.levle above 0.5"),
               "`l1.levle above 0.5`: l1 has no state `levle`, did you mean `level`?");
     EXPECT_EQ(why("l1 above 0.5"),
-              "`l1 above 0.5`: l1 has several states: give one, such as l1.color");
+              "`l1 above 0.5`: l1 has the states color, level, on: give one, such as l1.color");
     EXPECT_EQ(why("lamp of kichen on").substr(0, 20), "`lamp of kichen on`:");
     EXPECT_NE(why("lamp of kichen on").find("did you mean `kitchen`?"), std::string::npos);
     EXPECT_NE(why("window of kitchen open"), "");

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <iterator>
 #include <utility>
 #include <variant>
 
@@ -52,11 +53,15 @@ bool isFlagOfThings(const std::string& word) {
     });
 }
 
-const std::vector<std::string>& stateWords() {
-    static const std::vector<std::string> words = {
+/// Returns the words for states, with those of things of extensions that are yes or no.
+std::vector<std::string> stateWords() {
+    std::vector<std::string> words = {
         "within", "in",     "seen",   "unseen",  "stalled", "still", "faster", "slower", "enters",
         "leaves", "on",     "off",    "open",    "closed",  "above", "below",  "is",     "occupied",
         "empty",  "broken", "motion", "touched", "turns",   "opens", "closes"};
+    for (const auto& [keyword, kind] : thingKinds())
+        std::copy_if(kind.states.begin(), kind.states.end(), std::back_inserter(words),
+                     isFlagOfThings);
     return words;
 }
 

@@ -387,6 +387,10 @@ TEST(LockedDoors, TellPlansWhatDoesNotGo) {
     EXPECT_EQ(failure("at 00:00 ann forces d\n"), "");
     EXPECT_EQ(failure("at 00:00 ann forces hall\n"),
               "s.txt:1:14: error: no thing that one forces has the id `hall`");
+    EXPECT_EQ(failure("at 00:00 ann locks\n"),
+              "s.txt:1:14: error: `locks` is no action, wanted one like locks d");
+    EXPECT_EQ(failure("at 00:00 ann closes\n"),
+              "s.txt:1:14: error: `closes` is no action, wanted one like closes door1");
     EXPECT_EQ(failure("at 00:00 ann lokcs d\n"),
               "s.txt:1:14: error: `lokcs` is no action, did you mean `locks`?");
 }
