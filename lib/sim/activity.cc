@@ -442,11 +442,15 @@ bool ActivityDirector::goOnWalking(World& world, std::size_t mover, Doer& doer) 
 /// Returns the ways of people of a height, as if these shut doors of the world were open.
 std::shared_ptr<const GoalWays> ActivityDirector::waysThrough(const World& world, double height,
                                                               std::span<const ShutDoor> doors) {
-    constexpr std::size_t kMaxWays = 16;  // bounds memory
+    constexpr std::size_t kMaxWays = 64;  // bounds memory
     std::pair<double, std::string> key{height, ""};
     for (const ShutDoor& door : doors) key.second.append(door.id).append(1, '\n');
-    if (ways_.size() >= kMaxWays && !ways_.contains(key)) ways_.clear();
-    auto& ways = ways_[key];
+    if (ways_.size() >= kMaxWays && !ways_.contains(key))
+        ways_.erase(std::min_element(ways_.begin(), ways_.end(), [](const auto& a, const auto& b) {
+            return a.second.last_use < b.second.last_use;
+        }));
+    auto& [ways, last_use] = ways_[key];
+    last_use = ++ways_uses_;
     if (!ways)
         ways = std::make_shared<const GoalWays>(world.scene(), withOpen(world.scene(), doors),
                                                 humanRadius(height), height);

@@ -155,7 +155,12 @@ class ActivityDirector {
     std::vector<Doer*> waiting_;  // for their turn, the first one longest
     std::int64_t work_left_;      // cells to look at before others wait; negative: a debt
     // By the height of people, and the ids of the shut doors that are taken as open.
-    std::map<std::pair<double, std::string>, std::shared_ptr<const GoalWays>> ways_;
+    struct KeptWays {
+        std::shared_ptr<const GoalWays> goals;
+        std::int64_t last_use = 0;
+    };
+    std::map<std::pair<double, std::string>, KeptWays> ways_;
+    std::int64_t ways_uses_ = 0;
     std::vector<ShutDoor> shut_doors_;  // of the world
     std::int64_t ways_of_ = -1;         // changes of the world then
     std::map<std::string, OpenedDoor> opened_;

@@ -445,14 +445,43 @@ TEST(ActivityDirector, ACrowdSetsOutInTurns) {
     EXPECT_GT(underway.back(), kPeople * 9 / 10);
 }
 
+/// Ways of each height are searched once, which takes a tenth of a second of the limit.
+TEST(ActivityDirector, WaysOfManyKindsOfPeopleAreKept) {
+    std::string zones, people, script;
+    constexpr int kPeople = 20;
+    for (int i = 0; i < kPeople; ++i) {
+        const std::string id = "p" + std::to_string(i), x = formatDouble(-18 + 1.8 * i);
+        people.append("human id=").append(id).append(" at=").append(x).append(",-8 height=");
+        people.append(formatDouble(1.5 + 0.01 * i)).append("\n");
+        zones.append("zone id=f").append(id).append(" at=").append(x).append(",-4 size=1,1\n");
+        zones.append("zone id=n").append(id).append(" at=").append(x).append(",-8 size=1,1\n");
+        script.append("at 00:00 ").append(id).append(" goes f").append(id).append("\n");
+        script.append("at 00:02 ").append(id).append(" goes n").append(id).append("\n");
+    }
+    const Scene hall = testing::scene("ispace size=40,24\n" + zones, people);
+    Lived day(script, hall, milliseconds(100));
+    const auto underway = [&] {
+        int count = 0;
+        for (std::size_t i = 0; i < kPeople; ++i) count += day.world.running(i) > 0 ? 1 : 0;
+        return count;
+    };
+    day.run(5);
+    EXPECT_LT(underway(), kPeople / 2);
+    day.run(1190);
+    EXPECT_EQ(underway(), 0);
+    day.run(8);
+    EXPECT_EQ(underway(), kPeople);
+}
+
 /// A closet whose ways are soon searched, and a long way behind its door.
 TEST(ActivityDirector, ACrowdGivesUpInTurns) {
     std::string people, script;
     constexpr int kPeople = 30;
     for (int i = 0; i < kPeople; ++i) {
         const std::string id = "p" + std::to_string(i);
+        const int row = i / 6;
         people += "human id=" + id + " at=" + formatDouble(-18 + 0.6 * (i % 6)) + ',' +
-                  formatDouble(-10 + 0.6 * (i / 6)) + '\n';
+                  formatDouble(-10 + 0.6 * row) + '\n';
         script += "at 00:00 " + id + " goes far\n";
     }
     const Scene hall = testing::scene(
