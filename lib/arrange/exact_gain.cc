@@ -223,30 +223,29 @@ struct ExactGain::Data {
         };
         const Overlay overlay(layers, {},
                               {.label = coarse, .add_area = [](const LayerLabel&, double) {}});
-        const auto add_where = [&](std::vector<Missing>& found, auto is_missing) {
-            for (std::size_t i = 0; i < floors.size(); ++i) {
-                const std::uint64_t mark = std::uint64_t{1} << i;
-                std::vector<Curve> curves = overlay.curves([&](const LayerLabel& label) {
-                    return label.marks == mark && is_missing(label);
-                });
-                if (!curves.empty()) found.emplace_back(markLayer(std::move(curves), mark));
-            }
+        // A set for each floor and moving sensor, after one for each floor that none sees.
+        const std::size_t sets_of_floor = moving.size() + 1;
+        const std::size_t none = floors.size() * sets_of_floor;
+        const auto set_of = [&](const LayerLabel& label) {
+            if (!std::has_single_bit(label.marks)) return none;
+            const auto first =
+                static_cast<std::size_t>(std::countr_zero(label.marks)) * sets_of_floor;
+            if (label.count == 0) return first;
+            const bool is_own = label.count == 1 && label.numbers > 0;
+            return is_own ? first + static_cast<std::size_t>(label.numbers) : none;
         };
-        add_where(unseen, [](const LayerLabel& label) { return label.count == 0; });
+        auto curves = overlay.curvesOfSets(none, set_of);
+        alone.resize(moving.size());
+        for (std::size_t set = 0; set < none; ++set) {
+            if (curves[set].empty()) continue;
+            const std::size_t sensor = set % sets_of_floor;
+            (sensor == 0 ? unseen : alone[sensor - 1])
+                .emplace_back(
+                    markLayer(std::move(curves[set]), std::uint64_t{1} << (set / sets_of_floor)));
+        }
         unseen_tiles.emplace(floor_box);
         for (const Missing& floor : unseen)
             unseen_tiles->add(floor.layer.curves, weightOf(floor.layer.marks));
-        std::vector<char> has_own(moving.size() + 1);
-        for (const Overlay::Edge& edge : overlay.edges())
-            for (const LayerLabel& label : {edge.left, edge.right})
-                if (label.count == 1) has_own[static_cast<std::size_t>(label.numbers)] = 1;
-        alone.resize(moving.size());
-        for (std::size_t i = 0; i < moving.size(); ++i)
-            if (has_own[i + 1] != 0)
-                add_where(alone[i],
-                          [own = static_cast<std::int64_t>(i) + 1](const LayerLabel& label) {
-                              return label.count == 1 && label.numbers == own;
-                          });
         is_prepared = true;
     }
 

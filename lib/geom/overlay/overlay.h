@@ -110,6 +110,14 @@ class Overlay {
         return withArcs(regions(in));
     }
 
+    /// Returns for each of `sets` what curves() returns for the labels in it, together in the time
+    /// of one: set_of(label) is the label's set, or `sets` for none. \pre set_of({}) == sets
+    ///
+    ///     overlay.curvesOfSets(2, [](const LayerLabel& l) { return l.count == 1 ? 0U : 2U; });
+    template <typename SetOf>
+    [[nodiscard]] std::vector<std::vector<Curve>> curvesOfSets(std::size_t sets,
+                                                               SetOf set_of) const;
+
     /// Computes the areas of regions(), arcs included.
     [[nodiscard]] std::vector<double> areasOf(std::span<const Region> regions) const;
 
@@ -123,6 +131,9 @@ class Overlay {
         bool is_wall;
     };
     class Maker;
+    Overlay(Point2 middle, double unit) : middle_(middle), unit_(unit) {}
+    /// Returns the overlay of these edges and, from edges_.size() on, walls alone. \pre ascending
+    [[nodiscard]] Overlay partOf(std::span<const std::size_t> chosen) const;
     /// Position of a piece relative to an edge.
     enum Sides : std::uint8_t { kNowhere = 0, kLeft = 1, kRight = 2, kBoth = 3 };
 
@@ -189,6 +200,26 @@ std::vector<Region> Overlay::regions(In in) const {
     }
     for (const LayerLabel& label : walls_) sides.push_back(in(label) ? kBoth : kNowhere);
     return trace(sides);
+}
+
+template <typename SetOf>
+std::vector<std::vector<Curve>> Overlay::curvesOfSets(std::size_t sets, SetOf set_of) const {
+    std::vector<std::vector<std::size_t>> borders(sets);
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+        const std::size_t left = set_of(edges_[i].left), right = set_of(edges_[i].right);
+        if (left < sets && (left != right || ends_[i].is_wall)) borders[left].push_back(i);
+        if (right < sets && left != right) borders[right].push_back(i);
+    }
+    for (std::size_t i = 0; i < walls_.size(); ++i)
+        if (const std::size_t set = set_of(walls_[i]); set < sets)
+            borders[set].push_back(edges_.size() + i);
+    std::vector<std::vector<Curve>> curves_of(sets);
+    for (std::size_t set = 0; set < sets; ++set)
+        if (!borders[set].empty())
+            curves_of[set] = partOf(borders[set]).curves([&](const LayerLabel& label) {
+                return set_of(label) == set;
+            });
+    return curves_of;
 }
 
 /// The regions with a vertex over the middle of each chord, so that their areas are those of

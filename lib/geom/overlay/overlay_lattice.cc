@@ -126,6 +126,7 @@ std::vector<Edge> merged(std::vector<Edge> edges, const std::vector<Point>& poin
         if (edge.is_wall || edge.set != sets.emptySet()) edges[count++] = edge;
     }
     edges.resize(count);
+    if (2 * count < edges.capacity()) edges.shrink_to_fit();  // results wait for others
     return edges;
 }
 

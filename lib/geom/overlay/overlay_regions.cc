@@ -151,6 +151,33 @@ std::vector<Region> withArcAreas(const Overlay& overlay, std::vector<Region> reg
     return regions;
 }
 
+Overlay Overlay::partOf(std::span<const std::size_t> chosen) const {
+    Overlay part(middle_, unit_);
+    std::vector<std::uint32_t> used;
+    used.reserve(2 * chosen.size());
+    for (const std::size_t i : chosen) {
+        used.push_back(ends_[i].from);
+        used.push_back(ends_[i].to);
+    }
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    part.points_.reserve(used.size());
+    for (const std::uint32_t point : used) part.points_.push_back(points_[point]);
+    const auto own = [&used](std::uint32_t point) {
+        return static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), point) -
+                                          used.begin());
+    };
+    part.ends_.reserve(chosen.size());
+    for (const std::size_t i : chosen) {
+        part.ends_.push_back({own(ends_[i].from), own(ends_[i].to), ends_[i].is_wall});
+        if (i < edges_.size())
+            part.edges_.push_back(edges_[i]);
+        else
+            part.walls_.push_back(walls_[i - edges_.size()]);
+    }
+    return part;
+}
+
 std::vector<Region> Overlay::trace(const std::vector<Sides>& sides) const {
     std::vector<lattice::Point> points;
     points.reserve(points_.size());

@@ -52,7 +52,11 @@ class EndRouter {
         divide();
         tbb::parallel_for(std::size_t{0}, bundles_.size(),
                           [this](std::size_t i) { lead(bundles_[i]); });
+        by_x_ = {};
+        std::size_t count = 0;
+        for (const Bundle& bundle : bundles_) count += bundle.pieces.size();
         std::vector<Edge> pieces;
+        pieces.reserve(count);
         std::vector<Index> layers;
         for (Bundle& bundle : bundles_) {
             for (Edge& piece : bundle.pieces) {
@@ -122,7 +126,6 @@ class EndRouter {
         }
         bundle.sets = std::make_unique<SetStore>(&sets_);
         bundle.pieces = merged(splitAtVertices(edges, points), points, *bundle.sets);
-        bundle.pieces.shrink_to_fit();  // there may have been a hundred times as many
         for (Edge& piece : bundle.pieces) {
             piece.from = numbers[piece.from];
             piece.to = numbers[piece.to];
@@ -198,7 +201,7 @@ class Sweep {
 
     void run(const PartVisitor& visit) {
         last_of_.resize(edges_.size());
-        const auto at_once = 8 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+        const auto at_once = 4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
         OrderedCalls products(strips_.size());
         // Strips before `made` are parts, those up to `known` become parts, all up to `found` have
         // their ways, and the next ones get theirs: all at once.

@@ -251,6 +251,28 @@ TEST(OverlayStrips, CoarseTellsAndKeepsTheSame) {
     }
 }
 
+TEST(OverlayStrips, CurvesOfSetsAreThoseOfEach) {
+    for (const int count : {0, 1, 40, 900}) {
+        const std::vector<Layer> layers = manyViews(count);
+        const Overlay overlay(layers, kSheets);
+        constexpr std::size_t kSets = 7;
+        const auto set_of = [](const LayerLabel& label) {
+            if (label.count == 0 && label.marks == 0) return kSets;
+            return static_cast<std::size_t>(label.numbers + label.count) % (kSets + 1);
+        };
+        const auto sets = overlay.curvesOfSets(kSets, set_of);
+        ASSERT_EQ(sets.size(), kSets);
+        std::size_t curves = 0;
+        for (std::size_t set = 0; set < kSets; ++set) {
+            EXPECT_EQ(sets[set], overlay.curves([&](const LayerLabel& label) {
+                return set_of(label) == set;
+            }));
+            curves += sets[set].size();
+        }
+        EXPECT_EQ(curves > kSets, count > 1) << count;
+    }
+}
+
 TEST(OverlayStrips, AreasAloneAreTheSame) {
     using Told = std::vector<std::pair<LayerLabel, double>>;
     for (const int count : {0, 1, 30, 900}) {
