@@ -59,17 +59,22 @@ IfcFaces prismOver(const Polygon& boundary, const IfcFrame& position) {
 
 }  // namespace
 
-void IfcShapes::pay(std::span<const IfcSolid> part, const char* cause, std::size_t times) {
-    if (!work_.take(times * (part.size() + cornersOf(part) / kCornersPerUnit)))
+void IfcShapes::pay(std::span<const IfcSolid> part, const char* cause) {
+    pay(part.size(), cornersOf(part), cause);
+}
+
+void IfcShapes::pay(std::size_t solids, std::size_t corners, const char* cause) {
+    if (!work_.take(solids + corners / kCornersPerUnit))
         throw std::runtime_error(std::string(cause) + " make " + work_.excess());
 }
 
-void IfcShapes::append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame) {
-    pay(part, "mapped shapes");
-    if (cornersOf(part) + cornersOf(shape) > kMaxCorners)
+void IfcShapes::append(Growing& shape, const Growing& part, const IfcFrame& frame) {
+    pay(part.solids.size(), part.corners, "mapped shapes");
+    shape.corners += part.corners;
+    if (shape.corners > kMaxCorners)
         throw std::runtime_error("a shape of more than 20 million corners");
-    for (const IfcSolid& solid : part) {
-        IfcSolid& copy = shape.emplace_back(solid);
+    for (const IfcSolid& solid : part.solids) {
+        IfcSolid& copy = shape.solids.emplace_back(solid);
         copy.body.move(frame);
         for (IfcCut& cut : copy.cuts) {
             if (cut.half_space)
@@ -95,14 +100,14 @@ IfcShape IfcShapes::shapeOf(StepId definition, bool is_hole) {
         if (const int rank = is_reference ? 1 : rankOf(representation); rank > 0)
             ranked.emplace_back(rank, std::move(representation));
     }
-    IfcShape shape;
-    for (int rank = 5; rank > 0 && shape.empty(); --rank)
+    Growing shape;
+    for (int rank = 5; rank > 0 && shape.solids.empty(); --rank)
         for (const auto& [own, representation] : ranked)
             if (own == rank) addItems(representation, shape, 0);
-    return shape;
+    return std::move(shape.solids);
 }
 
-void IfcShapes::addItems(const StepInstance& representation, IfcShape& shape, int depth) {
+void IfcShapes::addItems(const StepInstance& representation, Growing& shape, int depth) {
     for (const StepValue& item : representation[3].list()) {
         try {
             addItem(item.reference(), shape, depth);
@@ -112,7 +117,7 @@ void IfcShapes::addItems(const StepInstance& representation, IfcShape& shape, in
     }
 }
 
-void IfcShapes::addItem(StepId id, IfcShape& shape, int depth) {
+void IfcShapes::addItem(StepId id, Growing& shape, int depth) {
     if (depth > kMaxIfcDepth) throw UnreadGeometry("shapes in a loop");
     curves_.pay(1, "shared shapes");
     const StepInstance item = frames_.file().read(id);
@@ -122,26 +127,26 @@ void IfcShapes::addItem(StepId id, IfcShape& shape, int depth) {
     if (item.type == "IFCCSGSOLID") return addItem(item[0].reference(), shape, depth + 1);
     IfcFaces faces = ifcFaces(curves_, item);
     if (faces.corners.empty()) throw UnreadGeometry(std::string(item.type) + " without faces");
-    shape.push_back({std::move(faces), {}});
+    shape.corners += faces.corners.size();
+    shape.solids.push_back({std::move(faces), {}});
 }
 
-void IfcShapes::addMapped(const StepInstance& item, IfcShape& shape, int depth) {
+void IfcShapes::addMapped(const StepInstance& item, Growing& shape, int depth) {
     const StepId source = item[0].reference();
     const StepInstance map = frames_.file().read(source);
     const IfcFrame frame =
         frames_.transformation(item[1].reference()) * frames_.axes(map[0].reference());
-    std::shared_ptr<const IfcShape> part;
+    std::shared_ptr<const Growing> part;
     if (const auto known = mapped_.find(source); known != mapped_.end()) {
         part = known->second;
         if (part == nullptr) throw UnreadGeometry("shapes in a loop");
     } else {
         mapped_.emplace(source, nullptr);
-        IfcShape read;
+        Growing read;
         addItems(frames_.file().read(map[1].reference()), read, depth + 1);
-        const std::size_t corners = cornersOf(read);
-        part = std::make_shared<const IfcShape>(std::move(read));
-        if (kept_ + corners <= kMaxKeptCorners) {
-            kept_ += corners;
+        part = std::make_shared<const Growing>(std::move(read));
+        if (kept_ + part->corners <= kMaxKeptCorners) {
+            kept_ += part->corners;
             mapped_[source] = part;
         } else {
             mapped_.erase(source);
@@ -154,11 +159,11 @@ IfcCut IfcShapes::cutBy(StepId operand, bool keeps_inside, int depth) {
     const StepInstance item = frames_.file().read(operand);
     IfcCut cut;
     if (item.type.find("HALFSPACE") == std::string_view::npos) {
-        IfcShape other;
+        Growing other;
         addItem(operand, other, depth + 1);
-        if (keeps_inside || other.size() != 1 || !other.front().cuts.empty())
+        if (keeps_inside || other.solids.size() != 1 || !other.solids.front().cuts.empty())
             throw UnreadGeometry("IFCBOOLEANRESULT of two solids");
-        cut.limit = std::move(other.front().body);
+        cut.limit = std::move(other.solids.front().body);
         return cut;
     }
     const StepInstance surface = frames_.file().read(item[0].reference());
@@ -177,9 +182,9 @@ IfcCut IfcShapes::cutBy(StepId operand, bool keeps_inside, int depth) {
     return cut;
 }
 
-void IfcShapes::addBoolean(const StepInstance& result, IfcShape& shape, int depth) {
+void IfcShapes::addBoolean(const StepInstance& result, Growing& shape, int depth) {
     const std::string_view operation = result[0].word();
-    IfcShape first;
+    Growing first;
     addItem(result[1].reference(), first, depth + 1);
     if (operation == "UNION") {
         append(shape, first, {});
@@ -187,9 +192,12 @@ void IfcShapes::addBoolean(const StepInstance& result, IfcShape& shape, int dept
     }
     try {
         const IfcCut cut = cutBy(result[2].reference(), operation == "INTERSECTION", depth);
-        if (cut.limit)
-            curves_.pay(first.size() * (cut.limit->corners.size() / kCornersPerUnit), "cuts");
-        for (IfcSolid& solid : first) solid.cuts.push_back(cut);
+        if (cut.limit) {
+            const std::size_t corners = cut.limit->corners.size();
+            curves_.pay(first.solids.size() * (corners / kCornersPerUnit), "cuts");
+            first.corners += first.solids.size() * corners;
+        }
+        for (IfcSolid& solid : first.solids) solid.cuts.push_back(cut);
     } catch (const UnreadGeometry& part) {
         ++unread_[part.what()];  // the solid stays whole
     }

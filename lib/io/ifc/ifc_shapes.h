@@ -62,7 +62,7 @@ class IfcShapes {
     IfcShape shapeOf(StepId definition, bool is_hole = false);
     /// Takes the work for solids that are read, copied or cut again.
     /// \throws std::runtime_error, which begins with the cause, if it is more than is left
-    void pay(std::span<const IfcSolid> part, const char* cause, std::size_t times = 1);
+    void pay(std::span<const IfcSolid> part, const char* cause);
     /// Returns the numbers of unsupported parts, by type.
     [[nodiscard]] const std::map<std::string, std::size_t>& unread() const { return unread_; }
     /// Returns these, and forgets them.
@@ -71,20 +71,27 @@ class IfcShapes {
     static constexpr std::size_t kMaxCorners = 20'000'000;  ///< of a shape
 
   private:
-    void addItems(const StepInstance& representation, IfcShape& shape, int depth);
-    void addItem(StepId id, IfcShape& shape, int depth);
-    void addMapped(const StepInstance& item, IfcShape& shape, int depth);
-    void addBoolean(const StepInstance& result, IfcShape& shape, int depth);
+    /// A shape and the number of its corners, those of its cuts included.
+    struct Growing {
+        IfcShape solids;
+        std::size_t corners = 0;
+    };
+
+    void addItems(const StepInstance& representation, Growing& shape, int depth);
+    void addItem(StepId id, Growing& shape, int depth);
+    void addMapped(const StepInstance& item, Growing& shape, int depth);
+    void addBoolean(const StepInstance& result, Growing& shape, int depth);
     [[nodiscard]] IfcCut cutBy(StepId operand, bool keeps_inside, int depth);
 
-    void append(IfcShape& shape, const IfcShape& part, const IfcFrame& frame);
+    void append(Growing& shape, const Growing& part, const IfcFrame& frame);
+    void pay(std::size_t solids, std::size_t corners, const char* cause);
 
     const IfcFrames& frames_;
     Budget& work_;
     IfcCurves curves_;
     std::map<std::string, std::size_t> unread_;
-    std::unordered_map<StepId, std::shared_ptr<const IfcShape>> mapped_;  // null: being read
-    std::size_t kept_ = 0;                                                // corners in mapped_
+    std::unordered_map<StepId, std::shared_ptr<const Growing>> mapped_;  // null: being read
+    std::size_t kept_ = 0;                                               // corners in mapped_
 };
 
 /// Reads the faces of an item that is no boolean result and not mapped, and pays for them.
