@@ -25,16 +25,40 @@ const char* const kWanted = "no trace, wanted what arrange --trace writes";
     throw FormatError({"", 0, static_cast<int>(column), message});
 }
 
+/// Finds a key of the outermost object that is there twice; json::parse keeps the last. A callback
+/// of json::parse would see it as well, and look through each list after each of its items.
+class KeysOnce : public nlohmann::json_sax<json> {
+  public:
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t) override { return true; }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(std::size_t) override { return ++depth_, true; }
+    bool end_object() override { return --depth_, true; }
+    bool start_array(std::size_t) override { return ++depth_, true; }
+    bool end_array() override { return --depth_, true; }
+    bool key(string_t& name) override {
+        if (depth_ == 1 && !keys_.insert(name).second) failInLine("a second " + excerpt(name));
+        return true;
+    }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+        return false;  // json::parse reports it
+    }
+
+  private:
+    std::size_t depth_ = 0;
+    std::set<std::string> keys_;
+};
+
 /// Parses the object of one line. \throws FormatError without file and line
 json parseTraceLine(std::string_view text) {
-    std::set<std::string> keys;
-    const auto check = [&keys](int depth, json::parse_event_t event, const json& key) {
-        if (depth == 1 && event == json::parse_event_t::key && !keys.insert(key).second)
-            failInLine("a second " + excerpt(key.get<std::string>()));
-        return true;
-    };
+    KeysOnce keys;
+    json::sax_parse(text, &keys);
     try {
-        json line = json::parse(text, check);
+        json line = json::parse(text);
         if (!line.is_object()) failInLine("the line is no JSON object");
         return line;
     } catch (const json::parse_error& error) {

@@ -202,17 +202,33 @@ std::string rosCbor(RosType type, std::string_view message) {
     return converted<CborOutput>(type, message);
 }
 
+namespace {
+
+/// Returns how deep the objects and lists of a JSON text nest at most.
+int depthOf(std::string_view text) {
+    int depth = 0, deepest = 0;
+    bool is_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '"') is_string = !is_string;
+        if (is_string) {
+            if (c == '\\') ++i;
+            continue;
+        }
+        if (c == '{' || c == '[') deepest = std::max(deepest, ++depth);
+        if (c == '}' || c == ']') --depth;
+    }
+    return deepest;
+}
+
+}  // namespace
+
+// Counted ahead: the library's parser with a callback looks through a list after each of its items.
 std::optional<json> parseClientJson(std::string_view text) {
     constexpr int kMaxDepth = 32;
-    bool is_deep = false;
-    json value = json::parse(
-        text.begin(), text.end(),
-        [&is_deep](int depth, json::parse_event_t /*event*/, json& /*parsed*/) {
-            is_deep = is_deep || depth > kMaxDepth;
-            return !is_deep;
-        },
-        false);
-    if (value.is_discarded() || is_deep) return std::nullopt;
+    if (depthOf(text) > kMaxDepth) return std::nullopt;
+    json value = json::parse(text.begin(), text.end(), nullptr, false);
+    if (value.is_discarded()) return std::nullopt;
     return value;
 }
 

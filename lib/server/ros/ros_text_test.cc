@@ -130,6 +130,16 @@ TEST(RosText, JsonOfClientsIsBounded) {
     EXPECT_TRUE(parseClientJson(std::string(20, '[') + std::string(20, ']')));
     EXPECT_FALSE(parseClientJson(std::string(100, '[') + std::string(100, ']')));
     EXPECT_FALSE(parseClientJson(std::string(100'000, '[')));
+    const std::string brackets(100, '[');
+    EXPECT_TRUE(parseClientJson("[\"" + brackets + "\", \"\\\"" + brackets + "\"]"));
+    EXPECT_FALSE(parseClientJson("[\"" + brackets + "\\"));
+}
+
+TEST(RosText, LongListsOfClientsTakeTimeByTheirLength) {
+    constexpr int kObjects = 200'000;  // 20 000 million looks if each item begins a search
+    std::string text = "[{}";
+    for (int i = 1; i < kObjects; ++i) text += ",{}";
+    EXPECT_EQ(parseClientJson(text + "]")->size(), kObjects);
 }
 
 }  // namespace

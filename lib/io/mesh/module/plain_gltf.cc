@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -338,32 +339,69 @@ PlainGltf GltfReader::plain() {
             {{kBuffer, std::move(out_)}}};
 }
 
-/// Returns true if a mesh of glTF 2 has positions of another type than float.
-bool hasIntegerPositions(std::string_view text) {
-    constexpr std::size_t kFloat = 5126;
-    // Data in the text itself would take as much memory again.
-    const Json root = Json::parse(
-        text,
-        [](int /*depth*/, Json::parse_event_t event, Json& value) {
-            return event != Json::parse_event_t::key || (value != "uri" && value != "extras");
-        },
-        false);
-    if (root.is_discarded() || !root.is_object()) return false;
-    try {
-        const Json accessors = root.value("accessors", Json::array());
-        if (!accessors.is_array()) return false;  // glTF 1
-        for (const Json& mesh : root.value("meshes", Json::array()))
-            for (const Json& primitive : mesh.value("primitives", Json::array())) {
-                const Json attributes = primitive.value("attributes", Json::object());
-                const std::size_t position = attributes.value("POSITION", accessors.size());
-                if (position < accessors.size() &&
-                    accessors[position].value("componentType", kFloat) != kFloat)
-                    return true;
-            }
-    } catch (const Json::exception&) {
+/// Finds the component types of the accessors of glTF 2, and which of them are positions. Keeps
+/// nothing else: data in the text would take as much memory again.
+class Positions : public nlohmann::json_sax<Json> {
+  public:
+    /// Returns true if a mesh has positions of another type than float.
+    [[nodiscard]] bool areIntegers() const {
+        constexpr std::uint64_t kFloat = 5126;
+        return std::any_of(positions_.begin(), positions_.end(), [&](std::uint64_t position) {
+            return position < types_.size() && types_[position].value_or(kFloat) != kFloat;
+        });
+    }
+
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t value) override {
+        if (top_ == Top::Accessors && depth_ == 3 && is_type_) types_.back() = value;
+        if (top_ == Top::Meshes && depth_ == 6 && is_primitives_ && is_attributes_ && is_position_)
+            positions_.push_back(value);
+        return true;
+    }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(std::size_t) override {
+        ++depth_;
+        if (top_ == Top::Accessors && depth_ == 2) return false;  // glTF 1
+        if (top_ == Top::Accessors && depth_ == 3) types_.emplace_back();
+        return true;
+    }
+    bool end_object() override { return --depth_, true; }
+    bool start_array(std::size_t) override { return ++depth_, true; }
+    bool end_array() override { return --depth_, true; }
+    bool key(string_t& name) override {
+        if (depth_ == 1)
+            top_ = name == "accessors" ? Top::Accessors
+                   : name == "meshes"  ? Top::Meshes
+                                       : Top::Other;
+        if (depth_ == 3) {
+            is_type_ = name == "componentType";
+            is_primitives_ = name == "primitives";
+        }
+        if (depth_ == 5) is_attributes_ = name == "attributes";
+        if (depth_ == 6) is_position_ = name == "POSITION";
+        return true;
+    }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
         return false;  // assimp reports it
     }
-    return false;
+
+  private:
+    enum class Top { Accessors, Meshes, Other };
+
+    std::size_t depth_ = 0;
+    Top top_ = Top::Other;
+    bool is_type_ = false, is_primitives_ = false, is_attributes_ = false, is_position_ = false;
+    std::vector<std::optional<std::uint64_t>> types_;  // of the accessors
+    std::vector<std::uint64_t> positions_;             // accessors
+};
+
+bool hasIntegerPositions(std::string_view text) {
+    Positions positions;
+    return Json::sax_parse(text, &positions) && positions.areIntegers();
 }
 
 }  // namespace
