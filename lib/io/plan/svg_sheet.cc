@@ -448,16 +448,17 @@ std::size_t SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) cons
     collect(Simple::Kind::Name, svgName(node));
     if (const pugi::xml_attribute id = node.attribute("id")) collect(Simple::Kind::Id, id.value());
     std::string_view classes = node.attribute("class").value();
-    std::vector<std::string_view> seen;
+    steps.work += classes.size() / kBytesPerStep;
+    std::vector<std::string_view> names;
     while (!classes.empty()) {
         std::size_t end = 0;
         while (end < classes.size() && !isCssBlank(classes[end])) ++end;
-        const std::string_view name = classes.substr(0, end);
+        if (end > 0) names.push_back(classes.substr(0, end));
         classes.remove_prefix(std::min(end + 1, classes.size()));
-        if (name.empty() || isOneOf(seen, name)) continue;
-        seen.push_back(name);
-        collect(Simple::Kind::Class, name);
     }
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    for (const std::string_view name : names) collect(Simple::Kind::Class, name);
     std::sort(found.begin(), found.end(), [this](std::size_t a, std::size_t b) {
         return std::pair(rules_[a].specificity, a) < std::pair(rules_[b].specificity, b);
     });

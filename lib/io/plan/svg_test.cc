@@ -426,6 +426,7 @@ TEST(SvgCss, AsBrowsersApplyIt) {
              "<style>.a{display:none!important} #p{display:inline}</style><path id='p' class='a'",
              "<style>.a{display:none !important}</style><path style='display:inline' class='a'",
              "<style>.b{display:inline} .a{display:none}</style><path class='a b'",
+             "<style>.b{display:inline} .a{display:none}</style><path class=' b\ta  b a '",
              "<style>#p{display:none} path.a{display:inline}</style><path id='p' class='a'",
              "<path style='display:none!important'",
              "<path opacity='0'",
