@@ -324,8 +324,9 @@ class RoomBuilder {
         for (const std::size_t i : slabs_) {
             add_storey(i);
             add(bottomOf(i));
-            for (const FloorOpening& opening : coupling_.openings_)
-                if (opening.above == i) add_outline(opening.outline);
+            for (const std::size_t at : coupling_.openings_at_[i])
+                if (const FloorOpening& opening = coupling_.openings_[at]; opening.above == i)
+                    add_outline(opening.outline);
         }
         add(static_cast<double>(raised_.size()));
         for (const auto& [storey, above] : raised_) {
@@ -435,7 +436,15 @@ class RoomBuilder {
     }
 
     void findOpenings() {
-        for (const FloorOpening& opening : coupling_.openings_) {
+        std::vector<std::size_t> found;
+        for (const std::size_t storey : storeys_) {
+            const std::vector<std::size_t>& at = coupling_.openings_at_[storey];
+            found.insert(found.end(), at.begin(), at.end());
+        }
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        for (const std::size_t i : found) {
+            const FloorOpening& opening = coupling_.openings_[i];
             const bool is_own = opening.below == own_ || opening.above == own_;
             const bool is_within = isHere(opening.below) && isHere(opening.above);
             if (isHere(opening.below) && opening.flight.size() == 2) steps_.push_back(&opening);
@@ -599,6 +608,21 @@ class RoomBuilder {
     std::vector<Triangles> solids_;
 };
 
+namespace {
+
+/// Returns the ordinals of the openings below or above each storey, ascending.
+std::vector<std::vector<std::size_t>> byStorey(std::size_t storeys,
+                                               const std::vector<FloorOpening>& openings) {
+    std::vector<std::vector<std::size_t>> at(storeys);
+    for (std::size_t i = 0; i < openings.size(); ++i) {
+        at[openings[i].below].push_back(i);
+        if (openings[i].above != openings[i].below) at[openings[i].above].push_back(i);
+    }
+    return at;
+}
+
+}  // namespace
+
 /// Scenes of floors by the storey's scene and what stands around it.
 struct Coupling::Floors {
     std::mutex mutex;
@@ -608,6 +632,7 @@ struct Coupling::Floors {
 Coupling::Coupling(const BuildingScene& building)
     : building_(building),
       openings_(floorOpenings(building)),
+      openings_at_(byStorey(building.scenes.size(), openings_)),
       above_(storeysAbove(building.scenes.size(), openings_)),
       slab_plans_(building.scenes.size()),
       surroundings_(building.scenes.size()),
@@ -681,8 +706,8 @@ const Coupling::Slab& Coupling::slab(std::size_t storey) const { return slabs()[
 const std::vector<Region>& Coupling::slabPlan(std::size_t storey) const {
     return slab_plans_[storey].get([&] {
         std::vector<Polygon> open;
-        for (const FloorOpening& opening : openings_)
-            if (opening.above == storey) open.push_back(opening.outline);
+        for (const std::size_t i : openings_at_[storey])
+            if (openings_[i].above == storey) open.push_back(openings_[i].outline);
         return cutOut(asCurves(outlinesOf(building_, storey)), open);
     });
 }
@@ -788,11 +813,7 @@ Environment Coupling::joined(std::span<const std::size_t> storeys) const {
 }
 
 std::optional<Environment> Coupling::opened(std::size_t storey) const {
-    const bool is_open =
-        std::any_of(openings_.begin(), openings_.end(), [&](const FloorOpening& opening) {
-            return opening.below == storey || opening.above == storey;
-        });
-    if (!is_open) return std::nullopt;
+    if (openings_at_[storey].empty()) return std::nullopt;
     return RoomBuilder(*this, {storey}, storey, {.with_slabs = false}).environment();
 }
 
@@ -824,7 +845,8 @@ std::optional<std::string> Coupling::stepsAround(std::size_t storey, Point3 poin
                                                  double& height) const {
     const std::vector<Storey>& storeys = building_.document.storeys;
     const Point2 place = storeys[storey].building_from_storey * point.onFloor();
-    for (const FloorOpening& opening : openings_) {
+    for (const std::size_t i : openings_at_[storey]) {
+        const FloorOpening& opening = openings_[i];
         if (opening.below != storey || opening.flight.size() != 2 ||
             locate(opening.outline, place) != Side::Inside)
             continue;

@@ -152,6 +152,7 @@ class Coupling {
 
     BuildingScene building_;
     std::vector<FloorOpening> openings_;
+    std::vector<std::vector<std::size_t>> openings_at_;  // below or above each storey, ascending
     std::vector<std::vector<bool>> above_;
     Lazy<std::vector<std::vector<bool>>> stacked_;  // by storeys
     Lazy<std::vector<Slab>> slabs_;
