@@ -150,7 +150,7 @@ def _parse(arguments: Sequence[str] | None, version: str) -> argparse.Namespace:
     add("--raw", action="store_true", default=None, help="CSV: leave texts that look like formulas")
     add("--to", metavar="FORMAT", help="csv, jsonl or npz; svg, png or pdf (default: the suffix of FILE)")
     add("--x", metavar="AXIS", help="what lies along the picture")
-    add("--y", metavar="COLUMN", help="what is drawn (default: the coverage)")
+    add("--y", metavar="COLUMN,...", help="what is drawn, a curve each (default: the coverage)")
     add("--by", metavar="AXIS", help="a curve for each choice of AXIS")
     add("--over", metavar="AXIS", help="a heat map with the choices of AXIS up its side")
     add("-q", "--quiet", action="store_true", help="report only errors")

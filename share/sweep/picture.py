@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 from typing import Any, Callable
 
@@ -16,36 +17,42 @@ USUAL = ("coverage.exact", "result.coverage", "coverage.grid")  # columns drawn 
 
 
 def draw(sweep: Sweep, table: Table, x: str, y: str | None, by: str | None, over: str | None, form: str) -> bytes:
-    """Draws the means of column `y` over axis `x`, with least and greatest if several jobs share a point: a curve for
-    each choice of `by`, or with `over` a cell for each two choices."""
+    """Draws the means of the columns `y`, parted by commas, over axis `x`, with least and greatest if several jobs share
+    a point: a curve for each column and choice of `by`, or with `over` one column, a cell for each two choices."""
     axes = {axis.name: axis for axis in sweep.axes}
     for option, name in (("--x", x), ("--by", by), ("--over", over)):
         if name is not None and name not in axes:
             raise UsageError(f"{option} {name}: no such axis{did_you_mean(name, axes)}; there are "
                              f"{', '.join(axes)}")
-    column = _column(table, y)
-    cells = _Cells(sweep, table, column)
+    columns = _columns(table, y)
+    if over is not None and len(columns) > 1:
+        raise UsageError("--y: a heat map (--over) shows one column")
+    drawn = {column.name: _Cells(sweep, table, column) for column in columns}
     if over is not None:
-        plot = _heat(cells, axes[x], axes[over], column.name)
+        plot = _heat(drawn[columns[0].name], axes[x], axes[over], columns[0].name)
     else:
-        plot = _curves(cells, axes[x], axes[by] if by else None, column.name)
+        plot = _curves(drawn, axes[x], axes[by] if by else None)
     out = io.BytesIO()
     nothing = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
     plot.figure.savefig(out, format=form, bbox_inches="tight", dpi=144, metadata=nothing[form])
     return out.getvalue()
 
 
-def _column(table: Table, y: str | None) -> Column:
+def _columns(table: Table, y: str | None) -> list[Column]:
     numeric = {column.name: column for column in table.columns if column.name != "job" and column.has_number}
     if y is None:
         usual = [name for name in USUAL if name in numeric]
         if not usual:
             raise UsageError(f"--y COLUMN is needed; there are {', '.join(numeric)}")
-        return numeric[usual[0]]
-    if y not in numeric:
-        raise UsageError(f"--y {y}: no column with numbers{did_you_mean(y, numeric)}; there are "
-                         f"{', '.join(numeric)}")
-    return numeric[y]
+        return [numeric[usual[0]]]
+    names = [y] if y in numeric else next(csv.reader([y]), []) or [y]
+    for place, name in enumerate(names):
+        if name not in numeric:
+            raise UsageError(f"--y {name}: no column with numbers{did_you_mean(name, numeric)}; there are "
+                             f"{', '.join(numeric)}")
+        if name in names[:place]:
+            raise UsageError(f"--y: `{name}` is given twice")
+    return [numeric[name] for name in names]
 
 
 class _Cells:
@@ -79,25 +86,28 @@ class _Cells:
         return f"mean over {', '.join(others)}" if others else ""
 
 
-def _curves(cells: _Cells, x: Axis, by: Axis | None, column: str) -> Any:
+def _curves(drawn: dict[str, _Cells], x: Axis, by: Axis | None) -> Any:
     place, labels = _places(x)
-    cells_by = cells.by(x, by) if by else cells.by(x)
     curves = []
     shown: list[Choice | None] = [*by.choices] if by else [None]
-    for choice in shown:
-        points = []
-        for option in x.choices:
-            found = cells_by.get((option.text, choice.text) if choice else (option.text,))
-            if found:
-                points.append((place[option.text], sum(found) / len(found), min(found), max(found)))
-        if points:
-            curves.append((choice.text if choice else "", sorted(points)))
+    for column, cells in drawn.items():
+        cells_by = cells.by(x, by) if by else cells.by(x)
+        for choice in shown:
+            points = []
+            for option in x.choices:
+                found = cells_by.get((option.text, choice.text) if choice else (option.text,))
+                if found:
+                    points.append((place[option.text], sum(found) / len(found), min(found), max(found)))
+            if points:
+                words = [choice.text] if choice else []
+                curves.append((", ".join([*words, column] if len(drawn) > 1 else words), sorted(points)))
     low = min(point[2] for _, points in curves for point in points)
     high = max(point[3] for _, points in curves for point in points)
-    note = cells.spread(x, by)
+    note = next(iter(drawn.values())).spread(x, by)
+    names = ", ".join(drawn)
     look = _look()
     plot = look.Plot(_widened(min(place.values()), max(place.values())), _widened(low, high),
-                     column + (f", {note}" if note else ""), x.name, column)
+                     names + (f", {note}" if note else ""), x.name, names)
     for index, (name, points) in enumerate(curves):
         color = look.SERIES[index % len(look.SERIES)]
         dash = "" if index < len(look.SERIES) else "6 3"
@@ -107,7 +117,8 @@ def _curves(cells: _Cells, x: Axis, by: Axis | None, column: str) -> Any:
         plot.line([p[:2] for p in points], color, 2.0, dash, name)
         plot.dots([p[:2] for p in points], color, 3.0)
     _ticks(plot.axes.set_xticks, place, labels)
-    _legend(plot, by)
+    if by or len(drawn) > 1:
+        _legend(plot, by.name if by else "")
     return plot
 
 
@@ -155,10 +166,9 @@ def _ticks(setter: Callable[..., Any], place: dict[str, Any], labels: list[str])
         setter(sorted(place.values()))
 
 
-def _legend(plot: Any, by: Axis | None) -> None:
-    if by:
-        plot.axes.legend(loc="upper left", bbox_to_anchor=(0, -0.14), ncols=2, frameon=False,
-                         borderaxespad=0, title=by.name, alignment="left")
+def _legend(plot: Any, title: str) -> None:
+    plot.axes.legend(loc="upper left", bbox_to_anchor=(0, -0.14), ncols=2, frameon=False, borderaxespad=0,
+                     title=title or None, alignment="left")
 
 
 def _widened(low: float, high: float) -> tuple[float, float]:

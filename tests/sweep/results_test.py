@@ -128,9 +128,14 @@ def pictures(folder):
     check(folder.read("heat.png").startswith(b"\x89PNG"), "no PNG")
     folder.sweep("plot", "--x", "seed", "--y", "free_coverage.exact", "-o", "one.pdf")
     check(folder.read("one.pdf").startswith(b"%PDF"), "no PDF")
+    both = folder.sweep("plot", "--x", "count", "--by", "device", "--y", "coverage.exact,free_coverage.exact")
+    check(both.count("<path") > text.decode().count("<path"), "a column is not drawn")
     for words, wanted in ((["--x", "conut"], "--x conut: no such axis, did you mean `count`?"),
                           (["--x", "count", "--y", "coverage.exat"], "--y coverage.exat: no column with numbers, "
-                                                                     "did you mean `coverage.exact`?")):
+                                                                     "did you mean `coverage.exact`?"),
+                          (["--x", "count", "--y", "result.area,result.area"], "--y: `result.area` is given twice"),
+                          (["--x", "device", "--over", "room", "--y", "result.area,coverage.exact"],
+                           "--y: a heat map (--over) shows one column")):
         folder.sweep("plot", *words, status=2)
         check(folder.talk.startswith("ispace-sweep: " + wanted), folder.talk)
 
