@@ -908,7 +908,7 @@ def run(command, seconds):
 # The cost of an input beyond one of START_BYTES counts as this much at least: less is noise. Families with a cheaper
 # largest file continue with larger sizes, up to MOST_BYTES. Where even that one takes less than CHEAP_SECONDS, as where
 # a budget ends the work, the time of the smallest is noise and no exponent is judged.
-START_BYTES, LEAST_SECONDS, LEAST_BYTES, MOST_BYTES = 400, 0.02, 4e6, 16_000_000
+START_BYTES, LEAST_SECONDS, LEAST_BYTES, MOST_BYTES = 400, 0.02, 16e6, 16_000_000
 CHEAP_SECONDS = 25 * LEAST_SECONDS
 STEEPEST, REPEATS = 1.2, 2
 
@@ -938,7 +938,9 @@ class Growth:
                 is_judged = lists or (is_first and i == 0)
                 self.rows.append(self.measure(envc, family, size, seconds, expected if is_judged else ""))
             self.seconds = max(row[1] for row in self.rows) - start[0]
-            if self.seconds > CHEAP_SECONDS or 4 * sizes[-1] > most or self.wrong:
+            # What every size takes, as the first suggestion does, hides how the rest grows.
+            is_judged = self.seconds > CHEAP_SECONDS and self.rows[0][1] > 2 * start[0]
+            if is_judged or 4 * sizes[-1] > most or self.wrong:
                 break
             sizes, is_first = [4 * size for size in sizes], False
         self.sizes, self.start = sizes, start
@@ -955,6 +957,8 @@ class Growth:
 
     def repeat(self, envc, family, seconds):
         """Measures each size again and keeps the least."""
+        _, *start = self.measure(envc, family, START_BYTES, seconds)
+        self.start = list(map(min, self.start, start))
         again = [self.measure(envc, family, size, seconds) for size in self.sizes]
         self.rows = [tuple(map(min, old, new)) for old, new in zip(self.rows, again)]
         self.fit()
