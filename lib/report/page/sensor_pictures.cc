@@ -153,7 +153,8 @@ PageFigure photoOf(const Scene& scene, const Coverage& coverage, const SensorVie
     const Sensor small = reduced(sensor, width);
     const std::vector<ServedSpot> spots = spotsOf(scene, coverage, view);
     const Scene peopled = withPeople(scene, spots, sensor.pose.position.onFloor());
-    const Photographer photographer(peopled, PhotoOptions{});
+    // Two samples a pixel, as the page shows the picture at two thirds of its size or less.
+    const Photographer photographer(peopled, PhotoOptions{.samples = 2});
     const Camera& camera = small.as<Camera>();
     const double band = std::ceil(kBand * camera.columns);
     Picture picture(camera.columns, camera.rows + band);
@@ -292,7 +293,7 @@ std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& cover
         std::count_if(coverage.sensors.begin(), coverage.sensors.end(),
                       [](const SensorView& view) { return view.kind == &Camera::kKind; });
     // Many pictures are smaller, so that the page stays light.
-    constexpr double kWide = 640, kNarrow = 360;
+    constexpr double kWide = 576, kNarrow = 360;
     constexpr std::ptrdiff_t kFew = 8;
     const double width = cameras > kFew ? kNarrow : kWide;
     const std::vector<Color> colors = sensorColors(coverage);
