@@ -272,7 +272,9 @@ def _parts_of(sweep: Sweep | None, paths: Sequence[str]) -> list[Part]:
 
     found = parts.in_order(paths)
     if sweep is not None and found[0].head["digest"] != sweep.digest:
-        raise DataError([f"{found[0].path}: error: of another sweep than {sweep.file} (another file)"])
+        raise DataError([f"{found[0].path}: error: of another state of {sweep.file}, or of another sweep: "
+                         f"`ispace-sweep run {shlex.quote(sweep.file)} --reuse {shlex.quote(found[0].path)} "
+                         "-o NEW.jsonl` takes over the lines of equal jobs"])
     return found
 
 

@@ -13,6 +13,7 @@ from .model import Axis, Sweep
 from .tables import Column, Table
 
 FORMATS = ("svg", "png", "pdf")
+DASHES = ("", "6 3", "2 2", "8 2 2 2")
 USUAL = ("coverage.exact", "result.coverage", "coverage.grid")  # columns drawn by default, the first that exists
 
 
@@ -90,9 +91,9 @@ def _curves(drawn: dict[str, _Cells], x: Axis, by: Axis | None) -> Any:
     place, labels = _places(x)
     curves = []
     shown: list[Choice | None] = [*by.choices] if by else [None]
-    for column, cells in drawn.items():
+    for dash, (column, cells) in enumerate(drawn.items()):
         cells_by = cells.by(x, by) if by else cells.by(x)
-        for choice in shown:
+        for hue, choice in enumerate(shown):
             points = []
             for option in x.choices:
                 found = cells_by.get((option.text, choice.text) if choice else (option.text,))
@@ -100,17 +101,20 @@ def _curves(drawn: dict[str, _Cells], x: Axis, by: Axis | None) -> Any:
                     points.append((place[option.text], sum(found) / len(found), min(found), max(found)))
             if points:
                 words = [choice.text] if choice else []
-                curves.append((", ".join([*words, column] if len(drawn) > 1 else words), sorted(points)))
-    low = min(point[2] for _, points in curves for point in points)
-    high = max(point[3] for _, points in curves for point in points)
+                name = ", ".join([*words, column] if len(drawn) > 1 else words)
+                # A choice has one colour, a column one kind of line.
+                look_of = (hue, dash) if by else (dash, dash)
+                curves.append((name, look_of, sorted(points)))
+    low = min(point[2] for *_, points in curves for point in points)
+    high = max(point[3] for *_, points in curves for point in points)
     note = next(iter(drawn.values())).spread(x, by)
     names = ", ".join(drawn)
     look = _look()
     plot = look.Plot(_widened(min(place.values()), max(place.values())), _widened(low, high),
                      names + (f", {note}" if note else ""), x.name, names)
-    for index, (name, points) in enumerate(curves):
-        color = look.SERIES[index % len(look.SERIES)]
-        dash = "" if index < len(look.SERIES) else "6 3"
+    for name, (hue, kind), points in curves:
+        color = look.SERIES[hue % len(look.SERIES)]
+        dash = DASHES[(kind + hue // len(look.SERIES)) % len(DASHES)]
         if any(point[2] < point[3] for point in points):
             plot.axes.fill_between([p[0] for p in points], [p[2] for p in points], [p[3] for p in points],
                                    color=color, alpha=0.15, linewidth=0)

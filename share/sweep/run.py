@@ -304,10 +304,10 @@ class _Reused:
 
 
 def run(sweep: Sweep, jobs: Jobs, share: parts.Share, path: str, version: str, size: int, retry: bool,
-        reuse: Sequence[str], say: Callable[[list[str]], None]) -> int:
+        reuse: Sequence[str], say: Callable[[list[str]], None], note: Callable[[str], None]) -> int:
     """Runs jobs, `size` at a time, and writes their lines to `path`. Returns how many failed, those of earlier runs
     included. With `retry` those that failed before run again. Jobs that have a line in the parts `reuse` do not run.
-    `say` gets a line for each that fails."""
+    `say` gets a line for each that fails, `note` how many did not run."""
     if path != "-" and os.path.exists(path) and not os.path.isfile(path):
         raise UsageError(f"-o {path}: a regular file, or standard output")
     reused = _Reused(reuse, sweep, version)
@@ -359,6 +359,8 @@ def run(sweep: Sweep, jobs: Jobs, share: parts.Share, path: str, version: str, s
             earlier.close()
     if reuse and fresh and not taken:
         say(["warning: --reuse: these parts have no job of this run with the same choices, commands and files"])
+    elif reuse and taken:
+        note(f"note: {taken} jobs are those of {', '.join(reuse)}, {fresh} ran")
     return tally.failed
 
 
