@@ -225,8 +225,8 @@ std::string CommandLine::Data::wordOf(std::size_t group) const {
     return words.front();
 }
 
-/// Takes the word behind --help, or joined to it by =, out of a command line. A name of a file is
-/// an operand.
+/// Takes the word behind --help, or joined to it by =, out of a command line; it may be an option
+/// with a value, as --seed. A name of a file is an operand.
 void CommandLine::Data::takeHelpWord(std::vector<std::string>& words) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         constexpr std::string_view kJoined = "--help=";
@@ -236,7 +236,12 @@ void CommandLine::Data::takeHelpWord(std::vector<std::string>& words) {
         }
         if (words[i] != "--help" && words[i] != "-h") continue;
         if (!about.empty() || i + 1 == words.size()) return;
-        const std::string& next = words[i + 1];
+        std::string next = words[i + 1];
+        const CLI::Option* const option = app.get_option_no_throw(next);
+        const bool asks_for_option = option != nullptr && i + 2 == words.size() &&
+                                     option->get_items_expected_min() > 0 &&
+                                     next.starts_with("--");
+        if (asks_for_option) next.erase(0, 2);  // its value is missing, so that it is a question
         if (next.empty() || next.starts_with('-')) return;
         if (next.find_first_of("./") != std::string::npos) return;
         about = next;

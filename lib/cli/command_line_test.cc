@@ -276,6 +276,8 @@ TEST(CommandLine, TakesTheWordBehindHelp) {
         line.flag("--first", flag, "the first", Enters::Nothing);
         line.group("Maps");
         line.flag("--draw", flag, "the picture", Enters::Nothing);
+        std::string style;
+        line.text("--style", "NAME", style, "how it is drawn", Enters::Nothing);
         line.essential({"--first"});
         words.insert(words.begin(), "tool");
         try {
@@ -295,6 +297,9 @@ TEST(CommandLine, TakesTheWordBehindHelp) {
     EXPECT_EQ(asked({"room.env", "--help", "room.env"}), page);
     EXPECT_EQ(asked({"--help", "./room"}), page);
     EXPECT_NE(asked({"--help", "maps"}), all);
+    EXPECT_NE(asked({"--help", "style"}).find("how it is drawn"), std::string::npos);
+    EXPECT_EQ(asked({"--help", "--style"}), asked({"--help", "style"}));
+    EXPECT_EQ(asked({"--style", "fine", "--help"}), page);
     EXPECT_THROW(asked({"--help", "mops"}), UsageError);
 }
 
