@@ -21,6 +21,8 @@ namespace ispace {
 
 namespace {
 
+// What reaches within 0.1 m of the walls' top is built in: stairs, chimneys.
+constexpr double kBuiltInGap = 0.1, kLowestCeiling = 2.2;  // metres
 constexpr std::size_t kMaxPieces = 6;           // of furniture that are measured
 constexpr double kPieceShifts[] = {0.5, 1, 2};  // metres
 
@@ -42,10 +44,12 @@ std::optional<Suggestion> Adviser::furniture(const MeasuredState& now) {
     };
     std::vector<Piece> pieces;
     const std::vector<Sensor> sensors = standingSensors(now.scene);
+    const double ceiling = std::max(now.scene.environment.height(), kLowestCeiling);
     for (const Element& element : now.scene.environment.elements()) {
         const std::string& keyword = element.record.keyword();
         if (!standsByItself(element.record) || keyword == "pillar" || keyword == "floor") continue;
         const PlacementFrame frame = standingOf(element.record);
+        if (frame.top >= ceiling - kBuiltInGap) continue;
         const double radius = std::hypot(frame.length, frame.width) / 2;
         double hidden = 0;
         for (const Sensor& sensor : sensors)
