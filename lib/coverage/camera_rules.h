@@ -42,6 +42,11 @@ struct PrivacyRule {
 /// doors. `door:GLOB[,M][,DEG[,HEADING]]` is the floor within M of doors, 1.5 m by default, and
 /// within 45 degrees by default. \throws UsageError
 FacingRule parseFacing(std::string_view text);
+/// Tells of rules of facing that are judged on the floor.
+constexpr std::string_view kFacesOnFloor =
+    "--facing judges the floor, which cameras that look down see, too: --plane 1.6 judges it at "
+    "the "
+    "height of faces";
 /// Largest distance of a door's opening from the zones that it leads into, metres.
 constexpr double kAtDoor = 0.3;
 /// Returns a rule with its parts for each zone that matches and, without a heading, for each door

@@ -46,7 +46,7 @@ PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
     constexpr std::string_view kTool = "arrange: ";
     Arrangement without_curve = arrangement;
     without_curve.curve.clear();
-    std::string text = reportText(work.how, without_curve);
+    std::string text = reportText(work, without_curve);
     if (!arrangement.is_reached) text += shortfallText(work.how, arrangement) + '\n';
     text += inexactText(work.how, arrangement);
     for (std::size_t begin = 0; begin < text.size();) {

@@ -193,6 +193,8 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     for (const auto& room : input.rooms) scenes.push_back(room.get());
     work.groups = groupsToPlace(scenes, added, devices, open);
     noteWholeFloor(options);
+    if (!options.how.facing.empty() && options.how.plane == 0)
+        tell(options.common, "arrange", std::string(kFacesOnFloor));
     if (work.groups.empty())
         throw UsageError(
             "nothing to place: give --sensor MODEL[:COUNT], such as dome-2.8-1080p:4, or a LAYOUT "

@@ -45,7 +45,7 @@ void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,
                 const Arrangement& arrangement);
 
 /// Returns the result, its gap, and the objective of the bound: one or more lines for stderr.
-std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement);
+std::string reportText(const ArrangeWork& work, const Arrangement& arrangement);
 
 /// Returns the mean over the cases of a robust search, with its standard error for random cases.
 std::string meanText(const RobustChoice& robust, const RobustValues& values);

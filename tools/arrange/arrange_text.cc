@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "arrange/adviser.h"
 #include "arrange/arrange_run.h"
 #include "arrange/gallery/gallery.h"
 #include "base/message.h"
@@ -157,11 +158,15 @@ std::string roomsText(const Arrangement& arrangement) {
 
 }  // namespace
 
-std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement) {
+std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) {
+    const ArrangeOptions& how = work.how;
     if (arrangement.over_poses) return posesText(arrangement);
+    std::size_t standing = 0;
+    for (const auto& room : work.input.rooms) standing += standingSensors(*room).size();
     std::string text = roomsText(arrangement);
-    text += "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") + ", coverage " +
-            percentText(arrangement.coverage);
+    text += "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
+            (standing > 0 ? " beside the " + std::to_string(standing) + " of the layout" : "") +
+            ", coverage " + percentText(arrangement.coverage);
     // The bound holds for the objective before refinement.
     if (arrangement.value)
         text += "; value " + percentText(arrangement.candidate_value);
@@ -198,7 +203,8 @@ std::string reportText(const ArrangeOptions& how, const Arrangement& arrangement
                      ? "at a cost of " + formatDouble(arrangement.cost) +
                            "; nothing cheaper than " + formatDouble(*arrangement.least)
                      : "by " + counted(arrangement.sensors.size(), "sensor", "sensors") +
-                           "; none fewer than " + formatDouble(*arrangement.least)) +
+                           (standing > 0 ? " more" : "") + "; none fewer than " +
+                           formatDouble(*arrangement.least)) +
                 " of these candidates can\n";
     }
     if (arrangement.robust) text += robustText(how, arrangement);

@@ -79,7 +79,7 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
 void report(const ArrangeToolOptions& options, const ArrangeWork& work,
             const Arrangement& arrangement, const CameraRules* rules) {
     if (!options.common.quiet)
-        writeLines("arrange", reportText(work.how, arrangement) +
+        writeLines("arrange", reportText(work, arrangement) +
                                   alternativesText(options.common.output, arrangement));
     if (rules != nullptr)
         for (const JudgedRule& rule : judgedRules(*rules))

@@ -366,6 +366,8 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     warn(options.common, "coverage", findings);
     BuildingCoverage coverage = measureBuilding(input.building, options.measure);
     compareWithOther(options, input, coverage);
+    if (!options.facing.empty() && options.measure.plane == 0)
+        tell(options.common, "coverage", std::string(kFacesOnFloor));
     if (!options.facing.empty() || !options.privacy.empty())
         coverage.rules = measureBuildingRules(input.building, coverage, options.measure,
                                               options.facing, options.privacy);

@@ -164,6 +164,8 @@ std::optional<Robustness> robustnessOf(const CoverageToolOptions& options, const
 std::optional<CameraRules> cameraRulesOf(const CoverageToolOptions& options, const Scene& scene,
                                          const Coverage& coverage) {
     if (options.facing.empty() && options.privacy.empty()) return std::nullopt;
+    if (!options.facing.empty() && options.measure.plane == 0)
+        tell(options.common, "coverage", std::string(kFacesOnFloor));
     return CameraRules{measureFacing(scene, coverage, options.facing),
                        measurePrivacy(scene, options.measure.plane, options.privacy)};
 }
