@@ -18,6 +18,7 @@
 #include "arrange/coarse_sight.h"
 #include "arrange/suggestion.h"
 #include "coverage/exact_shares.h"
+#include "coverage/facing_meter.h"
 #include "coverage/private_floor.h"
 #include "coverage/requirement.h"
 #include "coverage/visible_area.h"
@@ -69,7 +70,8 @@ class RuleTrials {
     const SuggestOptions& options_;
     const Scene& scene_;
     PrivateFloor& private_floor_;
-    Coverage views_;    // of all cameras
+    std::vector<SensorView> views_;  // of all cameras
+    std::optional<FacingMeter> facing_;
     double faces_ = 0;  // that are missing, m2
 };
 

@@ -23,11 +23,9 @@ double missingFaces(const FacingResult& result) {
     return (*result.rule.required - result.share.value_or(0)) * result.area;
 }
 
-double missingFaces(const Scene& scene, const Coverage& coverage,
-                    const std::vector<FacingRule>& rules) {
+double missingFaces(const std::vector<FacingResult>& results) {
     double sum = 0;
-    for (const FacingResult& result : measureFacing(scene, coverage, rules))
-        sum += missingFaces(result);
+    for (const FacingResult& result : results) sum += missingFaces(result);
     return sum;
 }
 
@@ -35,7 +33,7 @@ double missingFaces(const Scene& scene, const Coverage& coverage,
 
 double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestOptions& options,
                     PrivateFloor& private_floor) {
-    double sum = missingFaces(scene, coverage, options.facing);
+    double sum = missingFaces(measureFacing(scene, coverage, options.facing));
     for (const Requirement& requirement : options.requirements)
         sum += checkRequirement(requirement, coverage).missing;
     if (options.privacy.empty()) return sum;
@@ -63,8 +61,9 @@ RuleTrials::RuleTrials(const MeasuredState& now, const SuggestOptions& options,
                        PrivateFloor& private_floor)
     : options_(options), scene_(now.scene), private_floor_(private_floor) {
     if (options.facing.empty()) return;
-    views_.sensors = now.coverage.sensors;
-    faces_ = missingFaces(scene_, views_, options.facing);
+    views_ = now.coverage.sensors;
+    facing_.emplace(scene_.environment, options.facing);
+    faces_ = missingFaces(facing_->measure(views_));
 }
 
 double RuleTrials::mostGain(const Sensor& sensor) const {
@@ -79,16 +78,16 @@ double RuleTrials::gain(const Sensor& sensor, const Pose3& pose) {
     double gain = 0;
     if (!options_.privacy.empty())
         gain = private_floor_.knownSight(sensor).broken - private_floor_.seenBy(moved).broken;
-    const auto view = std::find_if(views_.sensors.begin(), views_.sensors.end(),
+    const auto view = std::find_if(views_.begin(), views_.end(),
                                    [&](const SensorView& one) { return one.id == sensor.id; });
-    if (options_.facing.empty() || view == views_.sensors.end()) return withoutNoise(gain);
+    if (options_.facing.empty() || view == views_.end()) return withoutNoise(gain);
     const VisibleArea sight(scene_.environment, options_.measure.plane);
     Camera& camera = std::get<Camera>(moved.model);
     camera = withDensity(camera, options_.measure.density);
     const SensorView before = *view;
     view->pose = pose;
     view->region = sight.regionOf(moved);
-    gain += faces_ - missingFaces(scene_, views_, options_.facing);
+    gain += faces_ - missingFaces(facing_->measure(views_));
     *view = before;
     return withoutNoise(gain);
 }

@@ -12,6 +12,7 @@
 #include "base/glob.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "coverage/facing_meter.h"
 #include "coverage/metrics.h"
 #include "coverage/visible_area.h"
 #include "env/zone.h"
@@ -61,14 +62,14 @@ struct AreaInZone {
     double zone = 0, seen = 0;
 };
 
-AreaInZone areasIn(const Environment& environment, Polygon outline,
-                   const std::vector<std::vector<Curve>>& views) {
+/// \param views cut to the box of the outline: the step of an overlay's lattice grows with the
+/// extent of its layers
+AreaInZone areasOf(const Environment& environment, Polygon outline,
+                   std::vector<std::vector<Curve>> views) {
     if (signedArea(outline) < 0) std::reverse(outline.begin(), outline.end());
     std::vector<Layer> layers = {markLayer(curvesWithArcs(environment.indoor()), kIndoorMark),
                                  markLayer({curveOf(outline)}, kZoneMark)};
-    // The step of an overlay's lattice grows with the extent of its layers.
-    for (const std::vector<Curve>& view : views)
-        layers.push_back({.curves = cutAlong(view, bounds(outline)).inside});
+    for (std::vector<Curve>& view : views) layers.push_back({.curves = std::move(view)});
     AreaInZone areas;
     forEachArea(layers, [&](const LayerLabel& label, double area) {
         if (label.marks != (kIndoorMark | kZoneMark)) return;
@@ -76,6 +77,15 @@ AreaInZone areasIn(const Environment& environment, Polygon outline,
         if (label.count > 0) areas.seen += area;
     });
     return {std::max(0.0, areas.zone), std::max(0.0, areas.seen)};
+}
+
+AreaInZone areasIn(const Environment& environment, const Polygon& outline,
+                   const std::vector<std::vector<Curve>>& views) {
+    std::vector<std::vector<Curve>> inside;
+    inside.reserve(views.size());
+    for (const std::vector<Curve>& view : views)
+        inside.push_back(cutAlong(view, bounds(outline)).inside);
+    return areasOf(environment, outline, std::move(inside));
 }
 
 /// Returns the points within `reach` of the camera from which the direction to it is within an
@@ -352,40 +362,77 @@ bool isFaced(Angle heading, Angle within, Point2 place, Point2 camera) {
     return std::abs(off.degrees()) <= within.degrees() + kRounding;
 }
 
-std::vector<FacingResult> measureFacing(const Scene& scene, const Coverage& coverage,
-                                        std::span<const FacingRule> rules) {
+FacingMeter::FacingMeter(const Environment& environment, std::span<const FacingRule> rules)
+    : environment_(environment), rules_(facingIn(environment, rules)) {
+    for (const FacingRule& rule : rules_) {
+        std::vector<Part>& parts = parts_.emplace_back();
+        for (const FacingPart& part : rule.parts) parts.push_back({bounds(part.outline)});
+    }
+}
+
+void FacingMeter::measure(const FacingRule& rule, const FacingPart& part, Part& known,
+                          std::span<const SensorView* const> cameras) const {
+    const Box2& limits = environment_.limits();
+    bool is_same = known.is_measured && known.cameras.size() == cameras.size();
+    known.cameras.resize(cameras.size());
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        Faced& faced = known.cameras[i];
+        const SharedCurves& view = *cameras[i]->region;
+        const Point2 camera = cameras[i]->pose.position.onFloor();
+        if (faced.is_known && faced.camera == camera && faced.view == view) continue;
+        double reach = 0;
+        for (const Point2 corner : {limits.low, limits.high, Point2{limits.low.x, limits.high.y},
+                                    Point2{limits.high.x, limits.low.y}})
+            reach = std::max(reach, distance(camera, corner));
+        constexpr double kBeyond = 1.2;
+        std::vector<Curve> floor;
+        if (boundsOfAll(view).meets(known.box))
+            floor = cutAlong(facedPart(view,
+                                       wedgeOf(camera, part.heading, rule.within, kBeyond * reach)),
+                             known.box)
+                        .inside;
+        is_same = is_same && floor == faced.floor;
+        faced = {camera, view, std::move(floor), true};
+    }
+    if (is_same) return;
+    std::vector<std::vector<Curve>> floors;
+    floors.reserve(known.cameras.size());
+    for (const Faced& faced : known.cameras) floors.push_back(faced.floor);
+    const AreaInZone areas = areasOf(environment_, part.outline, std::move(floors));
+    known.area = areas.zone;
+    known.seen = areas.seen;
+    known.is_measured = true;
+}
+
+std::vector<FacingResult> FacingMeter::measure(std::span<const SensorView> views) {
+    std::vector<const SensorView*> cameras;
+    bool is_known = true;
+    for (const SensorView& view : views) {
+        if (view.kind != &Camera::kKind) continue;
+        if (view.region)
+            cameras.push_back(&view);
+        else
+            is_known = false;
+    }
     std::vector<FacingResult> results;
-    const Box2& limits = scene.environment.limits();
-    for (const FacingRule& rule : facingIn(scene.environment, rules)) {
-        FacingResult result{rule};
+    for (std::size_t i = 0; i < rules_.size(); ++i) {
+        FacingResult result{rules_[i]};
         double seen = 0;
-        bool is_known = true;
-        for (const FacingPart& part : rule.parts) {
-            std::vector<std::vector<Curve>> faced;
-            for (const SensorView& view : coverage.sensors) {
-                if (view.kind != &Camera::kKind) continue;
-                if (!view.region) {
-                    is_known = false;
-                    continue;
-                }
-                const Point2 camera = view.pose.position.onFloor();
-                double reach = 0;
-                for (const Point2 corner :
-                     {limits.low, limits.high, Point2{limits.low.x, limits.high.y},
-                      Point2{limits.high.x, limits.low.y}})
-                    reach = std::max(reach, distance(camera, corner));
-                constexpr double kBeyond = 1.2;
-                faced.push_back(facedPart(
-                    *view.region, wedgeOf(camera, part.heading, rule.within, kBeyond * reach)));
-            }
-            const AreaInZone areas = areasIn(scene.environment, part.outline, faced);
-            result.area += areas.zone;
-            seen += areas.seen;
+        for (std::size_t k = 0; k < parts_[i].size(); ++k) {
+            Part& part = parts_[i][k];
+            measure(rules_[i], rules_[i].parts[k], part, cameras);
+            result.area += part.area;
+            seen += part.seen;
         }
         if (is_known) result.share = shareOf(seen, result.area);
         results.push_back(std::move(result));
     }
     return results;
+}
+
+std::vector<FacingResult> measureFacing(const Scene& scene, const Coverage& coverage,
+                                        std::span<const FacingRule> rules) {
+    return FacingMeter(scene.environment, rules).measure(coverage.sensors);
 }
 
 namespace {

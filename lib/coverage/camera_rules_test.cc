@@ -4,9 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
+#include "coverage/facing_meter.h"
+#include "coverage/visible_area.h"
 #include "scene/sensor/camera.h"
 #include "support/test_scenes.h"
 
@@ -147,6 +152,42 @@ TEST(CameraRules, ADoorIsOneRuleOfTheFloorAtItsIndoorSides) {
     };
     EXPECT_NEAR(share("-2,-1"), 1, 1e-6);
     EXPECT_NEAR(share("-3.9,2.9"), 0, 1e-6);
+}
+
+TEST(FacingMeter, MeasuresMovedCamerasAsAnew) {
+    std::string room =
+        "fence id=f path=-4,-3;4,-3;4,3;-4,3 closed=yes\nwall id=w from=0,-3 to=0,0\n"
+        "door id=north from=-2.5,3 to=-1.5,3\ndoor id=within from=0,-2.5 to=0,-1.5\n"
+        "zone id=desk path=2,1;3,1;3,2;2,2\n";
+    for (const char* at : {"-3,-2", "3,-2", "3,2"})
+        room += std::string("camera at=") + at + ",2.4 heading=40 tilt=-40 pixels=640,480 fov=70\n";
+    const Scene scene = sceneOf(room);
+    const VisibleArea sight(scene.environment, 0);
+    std::vector<SensorView> views = measuredFor(scene).sensors;
+    const std::vector<FacingRule> rules = {parseFacing("door:*,1m,45deg"),
+                                           parseFacing("desk,60deg,180")};
+    FacingMeter meter(scene.environment, rules);
+    std::mt19937_64 random(7);
+    std::set<double> shares;
+    for (int i = 0; i < 60; ++i) {
+        Sensor moved = scene.sensors[random() % 3];
+        SensorView& view = views[random() % 3];
+        moved.pose.heading = Angle::degrees(static_cast<double>(random() % 360));
+        moved.pose.position.x = -3.5 + 0.1 * static_cast<double>(random() % 70);
+        view.pose = moved.pose;
+        view.region.reset();
+        if (i % 13 != 12)
+            if (auto region = sight.regionOf(moved)) view.region = std::move(*region);
+        const auto kept = meter.measure(views);
+        const auto anew = FacingMeter(scene.environment, rules).measure(views);
+        ASSERT_EQ(kept.size(), 3U);
+        for (std::size_t k = 0; k < kept.size(); ++k) {
+            EXPECT_EQ(kept[k].area, anew[k].area) << i;
+            EXPECT_EQ(kept[k].share, anew[k].share) << i;
+            if (kept[k].share) shares.insert(*kept[k].share);
+        }
+    }
+    EXPECT_GT(shares.size(), 20U);
 }
 
 TEST(CameraRules, UnknownDoorsAndZonesAreListed) {
