@@ -23,8 +23,8 @@ namespace {
 
 // What reaches within 0.1 m of the walls' top is built in: stairs, chimneys.
 constexpr double kBuiltInGap = 0.1, kLowestCeiling = 2.2;  // metres
-constexpr std::size_t kMaxPieces = 6;           // of furniture that are measured
-constexpr double kPieceShifts[] = {0.5, 1, 2};  // metres
+constexpr std::size_t kMaxPieces = 6;                      // of furniture that are measured
+constexpr double kPieceShifts[] = {0.5, 1, 2};             // metres
 
 /// Bounds the floor that a round piece can hide from a sensor: the sector behind it.
 double hiddenArea(const Sensor& sensor, Point2 middle, double radius) {

@@ -239,8 +239,7 @@ void CommandLine::Data::takeHelpWord(std::vector<std::string>& words) {
         std::string next = words[i + 1];
         const CLI::Option* const option = app.get_option_no_throw(next);
         const bool asks_for_option = option != nullptr && i + 2 == words.size() &&
-                                     option->get_items_expected_min() > 0 &&
-                                     next.starts_with("--");
+                                     option->get_items_expected_min() > 0 && next.starts_with("--");
         if (asks_for_option) next.erase(0, 2);  // its value is missing, so that it is a question
         if (next.empty() || next.starts_with('-')) return;
         if (next.find_first_of("./") != std::string::npos) return;

@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "arrange/adviser.h"
 #include "arrange/arrange_run.h"
 #include "arrange/gallery/gallery.h"
 #include "base/message.h"
@@ -161,12 +160,15 @@ std::string roomsText(const Arrangement& arrangement) {
 std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) {
     const ArrangeOptions& how = work.how;
     if (arrangement.over_poses) return posesText(arrangement);
-    std::size_t standing = 0;
-    for (const auto& room : work.input.rooms) standing += standingSensors(*room).size();
+    std::ptrdiff_t standing = 0;
+    for (const auto& room : work.input.rooms)
+        standing +=
+            std::count_if(room->sensors.begin(), room->sensors.end(), [](const Sensor& one) {
+                return !one.mount && !one.person && kindOf(one.model).is_arranged;
+            });
     std::string text = roomsText(arrangement);
-    text += "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") +
-            (standing > 0 ? " beside the " + std::to_string(standing) + " of the layout" : "") +
-            ", coverage " + percentText(arrangement.coverage);
+    text += "arrange: " + counted(arrangement.sensors.size(), "sensor", "sensors") + ", coverage " +
+            percentText(arrangement.coverage);
     // The bound holds for the objective before refinement.
     if (arrangement.value)
         text += "; value " + percentText(arrangement.candidate_value);

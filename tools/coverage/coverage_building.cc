@@ -366,11 +366,11 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     warn(options.common, "coverage", findings);
     BuildingCoverage coverage = measureBuilding(input.building, options.measure);
     compareWithOther(options, input, coverage);
-    if (!options.facing.empty() && options.measure.plane == 0)
-        tell(options.common, "coverage", std::string(kFacesOnFloor));
     if (!options.facing.empty() || !options.privacy.empty())
         coverage.rules = measureBuildingRules(input.building, coverage, options.measure,
                                               options.facing, options.privacy);
+    if (!options.facing.empty() && options.measure.plane == 0)
+        tell(options.common, "coverage", std::string(kFacesOnFloor));
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
         if (const std::string text =
                 largeCellsText(options.measure, coverage.storeys[i].report.grid);

@@ -164,10 +164,11 @@ std::optional<Robustness> robustnessOf(const CoverageToolOptions& options, const
 std::optional<CameraRules> cameraRulesOf(const CoverageToolOptions& options, const Scene& scene,
                                          const Coverage& coverage) {
     if (options.facing.empty() && options.privacy.empty()) return std::nullopt;
+    CameraRules rules{measureFacing(scene, coverage, options.facing),
+                      measurePrivacy(scene, options.measure.plane, options.privacy)};
     if (!options.facing.empty() && options.measure.plane == 0)
         tell(options.common, "coverage", std::string(kFacesOnFloor));
-    return CameraRules{measureFacing(scene, coverage, options.facing),
-                       measurePrivacy(scene, options.measure.plane, options.privacy)};
+    return rules;
 }
 
 std::optional<ObjectiveFigures> objectivesOf(const CoverageToolOptions& options, const Scene& scene,
