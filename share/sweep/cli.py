@@ -253,8 +253,13 @@ def _run_jobs(sweep: Sweep, options: argparse.Namespace, version: str, say: _Spe
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # of a tool that has ended; Popen gives jobs the default
     share = parts.Share(*(_shard(options.shard) if options.shard else (1, 1)), tuple(options.only))
     size = int(options.threads) if options.threads else _cores()
+
+    def note(text: str) -> None:
+        if not options.quiet:
+            say([text])
+
     failed = run(sweep, _chosen(sweep, options), share, options.output, version, max(1, size), options.retry,
-                 options.reuse, say)
+                 options.reuse, say, note)
     if failed:
         raise DataError([f"error: {failed} {'job' if failed == 1 else 'jobs'} failed: `ispace-sweep status --failed` "
                          "lists them, --retry runs them again"])

@@ -114,11 +114,11 @@ def _curves(drawn: dict[str, _Cells], x: Axis, by: Axis | None) -> Any:
                      names + (f", {note}" if note else ""), x.name, names)
     for name, (hue, kind), points in curves:
         color = look.SERIES[hue % len(look.SERIES)]
-        dash = DASHES[(kind + hue // len(look.SERIES)) % len(DASHES)]
+        stroke = DASHES[(kind + hue // len(look.SERIES)) % len(DASHES)]
         if any(point[2] < point[3] for point in points):
             plot.axes.fill_between([p[0] for p in points], [p[2] for p in points], [p[3] for p in points],
                                    color=color, alpha=0.15, linewidth=0)
-        plot.line([p[:2] for p in points], color, 2.0, dash, name)
+        plot.line([p[:2] for p in points], color, 2.0, stroke, name)
         plot.dots([p[:2] for p in points], color, 3.0)
     _ticks(plot.axes.set_xticks, place, labels)
     if by or len(drawn) > 1:

@@ -281,7 +281,7 @@ def states_of_parts(folder):
                   folder.talk.count("\n") == 1, folder.talk)
     folder.write("sweep.yaml", STEPS.replace("GO", "[" + json.dumps(folder / "go") + "]") + "# other\n")
     sweep(folder, "status", "1.jsonl", status=1)
-    check("1.jsonl: error: of another sweep than sweep.yaml" in folder.talk, folder.talk)
+    check("1.jsonl: error: of another state of sweep.yaml" in folder.talk, folder.talk)
 
 
 def parts_that_lack_jobs(folder):
@@ -353,7 +353,7 @@ def grown(folder):
          "--reuse old1.jsonl to take over the lines of equal jobs\n", folder.talk)
     sweep(folder, "run", "-o", "new.jsonl", "--reuse", "old1.jsonl", "old2.jsonl")
     same("new jobs", ["1 c", "2 c", "3 b", "3 c"], ran())
-    same("reuse is silent", "", folder.talk)
+    same("what is said of reuse", "ispace-sweep: note: 5 jobs are those of old1.jsonl, old2.jsonl, 4 ran\n", folder.talk)
     same("the bytes of a new run", sweep(folder, "run").encode(), folder.read("new.jsonl"))
     ran()
     # Other shares of the same sweep.
