@@ -193,8 +193,6 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     for (const auto& room : input.rooms) scenes.push_back(room.get());
     work.groups = groupsToPlace(scenes, added, devices, open);
     noteWholeFloor(options);
-    if (!options.how.facing.empty() && options.how.plane == 0)
-        tell(options.common, "arrange", std::string(kFacesOnFloor));
     if (work.groups.empty())
         throw UsageError(
             "nothing to place: give --sensor MODEL[:COUNT], such as dome-2.8-1080p:4, or a LAYOUT "
@@ -340,6 +338,8 @@ void warnOfNothing(const ArrangeToolOptions& options, const ArrangeWork& work,
 }  // namespace
 
 void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work) {
+    if (!options.how.facing.empty() && options.how.plane == 0)
+        tell(options.common, "arrange", std::string(kFacesOnFloor));
     if (const std::string hint = hintAlongWalls(work); !hint.empty())
         warn(options.common, "arrange", hint);
     for (std::size_t i = 0; i < work.input.rooms.size(); ++i)
