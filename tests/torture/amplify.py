@@ -939,8 +939,9 @@ class Growth:
                 self.rows.append(self.measure(envc, family, size, seconds, expected if is_judged else ""))
             self.seconds = max(row[1] for row in self.rows) - start[0]
             # What every size takes, as the first suggestion does, hides how the rest grows.
-            is_judged = self.seconds > CHEAP_SECONDS and self.rows[0][1] > 2 * start[0]
-            if is_judged or 4 * sizes[-1] > most or self.wrong:
+            is_hidden = family.startswith("suggest_") and self.rows[0][1] <= 2 * start[0]
+            is_judged = self.seconds > CHEAP_SECONDS and not is_hidden
+            if is_judged or 4 * sizes[-1] > (2 * most if is_hidden else most) or self.wrong:
                 break
             sizes, is_first = [4 * size for size in sizes], False
         self.sizes, self.start = sizes, start
@@ -952,7 +953,8 @@ class Growth:
                 self.wrong = f"{memory / 1e6:.0f} MB for {total / 1000:.0f} kB"
 
     def fit(self):
-        self.time = slope([(n, max(spent - self.start[0], LEAST_SECONDS)) for n, spent, _ in self.rows])
+        least = max(LEAST_SECONDS, self.start[0] / 4)
+        self.time = slope([(n, max(spent - self.start[0], least)) for n, spent, _ in self.rows])
         self.space = slope([(n, max(memory - self.start[1], LEAST_BYTES)) for n, _, memory in self.rows])
 
     def repeat(self, envc, family, seconds):

@@ -7,8 +7,8 @@ import math
 
 # Things beside each other meet: each adds a part that others share. A list may take a little more than its share.
 STEEPEST = 1.3
-# A list of 64 kB is some 2000 records: more than a building has sensors.
-SMALLEST, MOST_BYTES, LONG_BYTES = 2_000, 64_000, 256_000
+# A list of 32 kB is some 1000 records: more than a building has sensors.
+SMALLEST, MOST_BYTES, LONG_BYTES = 2_000, 32_000, 256_000
 WIDTH, DEPTH = 40.0, 30.0
 CAMERA, TABLE = "camera at={x},{y},2.4 tilt=-40 range=6 pixels=64,48", "table at={x},{y} size=0.3,0.3"
 LASERS = "laser at=-3,-3 range=8\nlaser at=4,4 heading=90 range=8\n"
