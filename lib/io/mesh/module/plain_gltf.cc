@@ -364,13 +364,13 @@ class Positions : public nlohmann::json_sax<Json> {
     bool string(string_t&) override { return true; }
     bool binary(binary_t&) override { return true; }
     bool start_object(std::size_t) override {
-        ++depth_;
+        deeper();
         if (top_ == Top::Accessors && depth_ == 2) return false;  // glTF 1
         if (top_ == Top::Accessors && depth_ == 3) types_.emplace_back();
         return true;
     }
     bool end_object() override { return --depth_, true; }
-    bool start_array(std::size_t) override { return ++depth_, true; }
+    bool start_array(std::size_t) override { return deeper(), true; }
     bool end_array() override { return --depth_, true; }
     bool key(string_t& name) override {
         if (depth_ == 1)
@@ -391,6 +391,14 @@ class Positions : public nlohmann::json_sax<Json> {
 
   private:
     enum class Top { Accessors, Meshes, Other };
+
+    /// A list has no keys: those of the object before it are not its own.
+    void deeper() {
+        ++depth_;
+        if (depth_ == 3) is_type_ = is_primitives_ = false;
+        if (depth_ == 5) is_attributes_ = false;
+        if (depth_ == 6) is_position_ = false;
+    }
 
     std::size_t depth_ = 0;
     Top top_ = Top::Other;
