@@ -75,6 +75,7 @@ write('bad/twice_latin.gltf', b'{"x": "\xff", ' + twice[1:].encode())
 write('good/latin.gltf', b'{"x": "\xff", ' + gltf([{'mesh': 0}])[1:].encode())
 write('bad/capitals.ply', 'PLY\nformat ascii 1.0\nelement vertex 3\nproperty float x')
 write('bad/nested_json.gltf', '[' * 300000)
+write('bad/lists_of_accessors.gltf', '{"asset":{"version":"2.0"},"meshes":[{"componentType":1}],"accessors":[[5]]}')
 write('bad/nested_extras.gltf', gltf([{'mesh': 0}])[:-1] + ', "extras": ' + '[' * 300000 +
       ']' * 300000 + '}')
 write('bad/nested_nodes.gltf', gltf([{'children': [i + 1]} for i in range(200000)] + [{'mesh': 0}]))
@@ -175,6 +176,7 @@ expect_message bad/many_nodes.gltf 'more than 1000000 nodes'
 expect_message bad/nested_json.gltf 'JSON nested more than 500 deep'
 expect_message bad/chunk_deep.glb 'JSON nested more than 500 deep'
 expect_message bad/chunk.glb 'JSON of 4294967292 bytes in'
+expect_message bad/lists_of_accessors.gltf 'it cannot be read as gltf'
 if [ $sanitized = no ]; then
     expect_message bad/p_x.dae 'it takes more than 1 GB of memory'
     expect_message bad/no_floats.dae 'assimp crashes on it (Segmentation fault)'
