@@ -102,6 +102,11 @@ TEST(Suggestions, MoveTheCubeInFrontOfALaser) {
     ASSERT_NE(furniture, nullptr);
     EXPECT_EQ(furniture->edits[0].text.substr(0, 6), "crate:");
     EXPECT_GT(furniture->gained, 0.5);
+    // Stairs and chimneys of a building model reach the ceiling.
+    const Advised built_in =
+        adviseOn(std::string(kHall) + "cube id=stairs at=-2.5,0 size=0.8,0.8,9\n",
+                 "laser id=l at=-3.9,0 heading=0 fov=120 range=5\n");
+    EXPECT_EQ(built_in.find(Suggestion::Kind::Furniture), nullptr);
 }
 
 TEST(Suggestions, MeetARequirement) {

@@ -44,9 +44,8 @@ struct PrivacyRule {
 FacingRule parseFacing(std::string_view text);
 /// Tells of rules of facing that are judged on the floor.
 constexpr std::string_view kFacesOnFloor =
-    "--facing judges the floor, which cameras that look down see, too: --plane 1.6 judges it at "
-    "the "
-    "height of faces";
+    "--facing judges the floor, which cameras that look down see, too: --plane 1.6 judges it "
+    "at the height of faces";
 /// Largest distance of a door's opening from the zones that it leads into, metres.
 constexpr double kAtDoor = 0.3;
 /// Returns a rule with its parts for each zone that matches and, without a heading, for each door
