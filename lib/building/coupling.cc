@@ -23,6 +23,7 @@
 #include "geom/overlay/overlay.h"
 #include "record/text.h"
 #include "scene/bodies.h"
+#include "scene/element_device.h"
 #include "scene/placement_schemas.h"
 #include "trace/ray_world.h"
 
@@ -378,7 +379,8 @@ class RoomBuilder {
 
     Environment environment() {
         const Records room = build();
-        return Environment(room.records, room.ids, building_.scenes[own_]->environment);
+        const auto filled = withDevices(room.records, building_.devices);
+        return Environment(filled ? *filled : room.records, room.ids, building_.scenes[own_]->environment);
     }
 
   private:

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "env/element_keys.h"
+#include "env/projector_model.h"
 
 namespace ispace::keys {
 
@@ -20,32 +21,87 @@ KeySpec lightColorKey(Tuple standard) {
             .upper = 1};
 }
 
+constexpr double kTurn = 180, kUpright = 90;
+
 Schema projectorSchema() {
-    constexpr double kMinAngle = 0.1, kMaxAngle = 170;
     KeySpec facing = heading();
     facing.help = "direction that it faces at pan=0, from +x";
-    KeySpec fov{.name = "fov",
-                .type = KeyType::Tuple,
-                .unit = Unit::Angle,
-                .help = "full angles of its light across and upright",
-                .default_value = Tuple{36, 21},
-                .min_count = 2,
-                .max_count = 2,
-                .lower = kMinAngle,
-                .upper = kMaxAngle};
-    return schemaOf(
-        "projector", RecordType::Infra,
-        "a projector that turns, whose picture or plain light pictures show on walls, "
-        "floor and people; it has no body",
-        {floorAt(), height(2.2, "height of its lens above the floor"), std::move(facing),
-         flag("on", "it shines"), levelKey(), lightColorKey({1, 1, 1}),
-         number("pan", Unit::Angle, "turn of its axis to the left of its heading", 0, -180, 180),
-         number("tilt", Unit::Angle, "turn of its axis upwards", 0, -90, 90), std::move(fov),
-         number("lumens", Unit::None, "its full light, lumens", 1000, 0, 1e6),
-         texture("that it throws, through which its light passes")});
+    std::vector<KeySpec> keys = {
+        {.name = "model",
+         .type = KeyType::Word,
+         .help = "device of the catalogue that gives the parameters not written"},
+        floorAt(),
+        height(2.2, "height of its lens above the floor"),
+        std::move(facing),
+        flag("on", "it shines"),
+        levelKey(),
+        lightColorKey({1, 1, 1}),
+        number("pan", Unit::Angle, "turn of its axis to the left of its heading, within pan_range",
+               0, -kTurn, kTurn),
+        number("tilt", Unit::Angle, "turn of its axis upwards, within tilt_range", 0, -kUpright,
+               kUpright)};
+    addProjectorParameters(keys);
+    keys.push_back(texture("that it throws, through which its light passes"));
+    return schemaOf("projector", RecordType::Infra,
+                    "a projector that turns, whose picture or plain light pictures show on walls, "
+                    "floor and people; it has no body; bare: pixels=1280,720 fov=36,21 lumens=1000",
+                    std::move(keys));
 }
 
 }  // namespace
+
+}  // namespace ispace::keys
+
+namespace ispace {
+
+void addProjectorParameters(std::vector<KeySpec>& keys) {
+    constexpr double kMinAngle = 0.1, kMaxAngle = 170, kMaxPixels = 16384;
+    constexpr double kMinThrow = 0.05, kMaxThrow = 500, kMaxLumens = 1e6;
+    keys.push_back({.name = "pixels",
+                    .type = KeyType::Tuple,
+                    .help = "columns,rows of its picture",
+                    .min_count = 2,
+                    .max_count = 2,
+                    .lower = 1,
+                    .upper = kMaxPixels,
+                    .whole = true});
+    keys.push_back({.name = "fov",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Angle,
+                    .help = "full angles of its light across and upright; one number is across, "
+                            "with square pixels",
+                    .min_count = 1,
+                    .max_count = 2,
+                    .lower = kMinAngle,
+                    .upper = kMaxAngle});
+    keys.push_back({.name = "throw",
+                    .type = KeyType::Number,
+                    .help = "instead of fov: distance of a wall over the width of the picture on "
+                            "it, with square pixels",
+                    .lower = kMinThrow,
+                    .upper = kMaxThrow});
+    keys.push_back({.name = "lumens",
+                    .type = KeyType::Number,
+                    .help = "its full light, lumens",
+                    .lower = 0,
+                    .upper = kMaxLumens});
+    const auto range = [&keys](std::string name, std::string help, double most) {
+        keys.push_back({.name = std::move(name),
+                        .type = KeyType::Tuple,
+                        .unit = Unit::Angle,
+                        .help = std::move(help),
+                        .min_count = 2,
+                        .max_count = 2,
+                        .lower = -most,
+                        .upper = most});
+    };
+    range("pan_range", "least,greatest pan; -180,180 without it, 0,0 for one that stays", 180);
+    range("tilt_range", "least,greatest tilt; -90,90 without it", 90);
+}
+
+}  // namespace ispace
+
+namespace ispace::keys {
 
 void addAppliances(std::vector<Schema>& out) {
     KeySpec sides = heading();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "env/projector_model.h"
+
 namespace ispace {
 
 namespace {
@@ -37,15 +39,9 @@ bool operator==(const ProjectorBeam& a, const ProjectorBeam& b) {
 std::optional<ProjectorBeam> projectorBeam(const Record& record) {
     const double level = record.number("level");
     if (!record.flag("on") || level == 0) return std::nullopt;
-    const Tuple& at = record.tuple("at");
-    const Tuple& fov = record.tuple("fov");
-    const auto half_tangent = [](double degrees) { return tan(Angle::degrees(degrees / 2)); };
-    return ProjectorBeam{Frame3(Pose3{{at[0], at[1], record.number("height")},
-                                      record.angle("heading") + record.angle("pan"),
-                                      record.angle("tilt"),
-                                      {}}),
-                         half_tangent(fov[0]), half_tangent(fov[1]),
-                         level * record.number("lumens")};
+    const ProjectorModel model = projectorModel(record);
+    return ProjectorBeam{projectorLens(record, record.angle("pan"), record.angle("tilt")),
+                         model.across, model.upright, level * model.lumens};
 }
 
 }  // namespace ispace

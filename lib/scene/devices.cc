@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <span>
 #include <system_error>
 
 #include "base/file.h"
 #include "base/message.h"
 #include "record/text.h"
+#include "scene/element_device.h"
 #include "scene/placement_schemas.h"
+#include "scene/projector_device.h"
 #include "scene/robot.h"
 #include "scene/sensor/sensor.h"
 
@@ -29,6 +33,8 @@ void checkParameters(const Record& device, Diagnostics& findings) {
     try {
         if (const SensorKind* kind = sensorKind(device.keyword()))
             static_cast<void>(kind->read(device, &device));
+        else if (const ElementDevice* element = elementDevice(device.keyword()))
+            element->check_device(device, findings);
         else
             withParameters(RobotModel(), device);
     } catch (const FormatError& error) {
@@ -61,6 +67,17 @@ std::vector<std::string> deviceFiles(const std::string& folder) {
 }
 
 }  // namespace
+
+std::span<const ElementDevice* const> elementDevices() {
+    static constexpr const ElementDevice* kDevices[] = {&kProjectorDevice};
+    return kDevices;
+}
+
+const ElementDevice* elementDevice(std::string_view keyword) {
+    for (const ElementDevice* element : elementDevices())
+        if (element->keyword == keyword) return element;
+    return nullptr;
+}
 
 DeviceCatalogue loadDevices(const std::string& folder) {
     std::vector<Record> records;
@@ -125,19 +142,48 @@ SensorModel sensorModelOf(const Record& record, const DeviceCatalogue& devices) 
     return sensorKind(record.keyword())->read(record, deviceOf(record, devices));
 }
 
+std::optional<std::vector<Record>> withDevices(const std::vector<Record>& records,
+                                               const DeviceCatalogue& devices) {
+    std::optional<std::vector<Record>> filled;
+    Diagnostics findings;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const ElementDevice* const element =
+            records[i].schema().isEnvironment() ? elementDevice(records[i].keyword()) : nullptr;
+        if (element == nullptr) continue;
+        try {
+            const Record* const device = deviceOf(records[i], devices);
+            if (device == nullptr) {
+                element->check(records[i], findings);
+                continue;
+            }
+            if (!filled) filled = records;
+            element->fill((*filled)[i], *device);
+            element->check((*filled)[i], findings);
+        } catch (const FormatError& error) {
+            findings.add(error);
+        }
+    }
+    findings.throwIfAny();
+    return filled;
+}
+
 std::string deviceTable(const DeviceCatalogue& devices) {
     using Row = std::array<std::string, 8>;
     std::vector<Row> rows = {
         {"MODEL", "KIND", "NAME", "RANGE/m", "FOV/deg", "SIZE", "RATE/Hz", "CONFIDENCE"}};
+    const auto add = [&rows](const Record& device, const DeviceSummary& summary) {
+        rows.push_back({device.text("model"), device.keyword(),
+                        device.has("name") ? device.text("name") : "-", summary.range,
+                        summary.field_of_view, summary.size, summary.rate,
+                        device.text("confidence")});
+    };
     for (const SensorKind* kind : sensorKinds())
-        for (const Record& device : devices.devices()) {
-            if (device.keyword() != kind->keyword) continue;
-            const DeviceSummary summary = kind->summary(kind->read(device, &device));
-            rows.push_back({device.text("model"), device.keyword(),
-                            device.has("name") ? device.text("name") : "-", summary.range,
-                            summary.field_of_view, summary.size, summary.rate,
-                            device.text("confidence")});
-        }
+        for (const Record& device : devices.devices())
+            if (device.keyword() == kind->keyword)
+                add(device, kind->summary(kind->read(device, &device)));
+    for (const ElementDevice* element : elementDevices())
+        for (const Record& device : devices.devices())
+            if (device.keyword() == element->keyword) add(device, element->summary(device));
     std::array<std::size_t, std::tuple_size_v<Row>> widths{};
     for (const Row& row : rows)
         for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "base/file.h"
+#include "env/projector_model.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 #include "support/test_folder.h"
@@ -119,6 +120,45 @@ TEST_F(DeviceFolder, EachKindIsCheckedByItsOwnRules) {
     EXPECT_NE(loadFindings().find("source"), std::string::npos);
 }
 
+TEST_F(DeviceFolder, ElementsOfTheRoomAreChecked) {
+    write("a.3dm", "projector model=one fov=30 throw=2" + kTail);
+    EXPECT_NE(loadFindings().find("`fov` and `throw` are one thing"), std::string::npos);
+    write("a.3dm", "projector model=one pan_range=10,-10" + kTail);
+    EXPECT_NE(loadFindings().find("wanted the least angle before the greatest"), std::string::npos);
+    write("a.3dm", "projector model=one pan=10" + kTail);
+    EXPECT_NE(loadFindings().find("pan"), std::string::npos) << "no state of a model";
+}
+
+TEST(Devices, ModelsGiveElementsTheirValues) {
+    const auto model_of = [](const std::string& keys) {
+        const Scene scene = testing::scene("ispace size=4,4\nprojector id=p " + keys + '\n');
+        return projectorModel(scene.environment.elements().back().record);
+    };
+    EXPECT_EQ(model_of("model=v-1100").columns, 1024);
+    EXPECT_EQ(model_of("model=v-1100 pixels=800,600").columns, 800);
+    EXPECT_NEAR(model_of("model=v-1100").across, 0.25, 1e-12) << "a throw of 2";
+    EXPECT_NEAR(model_of("model=v-1100").upright, 0.25 * 0.75, 1e-12);
+    EXPECT_NEAR(model_of("model=v-1100 fov=90,60").across, 1, 1e-12) << "written before the model";
+    EXPECT_NEAR(model_of("fov=90").upright, 720.0 / 1280, 1e-12) << "square pixels";
+    EXPECT_EQ(model_of("").lumens, 1000);
+    EXPECT_FALSE(model_of("pan_range=5,5 tilt_range=0,0 pan=5").turns());
+    const auto findings = [&](const std::string& keys) {
+        return testing::findings([&] { return model_of(keys); });
+    };
+    EXPECT_NE(findings("model=v1100").find("did you mean `v-1100`?"), std::string::npos);
+    EXPECT_NE(findings("model=urg-04lx").find("is a laser, not a projector"), std::string::npos);
+    EXPECT_NE(findings("pan=20 pan_range=-10,10").find("`pan`: 20 is beyond the pan_range"),
+              std::string::npos);
+    // An edit takes another model, or none. The digest is that of the file.
+    const Scene scene = testing::scene("ispace size=4,4\nprojector id=p model=v-1100\n");
+    EXPECT_EQ(scene.digest(), environmentDigest(scene.records));
+    EXPECT_FALSE(scene.records.back().has("pixels"));
+    const Scene bare = makeScene(editedRecords(scene, parseEdits("SET p.model="),
+                                               [](const std::string&) { return std::nullopt; }),
+                                 scene, testing::devices());
+    EXPECT_EQ(projectorModel(bare.environment.elements().back().record).columns, 1280);
+}
+
 TEST_F(DeviceFolder, DevicesHaveModelSourceAndConfidenceButNoPlace) {
     write("a.3dm", "laser model=one\n");
     EXPECT_NE(loadFindings().find("source"), std::string::npos);
@@ -132,11 +172,11 @@ TEST_F(DeviceFolder, DevicesHaveModelSourceAndConfidenceButNoPlace) {
     EXPECT_NE(loadFindings().find("desk"), std::string::npos);
 }
 
-TEST(Devices, TableHasARowForEachSensor) {
+TEST(Devices, TableHasARowForAllButRobots) {
     const std::string table = "\n" + deviceTable(testing::devices());
     std::size_t sensors = 0;
     for (const Record& device : testing::devices().devices()) {
-        if (sensorKind(device.keyword()) == nullptr) continue;
+        if (device.keyword() == "robot") continue;
         ++sensors;
         const std::size_t row = table.find("\n" + device.text("model") + ' ');
         ASSERT_NE(row, std::string::npos) << device.text("model");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "env/element_schemas.h"
+#include "scene/element_device.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
@@ -350,6 +351,9 @@ std::vector<Schema> layoutSchemas() {
 std::vector<Schema> deviceSchemas() {
     std::vector<Schema> schemas = sensorDeviceSchemas();
     schemas.push_back(deviceSchema("robot", "a robot one can buy", addRobotParameters));
+    for (const ElementDevice* element : elementDevices())
+        schemas.push_back(deviceSchema(std::string(element->keyword),
+                                       std::string(element->device_help), element->add_keys));
     return schemas;
 }
 

@@ -16,6 +16,7 @@
 #include "env/body.h"
 #include "record/record.h"
 #include "record/text.h"
+#include "scene/element_device.h"
 #include "scene/placement_schemas.h"
 #include "scene/preferences.h"
 #include "scene/robot.h"
@@ -267,8 +268,10 @@ Scene makeScene(const Document& environment, const Document* layout, const Devic
     std::vector<Record> records =
         layout == nullptr ? environment.records : joinRecords(environment.records, layout->records);
     std::erase_if(records, isMeta);
-    Scene scene = sceneOf(records, before, devices);
+    const std::optional<std::vector<Record>> filled = withDevices(records, devices);
+    Scene scene = sceneOf(filled ? *filled : records, before, devices);
     scene.records = std::move(records);
+    if (filled) scene.digest_of_other = environmentDigest(environment.records);
     const auto is_of_room = [](const Record& record) { return record.schema().isEnvironment(); };
     if (layout != nullptr &&
         std::any_of(layout->records.begin(), layout->records.end(), is_of_room))
@@ -278,7 +281,8 @@ Scene makeScene(const Document& environment, const Document* layout, const Devic
 
 Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCatalogue& devices) {
     std::erase_if(records, isMeta);
-    Scene scene = sceneOf(records, &before, devices);
+    const std::optional<std::vector<Record>> filled = withDevices(records, devices);
+    Scene scene = sceneOf(filled ? *filled : records, &before, devices);
     scene.records = std::move(records);
     const bool is_same = &scene.environment.elements() == &before.environment.elements();
     scene.digest_of_other = is_same ? before.digest_of_other : before.digest();

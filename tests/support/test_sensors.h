@@ -20,12 +20,13 @@ inline Record sensorRecord(const std::string& line) {
     return readRecord(line, "line", schemas);
 }
 
-/// Removes the lines of robots, which are not tested here; the lines stay as empty ones.
-inline std::string withoutRobots(const std::string& text) {
+/// Removes the lines of robots and projectors, which are not tested here; the lines stay as empty
+/// ones.
+inline std::string sensorsOf(const std::string& text) {
     std::istringstream lines(text);
     std::string kept;
     for (std::string line; std::getline(lines, line);)
-        kept += line.starts_with("robot ") ? "\n" : line + '\n';
+        kept += line.starts_with("robot ") || line.starts_with("projector ") ? "\n" : line + '\n';
     return kept;
 }
 
@@ -37,7 +38,7 @@ inline const Record* deviceFor(const Record& record) {
     static const std::vector<Record> devices = [] {
         std::vector<Record> all;
         for (const auto& file : std::filesystem::directory_iterator(sourcePath("share/devices"))) {
-            const std::string text = withoutRobots(readAll(file.path().string()));
+            const std::string text = sensorsOf(readAll(file.path().string()));
             Document document = readRecordText(text, file.path().string(), schemas);
             for (Record& device : document.records) all.push_back(std::move(device));
         }
