@@ -47,6 +47,9 @@
 #include "extensions/pressure/pressure_role.h"
 #include "extensions/pressure/pressure_scan.h"
 #endif
+#ifdef ISPACE_HAS_PROJECTION
+#include "extensions/projection/projection_options.h"
+#endif
 #ifdef ISPACE_HAS_REALITY
 #include "extensions/reality/reality.h"
 #endif
@@ -121,6 +124,9 @@ std::span<const ToolExtension> toolExtensions() {
 #endif
 #ifdef ISPACE_HAS_PRESSURE
             {"pressure", "scan", makePressureOptions},
+#endif
+#ifdef ISPACE_HAS_PROJECTION
+            {"projection", "coverage", makeProjectionOptions},
 #endif
 #ifdef ISPACE_HAS_REALITY
             {"reality", "scan", makeRealityOptions},

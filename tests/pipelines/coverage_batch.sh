@@ -122,7 +122,7 @@ for option in --frame-rate=5 --truths=all --films=f; do
     expect_error 2 coverage --batch two -o reports.jsonl "$option"
     grep -q -- "${option%%=*} goes with --tracks" err || fail "$option: $(cat err)"
 done
-tasks="--tracks --frame-rate --truths --films --goal --robot --reach --way"
+tasks="--tracks --frame-rate --truths --films --goal --robot --reach --way --projection"
 coverage --help all | grep -oE '^  (-., )?--?[A-Za-z-]+' | sed 's/.* //' | sort >options
 # shellcheck disable=SC2086
 printf '%s\n' $works $refused $tasks -MF | sed 's/=.*//' | sort | diff - options || fail "an option that --batch does not know"

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "cli/extension.h"
+
+namespace ispace {
+
+/// Returns the options of `coverage --projection PIXELS`.
+std::unique_ptr<OptionGroup> makeProjectionOptions();
+
+}  // namespace ispace

@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "extensions/projection/projector_coverage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "base/error.h"
+#include "base/number.h"
+#include "env/projector_beam.h"
+#include "sense/selection.h"
+#include "trace/moving_bodies.h"
+#include "trace/ray_world.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kNearest = 0.01;        // metres before the lens
+constexpr double kLeastDistance = 1e-4;  // metres from the lens to a plane that it lights
+
+double turnedInto(double degrees) {
+    const double turn = 360;
+    double rest = std::remainder(degrees, turn);
+    if (rest <= -turn / 2) rest += turn;
+    return rest;
+}
+
+/// A projector of the scene.
+struct Source {
+    const Record* record = nullptr;
+    ProjectorModel model;
+    Point3 lens;
+    Angle heading;
+    TurnedAngles now;
+
+    [[nodiscard]] SurfacePicture turned(const TurnedAngles& angles) const {
+        return {model,
+                projectorLens(*record, Angle::degrees(angles.pan), Angle::degrees(angles.tilt))};
+    }
+    [[nodiscard]] TurnedAngles within(TurnedAngles angles) const {
+        return {std::clamp(angles.pan, model.pan.least, model.pan.most),
+                std::clamp(angles.tilt, model.tilt.least, model.tilt.most)};
+    }
+};
+
+/// The cells of a facet as a projector meets them.
+struct FacetView {
+    const FlatFace* facet = nullptr;
+    std::vector<char> faces = {};     // of FlatFace::cells: the lens is before the plane
+    std::vector<char> is_free = {};   // no element between
+    std::vector<char> is_clear = {};  // and no mover
+    std::vector<double> best = {};    // density in the best pose
+    std::size_t lit = 0;              // cells that are clear
+};
+
+/// Computes which cells of a facet the light of a lens reaches.
+FacetView viewOf(const FlatFace& facet, Point3 lens, const RayWorld& world,
+                 const MovingBodies& movers) {
+    FacetView view{&facet};
+    const std::size_t count = facet.cells.size();
+    view.faces.assign(count, 0);
+    view.is_free.assign(count, 0);
+    view.is_clear.assign(count, 0);
+    if (dot(facet.frame.forward, lens - facet.frame.origin) <= kLeastDistance) return view;
+    std::vector<Point3> places;
+    places.reserve(count);
+    for (const std::size_t cell : facet.cells) places.push_back(facet.middleOf(cell));
+    std::vector<std::uint8_t> free(count, 0);
+    world.query(lens, places, free);
+    for (std::size_t i = 0; i < count; ++i) {
+        view.faces[i] = 1;
+        view.is_free[i] = free[i] != 0 ? 1 : 0;
+        if (free[i] == 0 || movers.between(lens, places[i], MovingBodies::kNoOwner)) continue;
+        view.is_clear[i] = 1;
+        ++view.lit;
+    }
+    return view;
+}
+
+/// The poses of a projector in which it may show a point well.
+class BestPoses {
+  public:
+    BestPoses(const Source& source, const FlatFace& facet) : source_(source), facet_(facet) {
+        if (!source.model.turns()) {
+            fixed_.push_back(source.turned(source.now));
+            return;
+        }
+        // The one that faces the surface.
+        if (const auto angles = anglesTowards(-1.0 * facet.frame.forward, 0, 0, source.heading))
+            fixed_.push_back(source.turned(source.within(*angles)));
+    }
+
+    /// Returns the largest least density at a point, 0 if no pose shows it.
+    [[nodiscard]] double densityAt(Point3 place) const {
+        double best = 0;
+        const auto take = [&](const SurfacePicture& picture) {
+            if (const auto density = picture.at(place, facet_.frame.left, facet_.frame.up))
+                best = std::max(best, density->least);
+        };
+        for (const SurfacePicture& picture : fixed_) take(picture);
+        if (!source_.model.turns()) return best;
+        constexpr std::array<double, 5> kPositions = {-1, -0.5, 0, 0.5, 1};
+        // A little within the picture, against rounding.
+        constexpr double kInside = 1 - 1e-9;
+        const Vec3 way = place - source_.lens;
+        for (const double upright : kPositions)
+            for (const double across : kPositions) {
+                const auto angles =
+                    anglesTowards(way, kInside * across * source_.model.across,
+                                  kInside * upright * source_.model.upright, source_.heading);
+                if (angles) take(source_.turned(source_.within(*angles)));
+            }
+        return best;
+    }
+
+  private:
+    const Source& source_;
+    const FlatFace& facet_;
+    std::vector<SurfacePicture> fixed_;
+};
+
+/// Searches the pose with the largest rectangle on a facet.
+class RectangleSearch {
+  public:
+    RectangleSearch(const Source& source, const FacetView& view, double density)
+        : source_(source), view_(view), facet_(*view.facet), density_(density) {
+        marks_.assign(facet_.columns * facet_.rows, 0);
+        places_.reserve(facet_.cells.size());
+        for (const std::size_t cell : facet_.cells) places_.push_back(facet_.middleOf(cell));
+    }
+
+    [[nodiscard]] std::optional<PictureRectangle> find() {
+        if (view_.lit == 0) return std::nullopt;
+        if (!source_.model.turns()) {
+            consider(source_.now);
+        } else {
+            for (const TurnedAngles& angles : towardsGrid()) consider(angles);
+            if (best_.rectangle.size() == 0) return std::nullopt;
+            refine();
+        }
+        if (best_.rectangle.size() == 0) return std::nullopt;
+        return measured();
+    }
+
+  private:
+    struct Choice {
+        CellRectangle rectangle;
+        TurnedAngles angles;
+        double facing = -1;  // cosine of the slant
+    };
+
+    /// Returns the poses towards a grid of points that spans the lit cells and the foot of the lens
+    /// on the plane, as far as it is near them.
+    [[nodiscard]] std::vector<TurnedAngles> towardsGrid() const {
+        constexpr double kStep = 0.25;
+        Box2 box;
+        for (std::size_t i = 0; i < places_.size(); ++i)
+            if (view_.is_clear[i] != 0) box.add(onFacet(places_[i]));
+        const Point2 foot = onFacet(source_.lens);
+        const double reach = std::max(box.width(), box.depth());
+        const Box2 near = box.expanded(reach);
+        box.add({std::clamp(foot.x, near.low.x, near.high.x),
+                 std::clamp(foot.y, near.low.y, near.high.y)});
+        const auto count = [](double size) {
+            constexpr int kMost = 20;
+            return std::clamp(static_cast<int>(std::ceil(size / kStep)), 1, kMost);
+        };
+        const int columns = count(box.width()), rows = count(box.depth());
+        std::vector<TurnedAngles> out;
+        const auto add = [&](Point3 place) {
+            if (const auto angles = anglesTowards(place - source_.lens, 0, 0, source_.heading))
+                out.push_back(source_.within(*angles));
+        };
+        out.reserve(static_cast<std::size_t>((columns + 1) * (rows + 1)) + 2);
+        out.push_back(source_.within(source_.now));
+        if (const auto angles = anglesTowards(-1.0 * facet_.frame.forward, 0, 0, source_.heading))
+            out.push_back(source_.within(*angles));
+        for (int row = 0; row <= rows; ++row)
+            for (int column = 0; column <= columns; ++column)
+                add(facet_.at(box.low.x + box.width() * column / columns,
+                              box.low.y + box.depth() * row / rows));
+        return out;
+    }
+
+    [[nodiscard]] Point2 onFacet(Point3 place) const {
+        const Vec3 way = place - facet_.frame.origin;
+        return {-dot(way, facet_.frame.left), dot(way, facet_.frame.up)};
+    }
+
+    void consider(const TurnedAngles& angles) {
+        const SurfacePicture picture = source_.turned(angles);
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            char& mark = marks_[facet_.cells[i]];
+            mark = 0;
+            if (view_.is_clear[i] == 0 || view_.best[i] < density_) continue;
+            const auto density = picture.at(places_[i], facet_.frame.left, facet_.frame.up);
+            mark = density && density->least >= density_ ? 1 : 0;
+        }
+        const CellRectangle found = largestRectangle(marks_, facet_.columns);
+        const double facing = -dot(picture.lens().forward, facet_.frame.forward);
+        if (found.size() > best_.rectangle.size() ||
+            (found.size() == best_.rectangle.size() && facing > best_.facing))
+            best_ = {found, angles, facing};
+    }
+
+    /// Tries the poses around the best one, in smaller and smaller steps.
+    void refine() {
+        constexpr double kFirst = 3.2, kLast = 0.1;  // degrees
+        constexpr std::array<std::array<double, 2>, 8> kAround = {
+            {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 1}, {1, -1}, {1, 0}, {1, 1}}};
+        for (double step = kFirst; step >= kLast; step /= 2) {
+            const TurnedAngles middle = best_.angles;
+            for (const auto& [pan, tilt] : kAround)
+                consider(source_.within(
+                    {turnedInto(middle.pan + step * pan), middle.tilt + step * tilt}));
+        }
+    }
+
+    [[nodiscard]] PictureRectangle measured() const {
+        const auto& [cells, angles, facing] = best_;
+        PictureRectangle out;
+        const double wide = facet_.cellWidth(), high = facet_.cellHeight();
+        out.left = static_cast<double>(cells.column) * wide;
+        out.bottom = static_cast<double>(cells.row) * high;
+        out.width = static_cast<double>(cells.columns) * wide;
+        out.height = static_cast<double>(cells.rows) * high;
+        out.middle = facet_.at(out.left + out.width / 2, out.bottom + out.height / 2);
+        out.pan = Angle::degrees(angles.pan);
+        out.tilt = Angle::degrees(angles.tilt);
+        out.slant = Angle::degrees(std::acos(std::clamp(facing, -1.0, 1.0)) * kDegrees);
+        const SurfacePicture picture = source_.turned(angles);
+        const ProjectorBeam beam{picture.lens(), source_.model.across, source_.model.upright,
+                                 source_.model.lumens};
+        bool is_first = true;
+        for (std::size_t row = cells.row; row < cells.row + cells.rows; ++row)
+            for (std::size_t column = cells.column; column < cells.column + cells.columns;
+                 ++column) {
+                const Point3 place = facet_.middleOf(row * facet_.columns + column);
+                const auto density = picture.at(place, facet_.frame.left, facet_.frame.up);
+                const auto spot = beam.spotAt(place, facet_.frame.forward);
+                if (!density || !spot) continue;
+                out.least = is_first ? density->least : std::min(out.least, density->least);
+                out.most = std::max(out.most, density->most);
+                out.lux = is_first ? spot->lux : std::min(out.lux, spot->lux);
+                is_first = false;
+            }
+        return out;
+    }
+
+    const Source& source_;
+    const FacetView& view_;
+    const FlatFace& facet_;
+    double density_;
+    std::vector<Point3> places_;
+    std::vector<char> marks_;
+    Choice best_;
+};
+
+/// Measures how a projector covers a surface; empty if no light reaches it.
+std::optional<SurfaceProjection> coveredSurface(const Source& source,
+                                                const ProjectionSurface& surface, double density,
+                                                const RayWorld& world, const MovingBodies& movers) {
+    std::vector<FacetView> views;
+    views.reserve(surface.facets.size());
+    std::size_t free = 0;
+    for (const FlatFace& facet : surface.facets) {
+        views.push_back(viewOf(facet, source.lens, world, movers));
+        free += static_cast<std::size_t>(
+            std::count(views.back().is_free.begin(), views.back().is_free.end(), 1));
+    }
+    if (free == 0) return std::nullopt;
+    SurfaceProjection out;
+    for (FacetView& view : views) {
+        const FlatFace& facet = *view.facet;
+        const BestPoses poses(source, facet);
+        view.best.assign(facet.cells.size(), 0);
+        std::vector<CellState> states(facet.cells.size(), CellState::Dark);
+        for (std::size_t i = 0; i < facet.cells.size(); ++i) {
+            if (view.faces[i] == 0) continue;
+            view.best[i] = poses.densityAt(facet.middleOf(facet.cells[i]));
+            if (view.is_clear[i] != 0) out.best = std::max(out.best, view.best[i]);
+            const bool is_fine = view.best[i] >= density;
+            if (view.is_clear[i] != 0 && view.best[i] > 0)
+                states[i] = is_fine ? CellState::Carries : CellState::Coarse;
+            else if (is_fine)
+                states[i] =
+                    view.is_free[i] != 0 ? CellState::ShadowedByMovers : CellState::Shadowed;
+            if (!is_fine) continue;
+            double& part = states[i] == CellState::Carries    ? out.carries
+                           : states[i] == CellState::Shadowed ? out.shadowed
+                                                              : out.shadowed_by_movers;
+            part += facet.cellArea();
+        }
+        out.cells.push_back(std::move(states));
+    }
+    if (out.best == 0) return std::nullopt;
+    if (surface.isFlat() && out.carries > 0)
+        out.rectangle = RectangleSearch(source, views.front(), density).find();
+    return out;
+}
+
+std::vector<Source> sourcesOf(const Scene& scene, std::vector<std::string>& ids) {
+    std::vector<Source> sources;
+    for (const Element& element : scene.environment.elements()) {
+        const Record& record = element.record;
+        if (record.keyword() != "projector") continue;
+        ids.push_back(element.id);
+        sources.push_back({&record,
+                           projectorModel(record),
+                           projectorLens(record, {}, {}).origin,
+                           record.angle("heading"),
+                           {record.number("pan"), record.number("tilt")}});
+    }
+    return sources;
+}
+
+void addCarried(ProjectionReport& out) {
+    out.carried.assign(out.surfaces.size(), 0);
+    for (std::size_t s = 0; s < out.surfaces.size(); ++s) {
+        const ProjectionSurface& surface = out.surfaces[s];
+        for (std::size_t f = 0; f < surface.facets.size(); ++f) {
+            std::vector<char> any(surface.facets[f].cells.size(), 0);
+            for (const ProjectorCoverage& projector : out.projectors)
+                for (const SurfaceProjection& one : projector.surfaces)
+                    if (one.surface == s)
+                        for (std::size_t i = 0; i < any.size(); ++i)
+                            if (one.cells[f][i] == CellState::Carries) any[i] = 1;
+            out.carried[s] += surface.facets[f].cellArea() *
+                              static_cast<double>(std::count(any.begin(), any.end(), 1));
+        }
+    }
+}
+
+}  // namespace
+
+std::optional<PictureDensity> SurfacePicture::at(Point3 place, Vec3 along, Vec3 across) const {
+    const Vec3 local = lens_.toLocal(place);
+    if (local.x < kNearest) return std::nullopt;
+    if (!(std::abs(local.y) <= model_->across * local.x &&
+          std::abs(local.z) <= model_->upright * local.x))
+        return std::nullopt;
+    const auto turned = [this](Vec3 v) {
+        return Vec3{dot(v, lens_.forward), dot(v, lens_.left), dot(v, lens_.up)};
+    };
+    const Vec3 s = turned(along), t = turned(across);
+    // The pixel is (u, v) = (f y / x, g z / x), with f and g in pixels.
+    const double f = model_->columns / (2 * model_->across);
+    const double g = model_->rows / (2 * model_->upright);
+    const double square = local.x * local.x;
+    const double a = f * (s.y * local.x - local.y * s.x) / square;
+    const double b = f * (t.y * local.x - local.y * t.x) / square;
+    const double c = g * (s.z * local.x - local.z * s.x) / square;
+    const double d = g * (t.z * local.x - local.z * t.x) / square;
+    const double sum = std::hypot(a + d, b - c), difference = std::hypot(a - d, b + c);
+    return PictureDensity{std::abs(sum - difference) / 2, (sum + difference) / 2};
+}
+
+std::optional<TurnedAngles> anglesTowards(Vec3 direction, double across, double upright,
+                                          Angle heading) {
+    const double size = length(direction);
+    const double sine = direction.z / size * std::sqrt(1 + across * across + upright * upright) /
+                        std::sqrt(1 + upright * upright);
+    constexpr double kSlack = 1e-12;
+    if (!(std::abs(sine) <= 1 + kSlack)) return std::nullopt;
+    const double tilt = std::asin(std::clamp(sine, -1.0, 1.0)) - std::atan(upright);
+    constexpr double kQuarter = 90;
+    if (std::abs(tilt) * kDegrees > kQuarter + kSlack) return std::nullopt;
+    // Where the position lies from above, seen along the axis.
+    const double ahead = std::cos(tilt) - upright * std::sin(tilt);
+    const double bearing = std::atan2(across, ahead);
+    const double azimuth = direction.x == 0 && direction.y == 0
+                               ? heading.radians() + bearing
+                               : std::atan2(direction.y, direction.x);
+    return TurnedAngles{turnedInto((azimuth - bearing) * kDegrees - heading.degrees()),
+                        std::clamp(tilt * kDegrees, -kQuarter, kQuarter)};
+}
+
+CellRectangle largestRectangle(const std::vector<char>& cells, std::size_t columns) {
+    // Each row is the base line of a histogram of true cells above each other; the stack holds the
+    // columns at which bars rise.
+    CellRectangle best;
+    if (columns == 0) return best;
+    std::vector<std::size_t> heights(columns + 1, 0), rising;
+    for (std::size_t row = 0; row < cells.size() / columns; ++row) {
+        for (std::size_t i = 0; i < columns; ++i)
+            heights[i] = cells[row * columns + i] != 0 ? heights[i] + 1 : 0;
+        rising.clear();
+        for (std::size_t i = 0; i <= columns; ++i) {
+            while (!rising.empty() && heights[rising.back()] >= heights[i]) {
+                const std::size_t high = heights[rising.back()];
+                rising.pop_back();
+                const std::size_t left = rising.empty() ? 0 : rising.back() + 1;
+                if (high * (i - left) > best.size()) best = {left, row + 1 - high, i - left, high};
+            }
+            rising.push_back(i);
+        }
+    }
+    return best;
+}
+
+double projectionCell(const Environment& environment) {
+    constexpr double kUsual = 0.05, kCells = 1e6;
+    const Box2& box = environment.limits();
+    return std::max(kUsual, std::sqrt(box.width() * box.depth() / kCells));
+}
+
+ProjectionReport projectionOf(const Scene& scene, double density, double cell) {
+    ProjectionReport out;
+    out.density = density;
+    out.cell = cell;
+    out.surfaces = projectionSurfaces(scene.environment, cell);
+    std::vector<std::string> ids;
+    const std::vector<Source> sources = sourcesOf(scene, ids);
+    const RayWorld world = RayWorld::ofEnvironment(scene.environment);
+    const MovingBodies movers(bodiesOf(scene));
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        const Source& source = sources[i];
+        ProjectorCoverage projector;
+        projector.id = ids[i];
+        if (source.record->has("model")) projector.model = source.record->text("model");
+        projector.figures = source.model;
+        for (std::size_t s = 0; s < out.surfaces.size(); ++s) {
+            auto covered = coveredSurface(source, out.surfaces[s], density, world, movers);
+            if (!covered) continue;
+            covered->surface = s;
+            projector.carries += covered->carries;
+            projector.surfaces.push_back(std::move(*covered));
+        }
+        out.projectors.push_back(std::move(projector));
+    }
+    addCarried(out);
+    return out;
+}
+
+}  // namespace ispace
