@@ -41,8 +41,15 @@ class Carriers {
     };
     /// Computes the pose of a sensor with `on`. \throws FormatError if that names no carrier
     [[nodiscard]] Place place(const Record& sensor);
+    /// Checks the carrier of a joint. \throws FormatError unless `on` names a robot or an object
+    void check(const Record& joint) const { static_cast<void>(carrierOfJoint(joint)); }
 
   private:
+    /// Returns the index of the record that `on` names. \throws FormatError for an unknown id
+    [[nodiscard]] std::size_t named(const Record& carried) const;
+    [[nodiscard]] std::size_t carrierOfJoint(const Record& joint) const;
+    /// Places what is fixed on a robot, or on the top of an object.
+    [[nodiscard]] Place fixed(std::size_t carrier, Pose3 local);
     struct IdOfRecord {
         const std::vector<std::string>* ids;
         std::string_view operator()(std::size_t i) const { return (*ids)[i]; }
@@ -61,8 +68,15 @@ bool isObject(const Record& record) {
     return type == RecordType::Other || type == RecordType::Infra;
 }
 
+/// Returns the kind of a thing with a joint for sensors; null for others.
+const ThingKind* jointOf(const Record& record) {
+    const ThingKind* const kind = thingKind(record.keyword());
+    return kind != nullptr && kind->mount != nullptr ? kind : nullptr;
+}
+
 bool isCarrier(const Record& record) {
-    return record.keyword() == "robot" || record.keyword() == "human" || isObject(record);
+    return record.keyword() == "robot" || record.keyword() == "human" || isObject(record) ||
+           jointOf(record) != nullptr;
 }
 
 Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::string>& ids)
@@ -76,32 +90,54 @@ Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::st
     }
 }
 
-Carriers::Place Carriers::place(const Record& sensor) {
-    const std::string& on = sensor.text("on");
+std::size_t Carriers::named(const Record& carried) const {
+    const std::string& on = carried.text("on");
     const auto found = by_id_->find(on);
-    if (!found) {
-        std::vector<std::string> candidates;
-        for (std::size_t i = 0; i < records_.size(); ++i)
-            if (isCarrier(records_[i])) candidates.push_back(ids_[i]);
-        throw FormatError(sensor.finding(
-            "on", "`on`: nothing has the id `" + on + '`' + didYouMean(on, candidates)));
-    }
-    const Record& record = records_[*found];
-    if (!isCarrier(record))
-        throw FormatError(
-            sensor.finding("on", "`on`: `" + on + "` is a `" + record.keyword() +
-                                     "`; only robots, people and objects carry sensors"));
-    const Pose2 carrier = floorPoseOf(record);
-    if (record.keyword() == "human")
-        return {mountedPose(carrier, poseOnPerson(sensor, record)), std::nullopt,
-                movers_.at(*found)};
-    Pose3 local = poseOf(sensor);
+    if (found) return *found;
+    std::vector<std::string> candidates;
+    for (std::size_t i = 0; i < records_.size(); ++i)
+        if (isCarrier(records_[i])) candidates.push_back(ids_[i]);
+    throw FormatError(carried.finding(
+        "on", "`on`: nothing has the id `" + on + '`' + didYouMean(on, candidates)));
+}
+
+std::size_t Carriers::carrierOfJoint(const Record& joint) const {
+    const std::size_t found = named(joint);
+    const Record& record = records_[found];
+    if (record.keyword() == "robot" || (isObject(record) && jointOf(record) == nullptr))
+        return found;
+    throw FormatError(joint.finding("on", "`on`: `" + joint.text("on") + "` is a `" +
+                                              record.keyword() + "`; a " + joint.keyword() +
+                                              " stands on a robot or an object"));
+}
+
+Carriers::Place Carriers::fixed(std::size_t carrier, Pose3 local) {
+    const Record& record = records_[carrier];
+    const Pose2 pose = floorPoseOf(record);
     if (record.keyword() == "robot")
-        return {mountedPose(carrier, local), Mount{movers_.at(*found), local}};
-    const auto [top, is_new] = tops_.try_emplace(*found, 0);
+        return {mountedPose(pose, local), Mount{movers_.at(carrier), local}};
+    const auto [top, is_new] = tops_.try_emplace(carrier, 0);
     if (is_new) top->second = topOf(bodyOf(record));
     local.position.z += top->second;
-    return {mountedPose(carrier, local), std::nullopt};
+    return {mountedPose(pose, local), std::nullopt};
+}
+
+Carriers::Place Carriers::place(const Record& sensor) {
+    const std::size_t found = named(sensor);
+    const Record& record = records_[found];
+    if (!isCarrier(record))
+        throw FormatError(
+            sensor.finding("on", "`on`: `" + sensor.text("on") + "` is a `" + record.keyword() +
+                                     "`; only robots, people and objects carry sensors"));
+    if (record.keyword() == "human")
+        return {mountedPose(floorPoseOf(record), poseOnPerson(sensor, record)), std::nullopt,
+                movers_.at(found)};
+    if (const ThingKind* const joint = jointOf(record)) {
+        const Pose3 local = poseOnJoint(joint->mount(record), poseOf(sensor));
+        if (carrierOf(record).empty()) return {local, std::nullopt};
+        return fixed(carrierOfJoint(record), local);
+    }
+    return fixed(found, poseOf(sensor));
 }
 
 bool isMeta(const Record& record) { return record.schema().type == RecordType::Meta; }
@@ -160,6 +196,8 @@ class Resolver {
             out_.placed.push_back({i, onFloor(pose), out_.people.size()});
             out_.people.push_back({ids_[i], record.number("height"), record.number("speed"), pose,
                                    record.place(), courseOf(record)});
+        } else if (!carrierOf(record).empty()) {
+            if (jointOf(record) != nullptr) carriers_.check(record);
         } else if (record.schema().find("at") != nullptr) {  // some of extensions have no pose
             out_.placed.push_back({i, onFloor(floorPoseOf(record))});
         }

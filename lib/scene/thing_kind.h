@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Records of extensions that act on a room: they take power, sound, warm and shine, people use
-// them, and they let people pass or not. Sensors, states and activities ask here, and know no
-// keyword. A record of the core has a kind, too, once an extension adds keys to it.
+// them, they let people pass or not, and turn the sensors on them. Sensors, states and activities
+// ask here, and know no keyword. A record of the core has a kind, too, once an extension adds keys
+// to it.
 #pragma once
 
 #include <functional>
@@ -69,6 +70,10 @@ struct ThingKind {
     /// Returns the word for a door that lets no person pass: "locked". Null, or "": "shut".
     std::string_view (*barrier)(const Record& record) = nullptr;
     std::vector<StateEntity> entities = {};
+    /// Returns the frame in which a record carries sensors, relative to its carrier (`on`, a robot
+    /// or an object; then z counts from the floor or from the top) or the room: a joint that turns
+    /// them. Null: it carries them as an object does, on its top.
+    Pose3 (*mount)(const Record& record) = nullptr;
 };
 
 /// Adds the kind of a keyword, for the program: call it before any scene is read.

@@ -8,6 +8,7 @@
 #include "env/body.h"
 #include "geom/polygon.h"
 #include "record/edit.h"
+#include "scene/placement_schemas.h"
 #include "scene/thing_kind.h"
 
 namespace ispace {
@@ -30,9 +31,10 @@ std::optional<Point2> middleOf(const Element& element) {
     return Point2{(box.low.x + box.high.x) / 2, (box.low.y + box.high.y) / 2};
 }
 
-/// Returns true for the things of extensions, which are no elements.
+/// Returns true for the things of extensions, which are no elements, and which no other carries.
 bool isThing(const Record& record) {
-    return !record.schema().isEnvironment() && thingKind(record.keyword()) != nullptr;
+    return !record.schema().isEnvironment() && thingKind(record.keyword()) != nullptr &&
+           carrierOf(record).empty();
 }
 
 /// Returns the things of extensions to which people go, as elements. One that stands in or on

@@ -10,4 +10,8 @@ namespace ispace {
 /// it is at the eyes.
 Pose3 poseOnPerson(const Record& sensor, const Record& person);
 
+/// Computes the pose of a sensor on a carrier with any rotation. One that is level on a level
+/// carrier is so exactly.
+Pose3 poseOnJoint(const Pose3& world_from_carrier, const Pose3& carrier_from_sensor);
+
 }  // namespace ispace

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "env/environment.h"
+#include "geom/rotation.h"
 #include "scene/sensor/sensor_keys.h"
 
 namespace ispace {
@@ -58,6 +59,16 @@ Pose3 poseOnPerson(const Record& sensor, const Record& person) {
     const bool has_height = sensor.has("at") && sensor.tuple("at").size() > 2;
     if (!has_height) pose.position.z = kEyes * person.number("height");
     return pose;
+}
+
+Pose3 poseOnJoint(const Pose3& world_from_carrier, const Pose3& carrier_from_sensor) {
+    const Eigen::Vector3d place =
+        isometryOf(world_from_carrier) * vectorOf(carrier_from_sensor.position - Point3());
+    const Point3 at = Point3() + vecOf(place);
+    if (world_from_carrier.isLevel())
+        return {at, wrapped(world_from_carrier.heading + carrier_from_sensor.heading) + Angle(),
+                carrier_from_sensor.tilt, carrier_from_sensor.roll};
+    return poseOf(at, quaternionOf(world_from_carrier) * quaternionOf(carrier_from_sensor));
 }
 
 Pose3 mountedPose(const Pose2& world_from_robot, const Pose3& robot_from_sensor) {

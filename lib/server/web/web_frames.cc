@@ -17,6 +17,7 @@
 #include "drawing/color.h"
 #include "drawing/plan/plan.h"
 #include "drawing/plan/plan_json.h"
+#include "scene/placement_schemas.h"
 #include "scene/room_state.h"
 #include "sense/formats/reading_fields.h"
 #include "sim/mover.h"
@@ -100,6 +101,7 @@ void addActuators(JsonWriter& json, const Scene& scene) {
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
         const Record& record = scene.records[i];
         if (!isActuator(record.keyword()) || !record.has("at")) continue;
+        if (!carrierOf(record).empty()) continue;  // it moves
         if (record.keyword() == "door" || record.keyword() == "window") continue;
         const Tuple& at = record.tuple("at");
         json.beginObject().key("id").value(scene.ids[i]).key("kind").value(record.keyword());
