@@ -24,6 +24,10 @@
 #ifdef ISPACE_HAS_EXPECT
 #include "extensions/expect/expectations.h"
 #endif
+#ifdef ISPACE_HAS_HEADS
+#include "extensions/heads/head.h"
+#include "extensions/heads/head_role.h"
+#endif
 #ifdef ISPACE_HAS_JUDGE
 #include "extensions/judge/judge.h"
 #endif
@@ -85,6 +89,10 @@ bool addFormats() {
 #ifdef ISPACE_HAS_CURTAINS
     addSceneSchemas(curtainSchemas());
     addCurtains();
+#endif
+#ifdef ISPACE_HAS_HEADS
+    addSceneSchemas(headSchemas());
+    addHeads();
 #endif
 #ifdef ISPACE_HAS_LOCKS
     addLocks();
@@ -161,6 +169,9 @@ std::span<const MakeRoleService> roleServices() {
     static const std::vector<MakeRoleService> services = {
 #ifdef ISPACE_HAS_APPLIANCES
         makeMeters,
+#endif
+#ifdef ISPACE_HAS_HEADS
+        makeHeads,
 #endif
 #ifdef ISPACE_HAS_LOCKS
         makeLocks,

@@ -22,6 +22,7 @@
 
 #include <ispace_client/error.h>
 #include <ispace_client/floor.h>
+#include <ispace_client/heads.h>
 #include <ispace_client/locks.h>
 #include <ispace_client/memory.h>
 #include <ispace_client/meter.h>

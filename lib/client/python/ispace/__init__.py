@@ -38,6 +38,7 @@ from .errors import (
 )
 from .filters import CoverageReport, Figure, Layout, Object, Record, arrange, coverage, info, scan
 from .floor import Floor, Pressure
+from .heads import HeadReading, Heads
 from .locks import LockReading, Locks
 from .memory import Memory, Touch
 from .meter import Meter, MeterReading
@@ -121,6 +122,8 @@ __all__ = [
     "Fix",
     "Floor",
     "Gate",
+    "HeadReading",
+    "Heads",
     "Illuminance",
     "Imu",
     "Inertia",

@@ -15,6 +15,7 @@ from typing import IO, Optional
 from .errors import ToolError
 from .filters import Option, Placed, Room, arguments_of, last_line, operands, tool
 from .floor import Floor
+from .heads import Heads
 from .movers import Person, Robot
 from .locks import Locks
 from .memory import Memory
@@ -125,6 +126,10 @@ class Simrun:
     def locks(self, doors: str = "*") -> Locks:
         """Shows tags to doors with locks."""
         return Locks(self.address, doors)
+
+    def heads(self, heads: str = "*") -> Heads:
+        """Turns heads that carry cameras and lasers."""
+        return Heads(self.address, heads)
 
     def floor(self, sensors: str = "*") -> Floor:
         """Reads floors, beds and chairs that feel weights."""
