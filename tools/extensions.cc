@@ -54,6 +54,10 @@
 #ifdef ISPACE_HAS_PROJECTION
 #include "extensions/projection/projection_options.h"
 #endif
+#ifdef ISPACE_HAS_RADIOS
+#include "extensions/radios/radio.h"
+#include "extensions/radios/radio_role.h"
+#endif
 #ifdef ISPACE_HAS_REALITY
 #include "extensions/reality/reality.h"
 #endif
@@ -106,6 +110,10 @@ bool addFormats() {
 #ifdef ISPACE_HAS_PRESSURE
     addSceneSchemas(pressureSchemas());
     addPressureChecks();
+#endif
+#ifdef ISPACE_HAS_RADIOS
+    addSceneSchemas(radioSchemas());
+    addRadios();
 #endif
     for (const auto& [extension, owner, name] : missingOffers())
         if (owner == "record") addMissingKeyword(name, extension);
@@ -184,6 +192,9 @@ std::span<const MakeRoleService> roleServices() {
 #endif
 #ifdef ISPACE_HAS_PRESSURE
         makePressure,
+#endif
+#ifdef ISPACE_HAS_RADIOS
+        makeRadios,
 #endif
     };
     return services;

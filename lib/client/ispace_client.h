@@ -30,6 +30,7 @@
 #include <ispace_client/node.h>
 #include <ispace_client/pir.h>
 #include <ispace_client/radar.h>
+#include <ispace_client/radios.h>
 #include <ispace_client/robot.h>
 #include <ispace_client/sensor.h>
 #include <ispace_client/smart_room.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sense: the walls that sound and radio pass.
+// The walls that sound and radio pass.
 #pragma once
 
 #include "geom/point.h"

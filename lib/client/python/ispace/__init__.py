@@ -47,6 +47,7 @@ from .movers import Bumper, End, Limits, Motion, Odometry, Person, Robot, Sonar,
 from .node import Node, NodeMessage
 from .pir import Pir, Presence
 from .radar import Detection, Detections, Radar
+from .radios import RadioMessage, Radios
 from .readings import Beam, Burst, Cloud, Depths, Fix, Load, Passages, Picture, Reading, Scan
 from .sensors import (
     Camera,
@@ -158,6 +159,8 @@ __all__ = [
     "Presence",
     "Pressure",
     "Radar",
+    "RadioMessage",
+    "Radios",
     "Ranger",
     "Reading",
     "Record",

@@ -21,6 +21,7 @@ from .locks import Locks
 from .memory import Memory
 from .meter import Meter
 from .node import Node
+from .radios import Radios
 from .sensors import Camera, LaserSensor, Ranger, Sensor
 from .world import World
 
@@ -130,6 +131,10 @@ class Simrun:
     def heads(self, heads: str = "*") -> Heads:
         """Turns heads that carry cameras and lasers."""
         return Heads(self.address, heads)
+
+    def radios(self, radios: str = "*") -> Radios:
+        """Sends and receives messages by radios."""
+        return Radios(self.address, radios)
 
     def floor(self, sensors: str = "*") -> Floor:
         """Reads floors, beds and chairs that feel weights."""
