@@ -15,6 +15,9 @@
 #include "extensions/appliances/appliance.h"
 #include "extensions/appliances/meter_role.h"
 #endif
+#ifdef ISPACE_HAS_BUMPERS
+#include "extensions/bumpers/bumper.h"
+#endif
 #ifdef ISPACE_HAS_CALIBRATION
 #include "extensions/calibration/calibrate.h"
 #endif
@@ -86,6 +89,10 @@ bool addFormats() {
 #ifdef ISPACE_HAS_APPLIANCES
     addSceneSchemas(applianceSchemas());
     addAppliances();
+#endif
+#ifdef ISPACE_HAS_BUMPERS
+    addSceneSchemas(bumperSchemas());
+    addBumpers();
 #endif
 #ifdef ISPACE_HAS_CALIBRATION
     addImporters(calibrationImporters());
@@ -177,6 +184,9 @@ std::span<const MakeRoleService> roleServices() {
     static const std::vector<MakeRoleService> services = {
 #ifdef ISPACE_HAS_APPLIANCES
         makeMeters,
+#endif
+#ifdef ISPACE_HAS_BUMPERS
+        makeBumpers,
 #endif
 #ifdef ISPACE_HAS_HEADS
         makeHeads,

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any
 from ._connection import Address, Connection
 from ._message import Fields, Message, Pose, Pose3
 from ._version import __version__
+from .bumpers import Bumpers, Impact
 from .errors import (
     ConnectionFailed,
     Error,
@@ -105,6 +106,7 @@ __all__ = [
     "Address",
     "Beam",
     "Bumper",
+    "Bumpers",
     "Burst",
     "Camera",
     "Cloud",
@@ -126,6 +128,7 @@ __all__ = [
     "HeadReading",
     "Heads",
     "Illuminance",
+    "Impact",
     "Imu",
     "Inertia",
     "LaserSensor",

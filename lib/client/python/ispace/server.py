@@ -12,6 +12,7 @@ import tempfile
 import time
 from typing import IO, Optional
 
+from .bumpers import Bumpers
 from .errors import ToolError
 from .filters import Option, Placed, Room, arguments_of, last_line, operands, tool
 from .floor import Floor
@@ -135,6 +136,10 @@ class Simrun:
     def radios(self, radios: str = "*") -> Radios:
         """Sends and receives messages by radios."""
         return Radios(self.address, radios)
+
+    def bumpers(self, bumpers: str = "*") -> Bumpers:
+        """Hears how hard robots run into things."""
+        return Bumpers(self.address, bumpers)
 
     def floor(self, sensors: str = "*") -> Floor:
         """Reads floors, beds and chairs that feel weights."""
