@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string_view>
+#include <variant>
 
 #include "base/number.h"
 #include "drawing/plan/plan.h"
@@ -62,11 +65,20 @@ BearingSpan bearingsOf(const Scene& scene, const PlacedRecord& placed) {
     if (kind != nullptr && kind->bearings != nullptr)
         return kind->bearings(scene.sensors[placed.index].model);
     BearingSpan span{Angle::degrees(-22.5), Angle::degrees(22.5), 5};
-    if (record.has("fov")) {
-        const Angle fov = Angle::degrees(record.tuple("fov").front());
-        span = {-0.5 * fov, 0.5 * fov, 5};
+    // Of things of extensions, too, some of which have one number.
+    const auto number_of = [&record](std::string_view key, bool is_last) -> std::optional<double> {
+        const Value* const value = record.has(key) ? record.find(key) : nullptr;
+        if (value == nullptr) return std::nullopt;
+        if (const double* const number = std::get_if<double>(value)) return *number;
+        const Tuple* const numbers = std::get_if<Tuple>(value);
+        if (numbers == nullptr) return std::nullopt;
+        return is_last ? numbers->back() : numbers->front();
+    };
+    if (const auto fov = number_of("fov", false)) {
+        const Angle half = Angle::degrees(*fov / 2);
+        span = {-half, half, 5};
     }
-    if (record.has("range")) span.range = record.tuple("range").back();
+    if (const auto range = number_of("range", true)) span.range = *range;
     return span;
 }
 
