@@ -12,6 +12,7 @@
 #include "env/body.h"
 #include "scene/sensor/field_of_view.h"
 #include "scene/sensor/sensor.h"
+#include "scene/thing_kind.h"
 
 namespace ispace {
 
@@ -91,7 +92,11 @@ std::vector<Mesh> bodyOf(const Scene& scene, const PlacedRecord& placed) {
     if (const SensorKind* kind = sensorKind(keyword)) return kind->body();
     const auto* row = std::find_if(std::begin(kBodies), std::end(kBodies),
                                    [&](const BodyRow& known) { return known.keyword == keyword; });
-    return row == std::end(kBodies) ? Meshes() : row->make(scene, placed);
+    if (row != std::end(kBodies)) return row->make(scene, placed);
+    const ThingKind* const thing = thingKind(keyword);
+    return thing == nullptr || thing->body == nullptr
+               ? Meshes()
+               : thing->body(scene.records[placed.record]).meshes;
 }
 
 std::optional<Mesh> viewOf(const Scene& scene, const PlacedRecord& placed) {

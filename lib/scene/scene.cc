@@ -43,6 +43,9 @@ class Carriers {
     [[nodiscard]] Place place(const Record& sensor);
     /// Checks the carrier of a joint. \throws FormatError unless `on` names a robot or an object
     void check(const Record& joint) const { static_cast<void>(carrierOfJoint(joint)); }
+    /// Computes the pose of a thing with a body, as of a sensor; of one that stands in the room,
+    /// too.
+    [[nodiscard]] Place placeOfThing(const Record& thing);
 
   private:
     /// Returns the index of the record that `on` names. \throws FormatError for an unknown id
@@ -74,6 +77,15 @@ const ThingKind* jointOf(const Record& record) {
     return kind != nullptr && kind->mount != nullptr ? kind : nullptr;
 }
 
+/// Returns the name of the key for the carrier: "on", or another where that is a state.
+/// \pre there is one
+const std::string& carrierKey(const Record& record) {
+    const std::vector<KeySpec>& keys = record.schema().keys;
+    return std::find_if(keys.begin(), keys.end(),
+                        [](const KeySpec& key) { return key.role == Role::Carrier; })
+        ->name;
+}
+
 bool isCarrier(const Record& record) {
     return record.keyword() == "robot" || record.keyword() == "human" || isObject(record) ||
            jointOf(record) != nullptr;
@@ -91,14 +103,15 @@ Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::st
 }
 
 std::size_t Carriers::named(const Record& carried) const {
-    const std::string& on = carried.text("on");
+    const std::string on = carrierOf(carried);
     const auto found = by_id_->find(on);
     if (found) return *found;
     std::vector<std::string> candidates;
     for (std::size_t i = 0; i < records_.size(); ++i)
         if (isCarrier(records_[i])) candidates.push_back(ids_[i]);
+    const std::string& key = carrierKey(carried);
     throw FormatError(carried.finding(
-        "on", "`on`: nothing has the id `" + on + '`' + didYouMean(on, candidates)));
+        key, '`' + key + "`: nothing has the id `" + on + '`' + didYouMean(on, candidates)));
 }
 
 std::size_t Carriers::carrierOfJoint(const Record& joint) const {
@@ -106,9 +119,10 @@ std::size_t Carriers::carrierOfJoint(const Record& joint) const {
     const Record& record = records_[found];
     if (record.keyword() == "robot" || (isObject(record) && jointOf(record) == nullptr))
         return found;
-    throw FormatError(joint.finding("on", "`on`: `" + joint.text("on") + "` is a `" +
-                                              record.keyword() + "`; a " + joint.keyword() +
-                                              " stands on a robot or an object"));
+    const std::string& key = carrierKey(joint);
+    throw FormatError(joint.finding(key, '`' + key + "`: `" + carrierOf(joint) + "` is a `" +
+                                             record.keyword() + "`; a " + joint.keyword() +
+                                             " stands on a robot or an object"));
 }
 
 Carriers::Place Carriers::fixed(std::size_t carrier, Pose3 local) {
@@ -120,6 +134,13 @@ Carriers::Place Carriers::fixed(std::size_t carrier, Pose3 local) {
     if (is_new) top->second = topOf(bodyOf(record));
     local.position.z += top->second;
     return {mountedPose(pose, local), std::nullopt};
+}
+
+Carriers::Place Carriers::placeOfThing(const Record& thing) {
+    const Tuple& at = thing.tuple("at");
+    const Pose3 local{{at[0], at[1], at[2]}, thing.angle("heading"), {}, {}};
+    if (carrierOf(thing).empty()) return {local, std::nullopt};
+    return fixed(carrierOfJoint(thing), local);
 }
 
 Carriers::Place Carriers::place(const Record& sensor) {
@@ -196,6 +217,10 @@ class Resolver {
             out_.placed.push_back({i, onFloor(pose), out_.people.size()});
             out_.people.push_back({ids_[i], record.number("height"), record.number("speed"), pose,
                                    record.place(), courseOf(record)});
+        } else if (const ThingKind* const thing = thingKind(record.keyword());
+                   thing != nullptr && thing->body != nullptr) {
+            const Carriers::Place place = carriers_.placeOfThing(record);
+            out_.placed.push_back({i, place.pose, 0, place.mount});
         } else if (!carrierOf(record).empty()) {
             if (jointOf(record) != nullptr) carriers_.check(record);
         } else if (record.schema().find("at") != nullptr) {  // some of extensions have no pose

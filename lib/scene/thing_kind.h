@@ -5,6 +5,7 @@
 // to it.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "env/mesh.h"
 #include "geom/pose.h"
 #include "record/record.h"
 
@@ -44,6 +46,14 @@ struct StateEntity {
     std::string component, device_class;  ///< of Home Assistant, the class may be ""
 };
 
+/// What pictures show of a thing.
+struct ThingBody {
+    std::vector<Mesh> meshes = {};  ///< closed, seen from outside; no ray of a sensor meets them
+    /// The light that it gives off, linear red, green and blue, 1 as bright as a white wall in
+    /// light; empty: it reflects light as its materials do.
+    std::optional<std::array<float, 3>> glow = {};
+};
+
 /// Records with a keyword.
 struct ThingKind {
     std::vector<std::string> states = {};  ///< keys whose values may change while the world runs
@@ -74,6 +84,10 @@ struct ThingKind {
     /// or an object; then z counts from the floor or from the top) or the room: a joint that turns
     /// them. Null: it carries them as an object does, on its top.
     Pose3 (*mount)(const Record& record) = nullptr;
+    /// Returns its body for pictures and models, in its frame. Such records, which have `at` with
+    /// three numbers, `heading` and perhaps `on`, go with the robot or object that carries them.
+    /// Null: none.
+    ThingBody (*body)(const Record& record) = nullptr;
 };
 
 /// Adds the kind of a keyword, for the program: call it before any scene is read.

@@ -31,6 +31,9 @@ std::shared_ptr<const SensorReader::Stage> SensorReader::stage(const Movers& mov
             pose.position.x = motion.pose.position.x;
             pose.position.y = motion.pose.position.y;
             pose.heading = motion.pose.heading;
+        } else if (placed.mount) {
+            pose = mountedPose(movers.robots[placed.mount->robot].pose,
+                               placed.mount->robot_from_sensor);
         }
         poses.push_back(pose);
     }

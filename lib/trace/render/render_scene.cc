@@ -12,6 +12,7 @@
 #include "geom/spatial_index.h"
 #include "geom/tolerance.h"
 #include "scene/bodies.h"
+#include "scene/thing_kind.h"
 #include "trace/embree_query.h"
 #include "trace/render/render.h"
 
@@ -305,6 +306,12 @@ class StillBuilder {
                 figure.person_height = record.number("height");
             else if (isShown(placed))
                 figure.body = bodyOf(scene_, placed);
+            const ThingKind* const thing = thingKind(record.keyword());
+            if (thing != nullptr && thing->body != nullptr) {
+                ThingBody body = thing->body(record);
+                figure.body = std::move(body.meshes);
+                if (body.glow) figure.paint = addPaint({.color = *body.glow, .glows = true});
+            }
             const auto& views = options_.views;
             if (std::find(views.begin(), views.end(), placed.record) != views.end())
                 figure.view = viewOf(scene_, placed);

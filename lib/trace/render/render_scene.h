@@ -76,6 +76,7 @@ struct Paint {
     Rgb color{};
     float opacity = 1;
     bool is_lit = true, is_ceiling = false, is_floor = false;
+    bool glows = false;  ///< it gives off its colour
 };
 
 /// A floor covering, in one colour or in squares. Without thickness, so that measured depths do not

@@ -96,6 +96,7 @@ bool Shading::isPlain(SurfaceKind kind, std::uint32_t triangle) const {
     const SurfaceFinish& finish = set.finish(triangle);
     const Paint& look = scene_.still->paints[finish.paint];
     const bool is_covered = finish.label == 0 && look.is_floor && !scene_.still->coverings.empty();
+    if (look.glows) return false;
     const bool has_panels = look.is_ceiling && light_ == Illumination::Lamps;
     return finish.face == SurfaceFinish::kNoFace && !is_covered && !has_panels;
 }
@@ -110,6 +111,7 @@ SurfacePoint Shading::met(const RayTile& tile, std::size_t lane) const {
     if (!is_person && set.triangles().roundOf(tile.triangle[lane]) != nullptr) point.lift = 3e-4;
     const Paint& look = scene_.still->paints[finish.paint];
     point.color = look.color;
+    if (look.glows) point.glow = look.color;
     if (finish.face != SurfaceFinish::kNoFace)
         point.color = scene_.still->faces[finish.face].colorAt(point.place, tile.direction(lane),
                                                                scene_.still->textures, look.color);
@@ -128,7 +130,7 @@ Rgb Shading::background(const RayTile& tile, std::size_t lane) const {
 
 Rgb Shading::lit(const SurfacePoint& point, const Rgb& light) const {
     Rgb out = point.glow;
-    if (point.glow[0] == 0)
+    if (point.glow == Rgb{})
         for (std::size_t k = 0; k < 3; ++k) out[k] = point.color[k] * light[k];
     if (point.haze > 0) {
         const Rgb far = Sky::seen(0);
