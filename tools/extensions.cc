@@ -37,6 +37,9 @@
 #ifdef ISPACE_HAS_LEARNING
 #include "extensions/learning/learning.h"
 #endif
+#ifdef ISPACE_HAS_LEDS
+#include "extensions/leds/led.h"
+#endif
 #ifdef ISPACE_HAS_LOCKS
 #include "extensions/locks/lock.h"
 #include "extensions/locks/lock_role.h"
@@ -104,6 +107,10 @@ bool addFormats() {
 #ifdef ISPACE_HAS_HEADS
     addSceneSchemas(headSchemas());
     addHeads();
+#endif
+#ifdef ISPACE_HAS_LEDS
+    addSceneSchemas(ledSchemas());
+    addLeds();
 #endif
 #ifdef ISPACE_HAS_LOCKS
     addLocks();
