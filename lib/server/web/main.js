@@ -25,7 +25,10 @@ const view = new View(canvas);
 const drivers = new Map();  // by id
 const cameras = new Cameras(part, why => tell(why, true));
 const history = new History(part);
-const states = new States(part, tell, history, redraw);
+/** The device that the page shows alone, as a handheld does: ?device=ID; '' for the room. */
+const device = new URLSearchParams(location.search).get('device') ?? '';
+document.body.classList.toggle('device', device !== '');
+const states = new States(part, tell, history, redraw, device);
 const seekBar = new SeekBar(part('seek'), tell);
 const marks = new MarkStrip(part('marks'), seekBar, tell);
 const layers = new Layers(part('kinds'), redraw);
@@ -59,7 +62,7 @@ function connect() {
           if (begun === link && building.open(link, list)) listRooms();
           listed();
         });
-        states.open(link);
+        states.open(link).then(checkDevice);
         seekBar.open(link).then(() => marks.draw());
       });
       link.send('FRAME');
@@ -154,12 +157,23 @@ function takeScene(scene) {
   marks.list(scene.marks ?? [], scene.colors);
   states.know(movers.sensors, zoneOf, scene.switched ?? []);
   editor.open(link, scene);
+  if (!device) return;
+  part('title').textContent = document.title = device;
+  if (isCamera(device) && cameras.shown?.id !== device) cameras.look(device);
+}
+
+function isCamera(id) { return movers?.sensors.some(sensor => sensor.id === id && sensor.kind === 'camera'); }
+
+/** Says so if there is no such device. */
+function checkDevice() {
+  if (device && plan && !states.has(device) && !isCamera(device)) banner(`No thing with states, and no camera, is ${device}.`);
 }
 
 /** The zone in which something of the room is. */
 function zoneOf(id) {
   const sensor = movers.sensors.find(other => other.id === id);
-  const at = movers.actuators.find(other => other.id === id)?.at ??
+  const actuator = movers.actuators.find(other => other.id === id);
+  const at = (actuator && movers.placeOf(actuator)) ??
     (sensor ? sensor.on === undefined && sensor.pose : plan.middleOf(id));
   return at ? plan.zoneAt(at[0], at[1]) : '';
 }
@@ -225,7 +239,7 @@ function draw() {
   if (following && selected) [view.x, view.y] = [selected.x, selected.y];
   const shown = name => part(name).checked;
   if (space.isOn) space.draw(movers, selected, following);
-  else drawMap(shown);
+  else if (!device) drawMap(shown);
   if (asked) return;
   asked = true;
   link.send('FRAME');
@@ -237,7 +251,7 @@ function drawMap(shown) {
     movers.draw(context, view, {
       scans: shown('scans'), trails: shown('trails'), ways: shown('ways'), tracks: shown('tracks'), names: shown('names'),
       chosen, selected,
-      isOn: id => states.isOn(id), lookOf: kind => layers.of(kind),
+      isOn: id => states.isOn(id), colorOf: id => states.colorOf(id), lookOf: kind => layers.of(kind),
     });
     for (const driver of drivers.values()) {
       if (driver.goal?.room === Link.room) drawGoal(driver.mover, driver.goal, '#0072b2');

@@ -120,11 +120,12 @@ export class Movers {
     return this.colorOf.get(id) ?? (kind === 'mat' ? this.colors.mat : this.colors.sensor);
   }
 
-  /** isOn(id): whether something is switched on; lookOf(kind): of sensors, see Layers */
-  draw(context, view, {scans, trails, ways, tracks, names, chosen, selected, isOn, lookOf}) {
+  /** isOn(id): whether something is switched on; colorOf(id): its colour; lookOf(kind): of sensors, see Layers */
+  draw(context, view, {scans, trails, ways, tracks, names, chosen, selected, isOn, colorOf, lookOf}) {
     this.lookOf = lookOf;
     this.drawFloorSensors(context, view);
-    this.drawActuators(context, view, isOn);
+    const rides = ({on}) => on !== undefined;
+    this.drawActuators(context, view, this.actuators.filter(one => !rides(one)), isOn, colorOf);
     if (scans) this.drawScans(context, view, selected);
     if (trails) this.drawTrails(context, view, selected);
     if (ways) this.drawWays(context, view, chosen);
@@ -138,6 +139,7 @@ export class Movers {
       else this.drawPerson(context, view, mover);
       if (mover === selected) this.ring(context, view, mover);
     }
+    this.drawActuators(context, view, this.actuators.filter(rides), isOn, colorOf);
     if (tracks) this.drawTracks(context, view, names);
     view.inPixels(context);
     if (names) this.drawNames(context, view);
@@ -244,18 +246,29 @@ export class Movers {
     }
   }
 
-  /** A bulb, or a box with a bar, filled while it is on. */
-  drawActuators(context, view, isOn) {
-    const size = 7 / view.scale;
-    for (const {id, kind, at} of this.actuators) {
-      const is_on = isOn(id);
+  /** Where an actuator is: on a robot, it goes with it. */
+  placeOf({at, on}) {
+    if (on === undefined) return at;
+    const {x, y, heading} = this.all[on];
+    const [c, s] = [Math.cos(heading * kRad), Math.sin(heading * kRad)];
+    return x === undefined ? undefined : [x + c * at[0] - s * at[1], y + s * at[0] + c * at[1]];
+  }
+
+  /** A bulb, or a box with a bar, filled while it is on; an LED in its colour. */
+  drawActuators(context, view, actuators, isOn, colorOf) {
+    for (const actuator of actuators) {
+      const {id, kind} = actuator, is_on = isOn(id), at = this.placeOf(actuator);
+      if (!at) continue;
+      const size = (kind === 'led' ? 4 : 7) / view.scale;
       view.inMetres(context);
       context.translate(...at);
-      context.fillStyle = is_on ? '#f0b429' : '#fff';
+      context.fillStyle = !is_on ? '#fff' : kind === 'led' ? colorOf(id) : '#f0b429';
       context.strokeStyle = this.colors.ink;
       context.lineWidth = 1.3 / view.scale;
       context.beginPath();
-      if (kind === 'lamp') {
+      if (kind === 'led') {
+        context.arc(0, 0, size, 0, 2 * Math.PI);
+      } else if (kind === 'lamp') {
         context.arc(0, 0, size, 0, 2 * Math.PI);
         for (const turn of [1, 3]) {
           const [x, y] = [size * Math.cos(turn * Math.PI / 4), size * Math.sin(turn * Math.PI / 4)];
@@ -273,7 +286,9 @@ export class Movers {
   /** The actuator at a pixel. */
   actuatorAt(view, px, py) {
     const kFinger = 14;
-    return this.actuators.find(({at}) => {
+    return this.actuators.find(actuator => {
+      const at = this.placeOf(actuator);
+      if (!at) return false;
       const [x, y] = view.toPage(...at);
       return Math.hypot(px - x, py - y) <= kFinger;
     });

@@ -28,8 +28,12 @@ function hexOf(color) {
 function sharesOf(hex) { return [1, 3, 5].map(i => +(parseInt(hex.slice(i, i + 2), 16) / 255).toFixed(3)).join(); }
 
 export class States {
-  /** part(id): an element of the page; tell(text, bad): says something to people; changed(): the map shows one */
-  constructor(part, tell, history, changed) {
+  /**
+   * part(id): an element of the page; tell(text, bad): says something to people; changed(): the map shows one; only: the
+   * id of the one thing whose states are listed, '' for all
+   */
+  constructor(part, tell, history, changed, only = '') {
+    this.only = only;
     this.section = part('states');
     this.list = part('state-list');
     this.tell = tell;
@@ -79,6 +83,7 @@ export class States {
       const name = `${id}.${key}`;
       this.values.set(name, value);
       this.history.add(Link.whole(`${id} ${key}`), t, value);
+      if (this.only && id !== this.only) continue;
       (this.shown.get(name) ?? this.add(id, key))(value);
     }
     this.section.hidden = this.shown.size === 0;
@@ -89,6 +94,12 @@ export class States {
   switchOf(id) {
     return this.sensors.has(id) ? undefined : ['on', 'open', 'blind'].find(key => this.values.has(`${id}.${key}`));
   }
+
+  /** Whether something has states. */
+  has(id) { return [...this.values.keys()].some(name => name.startsWith(`${id}.`)); }
+
+  /** Its colour, #rrggbb. */
+  colorOf(id) { return hexOf(this.values.get(`${id}.color`) ?? '1,1,1'); }
 
   /** Whether it is pressed. */
   isOn(id) { return this.values.get(`${id}.${this.switchOf(id)}`) === '1'; }

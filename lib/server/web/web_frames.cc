@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -56,7 +57,7 @@ void addSensors(JsonWriter& json, const Scene& scene) {
     for (const PlacedRecord& placed : scene.placed) {
         const Record& record = scene.records[placed.record];
         const std::string& keyword = record.keyword();
-        if (keyword == "human" || keyword == "robot") continue;
+        if (keyword == "human" || keyword == "robot" || isActuator(keyword)) continue;
         json.beginObject().key("id").value(scene.ids[placed.record]).key("kind").value(keyword);
         if (placed.mount) json.key("on").value(placed.mount->robot);
         if (sensorKind(keyword) != nullptr)
@@ -94,19 +95,33 @@ void addColors(JsonWriter& json) {
     json.endArray().endObject();
 }
 
-/// Lamps, heaters and others that people switch and that have a place of their own: doors, windows
-/// and blinds are parts of the plan.
+/// Lamps, heaters and others that people switch and that have a position: doors, windows and blinds
+/// are parts of the plan. `on` is the robot that carries one, in whose frame it is.
 void addActuators(JsonWriter& json, const Scene& scene) {
     json.key("actuators").beginArray();
+    const auto add = [&](std::size_t record, double x, double y, std::optional<std::size_t> on) {
+        json.beginObject().key("id").value(scene.ids[record]);
+        json.key("kind").value(scene.records[record].keyword());
+        json.key("at").beginArray().value(rounded(x)).value(rounded(y)).endArray();
+        if (on) json.key("on").value(*on);
+        json.endObject();
+    };
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
         const Record& record = scene.records[i];
         if (!isActuator(record.keyword()) || !record.has("at")) continue;
-        if (!carrierOf(record).empty()) continue;  // it moves
+        if (!carrierOf(record).empty()) continue;
         if (record.keyword() == "door" || record.keyword() == "window") continue;
         const Tuple& at = record.tuple("at");
-        json.beginObject().key("id").value(scene.ids[i]).key("kind").value(record.keyword());
-        json.key("at").beginArray().value(rounded(at[0])).value(rounded(at[1])).endArray();
-        json.endObject();
+        add(i, at[0], at[1], std::nullopt);
+    }
+    for (const PlacedRecord& placed : scene.placed) {
+        const Record& record = scene.records[placed.record];
+        if (!isActuator(record.keyword()) || carrierOf(record).empty()) continue;
+        const Point3 at =
+            placed.mount ? placed.mount->robot_from_sensor.position : placed.pose.position;
+        std::optional<std::size_t> robot;
+        if (placed.mount) robot = placed.mount->robot;
+        add(placed.record, at.x, at.y, robot);
     }
     json.endArray();
 }
