@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -97,7 +98,19 @@ std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_v
     }
 }
 
-/// Pending requests for one change of the world: several are all ADD.
+/// Returns true if an edit of a sensor is valid or not whatever becomes of other records, but for
+/// the sums of run_limits.h.
+bool standsAlone(const Edit& edit, const World& world) {
+    if (edit.ids.isPattern() || edit.key == "id") return false;
+    const auto sensor = world.sensorNamed(edit.ids.text());
+    if (!sensor) return false;
+    const std::string_view keyword = kindOf(world.sensors()[*sensor].model).keyword;
+    const Schema* const schema = sceneSchemas().find(keyword);
+    const KeySpec* const key = schema == nullptr ? nullptr : schema->find(edit.key);
+    return key != nullptr && key->role != Role::Reference;
+}
+
+/// Pending requests for one change of the world: several are all ADD, or all SET.
 class Changing {
   public:
     /// \pre at least one line
@@ -119,6 +132,7 @@ class Changing {
     [[nodiscard]] bool is(std::string_view verb) const { return words_[0] == verb; }
     [[nodiscard]] WorldChange change() const;
     [[nodiscard]] std::vector<Edit> edits() const;
+    void checkShared(const std::vector<Edit>& edits) const;
     [[nodiscard]] std::string done() const;
     [[nodiscard]] std::string done(const std::string& line, const std::string& added) const;
     static std::vector<std::string_view> wordsIn(std::string_view line) {
@@ -149,11 +163,10 @@ WorldChange Changing::change() const {
                 throw Refusal{400, "the name of a file holds no control characters"};
         return editor.load(std::string(words_[1]), words_.size() > 2 ? std::string(words_[2]) : "");
     }
-    return editor.edit(edits());
+    return editor.edit(edits(), is("SET") && lines_.size() > 1);
 }
 
-/// \throws Refusal, also for joined requests that name files: the record of each such change
-/// refers to a scene of its own
+/// \throws Refusal, also for those of checkShared()
 std::vector<Edit> Changing::edits() const {
     std::vector<Edit> edits;
     for (const std::string& line : lines_) {
@@ -163,22 +176,34 @@ std::vector<Edit> Changing::edits() const {
         for (Edit& edit : editsOf(words, std::string_view(line).substr(rest)))
             edits.push_back(std::move(edit));
     }
-    if (lines_.size() == 1) return edits;
+    if (lines_.size() > 1) checkShared(edits);
+    return edits;
+}
+
+/// Rejects joined requests that one change cannot carry out as several would. The record of a
+/// change that names files refers to a scene of its own. \throws Refusal
+void Changing::checkShared(const std::vector<Edit>& edits) const {
+    if (is("SET")) {
+        std::unordered_set<std::string_view> sensors;
+        for (const Edit& edit : edits)
+            if (!standsAlone(edit, world()) || !sensors.insert(edit.ids.text()).second)
+                throw Refusal{400, "depends on another request"};
+        return;
+    }
     try {
         for (const Record& record : addedRecords(edits, sceneSchemas()))
             if (fileKeyOf(record) != nullptr) throw Refusal{400, "names a file"};
     } catch (const FormatError& error) {
         throw Refusal{400, messageOf(error, words_[0])};
     }
-    return edits;
 }
 
 std::string Changing::done() const {
-    if (!is("ADD") || world().scene().ids.empty()) return done(lines_.front(), "");
     std::string out;
     const std::vector<std::string>& ids = world().scene().ids;
+    const bool adds = is("ADD") && !ids.empty();
     for (std::size_t i = 0; i < lines_.size(); ++i)
-        out += done(lines_[i], ids[ids.size() - lines_.size() + i]);
+        out += done(lines_[i], adds ? ids[ids.size() - lines_.size() + i] : "");
     return out;
 }
 

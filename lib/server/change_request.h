@@ -18,8 +18,10 @@ std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const 
                                                       const std::string& verb = "",
                                                       const std::string& prefix = "");
 
-/// Carries out several requests ADD by one change of the world, which is built once. \returns the
-/// answers to all of them; if one fails none is carried out, and `is_error` is set. \pre as above
+/// Carries out several requests ADD, or several SET, by one change of the world, which is built
+/// once. \returns the answers to all of them, as one by one; none is carried out, and `is_error` is
+/// set, if one fails, or might without those that follow it: each SET is about another sensor, by
+/// its id, and refers to no record. \pre as above
 std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state,
                                                       std::vector<std::string> lines,
                                                       const std::string& verb = "",

@@ -159,7 +159,8 @@ void ClientConnection::answer() {
 void ClientConnection::answerNext() {
     const std::string_view line = lines_.take();
     std::size_t more = session_->mayJoin(line);
-    while (more > 0 && lines_.ready() && !lines_.tooLong() && lines_.front().starts_with("ADD ")) {
+    while (more > 0 && lines_.ready() && !lines_.tooLong() &&
+           Session::isAlike(line, lines_.front())) {
         session_->join(lines_.take());
         --more;
     }

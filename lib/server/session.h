@@ -71,9 +71,11 @@ class Session {
     /// not a request, the client speaks another protocol and the session ends.
     /// \pre !waiting() and !closing()
     void request(std::string_view line);
-    /// Returns how many requests ADD that follow this one at once can share its change of the
-    /// world: pass them to join() before request().
+    /// Returns how many requests that follow a request ADD or SET at once can share its change of
+    /// the world: pass them to join() before request(), as long as isAlike().
     [[nodiscard]] std::size_t mayJoin(std::string_view line) const;
+    /// Returns true if both lines are requests ADD, or both SET.
+    static bool isAlike(std::string_view line, std::string_view next);
     /// Adds a request to the next one. It is answered after it, by itself if they fail together.
     void join(std::string_view line) { backlog_.emplace_back(line); }
     /// Answers a request that exceeds the permitted length, and closes.
@@ -259,8 +261,8 @@ class Session {
     // A deferred request, answered once this condition holds.
     std::string held_;
     Condition may_go_on_ = nullptr;
-    // Requests ADD that follow the pending one, those of one change under way (if more than one),
-    // and how many the next change may carry out.
+    // Requests ADD or SET that follow the pending one, those of one change under way (if more than
+    // one), and how many the next change may carry out.
     std::deque<std::string> backlog_;
     std::vector<std::string> joined_;
     std::size_t joins_ = 1;

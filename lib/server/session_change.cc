@@ -20,7 +20,8 @@ namespace {
 /// Bytes of an event's quoted text, which goes to all subscribed clients.
 constexpr std::size_t kMaxText = 256;
 
-constexpr std::string_view kAdd = "ADD ";
+/// Verbs whose requests may share a change.
+constexpr std::string_view kShared[] = {"ADD ", "SET "};
 constexpr std::size_t kMostJoined = 256;
 
 }  // namespace
@@ -56,11 +57,17 @@ void Session::change(Words words) {
 }
 
 std::size_t Session::mayJoin(std::string_view line) const {
-    if (!line.starts_with(kAdd) || role_ != Role::World || rooms() != nullptr) return 0;
+    if (!isAlike(line, line) || role_ != Role::World || rooms() != nullptr) return 0;
     // Their events come between the answers.
     if (!events_.empty()) return 0;
     // A part of the world at a time: its load is judged between changes.
     return std::min(joins_, 1 + world().scene().records.size() / 4) - 1;
+}
+
+bool Session::isAlike(std::string_view line, std::string_view next) {
+    return std::any_of(std::begin(kShared), std::end(kShared), [&](std::string_view verb) {
+        return line.starts_with(verb) && next.starts_with(verb);
+    });
 }
 
 /// Returns the requests that one change carries out, this one first.

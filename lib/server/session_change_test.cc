@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <random>
 #include <thread>
 
 #include "support/test_source.h"
@@ -84,6 +85,7 @@ TEST(SessionChange, RequestsThatFollowAtOnceShareAChange) {
 
 TEST(SessionChange, ARefusalAmongThemIsAloneInItsTurn) {
     std::vector<std::string> lines;
+    lines.reserve(41);
     for (int i = 0; i < 40; ++i) lines.push_back("ADD cube at=" + std::to_string(i - 20) + ",5");
     lines[20] = "ADD cube at=1";
     lines[25] = "ADD cub at=1,1";
@@ -97,6 +99,94 @@ TEST(SessionChange, ARefusalAmongThemIsAloneInItsTurn) {
     EXPECT_EQ(together(joined, joined.client("WORLD"), lines), wanted);
     EXPECT_EQ(std::count(wanted.begin(), wanted.end(), '\n'), 41);
     EXPECT_LT(joined.room.world.changes(), single.room.world.changes());
+}
+
+TEST(SessionChange, RequestsSetThatFollowAtOnceShareAChange) {
+    Changing talk;
+    Session& world = talk.client("WORLD");
+    std::vector<std::string> lines;
+    std::string answers;
+    lines.reserve(200);
+    for (int i = 0; i < 200; ++i) {
+        ASSERT_TRUE(talk.answer(world, "ADD mote id=m" + std::to_string(i) + " at=1,1,1")
+                        .starts_with("OK ADD "));
+        lines.push_back("SET m" + std::to_string(i) + ".at=2,1,1");
+        answers += "OK SET t=0.000\n";
+    }
+    const auto before = talk.room.world.changes();
+    EXPECT_EQ(together(talk, world, lines), answers);
+    EXPECT_LT(talk.room.world.changes(), before + 40) << "changes for 200 requests";
+    for (const Record& record : talk.room.world.scene().records) {
+        if (record.keyword() == "mote") {
+            EXPECT_EQ(record.tuple("at")[0], 2);
+        }
+    }
+}
+
+/// Requests about few sensors, robots, nodes and sums. A third of them fails or depends on others.
+std::vector<std::string> randomSets(std::mt19937_64& random) {
+    const std::vector<std::string> good = {"m#.at=2,1,1",       "m#.at=#,1,2",  "l1#.range=#",
+                                           "l1#.rate=#",        "l1#.step=0.#", "c#.period=0.#",
+                                           "c#.pixels=900,700", "m#.at=-1,#,1"};
+    const std::vector<std::string> others = {
+        "m#.at=0",          "m#.power=#",    "m#.on=r1",      "m#.on=r9",
+        "m#.id=m1#",        "l#.range=-#",   "l1#.step=0.02", "l1#.rate=#00",
+        "c#.pixels=7000,9", "r1.heading=#0", "m*.at=1,#,1",   "c#.pixels=7500,7500",
+        "n1.sensors=m1#",   "x#.at=1,1",     "l1#.fov=360",   "m#"};
+    std::vector<std::string> lines;
+    lines.reserve(80);
+    for (int i = 0; i < 80; ++i) {
+        const std::vector<std::string>& texts = random() % 3 == 0 ? others : good;
+        std::string line = "SET ";
+        for (const char c : texts[random() % texts.size()])
+            line += c == '#' ? static_cast<char>('1' + random() % 9) : c;
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+TEST(SessionChange, RequestsSetAreAnsweredAsOneByOne) {
+    std::mt19937_64 random(7);
+    int refused = 0, saved = 0;
+    for (int i = 0; i < 4; ++i) {
+        Changing joined, single;
+        Session *const together_client = &joined.client("WORLD"), *client = &single.client("WORLD");
+        const auto add = [&](const std::string& line) {
+            EXPECT_EQ(joined.answer(*together_client, line), single.answer(*client, line));
+        };
+        for (int k = 1; k < 10; ++k) {
+            const std::string n = std::to_string(k);
+            for (const std::string& line :
+                 {"ADD mote id=m" + n + " at=1,1,1", "ADD laser id=l1" + n + " at=0,1 rate=1",
+                  "ADD camera id=c" + n + " at=0,1,1 pixels=1000,700"})
+                add(line);
+        }
+        add("ADD node id=n1 sensors=m1");
+        const std::vector<std::string> lines = randomSets(random);
+        std::string wanted;
+        for (const std::string& line : lines) wanted += single.answer(*client, line);
+        EXPECT_EQ(together(joined, *together_client, lines), wanted);
+        EXPECT_TRUE(joined.room.world.scene().records == single.room.world.scene().records);
+        for (std::size_t at = 0; (at = wanted.find("ERR", at)) != std::string::npos; ++at)
+            ++refused;
+        saved += static_cast<int>(single.room.world.changes() - joined.room.world.changes());
+    }
+    EXPECT_GT(refused, 20);
+    EXPECT_GT(saved, 15);
+}
+
+TEST(SessionChange, RequestsSetExceedNoSumAmongThem) {
+    Changing talk;
+    Session& world = talk.client("WORLD");
+    talk.answer(world, "ADD camera id=c1 at=0,1,1 pixels=7500,7500");
+    talk.answer(world, "ADD camera id=c2 at=0,1,1 pixels=900,700");
+    for (const char* const id : {"m1", "m2", "m3"})
+        talk.answer(world, std::string("ADD mote at=1,1,1 id=") + id);
+    EXPECT_GT(world.mayJoin("SET m1.at=2,1,1"), 0U);
+    const std::string answers = together(
+        talk, world, {"SET c2.pixels=7500,7500", "SET c1.pixels=900,700", "SET m1.at=2,1,1"});
+    EXPECT_TRUE(answers.starts_with("ERR 409 the world would have ")) << answers;
+    EXPECT_TRUE(answers.ends_with("\nOK SET t=0.000\nOK SET t=0.000\n")) << answers;
 }
 
 TEST(SessionChange, EventsOfEachChangeFollowItsAnswer) {

@@ -31,6 +31,13 @@ constexpr double kRow = 80, kRange = 8, kPixel = 3;
 
 }  // namespace
 
+RunLoad operator+(const RunLoad& a, const RunLoad& b) {
+    RunLoad sum = a;
+    for (const Bound& bound : kBounds) sum.*bound.sum += b.*bound.sum;
+    sum.readings += b.readings;
+    return sum;
+}
+
 double readingRate(const Scene& scene) {
     double rate = 0;
     for (const Sensor& sensor : scene.sensors)

@@ -22,6 +22,9 @@ struct RunLoad {
     double readings = 0;        ///< see readingRate(); no bound by itself
 };
 
+/// Returns the sums of two loads.
+RunLoad operator+(const RunLoad& a, const RunLoad& b);
+
 /// Returns the readings of sensors in a simulated second, without pictures and depth frames.
 double readingRate(const Scene& scene);
 

@@ -34,6 +34,23 @@ double timesAsOften(const Scene& before, const Scene& after) {
     return all > 0 ? readingRate(after) / all : 1;
 }
 
+struct Loads {
+    RunLoad before, after;
+};
+
+/// Returns the loads to check before a change from one scene to another. While some of its edits
+/// are carried out, set apart, the load is at most the sum of both: each record has one of them.
+Loads loadsOf(const Scene& before, const Scene& after, SimTime step, const RecordOptions* record,
+              bool apart) {
+    const Loads loads = {loadOf(before, step, record), loadOf(after, step, record)};
+    return apart ? Loads{{}, loads.before + loads.after} : loads;
+}
+
+/// Returns the most readings that a change adds, for each one before. \param apart see loadsOf()
+double moreReadings(const Scene& before, const Scene& after, bool apart) {
+    return std::max(0.0, timesAsOften(before, after) - (apart ? 0 : 1));
+}
+
 /// Applies edits to a scene.
 class Editing {
   public:
@@ -188,14 +205,15 @@ WorldEditor::WorldEditor(Simulation& simulation, std::shared_ptr<const SceneSour
     : simulation_(&simulation), source_(std::move(source)) {}
 
 /// Returns a check for another thread.
-WorldEditor::Check WorldEditor::loadCheck() const {
+WorldEditor::Check WorldEditor::loadCheck(bool apart) const {
     const World& world = simulation_->world();
     std::optional<RecordOptions> record;
     if (const Recorder* const recorder = simulation_->recorder()) record = recorder->options();
-    return [before = world.sharedScene(), step = world.stepLength(),
+    return [apart, before = world.sharedScene(), step = world.stepLength(),
             record = std::move(record)](const Scene& scene) {
         const RecordOptions* const options = record ? &*record : nullptr;
-        checkLoad(loadOf(*before, step, options), loadOf(scene, step, options));
+        const Loads loads = loadsOf(*before, scene, step, options, apart);
+        checkLoad(loads.before, loads.after);
     };
 }
 
@@ -204,10 +222,10 @@ SceneWriter WorldEditor::sceneWriter() const {
     return recorder == nullptr ? nullptr : recorder->options().scene_text;
 }
 
-WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
+WorldChange WorldEditor::edit(std::vector<Edit> edits, bool apart) const {
     const bool is_live = simulation_->pacingClock().kind == Clock::Kind::Real;
     Pace* const pace = is_live ? &simulation_->pace() : nullptr;
-    Check check = loadCheck();
+    Check check = loadCheck(apart);
     if (pace != nullptr) {
         const World& world = simulation_->world();
         const auto exists = [&world](const std::string& id) {
@@ -218,11 +236,11 @@ WorldChange WorldEditor::edit(std::vector<Edit> edits) const {
         const auto [all, reading] = pace->load(exists, &world);
         const bool may_rescale = edits.front().kind == Edit::Kind::Set;
         check = [check = std::move(check), before = world.sharedScene(), step = world.stepLength(),
-                 may_rescale, work = all, reads = reading](const Scene& scene) {
+                 may_rescale, apart, work = all, reads = reading](const Scene& scene) {
             check(scene);
-            const double more =
-                may_rescale ? std::max(0.0, timesAsOften(*before, scene) - 1) * reads : 0;
-            checkPace(loadOf(*before, step, nullptr), loadOf(scene, step, nullptr), work + more);
+            const Loads loads = loadsOf(*before, scene, step, nullptr, apart);
+            const double more = may_rescale ? moreReadings(*before, scene, apart) * reads : 0;
+            checkPace(loads.before, loads.after, work + more);
         };
     }
     const auto editing = std::make_shared<Editing>(

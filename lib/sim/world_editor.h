@@ -76,7 +76,9 @@ class WorldEditor {
 
     /// Applies these edits to the world's records, see World::change. Robots and people whose
     /// position or heading is set keep the other at its current value.
-    [[nodiscard]] WorldChange edit(std::vector<Edit> edits) const;
+    /// \param apart the edits set keys of different records, and each is to be valid without the
+    ///        others: before and after, the loads together stay within the bounds
+    [[nodiscard]] WorldChange edit(std::vector<Edit> edits, bool apart = false) const;
     /// Restarts in another scene, see World::restart.
     [[nodiscard]] WorldChange load(std::string environment, std::string layout) const;
     /// Restarts in the scene of the last start, see World::sharedStart.
@@ -84,7 +86,8 @@ class WorldEditor {
 
   private:
     using Check = std::function<void(const Scene& scene)>;
-    [[nodiscard]] Check loadCheck() const;
+    /// \param apart see edit()
+    [[nodiscard]] Check loadCheck(bool apart = false) const;
     [[nodiscard]] std::shared_ptr<const void> restart(const NextScene& next) const;
     /// Returns RecordOptions::scene_text; null without a record.
     [[nodiscard]] std::function<std::string(const Scene& scene)> sceneWriter() const;
