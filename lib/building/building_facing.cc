@@ -170,7 +170,9 @@ std::vector<JudgedRule> judgedInBuilding(const BuildingScene& building,
     std::vector<JudgedRule> all;
     for (std::size_t i = 0; i < rules.size(); ++i)
         for (JudgedRule& rule : judgedRules(rules[i])) {
-            rule.rule.insert(0, building.document.storeys[i].id + ": ");
+            const std::string storey = building.document.storeys[i].id + ": ";
+            rule.rule.insert(0, storey);
+            if (!rule.plain.empty()) rule.plain.insert(0, storey);
             all.push_back(std::move(rule));
         }
     return all;

@@ -193,7 +193,8 @@ ReportPage buildingPage(const BuildingPageInput& input) {
     if (input.progress != nullptr) input.progress->end();
     const std::vector<MaterialItem> material = materialOf(rooms, input.prices);
     if (!material.empty())
-        page.sections.push_back({"material", "Material", {materialTable(material)}});
+        page.sections.push_back(
+            {"material", "Material", {materialTable(material, input.prices.currency)}});
     page.sections.push_back(methodsSection(input.coverage.storeys.front().report));
     for (PageSection& sheet : sheets) page.sections.push_back(std::move(sheet));
     if (input.advice != nullptr) page.sections.push_back(adviceSection(*input.advice));

@@ -89,7 +89,8 @@ void writeMaterial(const ReportWords& words, const Scene& scene) {
 
 void writeMaterial(const ReportWords& words, std::span<const CabledRoom> rooms) {
     if (words.material.empty()) return;
-    writeAll(words.material, materialCsv(materialOf(rooms, pricesOf(words))));
+    const PriceList prices = pricesOf(words);
+    writeAll(words.material, materialCsv(materialOf(rooms, prices), prices.currency));
 }
 
 std::string priceWarning(const ReportWords& words, std::span<const CabledRoom> rooms) {

@@ -123,6 +123,17 @@ bool namesDoors(std::string_view glob, const Environment& environment) {
                        [&wanted](const Doorway& door) { return wanted.matches(door.id); });
 }
 
+/// Returns a hint if a text names a zone behind the id of a storey, else "".
+std::string withoutStorey(std::string_view text, const std::vector<std::string>& zones) {
+    const std::size_t slash = text.find('/');
+    if (slash == std::string_view::npos) return "";
+    const std::string_view rest = text.substr(slash + 1);
+    if (!rest.starts_with(kDoorPrefix) &&
+        std::find(zones.begin(), zones.end(), rest) == zones.end())
+        return "";
+    return ": of one storey alone it is " + excerpt(rest);
+}
+
 }  // namespace
 
 std::string inLowerCase(std::string_view pattern, std::span<const std::string> names) {
@@ -140,7 +151,8 @@ std::string unknownZoneText(std::string_view text, const Environment& environmen
     std::vector<std::string> known;
     for (const Element& element : environment.elements())
         if (element.record.keyword() == "zone") known.push_back(element.id);
-    std::string meant = inLowerCase(text, known);
+    std::string meant = withoutStorey(text, known);
+    if (meant.empty()) meant = inLowerCase(text, known);
     if (meant.empty()) meant = didYouMean(text, known);
     return "the room has no zone " + excerpt(text) + meant +
            (namesDoors(text, environment)

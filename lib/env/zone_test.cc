@@ -74,6 +74,13 @@ TEST(ReadZone, RefusesWhatIsNone) {
               "desk, zone1; "
               "write the id of a zone, rect:X,Y,X,Y, poly:X,Y;X,Y;X,Y or door:GLOB[,M]");
     EXPECT_NE(refusal("Desk").find("no zone `Desk`, did you mean `desk`?; its"), std::string::npos);
+    EXPECT_NE(refusal("ground/door:*")
+                  .find("no zone `ground/door:*`: of one storey alone it is "
+                        "`door:*`; its"),
+              std::string::npos);
+    EXPECT_NE(refusal("ground/desk").find(": of one storey alone it is `desk`; its"),
+              std::string::npos);
+    EXPECT_EQ(refusal("ground/thing").find("alone"), std::string::npos);
     EXPECT_NE(refusal(""), "");
     EXPECT_NE(refusal("room1"), "") << "not a zone";
     EXPECT_EQ(refusal("poly:0,0;1,1"), "zone `poly:0,0;1,1` has 2 corners, wanted at least 3");

@@ -24,6 +24,18 @@ void writeNumber(JsonWriter& json, const char* key, const std::optional<double>&
         json.null();
 }
 
+/// Tells a rule without the words of options: "faces at the door Front, up to 1.5 m from it".
+std::string plainText(const FacingRule& facing) {
+    if (!facing.zone.starts_with(kDoorPrefix)) return "faces in the zone " + printable(facing.zone);
+    const std::string_view door = std::string_view(facing.zone).substr(kDoorPrefix.size());
+    const std::size_t comma = door.rfind(',');
+    std::string text = "faces at the door ";
+    text += printable(door.substr(0, comma));
+    if (comma != std::string_view::npos)
+        text.append(", up to ").append(printable(door.substr(comma + 1))).append(" m from it");
+    return text;
+}
+
 JudgedRule judged(const FacingResult& result) {
     const FacingRule& facing = result.rule;
     const bool is_of_door = facing.zone.starts_with(kDoorPrefix);
@@ -35,7 +47,8 @@ JudgedRule judged(const FacingResult& result) {
         name.append(separator).append(ruleDegrees(part.heading));
         separator = " and ";
     }
-    JudgedRule rule{std::move(name), isMet(result), facing.required.has_value(), ""};
+    JudgedRule rule{std::move(name), isMet(result), facing.required.has_value(), plainText(facing),
+                    ""};
     if (!result.share)
         rule.finding = "is not known: a view is known by cells only";
     else
@@ -47,7 +60,7 @@ JudgedRule judged(const FacingResult& result) {
 }
 
 JudgedRule judged(const PrivacyResult& result) {
-    JudgedRule rule{"privacy of " + printable(result.zone), isMet(result), true, ""};
+    JudgedRule rule{"privacy of " + printable(result.zone), isMet(result), true, "", ""};
     if (result.density > 0)
         rule.rule += " from " + formatDouble(result.density) + " pixels a metre";
     if (!result.seen) {

@@ -20,7 +20,8 @@ struct JudgedRule {
     std::string rule;  ///< "facing entrance within 45 degrees of 180", "privacy of desk1"
     bool is_met = false;
     bool is_required = true;
-    std::string finding;  ///< "87.20% of 4.00 m2 is seen", "0.52 m2 is seen by c1, c2"
+    std::string plain = {};  ///< `rule` for a client, "faces at the door Front"; "": as it is
+    std::string finding;     ///< "87.20% of 4.00 m2 is seen", "0.52 m2 is seen by c1, c2"
 };
 
 /// Returns the rules in the order of the results, those of facing first.

@@ -136,7 +136,8 @@ void ScanCommand::declare(ToolExtensions& extensions) {
         Enters::History);
     line_.parsed(
         "--size", "W[,H]", [&o](const std::string& text) { o.picture_size = pictureSize(text); },
-        "pixels of a view (default 1280,960; H follows from W), or of each side of an obstacle map "
+        "pixels of a view (default 1280,960, of a camera its own; H follows from W), or of each "
+        "side of an obstacle map "
         "(default 800)",
         Enters::History);
     constexpr double kColdest = -100, kHottest = 100;

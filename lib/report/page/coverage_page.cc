@@ -277,7 +277,8 @@ std::vector<PageSection> addInstallation(const CoveragePageInput& input, ReportP
     pictures.blocks.push_back(sensorsTable(input.scene, input.coverage));
     for (PageFigure& figure : figures) pictures.blocks.push_back(std::move(figure));
     page.sections.push_back(std::move(pictures));
-    PageTable material = materialTable(materialOf(input.scene, cables, input.prices));
+    PageTable material =
+        materialTable(materialOf(input.scene, cables, input.prices), input.prices.currency);
     page.sections.push_back({"material", "Material", {std::move(material)}});
     return sheets;
 }
@@ -328,7 +329,7 @@ PageTable tableOf(std::string caption, std::string sides, std::vector<TextRow> r
 PageTable rulesTable(std::string caption, std::span<const JudgedRule> rules) {
     PageTable table{std::move(caption), "lll", {"rule", "result", "measured"}, {}};
     for (const JudgedRule& rule : rules) {
-        table.rows.push_back({rule.rule,
+        table.rows.push_back({rule.plain.empty() ? rule.rule : rule.plain,
                               !rule.is_required ? "-"
                               : rule.is_met     ? "met"
                                                 : "not met",

@@ -58,6 +58,25 @@ std::vector<std::string> fieldsOf(std::string_view line, char mark) {
     return fields;
 }
 
+/// Returns the currency in the head of a column of prices: three capitals or a sign; else "".
+std::string currencyIn(std::string_view head) {
+    for (const std::string_view sign : {"$", "€", "£", "¥"})
+        if (head.find(sign) != std::string_view::npos) return std::string(sign);
+    std::string word;
+    for (std::size_t i = 0; i <= head.size(); ++i) {
+        const char c = i < head.size() ? head[i] : ' ';
+        const bool is_letter = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+        if (is_letter) {
+            word += c;
+            continue;
+        }
+        const auto is_capital = [](char letter) { return letter <= 'Z'; };
+        if (word.size() == 3 && std::all_of(word.begin(), word.end(), is_capital)) return word;
+        word.clear();
+    }
+    return "";
+}
+
 /// Reads a price; with semicolons between fields it may have a decimal comma.
 std::optional<double> priceIn(std::string text, char mark) {
     constexpr double kMost = 1e9;
@@ -141,7 +160,8 @@ PriceList readPrices(std::string_view text, const std::string& file) {
             has_head =
                 fields.size() > 1 && std::none_of(fields.begin() + 1, fields.end(), has_digit);
             for (std::size_t i = 1; has_head && i < fields.size(); ++i)
-                if (smallLetters(fields[i]) == "price") column = i;
+                if (smallLetters(fields[i]).starts_with("price")) column = i;
+            if (has_head) list.currency = currencyIn(fields[column]);
             if (has_head) continue;
         }
         const auto price = column < fields.size() ? priceIn(fields[column], mark) : std::nullopt;
@@ -232,14 +252,15 @@ std::string unusedPrices(const PriceList& prices, const std::vector<MaterialItem
            (known.empty() ? "" : "; its items: " + known);
 }
 
-PageTable materialTable(const std::vector<MaterialItem>& items) {
+PageTable materialTable(const std::vector<MaterialItem>& items, const std::string& currency) {
     const bool has_prices = std::any_of(items.begin(), items.end(), [](const MaterialItem& item) {
         return item.cost.has_value() || item.price.has_value();
     });
     PageTable table{"", "lr", {"item", "number"}, {}};
     if (has_prices) {
         table.sides = "lrrr";
-        table.heads.insert(table.heads.end(), {"price of one", "cost"});
+        const std::string unit = currency.empty() ? "" : ", " + currency;
+        table.heads.insert(table.heads.end(), {"price of one" + unit, "cost" + unit});
     }
     std::size_t unknown = 0;
     for (const MaterialItem& item : items) {
@@ -257,15 +278,22 @@ PageTable materialTable(const std::vector<MaterialItem>& items) {
     return table;
 }
 
-std::string materialCsv(const std::vector<MaterialItem>& items) {
+std::string materialCsv(const std::vector<MaterialItem>& items, const std::string& currency) {
     const auto money = [](std::optional<double> cost) { return cost ? moneyText(cost) : ""; };
-    std::string text = "item,number,unit,price,cost\n";
+    std::string end = "\n";
+    if (!currency.empty()) {
+        end = ",";
+        appendCsvField(end, currency);
+        end += '\n';
+    }
+    std::string text = "item,number,unit,price,cost";
+    text += currency.empty() ? "\n" : ",currency\n";
     for (const MaterialItem& item : items) {
         appendCsvField(text, item.item);
         text.append(",").append(item.is_length ? formatFixed(item.number, 2)
                                                : formatFixed(item.number, 0));
         text.append(item.is_length ? ",m," : ",piece,");
-        text.append(money(item.price)).append(",").append(money(item.cost)).append("\n");
+        text.append(money(item.price)).append(",").append(money(item.cost)).append(end);
     }
     return text;
 }

@@ -19,13 +19,15 @@ namespace ispace {
 /// Prices of one piece, or of a metre, by item.
 struct PriceList {
     std::map<std::string, double, std::less<>> prices;  ///< by the item in small letters
+    std::string currency = {};  ///< as the head of the prices names it: "EUR", "$"; else ""
     [[nodiscard]] std::optional<double> of(std::string_view item) const;
 };
 
 /// Reads lines `ITEM,PRICE` or `ITEM;PRICE`, as a spreadsheet saves them: items are names of
 /// devices, `ceiling mount`, `wall mount`, `stand` and `cable`, quotes may stand about them;
-/// further columns are ignored, and so is a first line without a price. \throws FormatError with
-/// all findings
+/// further columns are ignored, and so is a first line without a price, but for the currency in
+/// the head of the prices: three capitals or a sign, as in `price EUR`, `price (€)`. \throws
+/// FormatError with all findings
 PriceList readPrices(std::string_view text, const std::string& file);
 
 /// A line of the material.
@@ -58,8 +60,9 @@ std::string unusedPrices(const PriceList& prices, const std::vector<MaterialItem
 constexpr double kAtCeiling = 0.4, kAtWall = 0.25;  ///< metres
 
 /// Returns a row for each item and the sum; without any price there are no columns of prices.
-PageTable materialTable(const std::vector<MaterialItem>& items);
-/// Writes item,number,unit,price,cost with a header; unknown prices are empty.
-std::string materialCsv(const std::vector<MaterialItem>& items);
+PageTable materialTable(const std::vector<MaterialItem>& items, const std::string& currency = "");
+/// Writes item,number,unit,price,cost with a header, and ,currency if it is known; unknown prices
+/// are empty.
+std::string materialCsv(const std::vector<MaterialItem>& items, const std::string& currency = "");
 
 }  // namespace ispace

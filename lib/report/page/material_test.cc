@@ -107,6 +107,24 @@ TEST(Material, BadPricesAreFindings) {
     EXPECT_EQ(readPrices("a;129,90\n", "p.csv").of("a"), 129.9);
     EXPECT_EQ(readPrices("\"a, \"\"b\"\"\",5\n", "p.csv").of("a, \"b\""), 5);
     EXPECT_EQ(readPrices("item,number,price\na,3,7\n", "p.csv").of("a"), 7);
+    EXPECT_EQ(readPrices("item,number,Price EUR\na,3,7\n", "p.csv").of("a"), 7);
+}
+
+TEST(Material, TheHeadOfPricesNamesTheCurrency) {
+    const auto currency = [](const std::string& head) {
+        return readPrices(head + "\na,7\n", "p.csv").currency;
+    };
+    EXPECT_EQ(currency("item,price"), "");
+    EXPECT_EQ(currency("item,price per piece"), "");
+    EXPECT_EQ(currency("item,price EUR"), "EUR");
+    EXPECT_EQ(currency("ARTIKEL,Preis in CHF"), "CHF");
+    EXPECT_EQ(currency("item,price (€)"), "€");
+    EXPECT_EQ(currency("a,7"), "");
+    const std::vector<MaterialItem> items = {{"camera", 2, false, 80, 160}};
+    EXPECT_EQ(materialTable(items, "EUR").heads,
+              (TextRow{"item", "number", "price of one, EUR", "cost, EUR"}));
+    EXPECT_EQ(materialCsv(items, "€"),
+              "item,number,unit,price,cost,currency\ncamera,2,piece,80,160,€\n");
 }
 
 }  // namespace
