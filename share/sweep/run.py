@@ -32,7 +32,7 @@ class Tally:
         self._path = path + STATUS if path else None
         self.jobs = jobs
         self.done = self.failed = 0
-        self._before = 0  # done in earlier runs
+        self._before = 0  # done in earlier runs, or copied from their parts
         self._begin = time.time()
         self._told = 0.0
 
@@ -40,8 +40,9 @@ class Tally:
         self.done = self._before = done
         self.failed = failed
 
-    def take(self, status: int) -> None:
+    def take(self, status: int, is_copied: bool = False) -> None:
         self.done += 1
+        self._before += is_copied
         self.failed += status != 0
         if time.monotonic() >= self._told + STATUS_EVERY:
             self.tell()
@@ -343,7 +344,7 @@ def run(sweep: Sweep, jobs: Jobs, share: parts.Share, path: str, version: str, s
     try:
         for _, result in _in_order(jobs.behind(target.last), work, size, crew.kill):
             target.write(result.line)
-            tally.take(result.status)
+            tally.take(result.status, result.is_reused)
             taken += result.is_reused
             fresh += not result.is_reused
             if result.told:

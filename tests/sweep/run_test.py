@@ -354,6 +354,8 @@ def grown(folder):
     sweep(folder, "run", "-o", "new.jsonl", "--reuse", "old1.jsonl", "old2.jsonl")
     same("new jobs", ["1 c", "2 c", "3 b", "3 c"], ran())
     same("what is said of reuse", "ispace-sweep: note: 5 jobs are those of old1.jsonl, old2.jsonl, 4 ran\n", folder.talk)
+    status = json.loads(folder.read("new.jsonl.status"))
+    same("jobs of this run by the file beside the part", (9, 4), (status["done"], status["fresh"]))
     same("the bytes of a new run", sweep(folder, "run").encode(), folder.read("new.jsonl"))
     ran()
     # Other shares of the same sweep.

@@ -131,8 +131,13 @@ void conclude(const RunJudge& judge, const SimrunOptions& options, const std::st
              .time = verdict.time});
     junit.write(baseName(environment), cases);
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
-    if (!verdicts.empty())
-        logInfo(options.common, "simrun", "all " + std::to_string(verdicts.size()) + " met");
+    if (verdicts.size() == 1)
+        tell(options.common, "simrun",
+             "met at t=" + formatMilliseconds(verdicts.front().time) + ": " +
+                 printable(verdicts.front().expectation));
+    else if (!verdicts.empty())
+        tell(options.common, "simrun",
+             "all " + std::to_string(verdicts.size()) + " expectations are met");
 }
 
 namespace {
