@@ -15,6 +15,7 @@
 #include "coverage/facing_meter.h"
 #include "coverage/metrics.h"
 #include "coverage/visible_area.h"
+#include "env/door_floor.h"
 #include "env/zone.h"
 #include "geom/curve_clip.h"
 #include "record/schema.h"
@@ -295,13 +296,14 @@ void addDoorRules(const Environment& environment, const FacingRule& rule,
     const std::string_view words = std::string_view(rule.zone).substr(kDoorPrefix.size());
     const std::size_t comma = words.rfind(',');
     const double metres = metresOf(words.substr(comma + 1)).value();
+    const DoorFloor floors(environment);
     for (const Doorway& door :
          doorsNamed(std::string(words.substr(0, comma)), rule.zone, environment)) {
         FacingRule own = rule;
         own.zone = std::string(kDoorPrefix) + door.id + ',' + formatDouble(metres);
         own.door = door.id;
         own.is_by_doors = false;
-        const Polygon floor = floorAround(door, metres);
+        const Polygon floor = floors.around(door, metres);
         for (const DoorSide& side : indoorSides(environment, door))
             own.parts.push_back({partBeyond(floor, door.line.a, side.out),
                                  rule.is_by_doors ? side.heading() : rule.heading});

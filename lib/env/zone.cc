@@ -15,6 +15,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "env/body.h"
+#include "env/door_floor.h"
 #include "env/openings.h"
 #include "env/walls.h"
 #include "record/schema.h"
@@ -288,11 +289,12 @@ struct DoorZone {
 std::vector<DoorZone> doorZones(std::string_view text, const Environment& environment) {
     const auto [glob, metres] = parsedDoors(text);
     std::vector<DoorZone> zones;
+    const DoorFloor floor(environment);
     for (const Doorway& door : doorsNamed(glob, text, environment))
         zones.push_back(
             {door.id,
              {std::string(kDoorPrefix) + door.id + ',' + formatDouble(metres),
-              floorAround(door, metres), door.line.a + 0.5 * (door.line.b - door.line.a), false}});
+              floor.around(door, metres), door.line.a + 0.5 * (door.line.b - door.line.a), false}});
     return zones;
 }
 

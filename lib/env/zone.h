@@ -35,9 +35,9 @@ std::string inLowerCase(std::string_view pattern, std::span<const std::string> n
 std::string unknownZoneText(std::string_view text, const Environment& environment);
 
 /// Reads all zones of a text: `door:GLOB[,M]` means one zone for each door with a matching id: the
-/// floor within M of its opening, walls ignored. Any other text is one zone, as of readZone().
-/// Rounded ends have 16 chords per quarter circle.
-/// \throws UsageError as readZone(), for a bad distance, and if no door matches
+/// floor within M of its opening, up to walls, see DoorFloor. Any other text is one zone, as of
+/// readZone(). Rounded ends have 16 chords per quarter circle. \throws UsageError as readZone(),
+/// for a bad distance, and if no door matches
 std::vector<NamedZone> readZones(std::string_view text, const Environment& environment);
 
 /// A door's id, and the rectangle of its opening in the floor.
@@ -59,7 +59,8 @@ std::vector<Doorway> doorsNamed(const std::string& glob, std::string_view text,
 /// Returns the doors with their widths, up to twenty: "ground/front (0.90 m), ground/back (1.00
 /// m)". \param prefix before each id
 std::string doorList(const Environment& environment, std::string_view prefix = "");
-/// Returns all points within the distance of the doorway, counter-clockwise and convex.
+/// Returns all points within the distance of the doorway, walls ignored, counter-clockwise and
+/// convex.
 Polygon floorAround(const Doorway& door, double distance);
 
 /// Returns records for these zones, skipping zones that are records already; those at doors have
