@@ -140,6 +140,11 @@ std::vector<Shape>& addedShapes() {
     return added;
 }
 
+std::string& carriedKey() {
+    static std::string key;
+    return key;
+}
+
 /// Returns null if the record has no body.
 const Shape* shapeOf(const Record& record) {
     const auto* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
@@ -153,8 +158,20 @@ const Shape* shapeOf(const Record& record) {
 }  // namespace
 
 Body bodyOf(const Record& record) {
-    const Shape* const shape = shapeOf(record);
-    return shape == nullptr ? Body{} : shape->body(record);
+    return personWith(record).empty() ? standingBodyOf(record) : Body{};
+}
+
+Body standingBodyOf(const Record& thing) {
+    const Shape* const shape = shapeOf(thing);
+    return shape == nullptr ? Body{} : shape->body(thing);
+}
+
+void setCarriedKey(std::string key) { carriedKey() = std::move(key); }
+
+std::string personWith(const Record& thing) {
+    const std::string& key = carriedKey();
+    if (key.empty() || thing.schema().find(key) == nullptr || !thing.has(key)) return "";
+    return thing.text(key);
 }
 
 void addBodyShape(std::string_view keyword, Body (*body)(const Record& record)) {

@@ -2,6 +2,7 @@
 // Bodies of elements that extensions bring.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "env/body.h"
@@ -12,6 +13,15 @@ namespace ispace {
 /// Adds the body of the records of a keyword that an extension brings, for the program: call it
 /// before any scene is read.
 void addBodyShape(std::string_view keyword, Body (*body)(const Record& record));
+
+/// Names the key of the records of things that holds the id of the person that carries it,
+/// for the program: call it before any scene is read.
+void setCarriedKey(std::string key);
+/// Returns that id, "" for a thing that stands in the room. Thread-safe.
+std::string personWith(const Record& thing);
+/// Returns the body of a thing where its record says, also of one that is carried: bodyOf() of that
+/// is empty.
+Body standingBodyOf(const Record& thing);
 
 /// Returns true for a sheet of Material::Cloth: light stops at it, and it is part of slices; robots
 /// and people pass it, and it is not part of bands.

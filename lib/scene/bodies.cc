@@ -67,7 +67,7 @@ Meshes robotBody(const Scene& scene, const PlacedRecord& placed) {
 }
 
 Meshes humanBody(const Scene& scene, const PlacedRecord& placed) {
-    return humanBodyOf(scene.records[placed.record].number("height"));
+    return humanBodyOf(personParts(scene.people[placed.index]));
 }
 
 struct BodyRow {
@@ -155,10 +155,32 @@ std::vector<BodyPart> humanParts(double height, Angle swing) {
     return parts;
 }
 
-std::vector<Mesh> humanBodyOf(double height) {
+Point3 PersonFigure::carried(Point3 standing) const {
+    Point3 at = from + standing.x * x_axis;
+    at = at + standing.y * y_axis;
+    at = at + standing.z * z_axis;
+    return {at.x, at.y, std::max(0.0, at.z)};
+}
+
+std::vector<BodyPart> personParts(double height, const PersonFigure* figure, Angle swing) {
+    if (figure == nullptr) return humanParts(height, swing);
+    std::vector<BodyPart> parts;
+    parts.reserve(figure->kept.count() + figure->fixed.size());
+    if (figure->kept.any()) {
+        const std::vector<BodyPart> usual = humanParts(height, swing);
+        for (std::size_t i = 0; i < usual.size(); ++i)
+            if (figure->kept[i]) parts.push_back(usual[i]);
+    }
+    parts.insert(parts.end(), figure->fixed.begin(), figure->fixed.end());
+    return parts;
+}
+
+std::vector<Mesh> humanBodyOf(double height) { return humanBodyOf(humanParts(height)); }
+
+std::vector<Mesh> humanBodyOf(const std::vector<BodyPart>& parts) {
     Body body;
     std::vector<BodyPart> balls;
-    for (const BodyPart& part : humanParts(height)) {
+    for (const BodyPart& part : parts) {
         if (part.is_ball) {
             balls.push_back(part);
             continue;
@@ -170,11 +192,13 @@ std::vector<Mesh> humanBodyOf(double height) {
              part.bottom, part.top, part.material});
     }
     std::vector<Mesh> meshes = meshesOf(body, Surfaces::Drawn);
-    for (Mesh& mesh : meshes)
-        for (const BodyPart& ball : balls)
-            if (ball.material == mesh.material)
-                addBall(mesh, {ball.center.x, ball.center.y, (ball.bottom + ball.top) / 2},
-                        ball.radius);
+    for (const BodyPart& ball : balls) {
+        auto mesh = std::find_if(meshes.begin(), meshes.end(), [&ball](const Mesh& each) {
+            return each.material == ball.material;
+        });
+        if (mesh == meshes.end()) mesh = meshes.insert(mesh, meshOf(ball.material));
+        addBall(*mesh, {ball.center.x, ball.center.y, (ball.bottom + ball.top) / 2}, ball.radius);
+    }
     return meshes;
 }
 
@@ -183,5 +207,10 @@ double strideOf(double height) {
 }
 
 double humanRadius(double height) { return (kBodyWidth / 2 + kArm) * height; }
+
+double personReach(const PlacedPerson& person) {
+    const double usual = humanRadius(person.height);
+    return person.figure == nullptr ? usual : std::max(usual, person.figure->reach);
+}
 
 }  // namespace ispace

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <bitset>
+#include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "env/mesh.h"
@@ -16,7 +19,7 @@ namespace ispace {
 ///
 /// A sensor's mesh comes from its kind; a mat is a thin plate; a gate is two posts across its
 /// heading, with a head each at the beam's height; a robot is its visible body with a nose; a
-/// person is humanBodyOf().
+/// person is humanBodyOf() of personParts().
 std::vector<Mesh> bodyOf(const Scene& scene, const PlacedRecord& placed);
 
 /// Returns the field of view of a placed sensor as a translucent sheet in its frame, see
@@ -50,10 +53,42 @@ struct BodyPart {
 /// Walking, the left leg is ahead of the hip by the angle `swing` and the right one behind it; arms
 /// swing the other way. Limbs are slanted, not turned: level cuts stay discs, and the feet stay on
 /// the floor.
+///
+/// They are, in order: the right leg, sleeve and hand, the left ones, the trunk, the head.
 std::vector<BodyPart> humanParts(double height, Angle swing = {});
+constexpr std::size_t kHumanParts = 8;
 
-/// Converts humanParts() of a standing person to triangles, for models. Vertices of round parts lie
-/// on their surfaces.
+/// The body of a person that a record of an extension shapes, see ThingKind::figure: sitting,
+/// lying, with arms that point.
+///
+/// Its frame is that of humanParts(), with the middle of the trunk above the origin. Sensors take
+/// the first box of a person for the trunk.
+struct PersonFigure {
+    std::bitset<kHumanParts> kept;  ///< parts of humanParts() that it has, swinging limbs, too
+    std::vector<BodyPart> fixed;    ///< the others, which no step swings
+    double reach = 0;               ///< radius of the circle about the origin that holds all parts
+    double support = 0;             ///< height of the floor or thing that bears it
+    Point3 load;                    ///< the middle of the underside of a thing that it carries
+    /// The reason why the person does not walk, "sits"; "" if it does.
+    std::string rest;
+    /// Moves points that the standing person carries: `from` + x, y and z times these, and no lower
+    /// than the floor.
+    Point3 from{};
+    Vec3 x_axis{1, 0, 0}, y_axis{0, 1, 0}, z_axis{0, 0, 1};
+
+    /// Returns a point of the person's frame, given for the standing person.
+    [[nodiscard]] Point3 carried(Point3 standing) const;
+};
+
+/// Returns the parts of a person: those of its figure, else humanParts(). The swing is as there.
+std::vector<BodyPart> personParts(double height, const PersonFigure* figure, Angle swing = {});
+inline std::vector<BodyPart> personParts(const PlacedPerson& person, Angle swing = {}) {
+    return personParts(person.height, person.figure.get(), swing);
+}
+
+/// Converts upright parts to triangles, for models. Vertices of round parts lie on their surfaces.
+std::vector<Mesh> humanBodyOf(const std::vector<BodyPart>& parts);
+/// Converts humanParts() of a standing person.
 std::vector<Mesh> humanBodyOf(double height);
 
 /// Greatest swing of the limbs (thesis 5.3.1), and the length of a stride, two steps, at that
@@ -63,5 +98,7 @@ double strideOf(double height);
 
 /// Returns the radius of the circle about a person of that height that no object may enter.
 double humanRadius(double height);
+/// Returns the radius of the circle about a person's position that holds its body.
+double personReach(const PlacedPerson& person);
 
 }  // namespace ispace

@@ -182,5 +182,32 @@ TEST(BodyOf, NothingForWhatHasNone) {
     EXPECT_TRUE(bodyOf(made, wrong).empty());
 }
 
+TEST(PersonFigure, KeepsPartsAndAddsOthers) {
+    const Angle swing = Angle::degrees(10);
+    PersonFigure figure;
+    figure.kept.set(0).set(6);
+    figure.fixed.push_back({.center = {0.5, 0},
+                            .radius = 0.1,
+                            .bottom = 1.8,
+                            .top = 2,
+                            .is_ball = true,
+                            .material = Material::Skin});
+    const std::vector<BodyPart> parts = personParts(1.7, &figure, swing);
+    const std::vector<BodyPart> usual = humanParts(1.7, swing);
+    ASSERT_EQ(usual.size(), kHumanParts);
+    ASSERT_EQ(parts.size(), 3U);
+    EXPECT_EQ(parts[0].center, usual[0].center);
+    EXPECT_EQ(parts[0].lean, usual[0].lean);
+    EXPECT_EQ(parts[1].half_width, usual[6].half_width);
+    EXPECT_EQ(personParts(1.7, nullptr, swing).size(), kHumanParts);
+    // A ball has a mesh although no box or cylinder is of its material.
+    const std::vector<Mesh> meshes = humanBodyOf(parts);
+    ASSERT_EQ(meshes.size(), 2U);
+    EXPECT_NEAR(boundsOf(meshes).high.z, 2, 1e-9);
+    EXPECT_EQ(figure.carried({0.1, 0.2, 1.3}), (Point3{0.1, 0.2, 1.3}));
+    figure.from.z = -2;
+    EXPECT_EQ(figure.carried({0.1, 0.2, 1.3}), (Point3{0.1, 0.2, 0}));
+}
+
 }  // namespace
 }  // namespace ispace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "scene/devices.h"
 
 namespace ispace {
+
+struct PersonFigure;
 
 /// Returns the share of kMaxSwingDegrees by which a person's limbs swing at a speed in m/s: 1 from
 /// 0.5 m/s on.
@@ -104,6 +107,8 @@ struct PlacedPerson {
     Pose2 pose;
     SourcePosition place;  ///< of the record, for messages
     MotionPlan course = {};
+    /// Null for a body as that of humanParts(); see personParts().
+    std::shared_ptr<const PersonFigure> figure = {};
 };
 
 /// Reads the parameters of a `robot` record: its explicit keys, else its model's, else the bare

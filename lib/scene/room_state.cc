@@ -24,11 +24,16 @@ std::string valueText(const Record& record, std::string_view key) {
     if (spec.type == KeyType::Flag && record.find(key) == nullptr) return "0";
     if (spec.type == KeyType::Flag) return record.flag(key) ? "1" : "0";
     if (spec.type == KeyType::Number) return formatDouble(record.number(key));
-    if (spec.type == KeyType::Choice) return record.text(key);
+    if (spec.type == KeyType::Choice || spec.type == KeyType::Word) return record.text(key);
     std::string text;
     for (const double part : record.tuple(key))
         text.append(text.empty() ? "" : ",").append(formatDouble(part));
     return text;
+}
+
+/// Returns false for a key without value and default; flags without them are off.
+bool hasValue(const Record& record, std::string_view key) {
+    return record.find(key) != nullptr || record.schema().find(key)->type == KeyType::Flag;
 }
 
 }  // namespace
@@ -62,7 +67,7 @@ std::vector<RoomState> roomStates(const Scene& scene) {
         const ThingKind* const kind = thingKind(record.keyword());
         if (kind != nullptr && (kind->has_states == nullptr || kind->has_states(record)))
             for (const std::string& key : kind->states)
-                states.push_back({id, key, valueText(record, key)});
+                if (hasValue(record, key)) states.push_back({id, key, valueText(record, key)});
         if (const auto emission = emissionOf(record))
             states.push_back({id, "power", formatDouble(emission->watts)});
     }

@@ -33,8 +33,8 @@ struct RoomState {
     friend bool operator==(const RoomState&, const RoomState&) = default;
 };
 
-/// Returns the states of a scene, in the order of its records. Records with an emission have a
-/// `power` in watts behind their keys, which follows from these.
+/// Returns the states of a scene, in the order of its records; keys without a value are left out.
+/// Records with an emission have a `power` in watts behind their keys, which follows from these.
 std::vector<RoomState> roomStates(const Scene& scene);
 
 /// Returns the edit that sets a state: `id.key=value`, of `key=value` with 1 and 0 for yes and no,

@@ -2,6 +2,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -14,8 +15,10 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "env/body.h"
+#include "env/body_shapes.h"
 #include "record/record.h"
 #include "record/text.h"
+#include "scene/bodies.h"
 #include "scene/element_device.h"
 #include "scene/placement_schemas.h"
 #include "scene/preferences.h"
@@ -102,6 +105,18 @@ Carriers::Carriers(const std::vector<Record>& records, const std::vector<std::st
     }
 }
 
+/// Returns the height at which a thing stands.
+double bottomOf(const Body& body) {
+    double bottom = std::numeric_limits<double>::infinity();
+    for (const Prism& prism : body.prisms) bottom = std::min(bottom, prism.bottom);
+    return std::isfinite(bottom) ? bottom : 0;
+}
+
+/// Reports a thing that is carried by an id without a person.
+Diagnostic noPerson(const Record& thing, const std::string& id) {
+    return thing.finding("no person has the id `" + id + "`, which carries it");
+}
+
 std::size_t Carriers::named(const Record& carried) const {
     const std::string on = carrierOf(carried);
     const auto found = by_id_->find(on);
@@ -153,6 +168,19 @@ Carriers::Place Carriers::place(const Record& sensor) {
     if (record.keyword() == "human")
         return {mountedPose(floorPoseOf(record), poseOnPerson(sensor, record)), std::nullopt,
                 movers_.at(found)};
+    if (const std::string person = personWith(record); !person.empty()) {
+        const auto by = by_id_->find(person);
+        if (!by || records_[*by].keyword() != "human") throw FormatError(noPerson(record, person));
+        Pose3 local = poseOf(sensor);
+        const auto figure = figureOf(records_[*by], &record);
+        const Body body = standingBodyOf(record);
+        if (figure != nullptr) {
+            local.position.x += figure->load.x;
+            local.position.y += figure->load.y;
+            local.position.z += figure->load.z + topOf(body) - bottomOf(body);
+        }
+        return {mountedPose(floorPoseOf(records_[*by]), local), std::nullopt, movers_.at(*by)};
+    }
     if (const ThingKind* const joint = jointOf(record)) {
         const Pose3 local = poseOnJoint(joint->mount(record), poseOf(sensor));
         if (carrierOf(record).empty()) return {local, std::nullopt};
@@ -197,10 +225,27 @@ class Resolver {
                 findings.add(error);
             }
         }
+        loadPeople(findings);
         return std::move(out_);
     }
 
   private:
+    /// Gives people the things that they carry.
+    void loadPeople(Diagnostics& findings) {
+        for (const Record& thing : records_) {
+            const std::string id = personWith(thing);
+            if (id.empty()) continue;
+            const auto person =
+                std::find_if(out_.placed.begin(), out_.placed.end(), [&](const PlacedRecord& one) {
+                    return records_[one.record].keyword() == "human" && ids_[one.record] == id;
+                });
+            if (person == out_.placed.end())
+                findings.add(noPerson(thing, id));
+            else
+                out_.people[person->index].figure = figureOf(records_[person->record], &thing);
+        }
+    }
+
     void add(std::size_t i) {
         const Record& record = records_[i];
         if (const SensorKind* kind = sensorKind(record.keyword())) {
@@ -216,7 +261,7 @@ class Resolver {
             const Pose2 pose = floorPoseOf(record);
             out_.placed.push_back({i, onFloor(pose), out_.people.size()});
             out_.people.push_back({ids_[i], record.number("height"), record.number("speed"), pose,
-                                   record.place(), courseOf(record)});
+                                   record.place(), courseOf(record), figureOf(record)});
         } else if (const ThingKind* const thing = thingKind(record.keyword());
                    thing != nullptr && thing->body != nullptr) {
             const Carriers::Place place = carriers_.placeOfThing(record);

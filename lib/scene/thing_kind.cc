@@ -32,6 +32,11 @@ std::optional<Emission> emissionOf(const Record& record) {
     return kind->emission(record);
 }
 
+std::shared_ptr<const PersonFigure> figureOf(const Record& person, const Record* load) {
+    const ThingKind* const kind = thingKind(person.keyword());
+    return kind == nullptr || kind->figure == nullptr ? nullptr : kind->figure(person, load);
+}
+
 std::string_view barrierOf(const Record& record) {
     const ThingKind* const kind = thingKind(record.keyword());
     return kind == nullptr || kind->barrier == nullptr ? "" : kind->barrier(record);

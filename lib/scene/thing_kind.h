@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,8 @@
 #include "record/record.h"
 
 namespace ispace {
+
+struct PersonFigure;
 
 /// What a thing takes and gives off in the state of its record.
 struct Emission {
@@ -88,6 +91,10 @@ struct ThingKind {
     /// three numbers, `heading` and perhaps `on`, go with the robot or object that carries them.
     /// Null: none.
     ThingBody (*body)(const Record& record) = nullptr;
+    /// Returns the body of a person, for the keyword `human`, with the thing that it carries, if
+    /// any; null for the usual one. Null: that.
+    std::shared_ptr<const PersonFigure> (*figure)(const Record& person,
+                                                  const Record* load) = nullptr;
 };
 
 /// Adds the kind of a keyword, for the program: call it before any scene is read.
@@ -100,6 +107,9 @@ const ThingKind* thingKind(std::string_view keyword);
 const std::map<std::string, ThingKind, std::less<>>& thingKinds();
 /// Returns the emission of a record; empty if its keyword has none. Thread-safe.
 std::optional<Emission> emissionOf(const Record& record);
+/// Returns the body that a kind gives a person with a load, which may be null; null for the usual
+/// one. Thread-safe.
+std::shared_ptr<const PersonFigure> figureOf(const Record& person, const Record* load = nullptr);
 /// Returns the word for a door that lets no person pass, "" for others. Thread-safe.
 std::string_view barrierOf(const Record& record);
 

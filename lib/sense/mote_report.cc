@@ -23,7 +23,7 @@ class CarriedMotes {
   public:
     explicit CarriedMotes(const Moment& now) {
         for (const MovingBody& body : now.bodies.bodies()) {
-            // The trunk is a person's only box.
+            // The trunk is a person's first box.
             if (body.owner >= kFirstPerson && body.radius > 0) continue;
             poses_.try_emplace(body.owner, body.pose);
         }

@@ -94,18 +94,19 @@ bool isAtSome(const MovingBody& body, std::span<const double> heights) {
 }
 
 void addHumanBodies(double height, const Pose2& pose, std::uint32_t owner, Angle swing,
-                    std::span<const double> heights, std::vector<MovingBody>& bodies) {
+                    std::span<const double> heights, std::vector<MovingBody>& bodies,
+                    const PersonFigure* figure) {
     const CosSin axes = cosSin(pose.heading);
-    for (const BodyPart& part : humanParts(height, swing)) {
+    for (const BodyPart& part : personParts(height, figure, swing)) {
         const MovingBody body = movingBody(part, pose, axes, owner);
         if (isAtSome(body, heights)) bodies.push_back(body);
     }
 }
 
 std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner,
-                                    Angle swing) {
+                                    Angle swing, const PersonFigure* figure) {
     std::vector<MovingBody> bodies;
-    addHumanBodies(height, pose, owner, swing, {}, bodies);
+    addHumanBodies(height, pose, owner, swing, {}, bodies, figure);
     return bodies;
 }
 
@@ -117,7 +118,8 @@ std::vector<MovingBody> bodiesOf(const Scene& scene) {
             robotBody(robot.model, robot.pose, static_cast<std::uint32_t>(bodies.size())));
     std::uint32_t owner = kFirstPerson;
     for (const PlacedPerson& person : scene.people) {
-        const std::vector<MovingBody> parts = humanBodies(person.height, person.pose, owner++);
+        const std::vector<MovingBody> parts =
+            humanBodies(person.height, person.pose, owner++, {}, person.figure.get());
         bodies.insert(bodies.end(), parts.begin(), parts.end());
     }
     return bodies;

@@ -67,13 +67,15 @@ struct MoverVelocities {
 MoverVelocities startVelocities(const Scene& scene);
 
 MovingBody robotBody(const RobotModel& model, const Pose2& pose, std::uint32_t owner);
-/// Returns a person's limbs, trunk and head: humanParts() at its pose.
+/// Returns a person's limbs, trunk and head: personParts() at its pose. \param figure null: the
+/// usual one
 std::vector<MovingBody> humanBodies(double height, const Pose2& pose, std::uint32_t owner,
-                                    Angle swing = {});
+                                    Angle swing = {}, const PersonFigure* figure = nullptr);
 /// True if the body extends through one of these heights, or `heights` is empty.
 bool isAtSome(const MovingBody& body, std::span<const double> heights);
 /// Adds the parts of humanBodies() that isAtSome() of these heights.
 void addHumanBodies(double height, const Pose2& pose, std::uint32_t owner, Angle swing,
-                    std::span<const double> heights, std::vector<MovingBody>& bodies);
+                    std::span<const double> heights, std::vector<MovingBody>& bodies,
+                    const PersonFigure* figure = nullptr);
 
 }  // namespace ispace

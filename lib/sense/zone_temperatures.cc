@@ -2,6 +2,7 @@
 #include "sense/zone_temperatures.h"
 
 #include <cmath>
+#include <cstdint>
 
 #include "geom/polygon.h"
 #include "sense/selection.h"
@@ -14,10 +15,13 @@ constexpr double kPersonWatts = 75;  // sensible heat of people at light work
 
 int peopleIn(const Polygon& outline, const MovingBodies& bodies) {
     int people = 0;
+    std::uint32_t last = MovingBodies::kNoOwner;
     for (const MovingBody& body : bodies.bodies()) {
-        // The trunk is a person's only box.
-        const bool is_trunk = body.owner >= kFirstPerson && body.radius == 0;
-        if (is_trunk && locate(outline, body.pose.position) != Side::Outside) ++people;
+        // The trunk is a person's first box.
+        const bool is_trunk = body.owner >= kFirstPerson && body.radius == 0 && body.owner != last;
+        if (!is_trunk) continue;
+        last = body.owner;
+        if (locate(outline, body.pose.position) != Side::Outside) ++people;
     }
     return people;
 }

@@ -15,6 +15,7 @@
 #include "scene/bodies.h"
 #include "scene/room_state.h"
 #include "scene/thing_kind.h"
+#include "sim/person_verbs.h"
 #include "sim/simulation.h"
 
 namespace ispace {
@@ -51,6 +52,8 @@ class DayLineReader {
     void readDuration(DayAction& action, std::string_view text, std::size_t at) const;
     void readAct(DayAction& action, std::string_view id, std::string_view state,
                  std::size_t at) const;
+    void readDeed(DayAction& action, const PersonVerb& verb, const std::vector<Piece>& parts,
+                  std::size_t at) const;
     [[nodiscard]] std::vector<std::string> thingsWith(std::string_view verb) const;
     [[nodiscard]] bool takesVerb(std::string_view id, std::string_view verb) const;
 
@@ -102,7 +105,10 @@ SimTime DayLineReader::readTime() {
 
 void DayLineReader::readTarget(DayAction& action, std::string_view target, std::size_t at) const {
     action.target = target;
-    const std::vector<std::string> ids = goalIds(world_->scene());
+    std::vector<std::string> ids;
+    if (action.does == nullptr || action.does->is_for_goals) ids = goalIds(world_->scene());
+    if (action.does != nullptr && action.does->targets != nullptr)
+        for (std::string& id : action.does->targets(*world_)) ids.push_back(std::move(id));
     if (std::find(ids.begin(), ids.end(), action.target) != ids.end()) return;
     fail(at,
          "no zone or element with a place has the id " + excerpt(target) + didYouMean(target, ids));
@@ -123,6 +129,41 @@ void DayLineReader::readAct(DayAction& action, std::string_view id, std::string_
     } catch (const UsageError& error) {
         fail(at, error.what());
     }
+}
+
+/// Reads an action with a verb of people.
+void DayLineReader::readDeed(DayAction& action, const PersonVerb& verb,
+                             const std::vector<Piece>& parts, std::size_t at) const {
+    action.verb = DayAction::Verb::Does;
+    action.does = &verb;
+    struct Wanted {
+        std::string text;
+        bool is_fixed;
+    };
+    std::vector<Wanted> wanted = {{verb.verb, true}};
+    if (!verb.word.empty()) wanted.push_back({verb.word, true});
+    const std::size_t target = wanted.size();
+    if (!verb.target.empty()) wanted.push_back({verb.target, false});
+    if (verb.then != nullptr) {
+        wanted.push_back({verb.then->word, true});
+        wanted.push_back({verb.then->target, false});
+    }
+    if (verb.lasts) wanted.push_back({"2s", false});
+    bool is_good = parts.size() == wanted.size();
+    std::string example;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        is_good = is_good && (!wanted[i].is_fixed || parts[i].text == wanted[i].text);
+        example.append(example.empty() ? "" : " ").append(wanted[i].text);
+    }
+    if (!is_good) fail(at, excerpt(action.text) + " is no action, wanted one like " + example);
+    if (!verb.target.empty()) readTarget(action, parts[target].text, at);
+    if (verb.then != nullptr) {
+        DayAction then;
+        then.does = verb.then;
+        readTarget(then, parts[target + 2].text, at);
+        action.onward = then.target;
+    }
+    if (verb.lasts) readDuration(action, parts.back().text, at);
 }
 
 /// Returns the things of the scene that have a verb.
@@ -154,9 +195,14 @@ DayAction DayLineReader::readAction(std::string_view text, std::size_t first) co
     };
     const std::string_view verb = parts.front().text;
     action.act = verb;
+    const std::vector<PersonVerb>& deeds = personVerbs();
+    const auto deed = std::find_if(deeds.begin(), deeds.end(),
+                                   [verb](const PersonVerb& one) { return one.verb == verb; });
     if (parts.size() == 2 && takesVerb(parts[1].text, verb)) {
         action.verb = DayAction::Verb::Acts;
         action.target = parts[1].text;
+    } else if (deed != deeds.end()) {
+        readDeed(action, *deed, parts, first);
     } else if (verb == "goes") {
         wants(2, "goes kitchen");
         action.verb = DayAction::Verb::Goes;
@@ -183,6 +229,7 @@ DayAction DayLineReader::readAction(std::string_view text, std::size_t first) co
         std::vector<std::string> known = {"goes", "uses", "stays", "opens", "closes", "switches"};
         for (const auto& [keyword, kind] : thingKinds())
             known.insert(known.end(), kind.verbs.begin(), kind.verbs.end());
+        for (const PersonVerb& one : deeds) known.push_back(one.verb);
         if (std::find(known.begin(), known.end(), verb) == known.end())
             fail(first, excerpt(verb) + " is no action" + didYouMean(verb, known));
         const std::vector<std::string> things = thingsWith(verb);
@@ -219,7 +266,12 @@ DayLine DayLineReader::read() {
         const std::string_view action = rest.substr(0, rest.find(';'));
         rest.remove_prefix(std::min(rest.size(), action.size() + 1));
         if (wordsOf(action).empty()) continue;
-        line.actions.push_back(readAction(action, next_));
+        DayAction read = readAction(action, next_);
+        line.actions.push_back(read);
+        if (read.does == nullptr || read.does->then == nullptr) continue;
+        read.object = std::exchange(read.target, read.onward);
+        read.does = read.does->then;
+        line.actions.push_back(std::move(read));
     }
     if (line.actions.empty()) fail(next_, "an action is missing, like goes kitchen");
     if (line.name.empty()) {
@@ -328,6 +380,7 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
         const auto mover = world.moverNamed(plan_.lines[*doer.line].person);
         if (!mover) {
             doer.after_use.clear();
+            doer.is_doing = false;
             doer.line.reset();
             continue;
         }
@@ -351,8 +404,17 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
                 if (doer.gave_up) tellUnreached(simulation, *mover, doer);
             }
         }
-        if (!doer.walks && !was_there && !doer.gave_up) beginUse(simulation, doer);
+        if (!doer.walks && !was_there && !doer.gave_up) {
+            const PersonVerb* const does = actionOf(doer).does;
+            doer.walks = does != nullptr && does->way == PersonVerb::Way::Beside &&
+                         does->aim != nullptr && face(world, *mover, doer);
+            if (!doer.walks && !doer.gave_up) beginUse(simulation, doer);
+        }
         if (doer.walks || world.time() < doer.until) return;
+        if (std::exchange(doer.is_doing, false) && endDeed(simulation, doer)) {
+            doer.until = world.time() + world.stepLength();
+            return;
+        }
         endUse(simulation, doer);
         tell(simulation, doer, doer.gave_up ? -1 : 0);
         doer.is_begun = false;
@@ -369,8 +431,8 @@ bool ActivityDirector::begin(Simulation& simulation, Doer& doer) const {
     switch (action.verb) {
         case DayAction::Verb::Goes:
         case DayAction::Verb::Uses:
-            doer.walks = true;
-            return true;
+        case DayAction::Verb::Does:
+            return beginWithBody(simulation, doer);
         case DayAction::Verb::Stays:
             doer.until = world.time() + action.lasts;
             return true;
@@ -408,6 +470,90 @@ std::string changeOf(const std::string& id, const std::string& changes) {
 
 }  // namespace
 
+/// Begins an action of a person's body: a way, or a deed. \returns false if it goes on in the next
+/// step
+bool ActivityDirector::beginWithBody(Simulation& simulation, Doer& doer) const {
+    const World& world = simulation.world();
+    const DayAction& action = actionOf(doer);
+    const std::size_t mover = *world.moverNamed(plan_.lines[*doer.line].person);
+    const PersonVerb* const does = action.does;
+    const std::string_view rest = world.movers()[mover].rest();
+    std::string reason;
+    if (!rest.empty() && (does == nullptr || !does->is_of_rest)) reason.append("it ").append(rest);
+    if (reason.empty() && does != nullptr && does->refusal != nullptr)
+        reason = does->refusal(momentOf(world, mover, doer));
+    if (!reason.empty()) {
+        refuse(simulation, doer, reason);
+        return true;
+    }
+    doer.walks = does == nullptr || does->way != PersonVerb::Way::None;
+    if (doer.walks) return true;
+    stay(world, mover, doer);
+    beginDeed(simulation, doer);
+    return doer.gave_up;
+}
+
+DeedMoment ActivityDirector::momentOf(const World& world, std::size_t mover,
+                                      const Doer& doer) const {
+    const DayAction& action = actionOf(doer);
+    const std::string& person = plan_.lines[*doer.line].person;
+    return {&world,        mover,     recordNamed(world.scene(), person), person, action.target,
+            action.object, doer.stood};
+}
+
+/// Tells the reason why a person does not do an action, which it gives up.
+void ActivityDirector::refuse(Simulation& simulation, Doer& doer, const std::string& reason) const {
+    const std::string& person = plan_.lines[*doer.line].person;
+    std::string text = "script: " + person;
+    text.append(" ").append(actionOf(doer).text).append(": ").append(reason);
+    simulation.events().add(EventKind::Mark, std::move(text), person);
+    doer.gave_up = true;
+}
+
+/// Begins a deed where the person is; it gives the deed up if that is refused.
+void ActivityDirector::beginDeed(Simulation& simulation, Doer& doer) const {
+    const World& world = simulation.world();
+    const auto mover = world.moverNamed(plan_.lines[*doer.line].person);
+    const PersonVerb& does = *actionOf(doer).does;
+    doer.stood = world.status(*mover).pose;
+    const PersonDeed deed = does.begin(momentOf(world, *mover, doer));
+    if (!deed.refusal.empty()) {
+        doer.until = world.time();
+        return refuse(simulation, doer, deed.refusal);
+    }
+    if (!deed.change.empty()) simulation.askChange(deed.change);
+    doer.is_doing = does.end != nullptr;
+    // The world changes before its next step.
+    doer.until = std::max(doer.until, world.time() + world.stepLength());
+}
+
+/// Asks for the change that ends a deed. \returns false without one
+bool ActivityDirector::endDeed(Simulation& simulation, Doer& doer) const {
+    const World& world = simulation.world();
+    const auto mover = world.moverNamed(plan_.lines[*doer.line].person);
+    std::string change = actionOf(doer).does->end(momentOf(world, *mover, doer));
+    if (change.empty()) return false;
+    simulation.askChange(std::move(change));
+    return true;
+}
+
+/// Turns a person to the target of a deed. \returns false if it faces that already, or sits
+bool ActivityDirector::face(World& world, std::size_t mover, Doer& doer) {
+    constexpr double kAside = 45;  // degrees
+    const DayAction& action = actionOf(doer);
+    const Pose2 pose = world.status(mover).pose;
+    const auto at = action.does->aim(world, action.target);
+    const Vec2 way = at ? *at - pose.position : Vec2{};
+    const double turn = wrapped(Angle::radians(std::atan2(way.y, way.x)) - pose.heading).degrees();
+    if (way == Vec2{} || std::abs(turn) < kAside || !world.movers()[mover].rest().empty()) {
+        stay(world, mover, doer);
+        return false;
+    }
+    doer.rest = {{.verb = turn > 0 ? Verb::Left : Verb::Right, .value = std::abs(turn)}};
+    doer.gave_up = !goOnWalking(world, mover, doer);
+    return !doer.gave_up;
+}
+
 /// Asks for the changes of an act. \returns false, and gives it up, if the thing refuses it, of
 /// which it tells
 bool ActivityDirector::act(Simulation& simulation, Doer& doer) const {
@@ -421,10 +567,7 @@ bool ActivityDirector::act(Simulation& simulation, Doer& doer) const {
     if (kind != nullptr && kind->act != nullptr && who != nullptr)
         result = kind->act(*record, action.act, *who, action.changes);
     if (!result.refusal.empty()) {
-        std::string text = "script: " + person;
-        text.append(" ").append(action.text).append(": ").append(result.refusal);
-        simulation.events().add(EventKind::Mark, std::move(text), person);
-        doer.gave_up = true;
+        refuse(simulation, doer, result.refusal);
         return false;
     }
     if (!result.changes.empty()) simulation.askChange(changeOf(action.target, result.changes));
@@ -608,6 +751,8 @@ void ActivityDirector::closeDoors(Simulation& simulation) {
 bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& doer) {
     const DayAction& action = actionOf(doer);
     World& world = simulation.world();
+    if (action.does != nullptr && action.does->way == PersonVerb::Way::Faces)
+        return face(world, mover, doer);
     const Ways of_person = waysOf(world, mover);
     const GoalWays& ways = *of_person.goals;
     const Point2 from = world.status(mover).pose.position;
@@ -682,6 +827,8 @@ void ActivityDirector::arrive(World& world, std::size_t mover, Doer& doer) {
 }
 
 bool ActivityDirector::isThere(const World& world, std::size_t mover, const Doer& doer) {
+    const PersonVerb* const does = actionOf(doer).does;
+    if (does != nullptr && does->way == PersonVerb::Way::Faces) return true;
     return waysOf(world, mover)
         .goals->isAt(world.status(mover).pose.position, actionOf(doer).target);
 }
@@ -696,6 +843,7 @@ void ActivityDirector::stay(const World& world, std::size_t mover, Doer& doer) c
 /// Changes the state of a thing that says what its use does.
 void ActivityDirector::beginUse(Simulation& simulation, Doer& doer) const {
     const DayAction& action = actionOf(doer);
+    if (action.verb == DayAction::Verb::Does) return beginDeed(simulation, doer);
     if (action.verb != DayAction::Verb::Uses) return;
     const Scene& scene = simulation.world().scene();
     const auto found = std::find(scene.ids.begin(), scene.ids.end(), action.target);

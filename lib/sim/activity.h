@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "geom/point.h"
+#include "geom/pose.h"
 #include "geom/predicates.h"
 #include "sim/command.h"
 #include "sim/goal_ways.h"
@@ -22,6 +23,8 @@ namespace ispace {
 
 class Simulation;
 class World;
+struct DeedMoment;
+struct PersonVerb;
 
 /// A piece of an activity.
 struct DayAction {
@@ -29,7 +32,8 @@ struct DayAction {
         Goes,   ///< to the zone or element `target`
         Uses,   ///< likewise, and stays there
         Stays,  ///< where the person is
-        Acts    ///< on the actuator `target`, at once
+        Acts,   ///< on the actuator `target`, at once
+        Does    ///< with its body, see PersonVerb
     };
     Verb verb = Verb::Stays;
     std::string text;  ///< as in the script: "uses kettle 3min"
@@ -37,6 +41,9 @@ struct DayAction {
     std::string act;      ///< of Acts: the verb, "opens"
     std::string changes;  ///< likewise, of its states, unless its kind has others: "open=yes"
     SimTime lasts{};
+    const PersonVerb* does = nullptr;  ///< of Does
+    std::string object;                ///< likewise, see DeedMoment
+    std::string onward;                ///< likewise: the target of PersonVerb::then
 };
 
 /// An activity of a person.
@@ -61,9 +68,9 @@ bool isDayLine(std::string_view line);
 ///     daily HH:MM[:SS] PERSON [NAME:] ACTION; ACTION …
 ///
 /// DAY counts from 1. An action is `goes ID`, `uses ID DURATION`, `stays DURATION`, `opens DOOR`,
-/// `closes DOOR`, `switches ID on|off`, or a verb of a thing (see ThingKind) with its ID; zones and
-/// elements are named by their ids. Without a NAME an activity has the name of its first action.
-/// \throws FormatError with all findings
+/// `closes DOOR`, `switches ID on|off`, a verb of a thing (see ThingKind) with its ID, or one of
+/// people (see PersonVerb); zones and elements are named by their ids. Without a NAME an activity
+/// has the name of its first action. \throws FormatError with all findings
 DayPlan readDayPlan(std::string_view text, const std::string& file, const World& world);
 
 /// Makes people follow their days: each does the activities of a plan one after another, each at
@@ -104,6 +111,8 @@ class ActivityDirector {
         std::int64_t changes = 0;  // of the world then
         bool waits = false;        // for its turn to look for a way
         std::string after_use;     // the change that ends the use of a thing; "" for none
+        bool is_doing = false;     // a deed that ends with a change
+        Pose2 stood;               // when that began
         bool to_door = false;      // the way ends in front of a door, which it then opens
         int asks = 0;              // for a door to open, since the person came to it
     };
@@ -127,6 +136,13 @@ class ActivityDirector {
     void arrive(World& world, std::size_t mover, Doer& doer);
     bool isThere(const World& world, std::size_t mover, const Doer& doer);
     void stay(const World& world, std::size_t mover, Doer& doer) const;
+    bool beginWithBody(Simulation& simulation, Doer& doer) const;
+    void beginDeed(Simulation& simulation, Doer& doer) const;
+    bool endDeed(Simulation& simulation, Doer& doer) const;
+    bool face(World& world, std::size_t mover, Doer& doer);
+    [[nodiscard]] DeedMoment momentOf(const World& world, std::size_t mover,
+                                      const Doer& doer) const;
+    void refuse(Simulation& simulation, Doer& doer, const std::string& reason) const;
     void beginUse(Simulation& simulation, Doer& doer) const;
     void endUse(Simulation& simulation, Doer& doer) const;
     void watchStay(const World& world, std::size_t mover, Doer& doer);

@@ -260,7 +260,7 @@ std::vector<std::size_t> settlingOrder(std::span<const Mover> movers) {
 Traffic::Traffic(std::span<const Mover> movers, std::span<const std::size_t> order, double duration)
     : rank_(movers.size()), places_(movers.size()) {
     for (std::size_t k = 0; k < order.size(); ++k) rank_[order[k]] = k;
-    for (const auto& [id, model, pose, course, place, is_person] : movers)
+    for (const auto& [id, model, pose, course, place, is_person, figure] : movers)
         reach_ = std::max(
             reach_, model.radius + std::hypot(model.max_speed, model.max_sidespeed) * duration);
 }

@@ -31,9 +31,11 @@ std::optional<Point2> middleOf(const Element& element) {
     return Point2{(box.low.x + box.high.x) / 2, (box.low.y + box.high.y) / 2};
 }
 
-/// Returns true for the things of extensions, which are no elements, and which no other carries.
+/// Returns true for the things of extensions, which are neither elements nor people, and which no
+/// other carries.
 bool isThing(const Record& record) {
-    return !record.schema().isEnvironment() && thingKind(record.keyword()) != nullptr &&
+    const ThingKind* const kind = thingKind(record.keyword());
+    return !record.schema().isEnvironment() && kind != nullptr && kind->figure == nullptr &&
            carrierOf(record).empty();
 }
 

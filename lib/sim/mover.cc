@@ -129,9 +129,14 @@ std::vector<Mover> moversOf(const Scene& scene) {
     for (const PlacedRobot& robot : scene.robots)
         movers.push_back({robot.id, robot.model, robot.pose, robot.course, robot.place});
     for (const PlacedPerson& person : scene.people)
-        movers.push_back(
-            {person.id, modelOf(person), person.pose, person.course, person.place, true});
+        movers.push_back({person.id, modelOf(person), person.pose, person.course, person.place,
+                          true, person.figure});
     return movers;
+}
+
+std::string_view Mover::rest() const {
+    if (figure == nullptr) return "";
+    return figure->rest;
 }
 
 RobotModel modelOf(const PlacedPerson& person) {

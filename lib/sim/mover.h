@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geom/pose.h"
@@ -122,6 +123,10 @@ struct Mover {
     MotionPlan course;
     SourcePosition place;  ///< of the record, for messages
     bool is_person = false;
+    std::shared_ptr<const PersonFigure> figure = {};  ///< of a person, null for the usual one
+
+    /// Returns the reason why a person does not walk, "sits"; "" if it does.
+    [[nodiscard]] std::string_view rest() const;
 };
 
 /// Returns the robots of a scene in its order, followed by its people.

@@ -75,7 +75,7 @@ bool touches(const Area& area, const MovingBody& body) {
 
 /// Returns the parts of a mover that touch the floor, or those that block beams.
 std::vector<MovingBody> bodiesOfMover(const MoverShape& shape, const Pose2& pose, Angle swing) {
-    if (shape.is_person) return humanBodies(shape.height, pose, 0, swing);
+    if (shape.is_person) return humanBodies(shape.height, pose, 0, swing, shape.figure.get());
     return {robotBody(shape.model, pose, 0)};
 }
 
@@ -101,8 +101,13 @@ std::vector<MoverShape> moverShapes(const Scene& scene) {
     for (const PlacedRecord& placed : scene.placed) {
         const Record& record = scene.records[placed.record];
         if (record.keyword() != "human") continue;
-        const double height = record.number("height");
-        shapes.push_back({scene.ids[placed.record], true, humanRadius(height), height, {}});
+        const PlacedPerson& person = scene.people[placed.index];
+        shapes.push_back({scene.ids[placed.record],
+                          true,
+                          personReach(person),
+                          person.height,
+                          {},
+                          person.figure});
     }
     return shapes;
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -58,7 +59,8 @@ struct MoverShape {
     bool is_person = false;
     double radius = 0;  ///< of a circle about the centre that holds it
     double height = 0;
-    RobotModel model;  ///< of a robot
+    RobotModel model;                                 ///< of a robot
+    std::shared_ptr<const PersonFigure> figure = {};  ///< of a person, null for the usual one
 };
 std::vector<MoverShape> moverShapes(const Scene& scene);
 

@@ -299,7 +299,7 @@ void SensorReader::setBodies(const MoverPoses& places, std::span<const double> h
     for (std::size_t i = 0; i < places.people.size(); ++i)
         addHumanBodies(scene_->people[i].height, places.people[i],
                        kFirstPerson + static_cast<std::uint32_t>(i), places.swings[i], heights,
-                       list);
+                       list, scene_->people[i].figure.get());
     bodies.rebuild(list);
 }
 

@@ -204,8 +204,11 @@ SimTime World::controlInterval() const {
 const FloorSensors& World::floorSensors() const { return data_->sensors.floor(); }
 
 std::string World::refusal(std::size_t mover, const Command& command) const {
-    const auto& [id, model, pose, course, place, is_person] = data_->movers[mover];
+    const auto& [id, model, pose, course, place, is_person, figure] = data_->movers[mover];
     const double value = command.value;
+    if (const std::string_view rest = data_->movers[mover].rest();
+        !rest.empty() && command.verb != Verb::Stop)
+        return id + ' ' + std::string(rest) + ", and does not go";
     const auto goes_at_most = [&, &who = id](double most) {
         return who + " goes at most " + formatDouble(most) + " m/s";
     };

@@ -156,7 +156,7 @@ World::Data::Data(std::shared_ptr<SceneResources> room, SimTime length, const Ru
     if (options.noise) kept_starts = strayStarts(movers, setting->obstacles, options.seed);
     odometers.reserve(scene->robots.size());
     for (std::size_t i = 0; i < motions.size(); ++i) {
-        const auto& [id, model, pose, course, place, is_person] = movers[i];
+        const auto& [id, model, pose, course, place, is_person, figure] = movers[i];
         motions[i].pose = {pose.position, wrapped(pose.heading)};
         states[i].obstacles = &setting->obstacles.at(model.height);
         states[i].limits = limitsOf(model, 0);
@@ -240,6 +240,14 @@ void World::Data::keepGait(std::size_t mover, const Data& before, std::size_t ol
     swings[person] = before.swings[was];
 }
 
+void World::Data::layDown(std::size_t mover) {
+    motions[mover].halt();
+    states[mover].trip.reset();
+    if (states[mover].running == 0) return;
+    end(mover, Outcome::Stopped);
+    pilots[mover].turnOff();
+}
+
 void World::Data::end(std::size_t mover, Outcome outcome) {
     ends.push_back({mover, std::exchange(states[mover].running, 0), outcome, time});
 }
@@ -297,6 +305,7 @@ std::shared_ptr<World::Data> World::Data::next(
                 after->end(i, Outcome::Replaced);
             }
             after->keepGait(i, *this, *old);
+            if (!after->movers[i].rest().empty()) after->layDown(i);
             if (i < after->odometers.size()) after->odometers[i] = odometers[*old];
         } else if (state.running != 0) {
             after->end(i, Outcome::Stopped);

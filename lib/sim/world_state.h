@@ -160,6 +160,8 @@ struct World::Data {
     void collide(const Collision& collision);
     void walk(std::size_t mover);
     void keepGait(std::size_t mover, const Data& before, std::size_t old);
+    /// Stops a person that does not walk any more; its command ends.
+    void layDown(std::size_t mover);
     void end(std::size_t mover, Outcome outcome);
     /// Returns the ways of a mover's size, found anew after a change. O(cells) the first time
     const WayFinder& finderOf(std::size_t mover);

@@ -50,6 +50,11 @@ void World::Data::propose(std::size_t mover, const Surroundings& around) {
     Motion& motion = motions[mover];
     move.from = &motion;
     states[mover].blocked.reset();
+    if (!movers[mover].rest().empty()) {
+        move.to = {.motion = motion};
+        move.drift = {};
+        return;
+    }
     if (const SimTime now = time - step_length; pilots[mover].isDue(now, motion))
         pilots[mover].steer({&around, states[mover].obstacles, &states[mover].vicinity, mover,
                              states[mover].clearance, now, step_length},

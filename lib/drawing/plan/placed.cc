@@ -8,10 +8,12 @@
 #include <optional>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "base/number.h"
 #include "drawing/plan/plan.h"
 #include "env/body.h"
+#include "scene/bodies.h"
 #include "scene/placement_schemas.h"
 #include "scene/sensor/sensor.h"
 
@@ -295,6 +297,25 @@ void drawPerson(Picture& picture, const Pose2& pose, double tall, const Stroke& 
                    {mixed(displayColor(Material::Skin), kWhite, 0.2), edge});
 }
 
+/// Draws the parts of a body that an extension shapes, as seen from above.
+void drawFigure(Picture& picture, const PlacedPerson& person, const Pose2& pose,
+                const Stroke& edge) {
+    std::vector<BodyPart> parts = personParts(person);
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const BodyPart& a, const BodyPart& b) { return a.top < b.top; });
+    for (const BodyPart& part : parts) {
+        const Point2 center = pose * part.center;
+        const Color color = part.material == Material::Skin
+                                ? mixed(displayColor(Material::Skin), kWhite, 0.2)
+                                : mixed(kPerson, kWhite, 0.4);
+        if (part.radius > 0)
+            picture.circle(center, part.radius, {color, edge});
+        else
+            picture.area(rectangle(center, 2 * part.half_length, 2 * part.half_width, pose.heading),
+                         {color, edge});
+    }
+}
+
 }  // namespace
 
 void PlanDrawing::drawFieldsOfView() {
@@ -325,7 +346,9 @@ void PlanDrawing::drawRobots() {
             for (const Tuple& point : record.list("path")) way.push_back({point[0], point[1]});
             picture_.lines(way, {pen(color.faded(0.7), 0.07, {0.3, 0.3})});
         }
-        if (isPerson(record))
+        if (isPerson(record) && scene_.people[placed.index].figure != nullptr)
+            drawFigure(picture_, scene_.people[placed.index], pose, pen(kPerson, 0.04));
+        else if (isPerson(record))
             drawPerson(picture_, pose, record.number("height"), pen(kPerson, 0.07));
         else
             drawRobot(picture_, pose, scene_.robots[placed.index].model, pen(kRobot, 0.09));

@@ -450,7 +450,8 @@ void LearningWorld::observe(const LearningSetting& setting, std::size_t robot, s
             const std::size_t person = i - robots_.size();
             const double speed = speedOf(motions_[i]);
             addHumanBodies(body.height, at, kFirstPerson + static_cast<std::uint32_t>(person),
-                           gaits_[person].swing(speed), {&height, 1}, scratch.bodies);
+                           gaits_[person].swing(speed), {&height, 1}, scratch.bodies,
+                           room.movers()[i].figure.get());
         }
         if (!scratch.bodies.empty()) {
             scratch.moving.rebuild(scratch.bodies);

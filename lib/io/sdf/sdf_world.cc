@@ -129,7 +129,7 @@ class WorldWriter {
             addRobot(placed, names);
         } else if (record.keyword() == "human") {
             std::vector<SdfPart> parts;
-            for (const BodyPart& part : humanParts(record.number("height")))
+            for (const BodyPart& part : personParts(scene_.people[placed.index]))
                 parts.push_back(sdfPart(part));
             addSdfParts(addModel(idOf(placed), placed.pose), parts, mesh_file_, names);
         } else {

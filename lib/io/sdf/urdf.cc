@@ -175,7 +175,7 @@ class UrdfWriter {
             else
                 setCylinder(geometry, robot.radius, robot.height);
         } else {
-            for (const BodyPart& part : humanParts(scene_.people[placed.index].height)) {
+            for (const BodyPart& part : personParts(scene_.people[placed.index])) {
                 const pugi::xml_node geometry =
                     addVisual(link, {part.center.x, part.center.y, (part.bottom + part.top) / 2},
                               part.material);

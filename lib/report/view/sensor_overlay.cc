@@ -81,7 +81,8 @@ std::vector<MovingBody> bodiesWith(std::span<const Angle> swings, const Scene& s
     bodies.resize(scene.robots.size());
     for (std::size_t i = 0; i < scene.people.size(); ++i)
         addHumanBodies(scene.people[i].height, scene.people[i].pose,
-                       kFirstPerson + static_cast<std::uint32_t>(i), swings[i], {}, bodies);
+                       kFirstPerson + static_cast<std::uint32_t>(i), swings[i], {}, bodies,
+                       scene.people[i].figure.get());
     return bodies;
 }
 

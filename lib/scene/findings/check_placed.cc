@@ -161,7 +161,10 @@ CircleCheck::CircleCheck(CheckContext& context) : context_(&context) {
             const RobotModel& model = scene.robots[placed.index].model;
             circles_.push_back({placed.record, center, model.radius, model.height});
         } else if (record.keyword() == "human") {
-            const double height = record.number("height");
+            const PlacedPerson& person = scene.people[placed.index];
+            // People sit and lie on things.
+            if (person.figure != nullptr && !person.figure->rest.empty()) continue;
+            const double height = person.height;
             circles_.push_back({placed.record, center, humanRadius(height), height});
         } else {
             continue;

@@ -13,6 +13,7 @@
 #include "scene/sensor/pose_on_carrier.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
+#include "scene/thing_kind.h"
 
 namespace ispace {
 
@@ -65,9 +66,12 @@ std::optional<MoteRadio> radioOf(const Record& mote, const std::string& id,
         const auto number = std::count_if(before.begin(), before.end(), [&](const Record& record) {
             return record.keyword() == carrier.keyword();
         });
-        // It sends from the carrier's axis.
-        const Point3 at = is_person ? Point3{0, 0, poseOnPerson(mote, carrier).position.z}
-                                    : Point3{-bodyAheadOf(carrier, room), 0, local.position.z};
+        // It sends from the carrier's axis, or from its place on a person that sits or lies.
+        Point3 at{-bodyAheadOf(carrier, room), 0, local.position.z};
+        if (is_person) {
+            at = poseOnPerson(mote, carrier).position;
+            if (figureOf(carrier) == nullptr) at = {0, 0, at.z};
+        }
         return MoteRadio{id, at, static_cast<std::size_t>(number), is_person};
     }
     Pose3 pose = mountedPose(floorPoseOf(carrier), local);

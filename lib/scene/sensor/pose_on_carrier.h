@@ -7,7 +7,8 @@
 namespace ispace {
 
 /// Reads the pose of a sensor in the frame of the person who carries it: without a written height
-/// it is at the eyes.
+/// it is at the eyes. The figure of a person that sits or lies moves it with the trunk, and its
+/// directions stay.
 Pose3 poseOnPerson(const Record& sensor, const Record& person);
 
 /// Computes the pose of a sensor on a carrier with any rotation. One that is level on a level

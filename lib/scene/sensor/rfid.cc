@@ -3,6 +3,7 @@
 
 #include "base/number.h"
 #include "env/body.h"
+#include "env/body_shapes.h"
 #include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
@@ -37,6 +38,17 @@ void addRfidKeys(std::vector<KeySpec>& keys) {
                     .upper = 1});
 }
 
+/// Returns the number of a person among the people of a room; past them for an unknown one.
+std::size_t personNumber(const RoomRecords& room, const std::string& id) {
+    std::size_t number = 0;
+    for (std::size_t i = 0; i < room.records.size(); ++i) {
+        if (room.records[i].keyword() != "human") continue;
+        if (room.ids[i] == id) break;
+        ++number;
+    }
+    return number;
+}
+
 std::vector<RfidTag> tagsOf(const RoomRecords& room) {
     using Carrier = RfidTag::Carrier;
     constexpr double kAbove = 0.01;  // a tag lies on a thing, not in its surface
@@ -52,6 +64,10 @@ std::vector<RfidTag> tagsOf(const RoomRecords& room) {
                                 : Carrier::Thing,
                     mover,
                     {}};
+        if (const std::string person = personWith(record); !person.empty()) {
+            tag.carrier = Carrier::Person;
+            tag.mover = personNumber(room, person);
+        }
         if (tag.carrier == Carrier::Thing) {
             const Tuple& at = record.tuple("at");
             tag.at = {at[0], at[1], topOf(bodyOf(record)) + kAbove};

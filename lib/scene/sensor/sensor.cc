@@ -7,7 +7,9 @@
 
 #include "env/environment.h"
 #include "geom/rotation.h"
+#include "scene/bodies.h"
 #include "scene/sensor/sensor_keys.h"
+#include "scene/thing_kind.h"
 
 namespace ispace {
 
@@ -58,6 +60,7 @@ Pose3 poseOnPerson(const Record& sensor, const Record& person) {
     Pose3 pose = poseOf(sensor);
     const bool has_height = sensor.has("at") && sensor.tuple("at").size() > 2;
     if (!has_height) pose.position.z = kEyes * person.number("height");
+    if (const auto figure = figureOf(person)) pose.position = figure->carried(pose.position);
     return pose;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/message.h"
+#include "scene/thing_kind.h"
 #include "server/mqtt/mqtt_topics.h"
 
 namespace ispace {
@@ -51,6 +52,10 @@ std::string namedThings(const ServerState& state) {
         for (std::size_t i = 0; i < scene.records.size(); ++i) {
             add(scene.ids[i]);
             add(scene.records[i].keyword());
+            // A person has states once they are set.
+            const ThingKind* const kind = thingKind(scene.records[i].keyword());
+            if (kind == nullptr || kind->figure == nullptr) continue;
+            for (const std::string& key : kind->states) add(scene.records[i].has(key) ? "+" : "-");
         }
         // A sensor has a state once it has a pose.
         for (const Sensor& sensor : world->sensors()) add(sensor.id);

@@ -136,6 +136,7 @@ export class Movers {
       context.translate(mover.x, mover.y);
       context.rotate(mover.heading * kRad);
       if (mover.kind === 'robot') this.drawRobot(context, view, mover);
+      else if (mover.body) this.drawBody(context, view, mover);
       else this.drawPerson(context, view, mover);
       if (mover === selected) this.ring(context, view, mover);
     }
@@ -371,6 +372,20 @@ export class Movers {
     context.arc(0, 0, 0.065 * tall, 0, 2 * Math.PI);
     context.fill();
     context.stroke();
+  }
+
+  /** A person that sits, lies or points, from above: [x, y, radius, 0] or [x, y, half length, half width]. */
+  drawBody(context, view, {body, stall}) {
+    context.fillStyle = this.colors.person;
+    context.strokeStyle = stall ? '#d55e00' : '#fff';
+    context.lineWidth = 1 / view.scale;
+    for (const [x, y, length, width] of body) {
+      context.beginPath();
+      if (width > 0) context.rect(x - length, y - width, 2 * length, 2 * width);
+      else context.arc(x, y, length, 0, 2 * Math.PI);
+      context.fill();
+      context.stroke();
+    }
   }
 
   ring(context, view, {radius}) {

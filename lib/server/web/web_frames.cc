@@ -12,12 +12,14 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/json_writer.h"
 #include "base/number.h"
 #include "drawing/color.h"
 #include "drawing/plan/plan.h"
 #include "drawing/plan/plan_json.h"
+#include "scene/bodies.h"
 #include "scene/placement_schemas.h"
 #include "scene/room_state.h"
 #include "sense/formats/reading_fields.h"
@@ -36,6 +38,20 @@ void addPlanPose(JsonWriter& json, const Pose3& pose) {
     json.value(rounded(pose.heading.degrees())).endArray();
 }
 
+/// The parts of a person that sits, lies or points, as seen from above.
+void addBody(JsonWriter& json, const Mover& mover) {
+    std::vector<BodyPart> parts = personParts(mover.model.height, mover.figure.get());
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const BodyPart& a, const BodyPart& b) { return a.top < b.top; });
+    json.key("body").beginArray();
+    for (const BodyPart& part : parts) {
+        json.beginArray().value(rounded(part.center.x)).value(rounded(part.center.y));
+        json.value(rounded(part.radius > 0 ? part.radius : part.half_length));
+        json.value(rounded(part.radius > 0 ? 0 : part.half_width)).endArray();
+    }
+    json.endArray();
+}
+
 /// In the order of World::movers().
 void addMovers(JsonWriter& json, const Scene& scene) {
     json.key("movers").beginArray();
@@ -46,7 +62,9 @@ void addMovers(JsonWriter& json, const Scene& scene) {
         json.key("model").value(model.model).key("radius").value(model.radius);
         json.key("length").value(model.length).key("width").value(model.width);
         json.key("center").value(model.center).key("height").value(model.height);
-        json.key("side").value(model.max_sidespeed).endObject();
+        json.key("side").value(model.max_sidespeed);
+        if (mover.figure != nullptr) addBody(json, mover);
+        json.endObject();
     }
     json.endArray();
 }
@@ -110,7 +128,9 @@ void addActuators(JsonWriter& json, const Scene& scene) {
         const Record& record = scene.records[i];
         if (!isActuator(record.keyword()) || !record.has("at")) continue;
         if (!carrierOf(record).empty()) continue;
-        if (record.keyword() == "door" || record.keyword() == "window") continue;
+        if (record.keyword() == "door" || record.keyword() == "window" ||
+            record.keyword() == "human")
+            continue;
         const Tuple& at = record.tuple("at");
         add(i, at[0], at[1], std::nullopt);
     }

@@ -97,7 +97,7 @@ class RenderScene {
 
     /// Returns the same environment with placed elements at other poses, one for each of
     /// Scene::placed, in the world. `swings`: of the limbs of walking people, in their order, see
-    /// humanParts(). Takes far less time than a new scene.
+    /// personParts(). Takes far less time than a new scene.
     [[nodiscard]] RenderScene at(std::span<const Pose3> poses,
                                  std::span<const Angle> swings = {}) const;
 

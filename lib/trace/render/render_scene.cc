@@ -302,10 +302,12 @@ class StillBuilder {
             StillSurfaces::Figure figure;
             figure.finish.label = static_cast<std::uint32_t>(placed.record + 1);
             const Record& record = scene_.records[placed.record];
-            if (record.keyword() == "human")
+            if (record.keyword() == "human") {
                 figure.person_height = record.number("height");
-            else if (isShown(placed))
+                figure.person_figure = scene_.people[placed.index].figure;
+            } else if (isShown(placed)) {
                 figure.body = bodyOf(scene_, placed);
+            }
             const ThingKind* const thing = thingKind(record.keyword());
             if (thing != nullptr && thing->body != nullptr) {
                 ThingBody body = thing->body(record);
@@ -342,7 +344,7 @@ Mesh placedAt(const Mesh& mesh, const Pose3& pose) {
 FinishedSoup bodiesAt(const StillSurfaces& still, std::span<const Pose3> poses) {
     FinishedSoup soup;
     for (std::size_t i = 0; i < still.figures.size(); ++i) {
-        const auto& [body, view, finish, paint, person_height] = still.figures[i];
+        const auto& [body, view, finish, paint, person_height, person_figure] = still.figures[i];
         for (const Mesh& mesh : body)
             soup.add(placedAt(mesh, poses[i]),
                      {finish.label, paint.value_or(paintOf(mesh.material))}, still.shift);
@@ -355,11 +357,11 @@ FinishedBodies peopleAt(const StillSurfaces& still, std::span<const Pose3> poses
     FinishedBodies people;
     std::size_t person = 0;
     for (std::size_t i = 0; i < still.figures.size(); ++i) {
-        const auto& [body, view, finish, paint, height] = still.figures[i];
+        const auto& [body, view, finish, paint, height, figure] = still.figures[i];
         if (!height) continue;
         const Pose2 pose{(poses[i].position + still.shift).onFloor(), poses[i].heading};
         const Angle swing = swings.empty() ? Angle() : swings[person++];
-        for (const BodyPart& part : humanParts(*height, swing)) {
+        for (const BodyPart& part : personParts(*height, figure.get(), swing)) {
             people.bodies.emplace_back(movingBody(part, pose, cosSin(pose.heading), finish.label));
             people.finishes.push_back({finish.label, paint.value_or(paintOf(part.material))});
         }

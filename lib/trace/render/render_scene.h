@@ -110,7 +110,8 @@ struct StillSurfaces {
         std::optional<Mesh> view;
         SurfaceFinish finish;
         std::optional<std::uint32_t> paint;        ///< of the body, if different from its materials
-        std::optional<double> person_height = {};  ///< set for a person, modelled by humanParts()
+        std::optional<double> person_height = {};  ///< set for a person, see personParts()
+        std::shared_ptr<const PersonFigure> person_figure = {};
     };
 
     EmbreeDevice device;
