@@ -53,6 +53,9 @@
 #ifdef ISPACE_HAS_NODES
 #include "extensions/nodes/nodes.h"
 #endif
+#ifdef ISPACE_HAS_POSTURES
+#include "extensions/postures/posture.h"
+#endif
 #ifdef ISPACE_HAS_PRESSURE
 #include "extensions/pressure/pressure_role.h"
 #include "extensions/pressure/pressure_scan.h"
@@ -120,6 +123,9 @@ bool addFormats() {
 #endif
 #ifdef ISPACE_HAS_NODES
     addSceneSchemas(nodeSchemas());
+#endif
+#ifdef ISPACE_HAS_POSTURES
+    addPostures();
 #endif
 #ifdef ISPACE_HAS_PRESSURE
     addSceneSchemas(pressureSchemas());

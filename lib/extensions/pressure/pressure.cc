@@ -51,6 +51,33 @@ std::vector<FootContact> feetOf(double height, double mass, const RobotStatus& s
     return feet;
 }
 
+std::vector<FootContact> restingContacts(const PersonFigure& figure, double mass,
+                                         const Pose2& pose) {
+    constexpr double kTrunk = 0.2;
+    if (figure.support > 0) return {{pose.position, kTrunk, mass * kGravity}};
+    std::vector<FootContact> contacts;
+    double volume = 0;
+    for (const BodyPart& part : figure.fixed) {
+        if (part.bottom > 0) continue;
+        const double thin = std::min(part.half_length, part.half_width);
+        const double radius = part.radius > 0 ? part.radius : thin;
+        const double along = part.half_length - radius, across = part.half_width - radius;
+        const double longest = std::max({0.0, along, across});
+        const int count = 1 + static_cast<int>(std::ceil(longest / radius));
+        const double flat = part.radius > 0 ? std::numbers::pi * radius * radius
+                                            : 4 * part.half_length * part.half_width;
+        const double own = flat * (part.top - part.bottom);
+        volume += own;
+        for (int i = 0; i < count; ++i) {
+            const double share = count == 1 ? 0 : 2.0 * i / (count - 1) - 1;
+            const Vec2 off{share * std::max(0.0, along), share * std::max(0.0, across)};
+            contacts.push_back({pose * (part.center + off), radius, own / count});
+        }
+    }
+    for (FootContact& contact : contacts) contact.newtons *= mass * kGravity / volume;
+    return contacts;
+}
+
 std::vector<FootContact> wheelsOf(double radius, double mass, const RobotStatus& status) {
     constexpr double kPlace = 0.7, kDriven = 0.4, kCastor = 0.2, kTread = 0.1;
     const double place = kPlace * radius, weight = mass * kGravity;
@@ -101,12 +128,26 @@ PressureField::PressureField(const World& world, std::string prefix)
       prefix_(std::move(prefix)),
       changes_(world.changes()),
       scene_(pressureScene(world.scene(), prefix_)) {
+    readPostures();
     observe();
 }
 
+void PressureField::readPostures() {
+    postured_.clear();
+    const Scene& scene = world_->scene();
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        const Record& record = scene.records[i];
+        if (record.keyword() == "human" && record.schema().find("posture") != nullptr &&
+            record.has("posture"))
+            postured_.insert(scene.ids[i]);
+    }
+}
+
 void PressureField::observe() {
-    if (std::exchange(changes_, world_->changes()) != world_->changes())
+    if (std::exchange(changes_, world_->changes()) != world_->changes()) {
         scene_ = pressureScene(world_->scene(), prefix_, LoadsOf::Any);
+        readPostures();
+    }
     if (!scene_.floors.empty() || !scene_.seats.empty()) findContacts();
 }
 
@@ -133,12 +174,17 @@ void PressureField::findContacts() {
             status.speed == 0 && status.sidespeed == 0 && status.rotspeed == Angle();
         if (!stands) still_.erase(id);
         const SimTime since = stands ? still_.try_emplace(id, now).first->second : now;
-        if (is_person && stands) {
+        const PersonFigure* const figure = world_->movers()[i].figure.get();
+        const bool rests = !world_->movers()[i].rest().empty();
+        // Others that stand still beside a seat count as on it.
+        const bool is_on_floor = rests ? figure->support <= 0 : postured_.contains(id);
+        if (is_person && stands && !is_on_floor) {
             const PressureSeat* nearest = nullptr;
             double least = 0;
             for (const PressureSeat& seat : scene_.seats) {
                 const double away = seat.distanceTo(status.pose.position);
-                if (away > seat.reach || now - since < simSeconds(seat.settle)) continue;
+                if (away > (rests ? 0 : seat.reach) || now - since < simSeconds(seat.settle))
+                    continue;
                 if (nearest != nullptr && away >= least) continue;
                 nearest = &seat;
                 least = away;
@@ -148,8 +194,10 @@ void PressureField::findContacts() {
                 continue;
             }
         }
-        const std::vector<FootContact> touching =
-            is_person ? feetOf(height, mass, status) : wheelsOf(radius, mass, status);
+        const std::vector<FootContact> touching = rests
+                                                      ? restingContacts(*figure, mass, status.pose)
+                                                  : is_person ? feetOf(height, mass, status)
+                                                              : wheelsOf(radius, mass, status);
         contacts_.insert(contacts_.end(), touching.begin(), touching.end());
     }
 }

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "extensions/pressure/pressure_record.h"
+#include "scene/bodies.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -27,6 +29,11 @@ struct FootContact {
 /// each bears half of the weight; walking, the foot that goes back bears it, all of it in the
 /// middle of a step and half when the other foot comes down. \param mass kg
 std::vector<FootContact> feetOf(double height, double mass, const RobotStatus& status);
+/// Returns where a person that sits or lies bears on the floor, or on the thing below it: lying on
+/// the floor in discs along its trunk, head and limbs, by their volumes; else in one below its
+/// trunk. \param figure of a person that does not walk
+std::vector<FootContact> restingContacts(const PersonFigure& figure, double mass,
+                                         const Pose2& pose);
 /// Returns the wheels of a robot: two at 0.7 of the radius to the sides, which bear 40 % each, and
 /// a castor at 0.7 of it behind.
 std::vector<FootContact> wheelsOf(double radius, double mass, const RobotStatus& status);
@@ -70,12 +77,14 @@ class PressureField {
 
   private:
     void findContacts();
+    void readPostures();
     [[nodiscard]] std::optional<double> massOf(const std::string& id) const;
 
     const World* world_;
     std::string prefix_;
     std::int64_t changes_ = 0;
     PressureScene scene_;
+    std::set<std::string> postured_;          // people whose record says how they hold their body
     std::map<std::string, double> visitors_;  // kg
     std::map<std::string, SimTime> still_;    // since when movers that stand do
     std::vector<FootContact> contacts_;       // on the floor

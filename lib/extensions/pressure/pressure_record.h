@@ -36,8 +36,8 @@ struct PressureFloor {
     [[nodiscard]] Point2 middleOf(std::size_t index) const;
 };
 
-/// A bed, chair or sofa that feels the people on it. People neither sit nor lie down: a person that
-/// stands still beside the thing counts as on it.
+/// A bed, chair or sofa that feels the people on it: those that sit or lie on it by a posture of
+/// theirs. A person without one that stands still beside the thing counts as on it, too.
 struct PressureSeat {
     std::string id;              ///< with the id of the room before it
     std::vector<Polygon> thing;  ///< its outlines on the floor

@@ -124,6 +124,30 @@ TEST(Feet, BearTheWeightInTurns) {
     EXPECT_NEAR(sumOf(wheelsOf(0.25, 9, status)), 9 * kGravity, 1e-9);
 }
 
+/// A body of two boxes on the floor, one of three times the volume, and one above it.
+TEST(Feet, LyingBodiesPressTheFloorByTheirVolumes) {
+    PersonFigure figure;
+    figure.rest = "lies";
+    figure.fixed = {
+        {.center = {0.5, 0}, .half_length = 0.5, .half_width = 0.1, .bottom = 0, .top = 0.3},
+        {.center = {-0.5, 0}, .half_length = 0.5, .half_width = 0.1, .bottom = 0, .top = 0.1},
+        {.center = {0, 0}, .half_length = 0.5, .half_width = 0.1, .bottom = 0.3, .top = 0.5}};
+    const Pose2 pose{{1, 2}, Angle::degrees(90)};
+    const std::vector<FootContact> contacts = restingContacts(figure, 80, pose);
+    EXPECT_NEAR(sumOf(contacts), 80 * kGravity, 1e-9);
+    Vec2 moment{};
+    for (const FootContact& contact : contacts) {
+        EXPECT_LE(std::abs(contact.center.x - 1) + contact.radius, 0.1 + 1e-9);
+        EXPECT_LE(std::abs(contact.center.y - 2) + contact.radius, 1 + 1e-9);
+        moment = moment + contact.newtons * (contact.center - pose.position);
+    }
+    EXPECT_NEAR(moment.y / sumOf(contacts), 0.75 * 0.5 - 0.25 * 0.5, 1e-9);
+    figure.support = 0.4;
+    const std::vector<FootContact> on_thing = restingContacts(figure, 80, pose);
+    ASSERT_EQ(on_thing.size(), 1U);
+    EXPECT_EQ(on_thing.front().center, pose.position);
+}
+
 /// Whatever the grid, cells hold together the weight of all that stands on it.
 TEST(FloorReading, HoldsAllWeights) {
     RobotStatus status;
