@@ -380,7 +380,8 @@ class RoomBuilder {
     Environment environment() {
         const Records room = build();
         const auto filled = withDevices(room.records, building_.devices);
-        return Environment(filled ? *filled : room.records, room.ids, building_.scenes[own_]->environment);
+        return Environment(filled ? *filled : room.records, room.ids,
+                           building_.scenes[own_]->environment);
     }
 
   private:

@@ -20,8 +20,8 @@
 #ifndef ISPACE_CLIENT_H
 #define ISPACE_CLIENT_H
 
-#include <ispace_client/error.h>
 #include <ispace_client/bumpers.h>
+#include <ispace_client/error.h>
 #include <ispace_client/floor.h>
 #include <ispace_client/heads.h>
 #include <ispace_client/locks.h>
