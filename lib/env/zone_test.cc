@@ -11,11 +11,11 @@ namespace ispace {
 namespace {
 
 Environment room() {
-    static const Schemas kSchemas(environmentSchemas());
+    static const Schemas schemas(environmentSchemas());
     const Document document = readRecordText(
         "#env 1\nispace size=8,6\nzone id=entrance path=0,0;0,1;1,1\nzone id=desk at=1,1 size=2,1\n"
         "zone at=-1,-1 size=1,1\n",
-        "room.env", kSchemas);
+        "room.env", schemas);
     return {document.records, assignIds(document.records)};
 }
 

@@ -46,6 +46,9 @@ class Carriers {
     [[nodiscard]] Place place(const Record& sensor);
     /// Checks the carrier of a joint. \throws FormatError unless `on` names a robot or an object
     void check(const Record& joint) const { static_cast<void>(carrierOfJoint(joint)); }
+    /// Checks the carrier of another thing. \throws FormatError unless a robot, a person or an
+    /// object has the id
+    void checkThing(const Record& thing) const;
     /// Computes the pose of a thing with a body, as of a sensor; of one that stands in the room,
     /// too.
     [[nodiscard]] Place placeOfThing(const Record& thing);
@@ -127,6 +130,17 @@ std::size_t Carriers::named(const Record& carried) const {
     const std::string& key = carrierKey(carried);
     throw FormatError(carried.finding(
         key, '`' + key + "`: nothing has the id `" + on + '`' + didYouMean(on, candidates)));
+}
+
+void Carriers::checkThing(const Record& thing) const {
+    const Record& record = records_[named(thing)];
+    if (isCarrier(record) && jointOf(record) == nullptr) return;
+    const std::string& key = carrierKey(thing);
+    throw FormatError(thing.finding(key, '`' + key + "`: `" + carrierOf(thing) + "` is a `" +
+                                             record.keyword() +
+                                             "`; only robots, people and "
+                                             "objects carry a " +
+                                             thing.keyword()));
 }
 
 std::size_t Carriers::carrierOfJoint(const Record& joint) const {
@@ -267,7 +281,10 @@ class Resolver {
             const Carriers::Place place = carriers_.placeOfThing(record);
             out_.placed.push_back({i, place.pose, 0, place.mount});
         } else if (!carrierOf(record).empty()) {
-            if (jointOf(record) != nullptr) carriers_.check(record);
+            if (jointOf(record) != nullptr)
+                carriers_.check(record);
+            else if (thingKind(record.keyword()) != nullptr)
+                carriers_.checkThing(record);
         } else if (record.schema().find("at") != nullptr) {  // some of extensions have no pose
             out_.placed.push_back({i, onFloor(floorPoseOf(record))});
         }

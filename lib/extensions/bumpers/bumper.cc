@@ -235,12 +235,15 @@ class Bumpers : public RoleService {
     /// Returns the unit vector from a robot to the place where it meets a body.
     static Vec2 towards(const World& world, const Meeting& meeting, Vec2 velocity) {
         const Point2 here = world.status(meeting.robot).pose.position;
+        const PlacedRobot& robot = world.scene().robots[meeting.robot];
         std::optional<Point2> there;
         if (meeting.other) {
             there = world.status(*meeting.other).pose.position;
         } else {
             for (const Element& element : world.scene().environment.elements())
-                if (element.id == meeting.into) there = nearestOf(element.body, here);
+                if (element.id == meeting.into)
+                    there = contactOf(element.body,
+                                      {here, velocity, robot.model.radius, robot.model.height});
         }
         const Vec2 way = there ? *there - here : velocity;
         const double size = length(way);
@@ -299,21 +302,31 @@ double contactForce(double speed, double stiffness, double mass) {
 
 double reducedMass(double a, double b) { return a * b / (a + b); }
 
-std::optional<Point2> nearestOf(const Body& body, Point2 place) {
-    std::optional<Point2> nearest;
-    double least = std::numeric_limits<double>::infinity();
-    const auto take = [&](Point2 a, Point2 b) {
-        const Point2 point = nearestOn(a, b, place);
-        const double apart = distance(point, place);
-        if (apart >= least) return;
+std::optional<Point2> contactOf(const Body& body, const RobotOnItsWay& robot) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    std::optional<Point2> met;
+    double first = kNever, least = kNever;
+    const auto take = [&](Point2 a, Point2 b, double bottom, double top) {
+        if (bottom >= robot.height || top <= 0) return;
+        const Point2 point = nearestOn(a, b, robot.place);
+        const Vec2 way = point - robot.place;
+        const double apart = length(way);
+        const double closing = apart > 0 ? dot(robot.velocity, way) / apart : 0;
+        constexpr double kAlong = 1e-9;  // m/s: past it, not towards it
+        const double time =
+            closing > kAlong ? std::max(0.0, apart - robot.radius) / closing : kNever;
+        if (met && !(time < first || (time == first && apart < least))) return;
+        first = time;
         least = apart;
-        nearest = point;
+        met = point;
     };
-    for (const Sheet& sheet : body.sheets) take(sheet.line.a, sheet.line.b);
+    for (const Sheet& sheet : body.sheets)
+        take(sheet.line.a, sheet.line.b, sheet.bottom, sheet.top);
     for (const Prism& prism : body.prisms)
         for (std::size_t i = 0; i < prism.footprint.size(); ++i)
-            take(prism.footprint[i], prism.footprint[(i + 1) % prism.footprint.size()]);
-    return nearest;
+            take(prism.footprint[i], prism.footprint[(i + 1) % prism.footprint.size()],
+                 prism.bottom, prism.top);
+    return met;
 }
 
 std::optional<Finding> checkBumper(const Scene& scene, std::size_t record) {

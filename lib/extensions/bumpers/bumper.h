@@ -21,16 +21,23 @@ namespace ispace {
 /// Returns the greatest force of a contact, newtons: a mass that meets a spring at a speed turns
 /// all its energy into the spring's, so that the force is speed * sqrt(stiffness * mass). Two
 /// bodies that meet have the reduced mass m1 m2 / (m1 + m2). Friction and damping are left out,
-/// which makes it an upper bound for a bumper of this stiffness. \param speed m/s, of both bodies
+/// which makes it the greatest for a bumper of this stiffness. \param speed m/s, of both bodies
 /// towards each other; 0 if negative \param stiffness N/m \param mass kg
 double contactForce(double speed, double stiffness, double mass);
 
 /// Returns the reduced mass of two bodies, kg.
 double reducedMass(double a, double b);
 
-/// Returns the point of a body's lines and footprints that is nearest to a place on the floor;
-/// empty if it has none, as a mesh.
-std::optional<Point2> nearestOf(const Body& body, Point2 place);
+/// A robot that moves, as a body meets it.
+struct RobotOnItsWay {
+    Point2 place;
+    Vec2 velocity;
+    double radius = 0, height = 0;
+};
+/// Returns the point of a body that a robot meets first: of its lines and footprints at the
+/// robot's height, the nearest point of the one that it reaches first; without one ahead the
+/// nearest of all. Empty if it has none, as a mesh.
+std::optional<Point2> contactOf(const Body& body, const RobotOnItsWay& robot);
 
 /// Checks the `of` of a bumper. Returns an error if it names no robot.
 std::optional<Finding> checkBumper(const Scene& scene, std::size_t record);

@@ -53,14 +53,36 @@ TEST(ContactForce, IsThatOfASpring) {
     EXPECT_EQ(reducedMass(20, 20), 10);
 }
 
-TEST(NearestOf, IsOnALineOrAFootprint) {
+TEST(ContactOf, IsOnALineOrAFootprint) {
     const Scene scene = sceneOf("cube id=c at=3,0 size=2,2,1\n");
     const Body& cube = scene.environment.elements().back().body;
-    const auto near = nearestOf(cube, {0, 0.5});
+    const auto near = contactOf(cube, {{0, 0.5}, {1, 0}, 0.3, 0.22});
     ASSERT_TRUE(near);
     EXPECT_NEAR(near->x, 2, 1e-12);
     EXPECT_NEAR(near->y, 0.5, 1e-12);
-    EXPECT_FALSE(nearestOf(Body{}, {0, 0}));
+    EXPECT_FALSE(contactOf(Body{}, {{0, 0}, {1, 0}, 0.3, 0.22}));
+}
+
+TEST(ContactOf, IsAheadAndAtTheHeightOfTheRobot) {
+    // Along a wall a millimetre away, towards another.
+    const Scene hall = sceneOf("fence id=f path=-3,0.301;3,0.301;3,-3\n");
+    const Body& walls = hall.environment.elements().back().body;
+    const auto end = contactOf(walls, {{2.698, 0}, {0.6, 0}, 0.3, 0.22});
+    ASSERT_TRUE(end);
+    EXPECT_NEAR(end->x, 3, 1e-9);
+    EXPECT_NEAR(end->y, 0, 1e-9);
+    // Under the board of a table, towards a leg.
+    const Scene office = sceneOf("table id=t at=0,0 size=3,2,0.7\n");
+    const Body& table = office.environment.elements().back().body;
+    for (const Prism& prism : table.prisms) {
+        if (prism.bottom > 0.22) continue;
+        const auto leg =
+            contactOf(table, {{0, 0}, 0.1 * (prism.footprint[0] - Point2{}), 0.3, 0.22});
+        ASSERT_TRUE(leg);
+        EXPECT_LT(std::abs(cross(prism.footprint[0] - Point2{}, *leg - Point2{})), 0.3);
+        EXPECT_GT(dot(prism.footprint[0] - Point2{}, *leg - Point2{}), 0);
+    }
+    EXPECT_GT(table.prisms.size(), 1U);
 }
 
 TEST(BumperChecks, FindNoRobot) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -42,17 +43,35 @@ struct Turn {
     SimTime next{};  // of the next change
 };
 
+/// The last change that was asked for.
+struct Asked {
+    double before_pan = 0, before_tilt = 0, pan = 0, tilt = 0;
+    int periods = 0;  // for which it is not made
+
+    /// One that has been made.
+    static Asked of(const Head& head) { return {head.pan, head.tilt, head.pan, head.tilt}; }
+    [[nodiscard]] bool isMade(const Head& head) const {
+        return head.pan == pan && head.tilt == tilt;
+    }
+    /// Returns true if it is not made, and neither is another.
+    [[nodiscard]] bool isPending(const Head& head) const {
+        return !isMade(head) && head.pan == before_pan && head.tilt == before_tilt;
+    }
+};
+
 struct HeadOfRun {
     std::string id;  // of its record
     std::size_t room = 0;
     Head head;
     std::optional<Turn> turn = {};
+    std::optional<Asked> asked = {};  // once it has turned
 };
 
 struct Room {
     std::string id;
     Simulation* simulation = nullptr;
     std::int64_t changes = -1;
+    std::string asked = {};  // angles for the next change
 };
 
 /// What the clients of a run share.
@@ -88,7 +107,8 @@ void Run::readChanged() {
                 rooms[room].id.empty() ? scene.ids[i] : rooms[room].id + '/' + scene.ids[i];
             HeadOfRun head{scene.ids[i], room, headOf(scene.records[i])};
             if (const auto before = known.find(name); before != known.end())
-                head.turn = before->second.turn;
+                std::tie(head.turn, head.asked) =
+                    std::tie(before->second.turn, before->second.asked);
             heads.emplace(name, std::move(head));
         }
     }
@@ -130,6 +150,7 @@ class HeadClient : public ClientRole {
             return {errorText(409, "a replay turns as the run did")};
         Turn turn{run_.now(),     0,         head.head.pan, head.head.tilt, rounded(*pan),
                   rounded(*tilt), run_.now()};
+        if (!head.asked || !head.asked->isPending(head.head)) head.asked = Asked::of(head.head);
         if (head.head.speed)
             turn.seconds =
                 std::max(std::abs(turn.pan - turn.from_pan), std::abs(turn.tilt - turn.from_tilt)) /
@@ -194,23 +215,47 @@ class Heads : public RoleService {
             }
             if (now < head.turn->next) continue;
             head.turn->next = now + simSeconds(kTurnStep);
-            ask(head, now);
+            if (goesOn(head, now)) {
+                if (head.asked->isMade(head.head)) ask(head, now);
+            } else {
+                head.turn.reset();
+                tell(name, head);
+            }
         }
+        // One change for all heads of a room: it builds the scene anew.
+        for (Room& room : run_.rooms)
+            if (!room.asked.empty())
+                room.simulation->askChange("ACT " + std::exchange(room.asked, ""));
     }
 
     [[nodiscard]] bool holdsWorld() const override { return false; }
     [[nodiscard]] std::string waitsFor() const override { return ""; }
 
   private:
+    /// Returns false for a turn that ends where the head is: another request turned it, its range
+    /// became smaller, the run was reset, or its changes are refused.
+    static bool goesOn(HeadOfRun& head, SimTime now) {
+        constexpr int kMostPeriods = 20;
+        const Turn& turn = *head.turn;
+        if (now < turn.begin || !head.head.pan_range.contains(turn.pan) ||
+            !head.head.tilt_range.contains(turn.tilt))
+            return false;
+        if (head.asked->isMade(head.head)) return true;
+        const bool waits = head.asked->isPending(head.head) && ++head.asked->periods < kMostPeriods;
+        if (!waits) head.asked.reset();
+        return waits;
+    }
     /// Asks for the angles of this time.
-    void ask(const HeadOfRun& head, SimTime now) {
+    void ask(HeadOfRun& head, SimTime now) {
         const Turn& turn = *head.turn;
         const double passed = seconds(now - turn.begin);
         const double share = turn.seconds > 0 ? std::min(1.0, passed / turn.seconds) : 1;
         const double pan = rounded(std::lerp(turn.from_pan, turn.pan, share));
         const double tilt = rounded(std::lerp(turn.from_tilt, turn.tilt, share));
-        run_.rooms[head.room].simulation->askChange("ACT " + head.id + " pan=" + formatDouble(pan) +
-                                                    " tilt=" + formatDouble(tilt));
+        head.asked = {head.head.pan, head.head.tilt, pan, tilt};
+        std::string& asked = run_.rooms[head.room].asked;
+        asked.append(asked.empty() ? "" : " ; ").append(head.id);
+        asked.append(" pan=").append(formatDouble(pan)).append(" tilt=").append(formatDouble(tilt));
     }
     void tell(std::string_view name, const HeadOfRun& head) {
         std::string line = "EVENT turned t=" + formatMilliseconds(run_.now()) + " id=";

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -40,14 +41,25 @@ struct Source {
     TurnedAngles now;
 
     [[nodiscard]] SurfacePicture turned(const TurnedAngles& angles) const {
+        // As projectorLens() of the record.
         return {model,
-                projectorLens(*record, Angle::degrees(angles.pan), Angle::degrees(angles.tilt))};
+                Frame3(Pose3{
+                    lens, heading + Angle::degrees(angles.pan), Angle::degrees(angles.tilt), {}})};
     }
     [[nodiscard]] TurnedAngles within(TurnedAngles angles) const {
         return {std::clamp(angles.pan, model.pan.least, model.pan.most),
                 std::clamp(angles.tilt, model.tilt.least, model.tilt.most)};
     }
 };
+
+/// Returns the most pixels of a picture in a radian about the lens: those of a corner, where the
+/// picture is farthest from the axis.
+double pixelsPerRadian(const ProjectorModel& model) {
+    const double across = model.columns / (2 * model.across),
+                 upright = model.rows / (2 * model.upright);
+    return std::max(across, upright) *
+           (1 + model.across * model.across + model.upright * model.upright);
+}
 
 /// The cells of a facet as a projector meets them.
 struct FacetView {
@@ -56,7 +68,6 @@ struct FacetView {
     std::vector<char> is_free = {};   // no element between
     std::vector<char> is_clear = {};  // and no mover
     std::vector<double> best = {};    // density in the best pose
-    std::size_t lit = 0;              // cells that are clear
 };
 
 /// Computes which cells of a facet the light of a lens reaches.
@@ -78,7 +89,6 @@ FacetView viewOf(const FlatFace& facet, Point3 lens, const RayWorld& world,
         view.is_free[i] = free[i] != 0 ? 1 : 0;
         if (free[i] == 0 || movers.between(lens, places[i], MovingBodies::kNoOwner)) continue;
         view.is_clear[i] = 1;
-        ++view.lit;
     }
     return view;
 }
@@ -91,20 +101,32 @@ class BestPoses {
             fixed_.push_back(source.turned(source.now));
             return;
         }
+        most_ = pixelsPerRadian(source.model);
         // The one that faces the surface.
         if (const auto angles = anglesTowards(-1.0 * facet.frame.forward, 0, 0, source.heading))
             fixed_.push_back(source.turned(source.within(*angles)));
     }
 
-    /// Returns the largest least density at a point, 0 if no pose shows it.
-    [[nodiscard]] double densityAt(Point3 place) const {
+    /// Returns an upper bound of densityAt(). Along the way to the foot of the lens a metre of the
+    /// plane has cos(incidence) / distance radians, as seen from the lens.
+    [[nodiscard]] double boundAt(Point3 place) const {
+        constexpr double kRounding = 1 + 1e-9;
+        if (!source_.model.turns()) return std::numeric_limits<double>::infinity();
+        const Vec3 way = source_.lens - place;
+        return kRounding * most_ * std::abs(dot(facet_.frame.forward, way)) / dot(way, way);
+    }
+
+    /// Returns the largest least density at a point, 0 if no pose shows it; or any that is not,
+    /// once it is above `enough`.
+    [[nodiscard]] double densityAt(Point3 place,
+                                   double enough = std::numeric_limits<double>::infinity()) const {
         double best = 0;
         const auto take = [&](const SurfacePicture& picture) {
             if (const auto density = picture.at(place, facet_.frame.left, facet_.frame.up))
                 best = std::max(best, density->least);
         };
         for (const SurfacePicture& picture : fixed_) take(picture);
-        if (!source_.model.turns()) return best;
+        if (!source_.model.turns() || best > enough) return best;
         constexpr std::array<double, 5> kPositions = {-1, -0.5, 0, 0.5, 1};
         // A little within the picture, against rounding.
         constexpr double kInside = 1 - 1e-9;
@@ -115,6 +137,7 @@ class BestPoses {
                     anglesTowards(way, kInside * across * source_.model.across,
                                   kInside * upright * source_.model.upright, source_.heading);
                 if (angles) take(source_.turned(source_.within(*angles)));
+                if (best > enough) return best;
             }
         return best;
     }
@@ -123,20 +146,64 @@ class BestPoses {
     const Source& source_;
     const FlatFace& facet_;
     std::vector<SurfacePicture> fixed_;
+    double most_ = 0;  ///< see pixelsPerRadian()
 };
+
+/// Computes the densities of the cells before a lens, `best` of all clear cells of the surface so
+/// far. Of cells that no pose lights with `density`, and that cannot raise `best`, it only finds
+/// whether one lights them at all: their densities may be too small.
+void findDensities(const BestPoses& poses, double density, FacetView& view, double& best) {
+    const FlatFace& facet = *view.facet;
+    view.best.assign(facet.cells.size(), 0);
+    std::vector<double> bounds(facet.cells.size(), 0);
+    std::optional<std::size_t> first;  // the one that is likely to have the largest
+    for (std::size_t i = 0; i < bounds.size(); ++i) {
+        if (view.faces[i] == 0) continue;
+        bounds[i] = poses.boundAt(facet.middleOf(facet.cells[i]));
+        if (view.is_clear[i] != 0 && (!first || bounds[i] > bounds[*first])) first = i;
+    }
+    const auto find = [&](std::size_t i) {
+        const bool is_weak = bounds[i] < density && (bounds[i] <= best || view.is_clear[i] == 0);
+        const Point3 place = facet.middleOf(facet.cells[i]);
+        view.best[i] = is_weak ? poses.densityAt(place, 0) : poses.densityAt(place);
+        if (view.is_clear[i] != 0) best = std::max(best, view.best[i]);
+    };
+    if (first) find(*first);
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+        if (view.faces[i] != 0) find(i);
+}
 
 /// Searches the pose with the largest rectangle on a facet.
 class RectangleSearch {
   public:
     RectangleSearch(const Source& source, const FacetView& view, double density)
         : source_(source), view_(view), facet_(*view.facet), density_(density) {
-        marks_.assign(facet_.columns * facet_.rows, 0);
-        places_.reserve(facet_.cells.size());
-        for (const std::size_t cell : facet_.cells) places_.push_back(facet_.middleOf(cell));
+        std::size_t last_column = 0, last_row = 0;
+        for (std::size_t i = 0; i < facet_.cells.size(); ++i) {
+            if (view_.is_clear[i] == 0) continue;
+            const std::size_t cell = facet_.cells[i];
+            lit_.add(onFacet(facet_.middleOf(cell)));
+            if (view_.best[i] < density_) continue;
+            if (cells_.empty()) {
+                first_row_ = cell / facet_.columns;
+                first_column_ = facet_.columns;
+            }
+            cells_.push_back(cell);
+            places_.push_back(facet_.middleOf(cell));
+            first_column_ = std::min(first_column_, cell % facet_.columns);
+            last_column = std::max(last_column, cell % facet_.columns);
+            last_row = cell / facet_.columns;
+        }
+        if (cells_.empty()) return;
+        columns_ = last_column - first_column_ + 1;
+        marks_.assign(columns_ * (last_row - first_row_ + 1), 0);
+        for (std::size_t& cell : cells_)
+            cell = (cell / facet_.columns - first_row_) * columns_ + cell % facet_.columns -
+                   first_column_;
     }
 
     [[nodiscard]] std::optional<PictureRectangle> find() {
-        if (view_.lit == 0) return std::nullopt;
+        if (cells_.empty()) return std::nullopt;
         if (!source_.model.turns()) {
             consider(source_.now);
         } else {
@@ -159,9 +226,7 @@ class RectangleSearch {
     /// on the plane, as far as it is near them.
     [[nodiscard]] std::vector<TurnedAngles> towardsGrid() const {
         constexpr double kStep = 0.25;
-        Box2 box;
-        for (std::size_t i = 0; i < places_.size(); ++i)
-            if (view_.is_clear[i] != 0) box.add(onFacet(places_[i]));
+        Box2 box = lit_;
         const Point2 foot = onFacet(source_.lens);
         const double reach = std::max(box.width(), box.depth());
         const Box2 near = box.expanded(reach);
@@ -196,13 +261,12 @@ class RectangleSearch {
     void consider(const TurnedAngles& angles) {
         const SurfacePicture picture = source_.turned(angles);
         for (std::size_t i = 0; i < places_.size(); ++i) {
-            char& mark = marks_[facet_.cells[i]];
-            mark = 0;
-            if (view_.is_clear[i] == 0 || view_.best[i] < density_) continue;
             const auto density = picture.at(places_[i], facet_.frame.left, facet_.frame.up);
-            mark = density && density->least >= density_ ? 1 : 0;
+            marks_[cells_[i]] = density && density->least >= density_ ? 1 : 0;
         }
-        const CellRectangle found = largestRectangle(marks_, facet_.columns);
+        CellRectangle found = largestRectangle(marks_, columns_);
+        found.column += first_column_;
+        found.row += first_row_;
         const double facing = -dot(picture.lens().forward, facet_.frame.forward);
         if (found.size() > best_.rectangle.size() ||
             (found.size() == best_.rectangle.size() && facing > best_.facing))
@@ -257,8 +321,11 @@ class RectangleSearch {
     const FacetView& view_;
     const FlatFace& facet_;
     double density_;
-    std::vector<Point3> places_;
-    std::vector<char> marks_;
+    Box2 lit_;                    ///< of the clear cells
+    std::vector<Point3> places_;  ///< of cells that are clear and have the density in some pose
+    std::size_t first_column_ = 0, first_row_ = 0, columns_ = 0;  ///< of the window about these
+    std::vector<std::size_t> cells_;                              ///< their places in the window
+    std::vector<char> marks_;                                     ///< of the window
     Choice best_;
 };
 
@@ -279,12 +346,10 @@ std::optional<SurfaceProjection> coveredSurface(const Source& source,
     for (FacetView& view : views) {
         const FlatFace& facet = *view.facet;
         const BestPoses poses(source, facet);
-        view.best.assign(facet.cells.size(), 0);
+        findDensities(poses, density, view, out.best);
         std::vector<CellState> states(facet.cells.size(), CellState::Dark);
         for (std::size_t i = 0; i < facet.cells.size(); ++i) {
             if (view.faces[i] == 0) continue;
-            view.best[i] = poses.densityAt(facet.middleOf(facet.cells[i]));
-            if (view.is_clear[i] != 0) out.best = std::max(out.best, view.best[i]);
             const bool is_fine = view.best[i] >= density;
             if (view.is_clear[i] != 0 && view.best[i] > 0)
                 states[i] = is_fine ? CellState::Carries : CellState::Coarse;

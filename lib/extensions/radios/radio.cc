@@ -58,11 +58,6 @@ bool isInCone(const Radio& radio, const Pose3& pose, Point3 place) {
     return dot(Frame3(pose).forward, way) / size >= cosSin(0.5 * radio.fov).cos - kSlack;
 }
 
-bool isPlace(const Record& record) {
-    const RecordType type = record.schema().type;
-    return type == RecordType::Other || type == RecordType::Infra;
-}
-
 }  // namespace
 
 Radio radioOf(const Record& record) {
@@ -81,18 +76,11 @@ RadioCarrier radioCarrier(const Scene& scene, const Record& record) {
     const std::string on = carrierOf(record);
     if (on.empty()) return out;
     const auto found = std::find(scene.ids.begin(), scene.ids.end(), on);
-    if (found == scene.ids.end())
-        throw FormatError(record.finding(
-            "on", "`on`: nothing has the id " + excerpt(on) + didYouMean(on, scene.ids)));
     const Record& carrier = scene.records[static_cast<std::size_t>(found - scene.ids.begin())];
     if (carrier.keyword() == "robot" || carrier.keyword() == "human") {
         out.id = on;
         return out;
     }
-    if (!isPlace(carrier))
-        throw FormatError(
-            record.finding("on", "`on`: `" + on + "` is a `" + carrier.keyword() +
-                                     "`; only robots, people and objects carry radios"));
     out.pose.position.z += topOf(bodyOf(carrier));
     out.pose = mountedPose(floorPoseOf(carrier), out.pose);
     return out;
@@ -120,16 +108,6 @@ std::optional<Finding> checkRadio(const Scene& scene, std::size_t record) {
     const std::string& id = scene.ids[record];
     const Radio radio = radioOf(own);
     const Tuple& at = own.tuple("at");
-    try {
-        radioCarrier(scene, own);
-    } catch (const FormatError& error) {
-        return Finding{.severity = Severity::Error,
-                       .element = id,
-                       .at = {at[0], at[1]},
-                       .message = "radio " + id + ": " + error.diagnostics().front().message,
-                       .hint = "name a robot, a person or an object",
-                       .source = own.keyPlace("on")};
-    }
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
         if (i == record || scene.records[i].keyword() != own.keyword()) continue;
         const Radio other = radioOf(scene.records[i]);

@@ -35,7 +35,7 @@ struct RadioCarrier {
 };
 
 /// Finds the carrier of a radio, and its pose there. Records of the scene carry it: robots, people
-/// and objects, on their tops. \throws FormatError if `on` names another record, or none
+/// and objects, on their tops. \pre `on` names one of the scene, as makeScene() has checked
 RadioCarrier radioCarrier(const Scene& scene, const Record& record);
 
 /// Computes how much stronger a signal arrives than the weakest that is received, dB; empty if the
