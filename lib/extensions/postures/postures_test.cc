@@ -83,7 +83,8 @@ double meet(const Solid& solid, Point3 from, Vec3 direction) {
     clip(from.x, direction.x, solid.low.x, solid.high.x);
     clip(from.y, direction.y, solid.low.y, solid.high.y);
     clip(from.z, direction.z, solid.low.z, solid.high.z);
-    return enter <= leave ? enter : kMissed;
+    if (enter > leave) return kMissed;
+    return enter;
 }
 
 /// Solids of a person of 1.7 m that lies with the head ahead: on the floor or a thing.
