@@ -346,7 +346,11 @@ void ActivityDirector::enqueue(SimTime now) {
     due_ = kMaxTime;
     for (std::size_t i = 0; i < next_.size(); ++i) {
         if (next_[i] <= now) {
-            doers_[plan_.lines[i].person].waiting.push_back(i);
+            Doer& doer = doers_[plan_.lines[i].person];
+            const PersonVerb* const does = plan_.lines[i].actions.front().does;
+            const bool interrupts = does != nullptr && does->interrupts;
+            doer.is_cut = doer.is_cut || (interrupts && doer.line);
+            doer.waiting.insert(interrupts ? doer.waiting.begin() : doer.waiting.end(), i);
             next_[i] = plan_.lines[i].is_daily ? next_[i] + kDay : kMaxTime;
         }
         due_ = std::min(due_, next_[i]);
@@ -369,6 +373,7 @@ void ActivityDirector::stepped(Simulation& simulation) {
 
 void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
     World& world = simulation.world();
+    if (std::exchange(doer.is_cut, false)) cut(simulation, doer);
     while (true) {
         if (!doer.line) {
             if (doer.waiting.empty()) return;
@@ -420,6 +425,18 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
         doer.is_begun = false;
         if (++doer.action == plan_.lines[*doer.line].actions.size()) doer.line.reset();
     }
+}
+
+/// Ends the line under way, and its action where the person is.
+void ActivityDirector::cut(Simulation& simulation, Doer& doer) {
+    doer.walks = doer.is_doing = doer.to_door = false;
+    doer.command = 0;
+    doer.rest.clear();
+    if (std::exchange(doer.is_begun, false)) {
+        endUse(simulation, doer);
+        tell(simulation, doer, -1);
+    }
+    doer.line.reset();
 }
 
 /// Begins an action. \returns false if it goes on in the next step

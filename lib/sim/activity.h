@@ -112,6 +112,7 @@ class ActivityDirector {
         bool waits = false;        // for its turn to look for a way
         std::string after_use;     // the change that ends the use of a thing; "" for none
         bool is_doing = false;     // a deed that ends with a change
+        bool is_cut = false;       // the line under way ends for the next one
         Pose2 stood;               // when that began
         bool to_door = false;      // the way ends in front of a door, which it then opens
         int asks = 0;              // for a door to open, since the person came to it
@@ -130,6 +131,7 @@ class ActivityDirector {
     };
     void enqueue(SimTime now);
     void goOn(Simulation& simulation, Doer& doer);
+    void cut(Simulation& simulation, Doer& doer);
     bool begin(Simulation& simulation, Doer& doer) const;
     static bool goOnWalking(World& world, std::size_t mover, Doer& doer);
     bool depart(Simulation& simulation, std::size_t mover, Doer& doer);

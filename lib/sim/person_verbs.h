@@ -44,6 +44,7 @@ struct PersonVerb {
     bool lasts = false;       ///< it has a duration
     Way way = Way::None;
     bool is_of_rest = false;  ///< people that sit or lie do it as well
+    bool interrupts = false;  ///< a line that begins with it ends what the person is doing
     /// Returns the ids of further targets besides zones, elements and things of extensions. Null:
     /// these.
     std::vector<std::string> (*targets)(const World& world) = nullptr;

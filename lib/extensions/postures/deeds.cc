@@ -516,7 +516,7 @@ void addDeeds() {
                    .way = Way::Beside,
                    .begin = lieDown,
                    .end = standUp});
-    addPersonVerb({.verb = "falls", .is_of_rest = true, .begin = fall});
+    addPersonVerb({.verb = "falls", .is_of_rest = true, .interrupts = true, .begin = fall});
     addPersonVerb({.verb = "stands", .is_of_rest = true, .refusal = refuseToStand, .begin = getUp});
     addPersonVerb({.verb = "points",
                    .word = "at",

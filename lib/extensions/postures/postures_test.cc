@@ -487,6 +487,20 @@ TEST(Deeds, FallsEndWays) {
     EXPECT_GT(home.at("bob").position.x, where.x + 2);
 }
 
+TEST(Deeds, FallsInterruptThePlan) {
+    // On a way, and while it uses a thing for longer.
+    for (const char* const first : {"goes far; stays 3s", "stays 40s; goes far"}) {
+        Home home("zone id=far at=4,4 size=1,1\n", "human id=bob at=-4,-4\n",
+                  std::string("at 00:00 bob ") + first + "\nat 00:00:03 bob falls\n");
+        home.run(3.5);
+        EXPECT_EQ(home.states(), "bob.posture=fallen ") << first;
+        const Point2 where = home.at("bob").position;
+        home.run(45);
+        EXPECT_EQ(home.at("bob").position, where) << first;
+        EXPECT_EQ(home.marks(), "") << "the rest of the line is dropped";
+    }
+}
+
 TEST(Deeds, FallenPeopleGoNowhere) {
     Home home("zone id=far at=3,3 size=1,1\n", "human id=bob at=0,0\n",
               "at 00:00 bob falls; goes far; points at far 2s\n");
