@@ -49,6 +49,7 @@ async function main(protocol) {
     client.on('parameterValues', ({parameters}) => seen.parameters = parameters);
     client.on('fetchAssetResponse', asset => seen.asset = asset);
     client.on('serviceCallResponse', answer => seen.answer = answer);
+    client.on('connectionGraphUpdate', graph => seen.graph = graph);
     client.on('serviceCallFailure', failure => seen.failure = failure);
     const subscribed = new Map();
     client.on('advertise', list => {
@@ -120,6 +121,10 @@ float64 z`, {ros2: true});
     seen.parameters = undefined;
     client.setParameters([{name: 'clock.paused', value: false}], 's');
     await until(() => seen.parameters?.[0]?.value === false, 'a parameter that is set');
+    client.subscribeConnectionGraph();
+    const graph = await until(() => seen.graph, 'the graph of nodes');
+    assert.deepStrictEqual(graph.publishedTopics.map(one => one.name).sort(), topics.sort());
+    assert.ok(graph.subscribedTopics.some(one => one.name === '/r1/cmd_vel' && one.subscriberIds[0] === '/simrun'));
     client.fetchAsset('package://ispace/room.glb', 8);
     const asset = await until(() => seen.asset, 'the room');
     assert.strictEqual(asset.status, 0, asset.error);

@@ -70,8 +70,8 @@ void FoxgloveDialogue::greet(const std::string& title, const std::string& sessio
     JsonWriter json;
     json.beginObject().key("op").value("serverInfo").key("name").value(title);
     json.key("capabilities").beginArray();
-    for (const char* one :
-         {"clientPublish", "time", "parameters", "parametersSubscribe", "services", "assets"})
+    for (const char* one : {"clientPublish", "time", "parameters", "parametersSubscribe",
+                            "services", "assets", "connectionGraph"})
         json.value(one);
     json.endArray().key("supportedEncodings").beginArray().value(kJson).value(kCdr).endArray();
     // Programs then know the common types.
@@ -197,7 +197,7 @@ void FoxgloveDialogue::receive(std::string_view message, bool is_text) {
 
 void FoxgloveDialogue::obeyText(std::string_view text) {
     using Self = FoxgloveDialogue;
-    static constexpr std::array<Op, 9> kOps{
+    static constexpr std::array<Op, 11> kOps{
         {{"subscribe", &Self::subscribeAll},
          {"unsubscribe", &Self::unsubscribeAll},
          {"advertise", &Self::addChannels},
@@ -206,6 +206,8 @@ void FoxgloveDialogue::obeyText(std::string_view text) {
          {"setParameters", &Self::setParameters},
          {"subscribeParameterUpdates", &Self::watchParameters},
          {"unsubscribeParameterUpdates", &Self::unwatchParameters},
+         {"subscribeConnectionGraph", &Self::watchGraph},
+         {"unsubscribeConnectionGraph", &Self::unwatchGraph},
          {"fetchAsset", &Self::fetchAsset}}};
     const std::optional<Json> request = parseClientJson(text);
     if (!request || !request->is_object()) return tell(Level::Error, "this is no JSON object");
@@ -306,6 +308,51 @@ void FoxgloveDialogue::callService(std::string_view payload) {
                          head += encoding == kJson ? std::string_view("{}") : kRosEmpty;
                          send({.head = std::move(head), .is_text = false});
                      });
+}
+
+// The graph of nodes: the run is the only one.
+
+void FoxgloveDialogue::watchGraph(const Json& /*request*/) {
+    told_graph_.emplace();
+    sendGraph(true);
+}
+
+void FoxgloveDialogue::unwatchGraph(const Json& /*request*/) { told_graph_.reset(); }
+
+void FoxgloveDialogue::sendGraph(bool with_services) {
+    if (!told_graph_) return;
+    Graph graph;
+    for (const auto& [number, entry] : feed().entries())
+        (entry.channel.isInput() ? graph.read : graph.written).insert(entry.channel.topic);
+    JsonWriter json;
+    json.beginObject().key("op").value("connectionGraphUpdate");
+    const auto write = [&json](std::string_view name, const char* members, bool is_there) {
+        json.beginObject().key("name").value(name).key(members).beginArray();
+        if (is_there) json.value(kRosNode);
+        json.endArray().endObject();
+    };
+    const auto write_changes = [&](const char* list, const char* members, const Topics& now,
+                                   const Topics& before) {
+        json.key(list).beginArray();
+        for (const std::string& topic : now)
+            if (!before.contains(topic)) write(topic, members, true);
+        for (const std::string& topic : before)
+            if (!now.contains(topic) && graph.has(topic)) write(topic, members, false);
+        json.endArray();
+    };
+    write_changes("publishedTopics", "publisherIds", graph.written, told_graph_->written);
+    write_changes("subscribedTopics", "subscriberIds", graph.read, told_graph_->read);
+    json.key("advertisedServices").beginArray();
+    if (with_services)
+        for (const auto& one : rosServices()) write(one.name, "providerIds", true);
+    json.endArray().key("removedTopics").beginArray();
+    for (const std::string& topic : told_graph_->written)
+        if (!graph.has(topic)) json.value(topic);
+    for (const std::string& topic : told_graph_->read)
+        if (!graph.has(topic) && !told_graph_->written.contains(topic)) json.value(topic);
+    json.endArray().key("removedServices").beginArray().endArray().endObject();
+    told_graph_ = std::move(graph);
+    sendText(json.take());
 }
 
 // Parameters and assets.

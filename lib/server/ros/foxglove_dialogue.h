@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -41,11 +42,22 @@ class FoxgloveDialogue final : public RosDialogue {
         bool is_json = false;
     };
     struct Op;
+    using Topics = std::set<std::string>;
+    /// What the run writes and reads.
+    struct Graph {
+        Topics written, read;
+        [[nodiscard]] bool has(const std::string& topic) const {
+            return written.contains(topic) || read.contains(topic);
+        }
+    };
 
     WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
                      const RosMessage& message) override;
     void tell(Level level, const std::string& text) override;
-    void topicsChanged() override { advertise(); }
+    void topicsChanged() override {
+        advertise();
+        sendGraph(false);
+    }
 
     void greet(const std::string& title, const std::string& session_id);
     void advertise();
@@ -60,6 +72,10 @@ class FoxgloveDialogue final : public RosDialogue {
     void watchParameters(const Json& request);
     void unwatchParameters(const Json& request);
     void fetchAsset(const Json& request);
+    void watchGraph(const Json& request);
+    void unwatchGraph(const Json& request);
+    /// Sends what has changed of the graph since the client was told.
+    void sendGraph(bool with_services);
     void obeyMessage(std::string_view payload);
     void callService(std::string_view payload);
     void sendParameters(const std::set<std::string>& names, const std::string& id);
@@ -67,7 +83,8 @@ class FoxgloveDialogue final : public RosDialogue {
     std::set<std::uint32_t> advertised_;
     std::uint32_t newest_ = 0;  // number of a topic that was advertised or is an input
     std::map<std::uint32_t, ClientChannel> channels_;
-    std::set<std::string> watched_;  // parameters
+    std::set<std::string> watched_;    // parameters
+    std::optional<Graph> told_graph_;  // of clients that watch it
     bool was_paused_ = false;
     std::int64_t seen_changes_ = 0;
     std::int64_t time_period_ = -1;

@@ -86,6 +86,47 @@ TEST(Foxglove, SendsMessagesOfSubscriptions) {
         EXPECT_EQ(message->at(0), 2) << "the time alone";
 }
 
+TEST(Foxglove, TellsTheGraphOfNodes) {
+    FoxgloveTalk talk;
+    talk.send({{"op", "subscribeConnectionGraph"}});
+    const json graph = talk.ask("connectionGraphUpdate");
+    const auto has = [&graph](const char* list, const std::string& name, const char* members) {
+        const json wanted = {{"name", name}, {members, {"/simrun"}}};
+        return std::count(graph[list].begin(), graph[list].end(), wanted) == 1;
+    };
+    EXPECT_TRUE(has("publishedTopics", "/l1/scan", "publisherIds"));
+    EXPECT_TRUE(has("subscribedTopics", "/r1/cmd_vel", "subscriberIds")) << "once for both types";
+    EXPECT_TRUE(has("advertisedServices", "/reset", "providerIds"));
+    EXPECT_FALSE(has("publishedTopics", "/r1/cmd_vel", "publisherIds"));
+    EXPECT_EQ(graph["removedTopics"], json::array());
+
+    const auto change = [&talk](const std::string& layout) {
+        talk.room.world.change(testing::scene("ispace size=8,6\n", layout));
+        talk.state.sync();
+        talk.stepped();
+        std::vector<json> updates;
+        for (auto message = talk.next(); message; message = talk.next())
+            if (message->front() == '{')
+                if (json text = json::parse(*message); text["op"] == "connectionGraphUpdate")
+                    updates.push_back(std::move(text));
+        return updates;
+    };
+    const std::vector<json> updates = change("robot id=r1 at=0,0\nrobot id=r9 at=2,0\n");
+    ASSERT_EQ(updates.size(), 1U);
+    const auto lists = [&updates](const char* list, const char* name) {
+        const json& all = updates[0][list];
+        return std::find(all.begin(), all.end(), name) != all.end();
+    };
+    EXPECT_TRUE(lists("removedTopics", "/l2/scan"));
+    EXPECT_FALSE(lists("removedTopics", "/r1/odom"));
+    for (const json& one : updates[0]["publishedTopics"])
+        EXPECT_EQ(one["name"].get<std::string>().find("/r1/"), std::string::npos) << one;
+    EXPECT_EQ(updates[0]["advertisedServices"], json::array());
+
+    talk.send({{"op", "unsubscribeConnectionGraph"}});
+    EXPECT_TRUE(change("robot id=r1 at=0,0\n").empty());
+}
+
 TEST(Foxglove, SlowReadersLoseTheOldestMessages) {
     FoxgloveTalk talk;
     talk.subscribe(1, "/l1/scan");

@@ -17,8 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kNode = "/simrun";
-
 /// A question to rosapi.
 struct Question {
     const RosFeed& feed;
@@ -107,7 +105,7 @@ void writeServiceType(const Question& question, JsonWriter& out) {
 }
 
 void writeNodes(const Question& /*question*/, JsonWriter& out) {
-    out.key("nodes").beginArray().value(kNode).endArray();
+    out.key("nodes").beginArray().value(kRosNode).endArray();
 }
 
 void writeNodeDetails(const Question& question, JsonWriter& out) {
@@ -124,7 +122,7 @@ void writeEnds(const Question& question, JsonWriter& out, const char* key, bool 
     bool is_here = false;
     for (const RosChannel* channel : topicsOf(question))
         is_here = is_here || (channel->topic == name && channel->isInput() == is_input);
-    out.key(key).value(is_here ? Texts{kNode} : Texts());
+    out.key(key).value(is_here ? Texts{std::string(kRosNode)} : Texts());
 }
 
 void writePublishers(const Question& question, JsonWriter& out) {
@@ -144,7 +142,7 @@ void writeTime(const Question& question, JsonWriter& out) {
 void writeParameterNames(const Question& question, JsonWriter& out) {
     out.key("names").beginArray();
     for (const RosParameter& one : rosParameters(question.simulation, question.feed.isOfOneRoom()))
-        out.value(std::string(kNode) + ':' + one.name);
+        out.value(std::string(kRosNode) + ':' + one.name);
     out.endArray();
 }
 
@@ -188,7 +186,7 @@ void writeServiceNode(const Question& question, JsonWriter& out) {
     const Texts names = serviceNames();
     const bool is_ours =
         std::find(names.begin(), names.end(), question.argument("service")) != names.end();
-    out.key("node").value(is_ours ? kNode : "");
+    out.key("node").value(is_ours ? kRosNode : "");
 }
 
 /// The services have neither arguments nor answers.

@@ -26,6 +26,8 @@ struct RosService {
     std::string_view name, request;
 };
 std::span<const RosService> rosServices();
+/// The name under which clients see the run.
+inline constexpr std::string_view kRosNode = "/simrun";
 inline constexpr std::string_view kRosEmptyService = "std_srvs/srv/Empty";
 /// The CDR of its answer: a struct without fields has one byte.
 inline constexpr std::string_view kRosEmpty{"\0\1\0\0\0", 5};
