@@ -301,8 +301,16 @@ std::vector<DoorZone> doorZones(std::string_view text, const Environment& enviro
 }  // namespace
 
 std::vector<NamedZone> readZones(std::string_view text, const Environment& environment) {
-    if (!text.starts_with(kDoorPrefix)) return {readZone(text, environment)};
     std::vector<NamedZone> zones;
+    if (!text.starts_with(kDoorPrefix)) {
+        const Glob glob(text);
+        if (glob.isPattern() && zoneRecord(text, environment) == nullptr)
+            for (const Element& element : environment.elements())
+                if (element.record.keyword() == "zone" && glob.matches(element.id))
+                    zones.push_back(namedZone(element.id, zoneOutline(element.record)));
+        if (zones.empty()) zones.push_back(readZone(text, environment));
+        return zones;
+    }
     for (DoorZone& at : doorZones(text, environment)) zones.push_back(std::move(at.zone));
     return zones;
 }
@@ -322,8 +330,8 @@ std::vector<Record> zoneRecords(std::span<const std::string> texts, const Enviro
     };
     for (const std::string& text : texts) {
         if (!text.starts_with(kDoorPrefix)) {
-            const NamedZone zone = readZone(text, environment);
-            if (ids.count(text) == 0) add(zone.outline, "");
+            for (const NamedZone& zone : readZones(text, environment))
+                if (!ids.contains(zone.name)) add(zone.outline, "");
             continue;
         }
         for (const auto& [door, zone] : doorZones(text, environment)) {

@@ -35,9 +35,10 @@ std::string inLowerCase(std::string_view pattern, std::span<const std::string> n
 std::string unknownZoneText(std::string_view text, const Environment& environment);
 
 /// Reads all zones of a text: `door:GLOB[,M]` means one zone for each door with a matching id: the
-/// floor within M of its opening, up to walls, see DoorFloor. Any other text is one zone, as of
-/// readZone(). Rounded ends have 16 chords per quarter circle. \throws UsageError as readZone(),
-/// for a bad distance, and if no door matches
+/// floor within M of its opening, up to walls, see DoorFloor. A glob means the records `zone` that
+/// it matches. Any other text is one zone, as of readZone(). Rounded ends have 16 chords per
+/// quarter circle. \throws UsageError as readZone(), for a bad distance, and if no door or zone
+/// matches
 std::vector<NamedZone> readZones(std::string_view text, const Environment& environment);
 
 /// A door's id, and the rectangle of its opening in the floor.

@@ -62,6 +62,21 @@ TEST(ReadZone, WarnsOfACentreThatLiesOutside) {
     EXPECT_FALSE(readZone("poly:0,0;6,0;6,5;0,5", room()).is_center_outside);
 }
 
+TEST(ReadZones, TakesGlobsOfIds) {
+    const auto names = [](const char* text) {
+        std::string list;
+        for (const NamedZone& zone : readZones(text, room())) list += zone.name + ' ';
+        return list;
+    };
+    EXPECT_EQ(names("*"), "entrance desk zone1 ");
+    EXPECT_EQ(names("?e*"), "desk ");
+    EXPECT_EQ(names("desk"), "desk ");
+    EXPECT_THROW(static_cast<void>(readZones("b*", room())), UsageError);
+    static const Schemas schemas(environmentSchemas());
+    const std::string all = "*";
+    EXPECT_TRUE(zoneRecords({&all, 1}, room(), schemas).empty()) << "they are records";
+}
+
 TEST(ReadZone, KeepsTheDigitsOfSmallPolygonsFarAway) {
     const NamedZone zone = readZone("poly:900000,900000;900000.01,900000;900000,900000.01", room());
     EXPECT_FALSE(zone.is_center_outside);

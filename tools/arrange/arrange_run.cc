@@ -152,13 +152,10 @@ namespace {
 /// Tells that a target counts the floor without rules of facing, too.
 void noteWholeFloor(const ArrangeToolOptions& options) {
     if (!options.how.target || options.how.facing.empty() || !options.zones.targets.empty()) return;
-    const std::string& zone = options.how.facing.front().zone;
-    const bool is_zone = zone.find(kDoorPrefix) != std::string::npos ||
-                         zone.find_first_of("*?[") == std::string::npos;
     tell(options.common, "arrange",
          "--target is of all floor: faces count in the zones of --facing, plain sight elsewhere; "
-         "to count those zones alone, add --zone " +
-             (is_zone ? '\'' + printable(zone) + '\'' : "ZONE"));
+         "to count those zones alone, add --zone '" +
+             printable(options.how.facing.front().zone) + '\'');
 }
 
 }  // namespace
