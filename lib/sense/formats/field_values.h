@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "sense/formats/reading_fields.h"
+#include "sense/formats/reading_text.h"
 
 namespace ispace::fields {
 
@@ -55,6 +57,12 @@ std::vector<std::uint64_t> sizeTimesThree(const View& reading) {
     std::vector<std::uint64_t> shape = sizeOf<Model>(reading);
     shape.push_back(3);
     return shape;
+}
+
+/// Writes a field of JSON as a message of text, of kinds for which ROS has no message.
+template <const char* kName>
+std::string jsonText(const RosHeader& /*header*/, const View& reading) {
+    return textMessage(jsonOfField(reading, kName));
 }
 
 }  // namespace ispace::fields

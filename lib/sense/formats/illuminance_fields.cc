@@ -25,8 +25,13 @@ constexpr ReadingField kLuxFields[] = {
     {"lux", kInArray, measured<Illuminance, &Illuminance::lux>, kFloat64,
      [](const View&) { return std::vector<std::uint64_t>(); }}};
 
+constexpr RosTopic kLuxTopics[] = {{RosType::Illuminance, "illuminance", RosFrame::Sensor,
+                                    [](const RosHeader& header, const View& r) {
+                                        return measureMessage(header, r.as<Illuminance>().lux);
+                                    }}};
+
 }  // namespace
 
-const ReadingKind Illuminance::kKind = {.fields = kLuxFields};
+const ReadingKind Illuminance::kKind = {.fields = kLuxFields, .topics = kLuxTopics};
 
 }  // namespace ispace

@@ -56,8 +56,14 @@ constexpr ReadingField kImuFields[] = {
     {"rates", kInArray, rowOf<&Inertia::rates>, kFloat64, threeAxes},
     {"accelerations", kInArray, rowOf<&Inertia::accelerations>, kFloat64, threeAxes}};
 
+constexpr RosTopic kImuTopics[] = {
+    {RosType::Imu, "imu", RosFrame::Sensor, [](const RosHeader& header, const View& r) {
+         const auto& inertia = r.as<Inertia>();
+         return imuMessage(header, inertia.rates, inertia.accelerations);
+     }}};
+
 }  // namespace
 
-const ReadingKind Inertia::kKind = {.fields = kImuFields};
+const ReadingKind Inertia::kKind = {.fields = kImuFields, .topics = kImuTopics};
 
 }  // namespace ispace

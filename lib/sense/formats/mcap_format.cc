@@ -125,18 +125,12 @@ class Messages {
     bool is_optical_ = false;
 };
 
-/// Files hold the definitions of all types that readings and runs have.
-std::vector<McapSchema> recordedSchemas() {
-    std::vector<McapSchema> schemas = rosSchemas();
-    schemas.resize(kRecordedRosTypes);
-    return schemas;
-}
-
 class McapStream final : public ReadingStream {
   public:
-    McapStream(ByteSink write, std::vector<McapChannel> channels, McapCompression compression)
-        : file_(std::move(write), "ros2", "cdr", recordedSchemas(), std::move(channels),
-                compression) {}
+    McapStream(ByteSink write, const std::vector<McapChannel>& channels,
+               McapCompression compression)
+        : file_(std::move(write), "ros2", "cdr", rosSchemas(), channels, compression,
+                kRecordedRosTypes) {}
     void write(std::string_view appended) override { file_.add(appended); }
     void finish() override { file_.finish(); }
 

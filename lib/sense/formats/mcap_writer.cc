@@ -99,18 +99,19 @@ void appendMcapMessage(std::string& out, std::uint16_t channel, std::uint32_t se
 }
 
 McapWriter::McapWriter(ByteSink write, std::string_view profile, std::string_view encoding,
-                       std::vector<McapSchema> schemas, std::vector<McapChannel> channels,
-                       McapCompression compression)
+                       std::vector<McapSchema> schemas, const std::vector<McapChannel>& channels,
+                       McapCompression compression, std::size_t always)
     : write_(std::move(write)),
       encoding_(encoding),
       schemas_(std::move(schemas)),
-      channels_(std::move(channels)),
       compression_(compression) {
     std::string header, begin(kMagic);
     appendText(header, profile);
     appendText(header, "ispace");
     appendRecord(begin, kHeader, header);
-    put(begin + schemaRecords() + channelRecords());
+    for (std::size_t i = 0; i < std::min(always, schemas_.size()); ++i) written_.insert(i);
+    put(begin + schemaRecords());
+    for (const McapChannel& channel : channels) addChannel(channel);
 }
 
 void McapWriter::put(std::string_view bytes) {
@@ -123,7 +124,8 @@ std::uint16_t McapWriter::addChannel(McapChannel channel) {
     const std::size_t index = channels_.size();
     channels_.push_back(std::move(channel));
     // Its messages follow in later chunks.
-    put(channelRecord(index));
+    const std::size_t schema = channels_[index].schema;
+    put((written_.insert(schema).second ? schemaRecord(schema) : "") + channelRecord(index));
     return static_cast<std::uint16_t>(index);
 }
 
@@ -192,16 +194,19 @@ void McapWriter::finishChunk() {
     chunk_index_.clear();
 }
 
+std::string McapWriter::schemaRecord(std::size_t index) const {
+    std::string content, out;
+    appendLittle(content, static_cast<std::uint16_t>(index + 1));  // schema 0 is reserved
+    appendText(content, schemas_[index].name);
+    appendText(content, schemas_[index].encoding);
+    appendText(content, schemas_[index].text);
+    appendRecord(out, kSchema, content);
+    return out;
+}
+
 std::string McapWriter::schemaRecords() const {
     std::string out;
-    for (std::size_t i = 0; i < schemas_.size(); ++i) {
-        std::string content;
-        appendLittle(content, static_cast<std::uint16_t>(i + 1));  // schema 0 is reserved
-        appendText(content, schemas_[i].name);
-        appendText(content, schemas_[i].encoding);
-        appendText(content, schemas_[i].text);
-        appendRecord(out, kSchema, content);
-    }
+    for (const std::size_t index : written_) out += schemaRecord(index);
     return out;
 }
 
@@ -240,7 +245,7 @@ std::string McapWriter::channelRecords() const {
 std::string McapWriter::statisticsRecord() const {
     std::string content, out;
     appendLittle(content, messages_);
-    appendLittle(content, static_cast<std::uint16_t>(schemas_.size()));
+    appendLittle(content, static_cast<std::uint16_t>(written_.size()));
     appendLittle(content, static_cast<std::uint32_t>(channels_.size()));
     appendLittle(content, std::uint32_t{0});  // attachments
     appendLittle(content, std::uint32_t{0});  // metadata

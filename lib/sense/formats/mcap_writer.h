@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -54,11 +55,14 @@ enum class McapCompression { None, Zstd };
 class McapWriter {
   public:
     static constexpr std::size_t kMaxChannels = 65535;
+    static constexpr auto kAllSchemas = static_cast<std::size_t>(-1);
 
-    /// Starts a file. \param encoding of the messages, "cdr"
+    /// Starts a file. \param encoding of the messages, "cdr" \param always the number of schemas
+    /// that the file has in any case, the first ones; others are written before their first channel
     McapWriter(ByteSink write, std::string_view profile, std::string_view encoding,
-               std::vector<McapSchema> schemas, std::vector<McapChannel> channels,
-               McapCompression compression = McapCompression::None);
+               std::vector<McapSchema> schemas, const std::vector<McapChannel>& channels,
+               McapCompression compression = McapCompression::None,
+               std::size_t always = kAllSchemas);
 
     /// Adds a channel and returns its index. \pre fewer than kMaxChannels
     std::uint16_t addChannel(McapChannel channel);
@@ -80,6 +84,7 @@ class McapWriter {
     void addOne(std::string_view record);
     void finishChunk();
     [[nodiscard]] std::string_view compressionName() const;
+    [[nodiscard]] std::string schemaRecord(std::size_t index) const;
     [[nodiscard]] std::string schemaRecords() const;
     [[nodiscard]] std::string channelRecord(std::size_t index) const;
     [[nodiscard]] std::string channelRecords() const;
@@ -89,6 +94,7 @@ class McapWriter {
     ByteSink write_;
     std::string encoding_;
     std::vector<McapSchema> schemas_;
+    std::set<std::size_t> written_;  // indices of schemas
     std::vector<McapChannel> channels_;
     McapCompression compression_;
     std::uint64_t at_ = 0;

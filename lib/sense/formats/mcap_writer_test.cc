@@ -35,6 +35,26 @@ TEST(McapWriter, MakesTheSameBytesHoweverMessagesAreHandedOver) {
     EXPECT_EQ(file.substr(file.size() - 8), file.substr(0, 8));
 }
 
+TEST(McapWriter, WritesOtherSchemasBeforeTheirFirstChannel) {
+    const auto count = [](const std::vector<McapChannel>& channels, std::uint16_t later) {
+        std::string out;
+        McapWriter file([&out](std::string_view bytes) { out += bytes; }, "ros2", "cdr",
+                        rosSchemas(), channels, McapCompression::None, 2);
+        file.addChannel({later, "/later"});
+        file.finish();
+        std::size_t found = 0;
+        for (const McapSchema& schema : rosSchemas())
+            for (std::size_t at = out.find(schema.text); !schema.text.empty() && at != out.npos;
+                 at = out.find(schema.text, at + 1))
+                ++found;
+        return found;
+    };
+    // Each once in the data and once in the summary.
+    EXPECT_EQ(count({}, 1), 2U * 2);
+    EXPECT_EQ(count({{0, "/tf"}}, 6), 2U * 3);
+    EXPECT_EQ(count({{6, "/p/position"}}, 6), 2U * 3);
+}
+
 TEST(RosName, IsOneThatTopicsMayHave) {
     for (const auto& [id, name] :
          std::vector<std::pair<std::string, std::string>>{{"laser1", "laser1"},

@@ -11,6 +11,8 @@ namespace {
 
 using namespace fields;
 
+constexpr char kNeighboursText[] = "neighbours";
+
 FieldValue roundedLux(const View& reading) {
     return fieldOf(static_cast<std::int64_t>(std::llround(reading.as<MoteReport>().lux)));
 }
@@ -87,8 +89,15 @@ constexpr ReadingField kMoteFields[] = {
      [](const View& r) { return std::vector<std::uint64_t>{r.sensor.as<Mote>().motes.size()}; }},
     {"motes", kInFixed, motesOfRoom}};
 
+constexpr RosTopic kMoteTopics[] = {
+    {RosType::Illuminance, "illuminance", RosFrame::Sensor,
+     [](const RosHeader& header, const View& r) {
+         return measureMessage(header, r.as<MoteReport>().lux);
+     }},
+    {RosType::String, kNeighboursText, RosFrame::Sensor, jsonText<kNeighboursText>}};
+
 }  // namespace
 
-const ReadingKind MoteReport::kKind = {.fields = kMoteFields};
+const ReadingKind MoteReport::kKind = {.fields = kMoteFields, .topics = kMoteTopics};
 
 }  // namespace ispace

@@ -30,6 +30,11 @@ constexpr ReadingField kPirFields[] = {
      [](const View&) { return std::vector<std::uint64_t>(); }},
     {"limits", kInFixed, limitsOf<Pir>}};
 
+constexpr RosTopic kPirTopics[] = {
+    {RosType::Bool, "motion", RosFrame::Sensor, [](const RosHeader& /*header*/, const View& r) {
+         return boolMessage(r.as<PirState>().motion);
+     }}};
+
 FieldValue openAsNumber(const View& reading) {
     return fieldOf(int{reading.as<ContactState>().open});
 }
@@ -44,9 +49,14 @@ constexpr ReadingField kContactFields[] = {
      [](const View& r) { return FieldValue(r.as<ContactState>().open ? 1.0 : 0.0); }, kFloat64,
      [](const View&) { return std::vector<std::uint64_t>(); }}};
 
+constexpr RosTopic kContactTopics[] = {
+    {RosType::Bool, "open", RosFrame::Sensor, [](const RosHeader& /*header*/, const View& r) {
+         return boolMessage(r.as<ContactState>().open);
+     }}};
+
 }  // namespace
 
-const ReadingKind ContactState::kKind = {.fields = kContactFields};
-const ReadingKind PirState::kKind = {.fields = kPirFields};
+const ReadingKind ContactState::kKind = {.fields = kContactFields, .topics = kContactTopics};
+const ReadingKind PirState::kKind = {.fields = kPirFields, .topics = kPirTopics};
 
 }  // namespace ispace

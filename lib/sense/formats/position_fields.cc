@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Readings of tags, receivers, mats and gates.
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 
 #include "base/number.h"
@@ -11,6 +13,10 @@ namespace ispace {
 namespace {
 
 using namespace fields;
+
+/// Fields of JSON that are topics, too.
+constexpr char kReceiverTagsText[] = "tags";
+constexpr char kMatOnText[] = "on";
 
 // Tags and receivers.
 
@@ -146,6 +152,9 @@ FieldValue tagTimes(const View& reading) {
     return times;
 }
 
+constexpr RosTopic kReceiverTopics[] = {
+    {RosType::String, kReceiverTagsText, RosFrame::Sensor, jsonText<kReceiverTagsText>}};
+
 constexpr ReadingField kReceiverFields[] = {
     {"range_min", kInInfo, figure<Receiver, &Receiver::min_range>},
     {"range_max", kInInfo, figure<Receiver, &Receiver::max_range>},
@@ -184,6 +193,9 @@ constexpr ReadingField kMatFields[] = {{"x", kInInfo, onFloor<&Point2::x>},
                                             return FieldValue(r.as<MatState>().on);
                                         }}};
 
+constexpr RosTopic kMatTopics[] = {
+    {RosType::String, kMatOnText, RosFrame::Sensor, jsonText<kMatOnText>}};
+
 FieldValue lastPassage(const View& reading) {
     const GateState& gate = reading.as<GateState>();
     return gate.last.empty() ? FieldText() : FieldText(gate.last);
@@ -208,11 +220,25 @@ constexpr ReadingField kGateFields[] = {
     {"way", kInJson | kInLine, wayOfLast},
     {"broken", kInJson | kInLine | kIsState, measured<GateState, &GateState::broken>}};
 
+template <std::int64_t GateState::*kCount>
+std::string passagesMessage(const RosHeader& /*header*/, const View& reading) {
+    constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+    return integerMessage(
+        static_cast<std::int32_t>(std::min(reading.as<GateState>().*kCount, kMost)));
+}
+
+constexpr RosTopic kGateTopics[] = {
+    {RosType::Int32, "in", RosFrame::Sensor, passagesMessage<&GateState::in>},
+    {RosType::Int32, "out", RosFrame::Sensor, passagesMessage<&GateState::out>},
+    {RosType::Bool, "broken", RosFrame::Sensor, [](const RosHeader& /*header*/, const View& r) {
+         return boolMessage(r.as<GateState>().broken);
+     }}};
+
 }  // namespace
 
 const ReadingKind Burst::kKind = {.fields = kTagFields, .topics = kTagTopics};
-const ReadingKind Hearings::kKind = {.fields = kReceiverFields};
-const ReadingKind MatState::kKind = {.fields = kMatFields};
-const ReadingKind GateState::kKind = {.fields = kGateFields};
+const ReadingKind Hearings::kKind = {.fields = kReceiverFields, .topics = kReceiverTopics};
+const ReadingKind MatState::kKind = {.fields = kMatFields, .topics = kMatTopics};
+const ReadingKind GateState::kKind = {.fields = kGateFields, .topics = kGateTopics};
 
 }  // namespace ispace

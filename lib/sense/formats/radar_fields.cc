@@ -119,13 +119,22 @@ constexpr ReadingField kRadarFields[] = {
     {"limits", kInFixed, limitsOf<Radar>},
     {"points", kInPage, pagePoints}};
 
+std::string returnsMessage(const RosHeader& header, const View& reading) {
+    std::vector<RosRadarReturn> returns;
+    for (const Detection& one : detectionsOf(reading))
+        returns.push_back({one.range, one.bearing, one.elevation, one.speed});
+    return radarMessage(header, returns);
+}
+
 constexpr RosTopic kRadarTopics[] = {
-    {RosType::PointCloud2, "points", RosFrame::Sensor, [](const RosHeader& header, const View& r) {
+    {RosType::PointCloud2, "points", RosFrame::Sensor,
+     [](const RosHeader& header, const View& r) {
          const FieldValue speeds = floatsOf<speedOf>(r);
          const PointField velocity{"velocity", std::get<std::vector<float>>(speeds)};
          return pointCloudMessage(header, cloudOf(r.as<RadarFrame>(), Coordinates::Sensor),
                                   std::span(&velocity, 1));
-     }}};
+     }},
+    {RosType::RadarScan, "returns", RosFrame::Sensor, returnsMessage}};
 
 constexpr std::string_view kDetectionIndex[] = {"detection"};
 

@@ -99,6 +99,15 @@ void appendLine(std::string& out, const ReadingView& reading, const std::string&
     out.append(json.endObject().text()).append("\n");
 }
 
+std::string jsonOfField(const ReadingView& reading, std::string_view name) {
+    std::string out;
+    JsonWriter json;
+    for (const ReadingField& field : readingKind(reading.sensor.model).fields)
+        if (field.name == name && (field.uses & kInJson) != 0)
+            std::visit(JsonValue{out, json}, field.value(reading));
+    return out + json.take();
+}
+
 void appendCsvField(std::string& out, std::string_view text) {
     if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
         out += text;

@@ -24,6 +24,9 @@ std::string scanHeaderLine(const History& history, std::uint64_t seed);
 /// "pose", and the fields of its kind. If `file` is set, "file" replaces the pixels of a frame.
 void appendLine(std::string& out, const ReadingView& reading, const std::string& file = "");
 
+/// Returns one JSON field of a reading, as in appendLine(). \pre its kind has that field
+std::string jsonOfField(const ReadingView& reading, std::string_view name);
+
 /// Appends the key "pose" as in all JSON: [x, y, z, heading, tilt, roll] in metres and radians,
 /// with all digits, so that a reading can be recomputed from the same doubles.
 void addPose(JsonWriter& json, const Pose3& pose);

@@ -8,6 +8,8 @@ namespace {
 
 using namespace fields;
 
+constexpr char kRfidTagsText[] = "tags";
+
 FieldValue countOfTags(const View& reading) { return fieldOf(reading.as<RfidTags>().tags.size()); }
 
 constexpr ReadingField kRfidFields[] = {
@@ -27,8 +29,11 @@ constexpr ReadingField kRfidFields[] = {
      kFloat64, [](const View&) { return std::vector<std::uint64_t>(); }},
     {"limits", kInFixed, limitsOf<Rfid>}};
 
+constexpr RosTopic kRfidTopics[] = {
+    {RosType::String, kRfidTagsText, RosFrame::Sensor, jsonText<kRfidTagsText>}};
+
 }  // namespace
 
-const ReadingKind RfidTags::kKind = {.fields = kRfidFields};
+const ReadingKind RfidTags::kKind = {.fields = kRfidFields, .topics = kRfidTopics};
 
 }  // namespace ispace

@@ -146,6 +146,37 @@ std::string cameraInfoMessage(const RosHeader& header, const CameraInfo& info) {
     return out.put(false).take();
 }
 
+std::string imuMessage(const RosHeader& header, Vec3 rates, Vec3 accelerations) {
+    // By the definition, -1 in the first place: there is no orientation, and 0: unknown.
+    constexpr std::array<double, 9> kNone{-1}, kUnknown{};
+    CdrWriter out = headed(header);
+    putRotation(out, Eigen::Quaterniond::Identity());
+    out.array(std::span<const double>(kNone));
+    for (const Vec3& axes : {rates, accelerations})
+        out.put(axes.x).put(axes.y).put(axes.z).array(std::span<const double>(kUnknown));
+    return out.take();
+}
+
+std::string measureMessage(const RosHeader& header, double value) {
+    return headed(header).put(value).put(0.0).take();
+}
+
+std::string radarMessage(const RosHeader& header, std::span<const RosRadarReturn> returns) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    CdrWriter out = headed(header);
+    out.count(returns.size());
+    for (const RosRadarReturn& one : returns)
+        for (const double value :
+             {one.range, one.azimuth.radians(), one.elevation.radians(), one.speed, kUnknown})
+            out.put(static_cast<float>(value));
+    return out.take();
+}
+
+std::string boolMessage(bool value) { return CdrWriter().put(value).take(); }
+std::string integerMessage(std::int32_t value) { return CdrWriter().put(value).take(); }
+std::string numberMessage(double value) { return CdrWriter().put(value).take(); }
+std::string textMessage(std::string_view text) { return CdrWriter().put(text).take(); }
+
 std::string pointMessage(const RosHeader& header, Point3 point) {
     return headed(header).put(point.x).put(point.y).put(point.z).take();
 }
@@ -234,8 +265,6 @@ std::string clockMessage(std::uint64_t nanoseconds) {
         .put(static_cast<std::uint32_t>(nanoseconds % kSecond))
         .take();
 }
-
-std::string boolMessage(bool value) { return CdrWriter().put(value).take(); }
 
 std::string mapMessage(const RosHeader& header, const RosGrid& map) {
     CdrWriter out = headed(header);

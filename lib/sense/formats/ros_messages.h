@@ -86,10 +86,29 @@ std::string odometryMessage(const RosHeader& header, std::string_view child,
                             const EstimatedPose& estimate, const RosTwist& twist,
                             const MotionAlphas& alphas, double seconds);
 
+/// Writes rates of turn in radians a second and accelerations in m/s^2; the orientation is unknown,
+/// and so are the covariances.
+std::string imuMessage(const RosHeader& header, Vec3 rates, Vec3 accelerations);
+/// Writes an Illuminance in lux or a Temperature in degrees Celsius, the variance unknown.
+std::string measureMessage(const RosHeader& header, double value);
+/// A return of a radar; its strength is unknown.
+struct RosRadarReturn {
+    double range = 0;          ///< metres
+    Angle azimuth, elevation;  ///< in the sensor's frame
+    double speed = 0;          ///< along the beam, m/s, away from the sensor
+};
+std::string radarMessage(const RosHeader& header, std::span<const RosRadarReturn> returns);
+
+// Messages of std_msgs, without a header.
+
+std::string boolMessage(bool value);
+std::string integerMessage(std::int32_t value);
+std::string numberMessage(double value);
+std::string textMessage(std::string_view text);
+
 // Messages of a running world.
 
 std::string clockMessage(std::uint64_t nanoseconds);
-std::string boolMessage(bool value);
 
 /// An occupancy grid: rows from the lowest y, each from the lowest x.
 struct RosGrid {

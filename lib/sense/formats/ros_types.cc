@@ -12,8 +12,8 @@ namespace ispace {
 
 namespace {
 
-/// Definitions of ROS 2's common_interfaces, without their comments. Types of other packages are
-/// prefixed with the package; contained types precede their users.
+/// Definitions of ROS 2's common_interfaces and of radar_msgs, without their comments. Types of
+/// other packages are prefixed with the package; contained types precede their users.
 struct Definition {
     std::string_view name;  ///< as other definitions refer to it
     std::string_view text;
@@ -59,6 +59,9 @@ constexpr Definition kParts[] = {
      "sensor_msgs/CompressedImage texture\nvisualization_msgs/UVCoordinate[] uv_coordinates\n"
      "string text\nstring mesh_resource\nvisualization_msgs/MeshFile mesh_file\n"
      "bool mesh_use_embedded_materials\n"},
+    {"radar_msgs/RadarReturn",
+     "float32 range\nfloat32 azimuth\nfloat32 elevation\nfloat32 doppler_velocity\n"
+     "float32 amplitude\n"},
     {"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
     {"diagnostic_msgs/DiagnosticStatus",
      "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n"
@@ -105,6 +108,19 @@ constexpr Definition kTypes[] = {
     {"geometry_msgs/msg/PoseWithCovarianceStamped",
      "std_msgs/Header header\ngeometry_msgs/PoseWithCovariance pose\n"},
     {"std_msgs/msg/Empty", ""},
+    {"sensor_msgs/msg/Imu",
+     "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
+     "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
+     "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n"
+     "float64[9] linear_acceleration_covariance\n"},
+    {"sensor_msgs/msg/Illuminance",
+     "std_msgs/Header header\nfloat64 illuminance\nfloat64 variance\n"},
+    {"sensor_msgs/msg/Temperature",
+     "std_msgs/Header header\nfloat64 temperature\nfloat64 variance\n"},
+    {"radar_msgs/msg/RadarScan", "std_msgs/Header header\nradar_msgs/RadarReturn[] returns\n"},
+    {"std_msgs/msg/Int32", "int32 data\n"},
+    {"std_msgs/msg/Float64", "float64 data\n"},
+    {"std_msgs/msg/String", "string data\n"},
 };
 static_assert(std::size(kTypes) == kRosTypes);
 

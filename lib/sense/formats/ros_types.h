@@ -14,7 +14,8 @@
 
 namespace ispace {
 
-/// In the order of rosSchemas(). Files of readings hold those before Clock.
+/// In the order of rosSchemas(). All files of readings hold those before Clock, all files of runs
+/// those before Imu, and each file those of its channels.
 enum class RosType : std::uint16_t {
     TFMessage,
     LaserScan,
@@ -34,10 +35,18 @@ enum class RosType : std::uint16_t {
     TwistStamped,
     PoseStamped,
     PoseWithCovarianceStamped,
-    Empty
+    Empty,
+    Imu,
+    Illuminance,
+    Temperature,
+    RadarScan,
+    Int32,
+    Float64,
+    String
 };
-constexpr std::size_t kRosTypes = static_cast<std::size_t>(RosType::Empty) + 1;
-constexpr auto kRecordedRosTypes = static_cast<std::size_t>(RosType::Clock);
+constexpr std::size_t kRosTypes = static_cast<std::size_t>(RosType::String) + 1;
+constexpr auto kRecordedRosTypes = static_cast<std::size_t>(RosType::Clock),
+               kRunRosTypes = static_cast<std::size_t>(RosType::Imu);
 
 /// Returns the name: "sensor_msgs/msg/LaserScan".
 std::string_view nameOf(RosType type);

@@ -26,8 +26,13 @@ constexpr ReadingField kMicrophoneFields[] = {
     {"level", kInArray, measured<SoundLevel, &SoundLevel::level>, kFloat64,
      [](const View&) { return std::vector<std::uint64_t>(); }}};
 
+constexpr RosTopic kMicrophoneTopics[] = {
+    {RosType::Float64, "level", RosFrame::Sensor, [](const RosHeader& /*header*/, const View& r) {
+         return numberMessage(r.as<SoundLevel>().level);
+     }}};
+
 }  // namespace
 
-const ReadingKind SoundLevel::kKind = {.fields = kMicrophoneFields};
+const ReadingKind SoundLevel::kKind = {.fields = kMicrophoneFields, .topics = kMicrophoneTopics};
 
 }  // namespace ispace

@@ -28,8 +28,14 @@ constexpr ReadingField kTemperatureFields[] = {
     {"celsius", kInArray, measured<Temperature, &Temperature::celsius>, kFloat64,
      [](const View&) { return std::vector<std::uint64_t>(); }}};
 
+constexpr RosTopic kTemperatureTopics[] = {{RosType::Temperature, "temperature", RosFrame::Sensor,
+                                            [](const RosHeader& header, const View& r) {
+                                                return measureMessage(header,
+                                                                      r.as<Temperature>().celsius);
+                                            }}};
+
 }  // namespace
 
-const ReadingKind Temperature::kKind = {.fields = kTemperatureFields};
+const ReadingKind Temperature::kKind = {.fields = kTemperatureFields, .topics = kTemperatureTopics};
 
 }  // namespace ispace

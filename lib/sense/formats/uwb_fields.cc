@@ -11,6 +11,8 @@ namespace {
 
 using namespace fields;
 
+constexpr char kUwbTagsText[] = "tags";
+
 constexpr int kMillimetres = 3;  // decimals of a length in lines of the protocol
 
 const std::vector<UwbRange>& rangesIn(const View& reading) { return reading.as<UwbRanges>().tags; }
@@ -184,8 +186,11 @@ constexpr ReadingField kUwbFields[] = {
     {"tags", kInFixed, [](const View& r) { return FieldValue(tagsOfRoom(r)); }},
     {"limits", kInFixed, limitsOf<Uwb>}};
 
+constexpr RosTopic kUwbTopics[] = {
+    {RosType::String, kUwbTagsText, RosFrame::Sensor, jsonText<kUwbTagsText>}};
+
 }  // namespace
 
-const ReadingKind UwbRanges::kKind = {.fields = kUwbFields};
+const ReadingKind UwbRanges::kKind = {.fields = kUwbFields, .topics = kUwbTopics};
 
 }  // namespace ispace

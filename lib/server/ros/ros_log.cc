@@ -15,7 +15,7 @@ constexpr std::uint64_t kEnd = std::numeric_limits<std::uint64_t>::max();
 
 RosLog::RosLog(RosFeed& feed, ByteSink write, std::size_t max_channels)
     : feed_(&feed),
-      file_(std::move(write), "ros2", "cdr", rosSchemas(), {}, McapCompression::Zstd),
+      file_(std::move(write), "ros2", "cdr", rosSchemas(), {}, McapCompression::Zstd, kRunRosTypes),
       max_channels_(max_channels) {
     sync();
     writeNew();

@@ -21,6 +21,12 @@ TEST(RosTypeHash, EqualsThatOfRos) {
         {RosType::MarkerArray, "86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf"},
         {RosType::DiagnosticArray,
          "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"},
+        {RosType::Imu, "7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b"},
+        {RosType::Illuminance, "b954b25f452fcf81a91c9c2a7e3b3fd85c4c873d452aecb3cfd8fd1da732a22d"},
+        {RosType::Temperature, "72514a14126ab9f8a9abec974c78e5610a367b59db5da355ff1fb982d5bad4b8"},
+        {RosType::Int32, "b6578ded3c58c626cfe8d1a6fb6e04f706f97e9f03d2727c9ff4e74b1cef0deb"},
+        {RosType::Float64, "705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a"},
+        {RosType::String, "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"},
         {RosType::Empty, "20b625256f32d5dbc0d04fee44f43c41e51c70d3502f84b4a08e7a9c26a96312"}};
     for (const auto& [type, hash] : kKnown)
         EXPECT_EQ(rosTypeHash(type), "RIHS01_" + std::string(hash)) << nameOf(type);
