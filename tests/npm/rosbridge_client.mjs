@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // rosbridge_client.mjs URL SCANS: a client with roslib. Looks around by rosapi, reads topics as JSON and CBOR, throttled
-// and not, drives the robot r1, calls a service, and appends the scans of /l1/scan to the file SCANS, a line of JSON
+// and not, drives the robot r1, sends it to goals, calls a service, and appends the scans of /l1/scan to the file SCANS, a line of JSON
 // each. Exits with 1 and the reason if one fails.
 import assert from 'assert';
 import fs from 'fs';
 
-const {Ros, Topic, Service} = await import(`${process.env.NODE_PATH}/roslib/dist/RosLib.js`);
+const {Action, Ros, Topic, Service} = await import(`${process.env.NODE_PATH}/roslib/dist/RosLib.js`);
 const [url, scansFile] = process.argv.slice(2);
 
 function fail(why) {
@@ -73,6 +73,21 @@ const repeated = setInterval(order, 200);
 await until(() => place() > start + 0.1, 'the robot to go');
 clearInterval(repeated);
 await until(() => newest.get('/r1/odom').twist.twist.linear.x === 0, 'the watchdog');
+
+// Nav2's action: a goal, one that is refused, and one that is cancelled.
+const navigate = new Action({ros, name: '/navigate_to_pose', actionType: 'nav2_msgs/action/NavigateToPose'});
+const goal = (x, y) => ({pose: {header: {frame_id: 'map'}, pose: {
+    position: {x, y, z: 0}, orientation: {x: 0, y: 0, z: 0, w: 1}}}, behavior_tree: ''});
+const left = [];
+await new Promise((done, failed) =>
+    navigate.sendGoal(goal(0, -0.8), done, feedback => left.push(feedback.distance_remaining), failed));
+assert.ok(left.length > 1 && left.at(-1) < left[0], `feedback: ${left}`);
+const refusal = await new Promise((done, failed) => navigate.sendGoal(goal(90, 0), failed, null, done));
+assert.match(refusal, /goal of r1/);
+const cancelled = await new Promise((done, failed) => {
+    const id = navigate.sendGoal(goal(-1.2, -0.5), failed, () => navigate.cancelGoal(id), done);
+});
+assert.match(cancelled, /cancel/i);
 
 // A service, and one that there is not.
 const reset = name => new Promise((done, failed) => new Service(

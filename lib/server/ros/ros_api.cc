@@ -178,8 +178,15 @@ void writeDeletedParameter(const Question& question, JsonWriter& out) {
                         : "there is no such parameter");
 }
 
-void writeActionServers(const Question& /*question*/, JsonWriter& out) {
-    out.key("action_servers").value(Texts());
+/// A robot that takes goals has the action of Nav2.
+void writeActionServers(const Question& question, JsonWriter& out) {
+    constexpr std::string_view kGoal = "/goal_pose";
+    Texts names;
+    for (const auto& [number, entry] : question.feed.entries())
+        if (const std::string& topic = entry.channel.topic;
+            topic.ends_with(kGoal) && entry.channel.isInput())
+            names.push_back(topic.substr(0, topic.size() - kGoal.size()) + "/navigate_to_pose");
+    out.key("action_servers").value(names);
 }
 
 void writeServiceNode(const Question& question, JsonWriter& out) {

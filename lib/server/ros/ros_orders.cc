@@ -18,6 +18,7 @@ namespace ispace {
 namespace {
 
 constexpr std::size_t kMaxRequests = 16;
+constexpr const char* kRecorded = "this run is a replay: robots go as recorded";
 
 }  // namespace
 
@@ -119,12 +120,13 @@ void RosOrders::obey(const RosChannel& channel, std::string_view message) {
     const RosOrder order = channel.row->decode(channel.type, message);
     if (const auto* tracks = std::get_if<std::vector<RosTrack>>(&order))
         return take(*tracks, stateOf(channel.room));
-    const World& world = stateOf(channel.room).simulation().world();
-    const std::string robot = world.robots()[channel.subject].id;
-    if (state_->simulation().isReplay())
-        return tell_("this run is a replay: robots go as recorded");
+    const std::string robot = robotOf(channel);
+    if (state_->simulation().isReplay()) return tell_(kRecorded);
     if (const auto* twist = std::get_if<RosTwist>(&order)) return drive(robot, *twist);
-    if (const auto* goal = std::get_if<RosGoal>(&order)) return go(robot, goal->pose);
+    if (const auto* goal = std::get_if<RosGoal>(&order)) {
+        go(robot, goal->pose);
+        return;
+    }
     place(robot, std::get<RosPose>(order));
 }
 
@@ -155,7 +157,8 @@ void RosOrders::drive(const std::string& robot, const RosTwist& twist) {
     World& world = state.simulation().world();
     if (!std::isfinite(twist.forward + twist.left + twist.turn.radians()))
         return tell_("the speeds of " + robot + " must be numbers");
-    going_.erase(robot);
+    if (const auto going = going_.find(robot); going != going_.end())
+        endGoal(going, RosGoalEnd::Failed, robot + " has speeds instead");
     state.sync();
     const auto index = world.robotNamed(robot);
     Driven& driven = driven_[robot];
@@ -216,23 +219,87 @@ void RosOrders::place(const std::string& robot, const RosPose& pose) {
 }
 
 /// Sends a robot to a goal, in place of an earlier one.
-void RosOrders::go(const std::string& robot, const RosPose& goal) {
+bool RosOrders::go(const std::string& robot, const RosPose& goal) {
     const auto target = targetOf(robot, goal);
-    if (!target) return;
+    if (!target) return false;
     if (const auto driven = driven_.find(robot); driven != driven_.end()) {
         release(robot, driven->second.hold);
         driven_.erase(driven);
     }
-    std::unique_ptr<Session>& session = going_[robot];
+    Going& going = going_[robot];
+    std::unique_ptr<Session>& session = going.session;
     const bool is_new = session == nullptr;
     if (is_new) session = std::make_unique<Session>(*state_, peer_);
-    if (session->waiting()) return tell_("too many goals at once");
+    if (session->waiting()) {
+        tell_("too many goals at once");
+        return false;
+    }
     const bool has_role = !is_new || ((token_.empty() || ask(robot, *session, "TOKEN " + token_)) &&
                                       ask(robot, *session, "ROBOT " + robot));
     const bool goes = has_role && ask(robot, *session,
                                       "GOTO " + target->at + ',' + formatDouble(target->heading));
     // A refused goal does not end the way to an earlier one.
     if (!goes && is_new) going_.erase(robot);
+    if (goes && going.ended)
+        std::exchange(going.ended, nullptr)(RosGoalEnd::Failed, robot + " has a later goal");
+    return goes;
+}
+
+std::string RosOrders::robotOf(const RosChannel& channel) {
+    return stateOf(channel.room).simulation().world().robots()[channel.subject].id;
+}
+
+std::string RosOrders::pursue(const RosChannel& channel, std::string_view message,
+                              GoalEnded ended) {
+    const RosPose goal = poseOf(message);
+    if (state_->simulation().isReplay()) return kRecorded;
+    const std::string robot = robotOf(channel);
+    // The reasons answer the request, and are no failures of their own.
+    std::string why;
+    const auto tell =
+        std::exchange(tell_, [&why](const std::string& text) { why += why.empty() ? text : ""; });
+    const bool goes = go(robot, goal);
+    tell_ = tell;
+    if (goes) going_.at(robot).ended = std::move(ended);
+    return goes || !why.empty() ? why : "the goal is refused";
+}
+
+std::string RosOrders::cancel(const std::string& robot) {
+    const auto going = going_.find(robot);
+    if (going == going_.end()) return robot + " goes to no goal";
+    Session& session = *going->second.session;
+    session.request("STOP");
+    const std::string answer = session.take();
+    if (answer.starts_with("ERR ")) return answer.substr(0, answer.find('\n'));
+    endGoal(going, RosGoalEnd::Canceled, "");
+    return "";
+}
+
+std::optional<RosProgress> RosOrders::progress(const std::string& robot) const {
+    if (!going_.contains(robot)) return {};
+    const auto worlds = state_->worlds();
+    for (std::size_t room = 0; room < worlds.size(); ++room) {
+        const World& world = *worlds[room].world;
+        const auto mover = world.robotNamed(robot);
+        if (!mover) continue;
+        const RobotStatus status = world.status(*mover);
+        RosProgress out{room, status.pose, 0, std::hypot(status.speed, status.sidespeed)};
+        for (Point2 at = status.pose.position; const Point2& next : world.wayAhead(*mover)) {
+            out.distance += distance(at, next);
+            at = next;
+        }
+        return out;
+    }
+    return {};
+}
+
+/// Frees a robot. \returns the next one
+RosOrders::AllGoing::iterator RosOrders::endGoal(AllGoing::iterator going, RosGoalEnd end,
+                                                 const std::string& why) {
+    const GoalEnded ended = std::move(going->second.ended);
+    const auto next = going_.erase(going);
+    if (ended) ended(end, why);
+    return next;
 }
 
 /// Makes a request of the client that holds a robot. \returns false, and tells why, if it fails
@@ -250,17 +317,22 @@ bool RosOrders::ask(const std::string& robot, Session& session, const std::strin
 /// Frees robots that are at their goals, or cannot go on.
 void RosOrders::watchGoals() {
     for (auto robot = going_.begin(); robot != going_.end();) {
-        Session& session = *robot->second;
+        Session& session = *robot->second.session;
         session.stepped();
-        bool has_ended = session.closing();
+        bool has_ended = session.closing(), has_come = false;
+        std::string why;
         std::istringstream lines(session.take());
         for (std::string line; std::getline(lines, line);) {
             const bool has_failed =
                 line.starts_with("FAIL ") && line.find(" reason=replaced") == std::string::npos;
-            if (has_failed) tell_("robot " + robot->first + " did not come to its goal: " + line);
-            has_ended = has_ended || has_failed || line.starts_with("DONE ");
+            if (has_failed) why = "robot " + robot->first + " did not come to its goal: " + line;
+            has_come = has_come || line.starts_with("DONE ");
+            has_ended = has_ended || has_failed || has_come;
         }
-        robot = has_ended ? going_.erase(robot) : std::next(robot);
+        // The end of a goal of pursue() is its answer.
+        if (!why.empty() && !robot->second.ended) tell_(why);
+        robot = has_ended ? endGoal(robot, has_come ? RosGoalEnd::Reached : RosGoalEnd::Failed, why)
+                          : std::next(robot);
     }
 }
 

@@ -36,6 +36,17 @@ inline constexpr std::string_view kRosEmpty{"\0\1\0\0\0", 5};
 /// Lichtblick repeats its order each second.
 inline constexpr SimTime kRosSilence = std::chrono::milliseconds(1500);
 
+/// How the way of a robot to a goal ended.
+enum class RosGoalEnd { Reached, Canceled, Failed };
+
+/// The rest of a robot's way to its goal.
+struct RosProgress {
+    std::size_t room = 0;  ///< in which the robot is
+    Pose2 pose;
+    double distance = 0;  ///< metres along the way, in that room
+    double speed = 0;     ///< m/s
+};
+
 /// Orders of one client of topics to robots, and its requests to the world.
 ///
 /// A robot is held while orders come; it stops and is free again when none has come for
@@ -56,6 +67,18 @@ class RosOrders {
     [[nodiscard]] bool hasToken() const { return session_.hasToken(); }
     /// Carries out a message to a topic. \throws FormatError if it cannot be read
     void obey(const RosChannel& channel, std::string_view message);
+
+    using GoalEnded = std::function<void(RosGoalEnd end, const std::string& why)>;
+    /// Sends a robot to a goal, as the same message to its topic `goal_pose` does. `ended` is
+    /// called once when the way ends, unless the run or the client ends before. \returns the reason
+    /// why the robot does not go, or "" \throws FormatError if the message cannot be read
+    std::string pursue(const RosChannel& channel, std::string_view message, GoalEnded ended);
+    /// Stops a robot on its way, which ends as Canceled. \returns the reason why it goes on, or ""
+    std::string cancel(const std::string& robot);
+    /// Returns the rest of the way of a robot; empty if it goes to no goal.
+    [[nodiscard]] std::optional<RosProgress> progress(const std::string& robot) const;
+    /// Returns the id of the robot of a channel.
+    [[nodiscard]] std::string robotOf(const RosChannel& channel);
 
     using Answer = std::function<void(bool is_done, std::string_view text)>;
     /// Makes a request of the role WORLD. `answer` gets the words after OK, or the error.
@@ -93,7 +116,14 @@ class RosOrders {
     [[nodiscard]] std::optional<Target> targetOf(const std::string& robot, const RosPose& pose);
     [[nodiscard]] std::optional<Target> targetInRoom(const std::string& robot, const RosPose& pose);
     void place(const std::string& robot, const RosPose& pose);
-    void go(const std::string& robot, const RosPose& goal);
+    /// A robot on its way, as a client that holds it.
+    struct Going {
+        std::unique_ptr<Session> session;
+        GoalEnded ended = nullptr;
+    };
+    using AllGoing = std::map<std::string, Going>;
+    bool go(const std::string& robot, const RosPose& goal);
+    AllGoing::iterator endGoal(AllGoing::iterator going, RosGoalEnd end, const std::string& why);
     bool ask(const std::string& robot, Session& session, const std::string& line);
     void watch();
     void watchGoals();
@@ -104,9 +134,8 @@ class RosOrders {
     std::deque<std::pair<std::string, Answer>> requests_;
     Answer awaited_;  // of the request under way
     std::map<std::string, Driven> driven_;
-    /// Robots on their ways to goals, each as a client that holds it.
-    std::map<std::string, std::unique_ptr<Session>> going_;
-    std::string peer_, token_;  // of those clients
+    AllGoing going_;
+    std::string peer_, token_;  // of those that hold robots on their ways
 };
 
 }  // namespace ispace

@@ -113,15 +113,17 @@ struct RosbridgeDialogue::Op {
 
 void RosbridgeDialogue::receive(std::string_view message, bool is_text) {
     using Self = RosbridgeDialogue;
-    static constexpr std::array<Op, 9> kOps{{{"subscribe", &Self::subscribeTo},
-                                             {"unsubscribe", &Self::unsubscribeFrom},
-                                             {"advertise", &Self::advertise},
-                                             {"unadvertise", &Self::unadvertise},
-                                             {"publish", &Self::publish},
-                                             {"call_service", &Self::callService},
-                                             {"set_level", &Self::ignore},
-                                             {"status", &Self::ignore},
-                                             {"auth", &Self::ignore}}};
+    static constexpr std::array<Op, 11> kOps{{{"subscribe", &Self::subscribeTo},
+                                              {"unsubscribe", &Self::unsubscribeFrom},
+                                              {"advertise", &Self::advertise},
+                                              {"unadvertise", &Self::unadvertise},
+                                              {"publish", &Self::publish},
+                                              {"call_service", &Self::callService},
+                                              {"send_action_goal", &Self::sendGoal},
+                                              {"cancel_action_goal", &Self::cancelGoal},
+                                              {"set_level", &Self::ignore},
+                                              {"status", &Self::ignore},
+                                              {"auth", &Self::ignore}}};
     // The world may have changed since the last step.
     feed().sync();
     if (!is_text) return tell(Level::Error, "requests are JSON, in messages of text");
@@ -239,6 +241,145 @@ void RosbridgeDialogue::publish(const Json& request) {
     orders().obey(*channel, rosMessage(channel->type, message));
 }
 
+// Actions.
+
+namespace {
+
+constexpr std::string_view kNavigate = "/navigate_to_pose", kGoalTopic = "/goal_pose";
+/// Of action_msgs/GoalStatus; rosbridge has 0 for goals that are refused.
+enum GoalStatus { kRefused = 0, kSucceeded = 4, kCanceled = 5, kAborted = 6 };
+
+void writeTime(JsonWriter& json, const char* name, SimTime time) {
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    json.key(name).beginObject().key("sec").value(std::int64_t{time.count() / kSecond});
+    json.key("nanosec").value(std::int64_t{time.count() % kSecond}).endObject();
+}
+
+}  // namespace
+
+/// The goal of an action is one of the robot's topic goal_pose.
+void RosbridgeDialogue::sendGoal(const Json& request) {
+    Goal goal{.id = idOf(request), .action = wordOf(request, "action"), .number = next_goal_++};
+    const std::string name = absolute(goal.action), type = wordOf(request, "action_type");
+    const bool is_known =
+        name.ends_with(kNavigate) && (type.empty() || type == "nav2_msgs/action/NavigateToPose" ||
+                                      type == "nav2_msgs/NavigateToPose");
+    const RosChannel* const channel =
+        is_known ? input(name.substr(0, name.size() - kNavigate.size()) + std::string(kGoalTopic),
+                         RosType::PoseStamped)
+                 : nullptr;
+    if (channel == nullptr)
+        return answerGoal(goal, kRefused,
+                          "there is no action " + excerpt(name) +
+                              (type.empty() ? "" : " of type " + excerpt(type)));
+    const Json& args = memberOf(request, "args");
+    const Json& watched = memberOf(request, "feedback");
+    goal.is_watched = watched.is_boolean() && watched.get<bool>();
+    goal.started = goal.told = state().simulation().world().time();
+    const std::string robot = orders().robotOf(*channel);
+    std::string refusal;
+    try {
+        if (!args.is_object() || !memberOf(args, "pose").is_object())
+            refusal = "the goal has no pose";
+        else
+            refusal = orders().pursue(
+                *channel, rosMessage(RosType::PoseStamped, memberOf(args, "pose")),
+                [this, robot, number = goal.number](RosGoalEnd end, const std::string& why) {
+                    endGoal(robot, number, end, why);
+                });
+    } catch (const FormatError& error) {
+        refusal = error.diagnostics().front().message;
+    }
+    if (!refusal.empty()) return answerGoal(goal, kRefused, refusal);
+    goals_[robot] = std::move(goal);
+}
+
+void RosbridgeDialogue::cancelGoal(const Json& request) {
+    const std::string id = idOf(request);
+    const auto found =
+        std::ranges::find_if(goals_, [&id](const auto& one) { return one.second.id == id; });
+    const std::string why = found == goals_.end() ? "this goal is not under way"
+                                                  : orders().cancel(std::string(found->first));
+    if (!why.empty()) tell(Level::Error, why, id);
+}
+
+/// Cancels the goals of the action that a service of ROS 2 names. \returns false for other services
+bool RosbridgeDialogue::cancelAll(const std::string& service) {
+    constexpr std::string_view kCancel = "/navigate_to_pose/_action/cancel_goal";
+    if (!service.ends_with(kCancel)) return false;
+    std::vector<std::string> robots;
+    for (const auto& [robot, goal] : goals_)
+        if (service.starts_with(absolute(goal.action) + "/")) robots.push_back(robot);
+    for (const std::string& robot : robots)
+        if (const std::string why = orders().cancel(robot); !why.empty()) tell(Level::Error, why);
+    return true;
+}
+
+void RosbridgeDialogue::endGoal(const std::string& robot, std::int64_t number, RosGoalEnd end,
+                                const std::string& why) {
+    const auto found = goals_.find(robot);
+    if (found == goals_.end() || found->second.number != number) return;
+    const Goal goal = std::move(found->second);
+    goals_.erase(found);
+    answerGoal(goal,
+               end == RosGoalEnd::Reached    ? kSucceeded
+               : end == RosGoalEnd::Canceled ? kCanceled
+                                             : kAborted,
+               why);
+}
+
+/// Sends the result of a goal: of a refused one the reason.
+void RosbridgeDialogue::answerGoal(const Goal& goal, int status, const std::string& error) {
+    JsonWriter json;
+    json.beginObject().key("op").value("action_result").key("action").value(goal.action);
+    json.key("values");
+    if (status == kRefused) {
+        json.value(error);
+    } else {
+        json.beginObject().key("error_code").value(status == kAborted ? 1 : 0);
+        json.key("error_msg").value(error).endObject();
+    }
+    json.key("status").value(status).key("result").value(status != kRefused);
+    sendText(json.take() + idMember(goal.id) + '}');
+}
+
+void RosbridgeDialogue::tellProgress(const std::string& robot, Goal& goal) {
+    const auto progress = orders().progress(robot);
+    if (!progress) return;
+    constexpr double kStanding = 0.01;
+    const SimTime now = state().simulation().world().time();
+    goal.told = now;
+    const std::string room = state().worlds()[progress->room].id;
+    const double half = progress->pose.heading.radians() / 2;
+    JsonWriter json;
+    json.beginObject().key("op").value("action_feedback").key("action").value(goal.action);
+    json.key("values").beginObject().key("current_pose").beginObject();
+    json.key("header").beginObject();
+    writeTime(json, "stamp", now);
+    json.key("frame_id").value(room.empty() ? std::string(kRosWorld) : rosName(room)).endObject();
+    json.key("pose").beginObject().key("position").beginObject();
+    json.key("x").value(progress->pose.position.x).key("y").value(progress->pose.position.y);
+    json.key("z").value(0.0).endObject().key("orientation").beginObject();
+    json.key("x").value(0.0).key("y").value(0.0).key("z").value(std::sin(half));
+    json.key("w").value(std::cos(half)).endObject().endObject().endObject();
+    writeTime(json, "navigation_time", now - goal.started);
+    const double left = progress->speed > kStanding ? progress->distance / progress->speed : 0;
+    writeTime(json, "estimated_time_remaining", SimTime(std::llround(left * 1e9)));
+    json.key("number_of_recoveries").value(0);
+    json.key("distance_remaining").value(progress->distance).endObject();
+    sendText(json.take() + idMember(goal.id) + '}');
+}
+
+/// Feedback comes twice in a simulated second, but not to a client that is behind.
+void RosbridgeDialogue::stepped() {
+    constexpr SimTime kPeriod = std::chrono::milliseconds(500);
+    RosDialogue::stepped();
+    if (goals_.empty() || hasAnswers()) return;
+    const SimTime now = state().simulation().world().time();
+    for (auto& [robot, goal] : goals_)
+        if (goal.is_watched && now - goal.told >= kPeriod) tellProgress(robot, goal);
+}
+
 // Services.
 
 void RosbridgeDialogue::callService(const Json& request) {
@@ -248,6 +389,7 @@ void RosbridgeDialogue::callService(const Json& request) {
                                    memberOf(request, "args")))
         return answer(id, service, true, *values);
     if (name == "/rosapi/set_param") return setParameter(memberOf(request, "args"), id, service);
+    if (cancelAll(name)) return answer(id, service, true, "{}");
     const auto services = rosServices();
     const auto found = std::find_if(services.begin(), services.end(),
                                     [&](const RosService& one) { return one.name == name; });

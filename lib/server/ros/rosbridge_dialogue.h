@@ -20,6 +20,7 @@ class RosbridgeDialogue final : public RosDialogue {
         : RosDialogue(state, feed, std::move(peer)) {}
 
     void receive(std::string_view message, bool is_text) override;
+    void stepped() override;
 
   private:
     using Json = nlohmann::json;
@@ -33,6 +34,13 @@ class RosbridgeDialogue final : public RosDialogue {
         std::map<std::string, One> ids;
         Form form = Form::Json;  ///< of the newest request
         std::string name = {};   ///< the topic as that request calls it, perhaps without its slash
+    };
+    /// A goal of the action navigate_to_pose.
+    struct Goal {
+        std::string id, action;
+        std::int64_t number = 0;
+        SimTime started{}, told{};  ///< told: its newest feedback
+        bool is_watched = false;    ///< the client wants feedback
     };
     struct Op;
 
@@ -49,6 +57,13 @@ class RosbridgeDialogue final : public RosDialogue {
     void publish(const Json& request);
     void callService(const Json& request);
     void setParameter(const Json& arguments, const std::string& id, const std::string& service);
+    void sendGoal(const Json& request);
+    void cancelGoal(const Json& request);
+    bool cancelAll(const std::string& service);
+    void endGoal(const std::string& robot, std::int64_t number, RosGoalEnd end,
+                 const std::string& why);
+    void answerGoal(const Goal& goal, int status, const std::string& error);
+    void tellProgress(const std::string& robot, Goal& goal);
     void ignore(const Json& /*request*/) {}
     void apply(const std::string& topic, const Wish& wish);
     void answer(const std::string& id, std::string_view service, bool is_done,
@@ -57,6 +72,8 @@ class RosbridgeDialogue final : public RosDialogue {
     std::map<std::string, Wish> wishes_;         // by topic, which may not exist yet
     std::uint32_t newest_ = 0;                   // number of the last topic seen
     std::map<std::string, RosType> advertised_;  // types by topic
+    std::map<std::string, Goal> goals_;          // by robot
+    std::int64_t next_goal_ = 1;
 };
 
 }  // namespace ispace

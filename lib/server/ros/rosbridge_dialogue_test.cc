@@ -165,7 +165,8 @@ TEST(Rosbridge, AnswersRosapi) {
     EXPECT_EQ(talk.call("rosapi/has_param", {{"name", "none"}})["values"]["exists"], false);
     EXPECT_EQ(talk.call("rosapi/delete_param", {{"name", "clock.rate"}})["values"]["successful"],
               false);
-    EXPECT_EQ(talk.call("rosapi/action_servers")["values"]["action_servers"], json::array());
+    EXPECT_EQ(talk.call("rosapi/action_servers")["values"]["action_servers"],
+              json({"/r1/navigate_to_pose", "/r2/navigate_to_pose"}));
     const json set = talk.call("rosapi/set_param",
                                {{"name", "/simrun:clock.paused"}, {"value", "\"x\""}})["values"];
     EXPECT_EQ(set["successful"], false);
@@ -242,6 +243,86 @@ TEST(Rosbridge, ReadsOrdersWithoutAdvertisementByTheirMembers) {
     const json answer = talk.text();
     EXPECT_EQ(answer["level"], "error");
     EXPECT_EQ(answer["msg"], "geometry_msgs/msg/Twist has no member `velocity`");
+}
+
+/// A goal of r2 as roslib sends it.
+json goalOf(double x, double y, const std::string& id = "g") {
+    return {{"op", "send_action_goal"},
+            {"id", id},
+            {"action", "/r2/navigate_to_pose"},
+            {"action_type", "nav2_msgs/action/NavigateToPose"},
+            {"feedback", true},
+            {"args",
+             {{"pose",
+               {{"header", {{"frame_id", "map"}}},
+                {"pose", {{"position", {{"x", x}, {"y", y}}}, {"orientation", {{"w", 1.0}}}}}}},
+              {"behavior_tree", ""}}}};
+}
+
+TEST(Rosbridge, NavigatesToGoalsOfActions) {
+    BridgeTalk talk;
+    talk.send(goalOf(-2, -1));
+    std::vector<double> left;
+    json last = json::object();
+    for (int i = 0; i < 400 && last.value("op", "") != "action_result"; ++i) {
+        talk.step();
+        for (json message = talk.text(); !message.is_null(); message = talk.text()) {
+            last = message;
+            EXPECT_EQ(message["id"], "g");
+            EXPECT_EQ(message["action"], "/r2/navigate_to_pose");
+            if (message["op"] != "action_feedback") continue;
+            left.push_back(message["values"]["distance_remaining"]);
+            EXPECT_EQ(message["values"]["current_pose"]["header"]["frame_id"], "map");
+        }
+    }
+    EXPECT_EQ(last["op"], "action_result") << last;
+    EXPECT_EQ(last["status"], 4);
+    EXPECT_EQ(last["result"], true);
+    ASSERT_GT(left.size(), 5U);
+    EXPECT_GT(left.front(), 3);
+    EXPECT_LT(left.back(), 1);
+    const Point2 at = talk.room.world.status(1).pose.position;
+    EXPECT_NEAR(distance(at, Point2{-2, -1}), 0, 0.05);
+}
+
+TEST(Rosbridge, CancelsReplacesAndRefusesGoals) {
+    BridgeTalk talk;
+    talk.send(goalOf(40, 0));
+    const json refused = talk.text();
+    EXPECT_EQ(refused["op"], "action_result");
+    EXPECT_EQ(refused["result"], false);
+    EXPECT_TRUE(refused["values"].is_string()) << refused;
+    talk.send(goalOf(-2, -1, "first"));
+    talk.step(3);
+    talk.send(goalOf(3, 1, "second"));
+    const json replaced = talk.text();
+    EXPECT_EQ(replaced["id"], "first");
+    EXPECT_EQ(replaced["status"], 6) << replaced;
+    talk.step(3);
+    talk.send({{"op", "cancel_action_goal"}, {"id", "second"}, {"action", "/r2/navigate_to_pose"}});
+    const json canceled = talk.text();
+    EXPECT_EQ(canceled["id"], "second");
+    EXPECT_EQ(canceled["status"], 5) << canceled;
+    talk.step(20);
+    EXPECT_EQ(talk.room.world.status(1).speed, 0);
+    const auto hold = talk.state.hold("r2");
+    ASSERT_TRUE(hold) << "it is free";
+    talk.state.release("r2", *hold);
+    talk.drain();
+    talk.send({{"op", "cancel_action_goal"}, {"id", "second"}, {"action", "/r2/navigate_to_pose"}});
+    EXPECT_EQ(talk.text()["op"], "status");
+    talk.send(goalOf(3, 1, "third"));
+    talk.send({{"op", "call_service"}, {"service", "/r2/navigate_to_pose/_action/cancel_goal"}});
+    EXPECT_EQ(talk.text()["status"], 5);
+    EXPECT_EQ(talk.text()["op"], "service_response");
+    json other = goalOf(0, 0);
+    other["action"] = "/r2/dock_robot";
+    talk.send(other);
+    EXPECT_EQ(talk.text()["result"], false);
+    other = goalOf(0, 0);
+    other["args"] = "";
+    talk.send(other);
+    EXPECT_EQ(talk.text()["result"], false);
 }
 
 }  // namespace
