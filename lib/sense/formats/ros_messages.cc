@@ -283,8 +283,11 @@ std::string rangeMessage(const RosHeader& header, const SonarRing& ring, float r
     return out.put(range).put(0.0F).take();
 }
 
-std::string peopleMessage(const RosHeader& header, std::span<const RosPerson> people) {
-    constexpr std::array<float, 4> kBody{0.85F, 0.45F, 0.1F, 1}, kLetters{1, 1, 1, 1};
+namespace {
+
+std::string bodiesMessage(const RosHeader& header, std::span<const RosPerson> people,
+                          const std::array<float, 4>& body) {
+    constexpr std::array<float, 4> kLetters{1, 1, 1, 1};
     CdrWriter out;
     out.count(1 + 2 * people.size());
     putDeletion(out, header);
@@ -296,7 +299,7 @@ std::string peopleMessage(const RosHeader& header, std::span<const RosPerson> pe
                         .position = {place.x, place.y, person.height / 2},
                         .heading = person.pose.heading,
                         .scale = {width, width, person.height},
-                        .color = kBody});
+                        .color = body});
         putMarker(out, {.header = header,
                         .id = i++,
                         .type = MarkerType::Text,
@@ -306,6 +309,16 @@ std::string peopleMessage(const RosHeader& header, std::span<const RosPerson> pe
                         .text = person.id});
     }
     return out.take();
+}
+
+}  // namespace
+
+std::string peopleMessage(const RosHeader& header, std::span<const RosPerson> people) {
+    return bodiesMessage(header, people, {0.85F, 0.45F, 0.1F, 1});
+}
+
+std::string robotsMessage(const RosHeader& header, std::span<const RosPerson> robots) {
+    return bodiesMessage(header, robots, {0.15F, 0.4F, 0.8F, 1});
 }
 
 std::string roomMessage(const RosHeader& header, std::string_view mesh) {

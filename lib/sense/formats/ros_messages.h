@@ -128,6 +128,8 @@ struct RosPerson {
 };
 /// Writes a cylinder and a name for each person; earlier markers of the topic disappear.
 std::string peopleMessage(const RosHeader& header, std::span<const RosPerson> people);
+/// Writes robots likewise, in another colour.
+std::string robotsMessage(const RosHeader& header, std::span<const RosPerson> robots);
 /// Writes a mesh by its URI, in the header's frame.
 std::string roomMessage(const RosHeader& header, std::string_view mesh);
 

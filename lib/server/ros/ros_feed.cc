@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "scene/room_state.h"
 #include "server/ros/ros_text.h"
 
 namespace ispace {
@@ -146,6 +147,7 @@ void RosFeed::stepped() {
 void RosFeed::update(Entry& entry) {
     const RosChannel& channel = entry.channel;
     if (channel.isInput()) return;
+    if (channel.state) return updateState(entry);
     const World& world = worlds_[channel.room].world();
     if (channel.sensor != nullptr) {
         const Sensor& sensor = world.sensors()[channel.subject];
@@ -164,6 +166,22 @@ void RosFeed::update(Entry& entry) {
         return drawMap(channel.room);
     publish(entry, period,
             channel.row->encode(moment(channel.room), channel.subject, channel.part));
+}
+
+/// Publishes a state after a change of the world that has set it.
+void RosFeed::updateState(Entry& entry) {
+    if (std::exchange(entry.period, 0) == 0) return;
+    const RosChannel& channel = entry.channel;
+    Room& room = rooms_[channel.room];
+    if (std::exchange(room.state_changes, room.changes) != room.changes) {
+        room.states.clear();
+        for (RoomState& one : roomStates(worlds_[channel.room].world().scene()))
+            room.states[{std::move(one.id), std::move(one.key)}] = std::move(one.value);
+    }
+    const auto value = room.states.find({channel.state->id, channel.state->key});
+    if (value == room.states.end()) return;
+    std::string message = stateMessage(channel.type, value->second);
+    if (!entry.newest || *entry.newest->cdr() != message) publish(entry, 0, std::move(message));
 }
 
 void RosFeed::publish(Entry& entry, std::int64_t period, std::string message) {

@@ -105,11 +105,15 @@ class RosFeed {
         std::int64_t sonar_steps = -1;
         std::shared_ptr<const std::string> mesh = {};  // of the world `mesh_changes`
         std::int64_t mesh_changes = -1;
+        // Values of states by id and key, of the world `state_changes`.
+        std::map<std::pair<std::string, std::string>, std::string> states = {};
+        std::int64_t state_changes = -1;
     };
     /// A sensor by room and index.
     using SensorOfRoom = std::pair<std::size_t, std::size_t>;
 
     void update(Entry& entry);
+    void updateState(Entry& entry);
     void publish(Entry& entry, std::int64_t period, std::string message);
     [[nodiscard]] bool hasChanged();
     void number(Entries& entries, bool& is_changed);

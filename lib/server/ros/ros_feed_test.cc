@@ -5,8 +5,11 @@
 
 #include <nlohmann/json.hpp>
 #include <set>
+#include <thread>
 
+#include "server/ros/ros_orders.h"
 #include "sim/sensor_reading.h"
+#include "support/test_source.h"
 #include "support/test_world.h"
 
 namespace ispace {
@@ -18,9 +21,14 @@ using nlohmann::json;
 struct Fed {
     explicit Fed(const std::string& more = "", RosScenery scenery = {})
         : room({Clock::Kind::Step, 1}, {}, "", more),
-          state(room.simulation),
+          state(room.simulation, limits()),
           feed(state, std::move(scenery)) {}
 
+    static ServerLimits limits() {
+        ServerLimits limits;
+        limits.source = std::make_shared<const testing::TextSource>();
+        return limits;
+    }
     void step(std::int64_t count = 1) {
         room.simulation.allow(count);
         for (std::int64_t i = 0; i < count; ++i) {
@@ -124,6 +132,48 @@ TEST(RosFeed, EachKindOfSensorHasTopics) {
     EXPECT_EQ(fed.newest("/w1/on")["data"], "[\"h1\"]");
     EXPECT_EQ(fed.newest("/g1/in")["data"], 0);
     EXPECT_EQ(fed.newest("/f1/tags")["data"], "[]");
+}
+
+TEST(RosFeed, StatesAreTopicsOnceTheyChange) {
+    Fed fed(
+        "lamp id=main-light at=0,0 on=yes level=0.5 color=1,0.5,0\n"
+        "heater id=warm at=2,0 on=yes\n");
+    for (const auto& [topic, type] : {std::pair("/main_light/on", RosType::Bool),
+                                      {"/main_light/on/set", RosType::Bool},
+                                      {"/main_light/level", RosType::Float64},
+                                      {"/main_light/color", RosType::String},
+                                      {"/warm/on", RosType::Bool}}) {
+        ASSERT_NE(fed.number(topic), 0U) << topic;
+        EXPECT_EQ(fed.entry(topic).channel.type, type) << topic;
+        fed.feed.want(fed.number(topic));
+    }
+    EXPECT_EQ(fed.newest("/main_light/on")["data"], true);
+    EXPECT_EQ(fed.newest("/main_light/level")["data"], 0.5);
+    EXPECT_EQ(fed.newest("/main_light/color")["data"], "1,0.5,0");
+    EXPECT_EQ(fed.newest("/warm/on")["data"], true);
+    RosOrders orders(fed.state, [](const std::string& why) { FAIL() << why; });
+    orders.obey(fed.entry("/main_light/on/set").channel, boolMessage(false));
+    orders.obey(fed.entry("/main_light/level/set").channel, numberMessage(0.25));
+    const auto kept = fed.entry("/warm/on").newest;
+    for (int i = 0; i < 2000 && fed.newest("/main_light/level")["data"] != 0.25; ++i) {
+        fed.state.collect();
+        orders.proceed();
+        orders.stepped();
+        fed.feed.stepped();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_EQ(fed.newest("/main_light/on")["data"], false);
+    EXPECT_EQ(fed.newest("/main_light/level")["data"], 0.25);
+    EXPECT_EQ(fed.entry("/warm/on").newest, kept) << "it has not changed";
+}
+
+TEST(RosFeed, RobotsAreMarkers) {
+    Fed fed;
+    fed.feed.want(fed.number("/robots"));
+    const json markers = fed.newest("/robots")["markers"];
+    ASSERT_EQ(markers.size(), 5U) << "a deletion, two bodies, two names";
+    EXPECT_EQ(markers[1]["type"], 3);
+    EXPECT_EQ(markers[2]["text"], "r1");
 }
 
 TEST(RosFeed, FramesLeadFromTheMapToEachSensor) {

@@ -117,6 +117,7 @@ void RosOrders::takeAnswer() {
 }
 
 void RosOrders::obey(const RosChannel& channel, std::string_view message) {
+    if (channel.state) return set(*channel.state, stateValue(channel.type, message));
     const RosOrder order = channel.row->decode(channel.type, message);
     if (const auto* tracks = std::get_if<std::vector<RosTrack>>(&order))
         return take(*tracks, stateOf(channel.room));
@@ -150,6 +151,21 @@ void RosOrders::take(const std::vector<RosTrack>& tracks, ServerState& state) {
                                        .place = track.place}))
             return tell_("too many tracks are told");
     }
+}
+
+/// Sets a state of a thing, as the request ACT does.
+void RosOrders::set(const RosState& state, const std::string& value) {
+    constexpr std::size_t kMaxValue = 256;
+    const std::string name = state.name + ' ' + state.key;
+    if (state_->simulation().isReplay())
+        return tell_("this run is a replay: things are as recorded");
+    if (value.empty() || value.size() > kMaxValue ||
+        value.find_first_of(std::string_view(" \t\r\n\0", 5)) != std::string::npos)
+        return tell_("this is no value of " + name);
+    if (!mayRequest()) return tell_("too many commands at once");
+    request("ACT " + name + '=' + value, [this](bool is_done, std::string_view text) {
+        if (!is_done) tell_(std::string(text));
+    });
 }
 
 void RosOrders::drive(const std::string& robot, const RosTwist& twist) {

@@ -9,7 +9,10 @@
 #include <set>
 #include <utility>
 
+#include "base/number.h"
 #include "scene/robot.h"
+#include "scene/room_state.h"
+#include "sense/formats/cdr.h"
 #include "server/server_state.h"
 #include "sim/sensor_reading.h"
 
@@ -223,6 +226,16 @@ std::string peopleOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t
     return peopleMessage(moment.header(), people);
 }
 
+std::string robotsOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
+    const World& world = moment.world();
+    std::vector<RosPerson> robots;
+    for (std::size_t i = 0; i < world.robots().size(); ++i) {
+        const Mover& mover = world.movers()[i];
+        robots.push_back({mover.id, world.status(i).pose, mover.model.radius, mover.model.height});
+    }
+    return robotsMessage(moment.header(), robots);
+}
+
 std::string diagnosticsOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
     const Simulation& simulation = *moment.room.simulation;
     const bool is_late = simulation.lost() > SimTime(0);
@@ -287,7 +300,8 @@ constexpr RosRow kRows[] = {
     {"cmd_vel", RosType::Twist, Of::Robot, 0, kNewest, nullptr, speedsOf},
     {"cmd_vel", RosType::TwistStamped, Of::Robot, 0, kNewest, nullptr, speedsOf},
     {"initialpose", RosType::PoseWithCovarianceStamped, Of::Robot, 0, kNewest, nullptr, placeOf},
-    {"goal_pose", RosType::PoseStamped, Of::Robot, 0, kNewest, nullptr, goalOf}};
+    {"goal_pose", RosType::PoseStamped, Of::Robot, 0, kNewest, nullptr, goalOf},
+    {"robots", RosType::MarkerArray, Of::Room, 10, kDefault, robotsOf}};
 // NOLINTEND(readability-magic-numbers)
 
 /// Adds the channels of a row about one robot.
@@ -345,6 +359,54 @@ void addOf(const RosRow& row, std::span<const RosRoom> rooms, std::vector<RosCha
 
 std::span<const RosRow> rosRows() { return kRows; }
 
+std::string stateMessage(RosType type, const std::string& value) {
+    if (type == RosType::Bool) return boolMessage(value == "1");
+    if (type == RosType::String) return textMessage(value);
+    const auto number = parseDouble(value);
+    return number ? numberMessage(*number) : "";
+}
+
+std::string stateValue(RosType type, std::string_view message) {
+    CdrReader in(message);
+    if (type == RosType::Bool) return in.number<std::uint8_t>() != 0 ? "1" : "0";
+    if (type == RosType::Float64) return formatDouble(in.number<double>());
+    return std::string(in.text());
+}
+
+namespace {
+
+RosType typeOf(const KeySpec* spec) {
+    if (spec == nullptr || spec->type == KeyType::Number) return RosType::Float64;
+    return spec->type == KeyType::Flag ? RosType::Bool : RosType::String;
+}
+
+/// Adds the states of a room and their commands. \param taken names of topics
+void addStates(const RosRoom& room, std::size_t index, std::set<std::string>& taken,
+               std::vector<RosChannel>& out) {
+    const Scene& scene = room.world().scene();
+    std::size_t i = 0;  // of the record: states are in their order
+    for (RoomState& state : roomStates(scene)) {
+        while (scene.ids[i] != state.id) ++i;
+        const std::vector<std::string> keys = stateKeysOf(scene.records[i].keyword());
+        const bool is_set = std::find(keys.begin(), keys.end(), state.key) != keys.end();
+        const KeySpec* const spec = is_set ? scene.records[i].schema().find(state.key) : nullptr;
+        const std::string name = nameAcross(room.id, state.id);
+        RosChannel channel{.topic = uniqueName(taken, "/" + rosName(name) + "/" + state.key),
+                           .type = typeOf(spec),
+                           .quality = kLatched,
+                           .room = index,
+                           .state = RosState{std::move(state.id), std::move(state.key), name}};
+        out.push_back(channel);
+        if (!is_set) continue;
+        channel.topic = uniqueName(taken, channel.topic + "/set");
+        channel.quality = kNewest;
+        channel.state->is_command = true;
+        out.push_back(std::move(channel));
+    }
+}
+
+}  // namespace
+
 std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms) {
     std::vector<RosChannel> out;
     for (const RosRow& row : kRows) addOf(row, rooms, out);
@@ -362,6 +424,9 @@ std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms) {
                      .sensor = topic});
         }
     }
+    std::set<std::string> taken;
+    for (const RosChannel& channel : out) taken.insert(channel.topic);
+    for (std::size_t k = 0; k < rooms.size(); ++k) addStates(rooms[k], k, taken, out);
     return out;
 }
 

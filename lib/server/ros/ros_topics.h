@@ -112,22 +112,36 @@ struct RosRow {
 };
 std::span<const RosRow> rosRows();
 
+/// A state of a thing, or the commands that set it.
+struct RosState {
+    std::string id, key;
+    std::string name;  ///< the id across the worlds of the run
+    bool is_command = false;
+};
+/// Writes the value of a state as a Bool, a Float64 or a String; "" if it is none.
+std::string stateMessage(RosType type, const std::string& value);
+/// Reads a command: a value of the record language. \throws FormatError
+std::string stateValue(RosType type, std::string_view message);
+
 /// A topic of a scene.
 struct RosChannel {
     std::string topic;  ///< "/r1/odom"
     RosType type = RosType::Clock;
     double rate = 0;
     RosQuality quality = kSensorData;
-    std::size_t room = 0;              ///< index of the world
-    std::size_t subject = 0;           ///< index of the robot or the sensor in it
-    std::size_t part = 0;              ///< of the sonar or bumper
-    const RosRow* row = nullptr;       ///< null: a sensor's topic
-    const RosTopic* sensor = nullptr;  ///< null: a row's topic
+    std::size_t room = 0;                ///< index of the world
+    std::size_t subject = 0;             ///< index of the robot or the sensor in it
+    std::size_t part = 0;                ///< of the sonar or bumper
+    const RosRow* row = nullptr;         ///< null: a topic of a sensor or a state
+    const RosTopic* sensor = nullptr;    ///< null: a topic of a row or a state
+    std::optional<RosState> state = {};  ///< of neither a row nor a sensor
 
-    [[nodiscard]] bool isInput() const { return row != nullptr && row->decode != nullptr; }
+    [[nodiscard]] bool isInput() const {
+        return state ? state->is_command : row != nullptr && row->decode != nullptr;
+    }
 };
-/// Returns all topics of the worlds, rows first. Inputs that accept two types are two channels.
-/// Cabins of lifts and flights of stairs have neither map nor mesh.
+/// Returns all topics of the worlds: of rows, of sensors, of states. Inputs that accept two types
+/// are two channels. Cabins of lifts and flights of stairs have neither map nor mesh.
 std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms);
 
 }  // namespace ispace

@@ -225,14 +225,13 @@ void RosbridgeDialogue::publish(const Json& request) {
     if (known != advertised_.end()) {
         channel = input(topic, known->second);
     } else {
-        // Rows of one topic differ in their types: the first that has the message's members.
-        for (const RosRow& row : rosRows()) {
-            if (row.decode == nullptr) continue;
-            const RosChannel* const one = input(topic, row.type);
-            if (one == nullptr) continue;
-            if (channel == nullptr) channel = one;
-            if (!hasMembersOf(message, row.type)) continue;
-            channel = one;
+        // Inputs of one topic differ in their types: the first that has the message's members.
+        for (const std::uint32_t number : feed().numbersOf(topic)) {
+            const RosChannel& one = feed().entries().at(number).channel;
+            if (!one.isInput()) continue;
+            if (channel == nullptr) channel = &one;
+            if (!hasMembersOf(message, one.type)) continue;
+            channel = &one;
             break;
         }
     }
