@@ -66,7 +66,9 @@ void RosFeed::number(Entries& entries, bool& is_changed) {
     std::map<std::pair<std::string, RosType>, std::uint32_t> known;
     for (const auto& [number, entry] : entries_)
         known.emplace(std::pair(entry.channel.topic, entry.channel.type), number);
-    for (RosChannel& channel : rosChannels(worlds_)) {
+    // It stays the same when others come.
+    lone_ = loneRobot(worlds_, lone_);
+    for (RosChannel& channel : rosChannels(worlds_, lone_)) {
         const auto old = known.find({channel.topic, channel.type});
         const bool is_new = old == known.end();
         const std::uint32_t number = is_new ? next_number_++ : old->second;

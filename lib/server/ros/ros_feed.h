@@ -127,6 +127,7 @@ class RosFeed {
     RosScenery scenery_;
     std::vector<RosRoom> worlds_;  // of the run
     std::vector<Room> rooms_;      // in the same order
+    std::string lone_;             // robot whose topics have names without a prefix, too
     Entries entries_;
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> numbers_;  // by topic
     std::set<std::uint32_t> wanted_;                                          // topics

@@ -273,6 +273,20 @@ TEST(RosFeed, TopicsKeepTheirNumbersInAChangedWorld) {
     EXPECT_EQ(fed.number("/r1/odom"), 0U);
     EXPECT_NE(fed.number("/r9/odom"), 0U);
     EXPECT_NE(fed.number("/cmd_vel"), 0U) << "one robot";
+    EXPECT_EQ(fed.number("/scan"), 0U) << "without a laser";
+    const std::uint32_t odometry = fed.number("/odom");
+    fed.feed.want(odometry);
+    EXPECT_EQ(fed.newest("/odom")["child_frame_id"], "r9");
+    fed.room.world.change(testing::scene("ispace size=8,6\n",
+                                         "robot id=r0 at=2,0\nrobot id=r9 at=0,0\n"
+                                         "laser id=a on=r0\nlaser id=b on=r9 fov=4 step=2\n"
+                                         "laser id=c on=r9 fov=4 step=2\n"));
+    fed.state.sync();
+    fed.feed.stepped();
+    EXPECT_EQ(fed.number("/odom"), odometry) << "the robot that was alone keeps it";
+    EXPECT_EQ(fed.newest("/odom")["child_frame_id"], "r9");
+    fed.feed.want(fed.number("/scan"));
+    EXPECT_EQ(fed.newest("/scan")["header"]["frame_id"], "b") << "of the first on that robot";
 }
 
 TEST(RosFeed, EqualNamesGetNumbers) {

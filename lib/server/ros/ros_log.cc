@@ -37,7 +37,7 @@ void RosLog::sync() {
     const RosFeed::Entries& entries = feed_->entries();
     std::erase_if(lines_, [&entries](const auto& one) { return !entries.contains(one.first); });
     for (const auto& [number, entry] : entries) {
-        if (entry.channel.isInput() || lines_.contains(number)) continue;
+        if (entry.channel.isInput() || entry.channel.is_alias || lines_.contains(number)) continue;
         if (channels_ == max_channels_) {
             left_out_.insert(entry.channel.topic);
             continue;

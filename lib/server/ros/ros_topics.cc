@@ -326,14 +326,14 @@ void addOf(const RosRow& row, const RosRoom& room, std::size_t index, std::size_
 }
 
 /// Adds the channels of a row, of all rooms.
-void addOf(const RosRow& row, std::span<const RosRoom> rooms, std::vector<RosChannel>& out) {
+void addOf(const RosRow& row, std::span<const RosRoom> rooms, const std::string& lone,
+           std::vector<RosChannel>& out) {
     if (row.subject == Of::World)
         out.push_back({.topic = "/" + std::string(row.name),
                        .type = row.type,
                        .rate = row.rate,
                        .quality = row.quality,
                        .row = &row});
-    std::size_t robots = 0;
     for (std::size_t k = 0; k < rooms.size(); ++k) {
         const RosRoom& room = rooms[k];
         // A latched row is about the room itself.
@@ -346,13 +346,38 @@ void addOf(const RosRow& row, std::span<const RosRoom> rooms, std::vector<RosCha
                            .row = &row});
         if (row.subject == Of::World || row.subject == Of::Room) continue;
         for (std::size_t i = 0; i < room.world().robots().size(); ++i) addOf(row, room, k, i, out);
-        robots += room.world().robots().size();
     }
     // Programs for one robot know no name of it.
-    if (row.decode == nullptr || robots != 1 || row.subject != Of::Robot) return;
-    const std::size_t room = out.back().room;
-    out.push_back(
-        {.topic = "/" + std::string(row.name), .type = row.type, .room = room, .row = &row});
+    if (row.subject != Of::Robot || lone.empty()) return;
+    for (std::size_t k = 0; k < rooms.size(); ++k)
+        for (std::size_t i = 0; i < rooms[k].world().robots().size(); ++i)
+            if (rooms[k].world().robots()[i].id == lone)
+                out.push_back({.topic = "/" + std::string(row.name),
+                               .type = row.type,
+                               .rate = row.rate,
+                               .quality = row.decode != nullptr ? kSensorData : row.quality,
+                               .room = k,
+                               .subject = i,
+                               .row = &row,
+                               .is_alias = true});
+}
+
+/// Adds the topics of the sensors on a robot without their names, of several the first.
+void addLone(std::span<const RosRoom> rooms, const std::string& lone,
+             std::vector<RosChannel>& out) {
+    std::vector<RosChannel> aliases;
+    std::set<std::string> seen;
+    for (const RosChannel& channel : out) {
+        if (channel.sensor == nullptr) continue;
+        const World& world = rooms[channel.room].world();
+        const Sensor& sensor = world.sensors()[channel.subject];
+        if (!sensor.mount || world.robots()[sensor.mount->robot].id != lone) continue;
+        if (!seen.insert("/" + std::string(channel.sensor->name)).second) continue;
+        aliases.push_back(channel);
+        aliases.back().topic = "/" + std::string(channel.sensor->name);
+        aliases.back().is_alias = true;
+    }
+    out.insert(out.end(), aliases.begin(), aliases.end());
 }
 
 }  // namespace
@@ -407,9 +432,22 @@ void addStates(const RosRoom& room, std::size_t index, std::set<std::string>& ta
 
 }  // namespace
 
-std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms) {
+std::string loneRobot(std::span<const RosRoom> rooms, const std::string& lone) {
+    std::size_t count = 0;
+    std::string only;
+    for (const RosRoom& room : rooms)
+        for (const PlacedRobot& robot : room.world().robots()) {
+            if (robot.id == lone) return lone;
+            only = robot.id;
+            ++count;
+        }
+    return count == 1 ? only : "";
+}
+
+std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms, const std::string& known) {
+    const std::string lone = loneRobot(rooms, known);
     std::vector<RosChannel> out;
-    for (const RosRow& row : kRows) addOf(row, rooms, out);
+    for (const RosRow& row : kRows) addOf(row, rooms, lone, out);
     for (std::size_t k = 0; k < rooms.size(); ++k) {
         const World& world = rooms[k].world();
         for (std::size_t i = 0; i < world.sensors().size(); ++i) {
@@ -424,6 +462,7 @@ std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms) {
                      .sensor = topic});
         }
     }
+    if (!lone.empty()) addLone(rooms, lone, out);
     std::set<std::string> taken;
     for (const RosChannel& channel : out) taken.insert(channel.topic);
     for (std::size_t k = 0; k < rooms.size(); ++k) addStates(rooms[k], k, taken, out);

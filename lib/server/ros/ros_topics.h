@@ -135,6 +135,7 @@ struct RosChannel {
     const RosRow* row = nullptr;         ///< null: a topic of a sensor or a state
     const RosTopic* sensor = nullptr;    ///< null: a topic of a row or a state
     std::optional<RosState> state = {};  ///< of neither a row nor a sensor
+    bool is_alias = false;               ///< a robot's topic without its name
 
     [[nodiscard]] bool isInput() const {
         return state ? state->is_command : row != nullptr && row->decode != nullptr;
@@ -142,6 +143,10 @@ struct RosChannel {
 };
 /// Returns all topics of the worlds: of rows, of sensors, of states. Inputs that accept two types
 /// are two channels. Cabins of lifts and flights of stairs have neither map nor mesh.
-std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms);
+/// \param lone robot whose topics, and those of the first sensors on it, also have names without a
+/// prefix, if it is there; else the only one
+std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms, const std::string& lone = {});
+/// Returns the id of that robot, "" for none.
+std::string loneRobot(std::span<const RosRoom> rooms, const std::string& lone);
 
 }  // namespace ispace
