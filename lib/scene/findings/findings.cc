@@ -126,9 +126,15 @@ void checkCollisions(CheckContext& context, std::size_t record, std::vector<Find
     context.circles().check(record, findings);
 }
 
+/// A check of an extension: one of both.
+struct AddedCheck {
+    RecordCheck check = nullptr;
+    RecordCheckMaker make = nullptr;
+};
+
 /// The checks of extensions, by keyword.
-std::multimap<std::string, RecordCheck, std::less<>>& recordChecks() {
-    static std::multimap<std::string, RecordCheck, std::less<>> checks;
+std::multimap<std::string, AddedCheck, std::less<>>& recordChecks() {
+    static std::multimap<std::string, AddedCheck, std::less<>> checks;
     return checks;
 }
 
@@ -136,7 +142,9 @@ void checkRecords(CheckContext& context, std::size_t record, std::vector<Finding
     if (record >= context.scene.records.size() || recordChecks().empty()) return;
     const auto [first, last] = recordChecks().equal_range(context.scene.records[record].keyword());
     for (auto check = first; check != last; ++check)
-        if (auto finding = check->second(context.scene, record))
+        if (auto finding = check->second.make == nullptr
+                               ? check->second.check(context.scene, record)
+                               : context.made(check->second.make, record))
             findings.push_back(std::move(*finding));
 }
 
@@ -209,7 +217,17 @@ Diagnostic Finding::diagnostic() const {
 std::span<const SceneCheck> sceneChecks() { return kChecks; }
 
 void addRecordCheck(std::string_view keyword, RecordCheck check) {
-    recordChecks().emplace(keyword, check);
+    recordChecks().emplace(keyword, AddedCheck{check, nullptr});
+}
+
+void addRecordCheck(std::string_view keyword, RecordCheckMaker make) {
+    recordChecks().emplace(keyword, AddedCheck{nullptr, make});
+}
+
+std::optional<Finding> CheckContext::made(RecordCheckMaker make, std::size_t record) {
+    const auto [found, is_new] = made_.try_emplace(make);
+    if (is_new) found->second = make(scene);
+    return found->second(record);
 }
 
 std::vector<Finding> checkScene(const Scene& scene, const FindingFilter& filter) {

@@ -69,9 +69,14 @@ std::span<const SceneCheck> sceneChecks();
 /// Checks the record of a scene with this index. Returns empty if it is right.
 using RecordCheck = std::optional<Finding> (*)(const Scene& scene, std::size_t record);
 
+/// Makes a check of the records of a scene that shares derived data among them.
+using RecordCheckMaker =
+    std::function<std::optional<Finding>(std::size_t record)> (*)(const Scene& scene);
+
 /// Adds a check of the records with a keyword to those that it has, for the program: call it before
 /// any scene is checked.
 void addRecordCheck(std::string_view keyword, RecordCheck check);
+void addRecordCheck(std::string_view keyword, RecordCheckMaker make);
 
 /// Selects findings; by default all.
 struct FindingFilter {
@@ -175,6 +180,8 @@ struct CheckContext {
     /// Returns the findings about walls and doors, by element.
     const std::multimap<std::size_t, Finding>& walls();
     CircleCheck& circles();
+    /// Returns the findings of a check about a record.
+    std::optional<Finding> made(RecordCheckMaker make, std::size_t record);
 
     const Scene& scene;
     const RegionIndex& indoor;
@@ -187,6 +194,7 @@ struct CheckContext {
     std::optional<std::map<std::size_t, MeshCuts>> meshes_;
     std::optional<std::multimap<std::size_t, Finding>> walls_;
     std::optional<CircleCheck> circles_;
+    std::map<RecordCheckMaker, std::function<std::optional<Finding>(std::size_t record)>> made_;
 };
 
 /// Writes a distance rounded up, "0.12 m".
