@@ -43,6 +43,7 @@ struct BodyPart {
     double bottom = 0, top = 0;              ///< heights
     double lean = 0;                         ///< of a cylinder, along x
     bool is_ball = false;
+    bool faces_down = false;  ///< of a trunk: its chest is below
     Material material = Material::Cloth;
 };
 
@@ -66,6 +67,7 @@ constexpr std::size_t kHumanParts = 8;
 struct PersonFigure {
     std::bitset<kHumanParts> kept;  ///< parts of humanParts() that it has, swinging limbs, too
     std::vector<BodyPart> fixed;    ///< the others, which no step swings
+    std::size_t load_parts = 0;     ///< at the end of `fixed`: a thing that it carries
     double reach = 0;               ///< radius of the circle about the origin that holds all parts
     double support = 0;             ///< height of the floor or thing that bears it
     Point3 load;                    ///< the middle of the underside of a thing that it carries

@@ -26,9 +26,17 @@ constexpr double kChest = 0.75;    // height of a person's tag, as a share of th
 
 /// Returns the position of a tag on the body of its carrier.
 Point3 tagOn(const MovingBody& body, bool is_person) {
-    const Point2 at = body.pose * Point2{is_person ? body.half_length + kOffBody : 0, 0};
-    const double height =
-        is_person ? body.bottom + kChest * (body.top - body.bottom) : body.top + kOffBody;
+    Point2 local;
+    double height = body.top + kOffBody;
+    if (is_person && body.half_length > body.top - body.bottom) {
+        // It lies, with its head ahead.
+        local.x = (2 * kChest - 1) * body.half_length;
+        if (body.faces_down) height = body.bottom + kOffBody;
+    } else if (is_person) {
+        local.x = body.half_length + kOffBody;
+        height = body.bottom + kChest * (body.top - body.bottom);
+    }
+    const Point2 at = body.pose * local;
     return {at.x, at.y, height};
 }
 
@@ -38,7 +46,7 @@ std::vector<std::optional<Point3>> placesOf(const SharedList<RfidTag>& tags,
     const auto is_person = [](std::uint32_t owner) { return owner >= kFirstPerson; };
     std::unordered_map<std::uint32_t, const MovingBody*> carriers;
     for (const MovingBody& body : bodies.bodies())
-        // The trunk is a person's only box.
+        // The trunk is a person's first box.
         if (!is_person(body.owner) || body.radius == 0) carriers.emplace(body.owner, &body);
     std::vector<std::optional<Point3>> places;
     places.reserve(tags.size());

@@ -67,7 +67,8 @@ MovingBody movingBody(const BodyPart& part, const Pose2& pose, CosSin axes, std:
             .top = part.top,
             .owner = owner,
             .lean = part.lean,
-            .is_ball = part.is_ball};
+            .is_ball = part.is_ball,
+            .faces_down = part.faces_down};
 }
 
 double MovingBody::meet(Point3 origin, Vec3 direction) const {

@@ -23,8 +23,9 @@ struct MovingBody {
     double radius = 0;                       ///< of a cylinder or ball; 0: a box
     double bottom = 0, top = 0;              ///< heights, both included
     std::uint32_t owner = 0;                 ///< owner; its own sensors ignore the body
-    double lean = 0;       ///< of a slanted cylinder, along the heading, see BodyPart
-    bool is_ball = false;  ///< of `radius`
+    double lean = 0;          ///< of a slanted cylinder, along the heading, see BodyPart
+    bool is_ball = false;     ///< of `radius`
+    bool faces_down = false;  ///< see BodyPart
 
     [[nodiscard]] double middle() const { return 0.5 * (bottom + top); }
     /// Radius of the smallest circle that encloses each of its level cuts, about the cut's middle.

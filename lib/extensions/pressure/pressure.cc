@@ -57,7 +57,9 @@ std::vector<FootContact> restingContacts(const PersonFigure& figure, double mass
     if (figure.support > 0) return {{pose.position, kTrunk, mass * kGravity}};
     std::vector<FootContact> contacts;
     double volume = 0;
-    for (const BodyPart& part : figure.fixed) {
+    // Things have no weight: one that lies beside the person bears nothing.
+    for (std::size_t i = 0; i + figure.load_parts < figure.fixed.size(); ++i) {
+        const BodyPart& part = figure.fixed[i];
         if (part.bottom > 0) continue;
         const double thin = std::min(part.half_length, part.half_width);
         const double radius = part.radius > 0 ? part.radius : thin;
@@ -68,8 +70,8 @@ std::vector<FootContact> restingContacts(const PersonFigure& figure, double mass
                                             : 4 * part.half_length * part.half_width;
         const double own = flat * (part.top - part.bottom);
         volume += own;
-        for (int i = 0; i < count; ++i) {
-            const double share = count == 1 ? 0 : 2.0 * i / (count - 1) - 1;
+        for (int k = 0; k < count; ++k) {
+            const double share = count == 1 ? 0 : 2.0 * k / (count - 1) - 1;
             const Vec2 off{share * std::max(0.0, along), share * std::max(0.0, across)};
             contacts.push_back({pose * (part.center + off), radius, own / count});
         }

@@ -142,6 +142,11 @@ TEST(Feet, LyingBodiesPressTheFloorByTheirVolumes) {
         moment = moment + contact.newtons * (contact.center - pose.position);
     }
     EXPECT_NEAR(moment.y / sumOf(contacts), 0.75 * 0.5 - 0.25 * 0.5, 1e-9);
+    // A thing beside the body has no weight.
+    figure.fixed.push_back({.center = {3, 0}, .half_length = 0.1, .half_width = 0.1, .top = 0.1});
+    figure.load_parts = 1;
+    EXPECT_EQ(restingContacts(figure, 80, pose).size(), contacts.size());
+    EXPECT_NEAR(sumOf(restingContacts(figure, 80, pose)), sumOf(contacts), 1e-9);
     figure.support = 0.4;
     const std::vector<FootContact> on_thing = restingContacts(figure, 80, pose);
     ASSERT_EQ(on_thing.size(), 1U);

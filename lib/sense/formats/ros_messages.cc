@@ -219,7 +219,7 @@ std::string odometryMessage(const RosHeader& header, std::string_view child,
 namespace {
 
 /// Of visualization_msgs/Marker.
-enum class MarkerType : std::int32_t { Cylinder = 3, Text = 9, Mesh = 10 };
+enum class MarkerType : std::int32_t { Cube = 1, Cylinder = 3, Text = 9, Mesh = 10 };
 
 /// A marker, which a message of the same namespace and id replaces.
 struct Marker {
@@ -292,18 +292,21 @@ std::string bodiesMessage(const RosHeader& header, std::span<const RosPerson> pe
     out.count(1 + 2 * people.size());
     putDeletion(out, header);
     for (std::int32_t i = 0; const RosPerson& person : people) {
-        const Point2 place = person.pose.position;
         const double width = 2 * person.radius, letters = 0.2;
+        const RosPerson::Box box = person.box.value_or(
+            RosPerson::Box{{0, 0, person.height / 2}, {width, width, person.height}});
+        const Point2 place = person.pose * box.middle.onFloor();
         putMarker(out, {.header = header,
                         .id = i++,
-                        .position = {place.x, place.y, person.height / 2},
+                        .type = person.box ? MarkerType::Cube : MarkerType::Cylinder,
+                        .position = {place.x, place.y, box.middle.z},
                         .heading = person.pose.heading,
-                        .scale = {width, width, person.height},
+                        .scale = box.size,
                         .color = body});
         putMarker(out, {.header = header,
                         .id = i++,
                         .type = MarkerType::Text,
-                        .position = {place.x, place.y, person.height + letters},
+                        .position = {place.x, place.y, box.middle.z + box.size.z / 2 + letters},
                         .scale = {letters, letters, letters},
                         .color = kLetters,
                         .text = person.id});

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -124,9 +125,15 @@ std::string rangeMessage(const RosHeader& header, const SonarRing& ring, float r
 struct RosPerson {
     std::string_view id;
     Pose2 pose;
-    double radius = 0, height = 0;
+    double radius = 0, height = 0;  ///< of a person that stands
+    /// The box that holds the body of one that does not, in its frame.
+    struct Box {
+        Point3 middle;
+        Vec3 size;
+    };
+    std::optional<Box> box = {};
 };
-/// Writes a cylinder and a name for each person; earlier markers of the topic disappear.
+/// Writes a cylinder or a box, and a name for each person; earlier markers of the topic disappear.
 std::string peopleMessage(const RosHeader& header, std::span<const RosPerson> people);
 /// Writes robots likewise, in another colour.
 std::string robotsMessage(const RosHeader& header, std::span<const RosPerson> robots);

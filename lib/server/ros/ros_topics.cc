@@ -5,11 +5,13 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "base/number.h"
+#include "scene/bodies.h"
 #include "scene/robot.h"
 #include "scene/room_state.h"
 #include "sense/formats/cdr.h"
@@ -216,12 +218,31 @@ std::string roomOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t /
     return moment.has_mesh ? roomMessage(moment.header(), moment.room.mesh()) : "";
 }
 
+/// Returns the box that holds a body, without a thing that it carries.
+RosPerson::Box boxOf(const PersonFigure& figure) {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    Point3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+    for (std::size_t i = 0; i + figure.load_parts < figure.fixed.size(); ++i) {
+        const BodyPart& part = figure.fixed[i];
+        const double x = std::max(part.radius, part.half_length);
+        const double y = std::max(part.radius, part.half_width);
+        low = {std::min(low.x, part.center.x - x), std::min(low.y, part.center.y - y),
+               std::min(low.z, part.bottom)};
+        high = {std::max(high.x, part.center.x + x), std::max(high.y, part.center.y + y),
+                std::max(high.z, part.top)};
+    }
+    const Vec3 size = high - low;
+    return {low + 0.5 * size, size};
+}
+
 std::string peopleOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
     const World& world = moment.world();
     std::vector<RosPerson> people;
     for (std::size_t i = world.robots().size(); i < world.movers().size(); ++i) {
         const Mover& mover = world.movers()[i];
         people.push_back({mover.id, world.status(i).pose, mover.model.radius, mover.model.height});
+        const auto& figure = world.people()[i - world.robots().size()].figure;
+        if (figure != nullptr && !figure->rest.empty()) people.back().box = boxOf(*figure);
     }
     return peopleMessage(moment.header(), people);
 }
