@@ -140,9 +140,13 @@ std::vector<Shape>& addedShapes() {
     return added;
 }
 
-std::string& carriedKey() {
-    static std::string key;
-    return key;
+struct CarryKeys {
+    std::string of_thing, of_person;
+};
+
+CarryKeys& carryKeys() {
+    static CarryKeys keys;
+    return keys;
 }
 
 /// Returns null if the record has no body.
@@ -166,7 +170,12 @@ Body standingBodyOf(const Record& thing) {
     return shape == nullptr ? Body{} : shape->body(thing);
 }
 
-void setCarriedKey(std::string key) { carriedKey() = std::move(key); }
+void setCarryKeys(std::string of_thing, std::string of_person) {
+    carryKeys() = {std::move(of_thing), std::move(of_person)};
+}
+
+const std::string& carriedKey() { return carryKeys().of_thing; }
+const std::string& holdsKey() { return carryKeys().of_person; }
 
 std::string personWith(const Record& thing) {
     const std::string& key = carriedKey();

@@ -14,10 +14,15 @@ namespace ispace {
 /// before any scene is read.
 void addBodyShape(std::string_view keyword, Body (*body)(const Record& record));
 
-/// Names the key of the records of things that holds the id of the person that carries it,
-/// for the program: call it before any scene is read.
-void setCarriedKey(std::string key);
-/// Returns that id, "" for a thing that stands in the room. Thread-safe.
+/// Names the key of the records of things for the id of the person that carries it, and that of
+/// people for the id of the thing, which follows from the former, for the program: call it before
+/// any scene is read.
+void setCarryKeys(std::string of_thing, std::string of_person);
+/// Return these keys; "" if no extension has set them.
+const std::string& carriedKey();
+const std::string& holdsKey();
+/// Returns the id of the person that carries a thing, "" for one that stands in the room.
+/// Thread-safe.
 std::string personWith(const Record& thing);
 /// Returns the body of a thing where its record says, also of one that is carried: bodyOf() of that
 /// is empty.

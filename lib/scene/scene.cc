@@ -244,19 +244,41 @@ class Resolver {
     }
 
   private:
-    /// Gives people the things that they carry.
+    /// Gives people the things that they carry, one each.
     void loadPeople(Diagnostics& findings) {
-        for (const Record& thing : records_) {
+        struct Person {
+            const PlacedRecord* placed;
+            std::optional<std::size_t> load = {};
+        };
+        std::optional<std::unordered_map<std::string_view, Person>> people;
+        for (std::size_t i = 0; i < records_.size(); ++i) {
+            const Record& thing = records_[i];
             const std::string id = personWith(thing);
             if (id.empty()) continue;
-            const auto person =
-                std::find_if(out_.placed.begin(), out_.placed.end(), [&](const PlacedRecord& one) {
-                    return records_[one.record].keyword() == "human" && ids_[one.record] == id;
-                });
-            if (person == out_.placed.end())
+            if (!people) {
+                people.emplace();
+                for (const PlacedRecord& one : out_.placed)
+                    if (records_[one.record].keyword() == "human")
+                        people->emplace(ids_[one.record], Person{&one});
+            }
+            const auto person = people->find(id);
+            if (person == people->end()) {
                 findings.add(noPerson(thing, id));
-            else
-                out_.people[person->index].figure = figureOf(records_[person->record], &thing);
+                continue;
+            }
+            auto& [placed, load] = person->second;
+            if (load) {
+                findings.add(thing.finding(carriedKey(), "human " + id + " carries " + ids_[*load] +
+                                                             " and " + ids_[i] +
+                                                             ": one thing is in the hand"));
+                continue;
+            }
+            load = i;
+            try {
+                out_.people[placed->index].figure = figureOf(records_[placed->record], &thing);
+            } catch (const FormatError&) {
+                // The person's record has been reported.
+            }
         }
     }
 
@@ -336,6 +358,51 @@ Environment makeEnvironment(const std::vector<Record>& records, const std::vecto
     return std::move(*environment);
 }
 
+/// Lets people name the things that they carry, which follows from these.
+/// \param before the scene before a change, or null
+/// \throws FormatError where the file or the change names another thing
+void nameLoads(std::vector<Record>& records, const Scene* before) {
+    constexpr std::string_view kNone = "none";
+    const std::string& key = holdsKey();
+    const auto is_holder = [&key](const Record& record) {
+        return record.schema().find(key) != nullptr && record.has(key);
+    };
+    if (std::none_of(records.begin(), records.end(), [&](const Record& record) {
+            return is_holder(record) || !personWith(record).empty();
+        }))
+        return;
+    const std::vector<std::string> ids = assignIds(records);
+    std::unordered_map<std::string, std::size_t> loads;  // by person
+    for (std::size_t i = 0; i < records.size(); ++i)
+        if (std::string person = personWith(records[i]); !person.empty())
+            loads.emplace(std::move(person), i);
+    const auto is_news = [&](std::size_t i) {
+        if (before == nullptr) return true;
+        const auto old = std::find(before->ids.begin(), before->ids.end(), ids[i]);
+        if (old == before->ids.end()) return true;
+        const Record& record = before->records[static_cast<std::size_t>(old - before->ids.begin())];
+        return !is_holder(record) || record.text(key) != records[i].text(key);
+    };
+    Diagnostics findings;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        Record& person = records[i];
+        if (person.schema().find(key) == nullptr) continue;
+        const auto load = loads.find(ids[i]);
+        const bool holds = is_holder(person);
+        if (!holds && load == loads.end()) continue;
+        const std::string thing(load == loads.end() ? kNone : ids[load->second]);
+        if (holds && person.text(key) == thing) continue;
+        if (holds && is_news(i))
+            findings.add(person.finding(
+                key, "human " + ids[i] + ' ' + key + ' ' + person.text(key) + ", but carries " +
+                         (load == loads.end() ? "no thing" : thing) + "; `" + key +
+                         "` follows from `" + carriedKey() + "` of things: leave it out"));
+        else
+            person.set(key, thing);
+    }
+    findings.throwIfAny();
+}
+
 /// Builds a scene from records without meta records, except for `records` and `digest`.
 Scene sceneOf(const std::vector<Record>& records, const Scene* before,
               const DeviceCatalogue& devices) {
@@ -393,6 +460,7 @@ Scene makeScene(const Document& environment, const Document* layout, const Devic
     std::vector<Record> records =
         layout == nullptr ? environment.records : joinRecords(environment.records, layout->records);
     std::erase_if(records, isMeta);
+    nameLoads(records, nullptr);
     const std::optional<std::vector<Record>> filled = withDevices(records, devices);
     Scene scene = sceneOf(filled ? *filled : records, before, devices);
     scene.records = std::move(records);
@@ -406,6 +474,7 @@ Scene makeScene(const Document& environment, const Document* layout, const Devic
 
 Scene makeScene(std::vector<Record> records, const Scene& before, const DeviceCatalogue& devices) {
     std::erase_if(records, isMeta);
+    nameLoads(records, &before);
     const std::optional<std::vector<Record>> filled = withDevices(records, devices);
     Scene scene = sceneOf(filled ? *filled : records, &before, devices);
     scene.records = std::move(records);

@@ -21,6 +21,7 @@
 namespace ispace {
 
 struct PersonFigure;
+struct Scene;
 
 /// What a thing takes and gives off in the state of its record.
 struct Emission {
@@ -59,8 +60,9 @@ struct ThingBody {
 
 /// Records with a keyword.
 struct ThingKind {
-    std::vector<std::string> states = {};  ///< keys whose values may change while the world runs
-    std::vector<std::string> told = {};    ///< further states, numbers that events of a run tell
+    std::vector<std::string> states = {};     ///< keys whose values may change while the world runs
+    std::vector<std::string> body_keys = {};  ///< further keys that change the body of a person
+    std::vector<std::string> told = {};       ///< further states, numbers that events of a run tell
     /// Returns true for records whose states are told: a door with a lock. Null: all.
     bool (*has_states)(const Record& record) = nullptr;
     Emission (*emission)(const Record& record) = nullptr;  ///< null: none
@@ -68,6 +70,11 @@ struct ThingKind {
     /// Throws FormatError if values of a record contradict each other: such a scene is rejected,
     /// and so is a change that leads to it. Null: all go together.
     void (*check)(const Record& record) = nullptr;
+    /// Returns the reason why the record of a person does not change like this while the world
+    /// runs, or "". \param at where the person is after the change \param scene likewise
+    /// Null: "".
+    std::string (*refusal)(const Record& before, const Record& after, const Pose2& at,
+                           const Scene& scene) = nullptr;
     /// Verbs for what people do to it, as `locks` in a plan of days.
     std::vector<std::string> verbs = {};
     /// Returns what comes of one of these verbs, or of `opens`, `closes` and `switches`, for which

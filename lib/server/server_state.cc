@@ -173,13 +173,16 @@ ServerState::Text& ServerState::textOf(std::size_t sensor, const ReplyForm& form
 void ServerState::changeAsScripted() {
     while (simulation_->isChangeDue() || scripted_) {
         if (is_changing_ || seek_ || !editor_) return;
-        if (!scripted_) scripted_ = changeWorld(*this, simulation_->takeScriptedChange());
+        if (!scripted_) {
+            const std::string request = simulation_->takeScriptedChange();
+            if (request.empty()) continue;
+            scripted_ = changeWorld(*this, request);
+        }
         if (!scripted_->bytes) return;
         // The script goes on without a change that the world refuses.
         const std::string answer = *std::exchange(scripted_, nullptr)->bytes;
         if (answer.starts_with("ERR"))
-            simulation_->events().add(EventKind::Mark,
-                                      "script: " + answer.substr(0, answer.size() - 1));
+            simulation_->refuseScripted(answer.substr(0, answer.size() - 1));
     }
 }
 

@@ -416,14 +416,15 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
             if (!doer.walks && !doer.gave_up) beginUse(simulation, doer);
         }
         if (doer.walks || world.time() < doer.until) return;
-        if (std::exchange(doer.is_doing, false) && endDeed(simulation, doer)) {
-            doer.until = world.time() + world.stepLength();
-            return;
-        }
+        if (std::exchange(doer.is_doing, false))
+            return askDeed(simulation, doer, actionOf(doer).does->end);
         endUse(simulation, doer);
         tell(simulation, doer, doer.gave_up ? -1 : 0);
         doer.is_begun = false;
-        if (++doer.action == plan_.lines[*doer.line].actions.size()) doer.line.reset();
+        // Without the first part of a deed there is no second one.
+        const PersonVerb* const does = actionOf(doer).does;
+        doer.action += doer.gave_up && does != nullptr && does->then != nullptr ? 2 : 1;
+        if (doer.action >= plan_.lines[*doer.line].actions.size()) doer.line.reset();
     }
 }
 
@@ -507,7 +508,7 @@ bool ActivityDirector::beginWithBody(Simulation& simulation, Doer& doer) const {
     if (doer.walks) return true;
     stay(world, mover, doer);
     beginDeed(simulation, doer);
-    return doer.gave_up;
+    return false;
 }
 
 DeedMoment ActivityDirector::momentOf(const World& world, std::size_t mover,
@@ -527,31 +528,36 @@ void ActivityDirector::refuse(Simulation& simulation, Doer& doer, const std::str
     doer.gave_up = true;
 }
 
-/// Begins a deed where the person is; it gives the deed up if that is refused.
-void ActivityDirector::beginDeed(Simulation& simulation, Doer& doer) const {
-    const World& world = simulation.world();
-    const auto mover = world.moverNamed(plan_.lines[*doer.line].person);
-    const PersonVerb& does = *actionOf(doer).does;
-    doer.stood = world.status(*mover).pose;
-    const PersonDeed deed = does.begin(momentOf(world, *mover, doer));
-    if (!deed.refusal.empty()) {
-        doer.until = world.time();
-        return refuse(simulation, doer, deed.refusal);
-    }
-    if (!deed.change.empty()) simulation.askChange(deed.change);
-    doer.is_doing = does.end != nullptr;
+/// Asks for the change of a deed, which is looked for once those asked for before are made: of two
+/// people that take one cup in a step, the second one finds it taken. The person gives the deed up
+/// if it or the world refuses.
+void ActivityDirector::askDeed(Simulation& simulation, Doer& doer,
+                               PersonDeed (*deed)(const DeedMoment& moment)) const {
+    const auto give_up = [this, &simulation, &doer](const std::string& reason) {
+        doer.is_doing = false;
+        doer.until = simulation.world().time();
+        refuse(simulation, doer, reason);
+    };
+    const auto request = [this, &simulation, &doer, deed, give_up]() -> std::string {
+        const World& world = simulation.world();
+        const auto mover = world.moverNamed(plan_.lines[*doer.line].person);
+        if (!mover) return "";
+        PersonDeed found = deed(momentOf(world, *mover, doer));
+        if (!found.refusal.empty()) give_up(found.refusal);
+        return found.refusal.empty() ? std::move(found.change) : "";
+    };
+    simulation.askChange({request, give_up});
     // The world changes before its next step.
-    doer.until = std::max(doer.until, world.time() + world.stepLength());
+    doer.until = std::max(doer.until, simulation.world().time() + simulation.world().stepLength());
 }
 
-/// Asks for the change that ends a deed. \returns false without one
-bool ActivityDirector::endDeed(Simulation& simulation, Doer& doer) const {
+/// Begins a deed where the person is.
+void ActivityDirector::beginDeed(Simulation& simulation, Doer& doer) const {
     const World& world = simulation.world();
-    const auto mover = world.moverNamed(plan_.lines[*doer.line].person);
-    std::string change = actionOf(doer).does->end(momentOf(world, *mover, doer));
-    if (change.empty()) return false;
-    simulation.askChange(std::move(change));
-    return true;
+    const PersonVerb& does = *actionOf(doer).does;
+    doer.stood = world.status(*world.moverNamed(plan_.lines[*doer.line].person)).pose;
+    doer.is_doing = does.end != nullptr;
+    askDeed(simulation, doer, does.begin);
 }
 
 /// Turns a person to the target of a deed. \returns false if it faces that already, or sits
@@ -587,7 +593,12 @@ bool ActivityDirector::act(Simulation& simulation, Doer& doer) const {
         refuse(simulation, doer, result.refusal);
         return false;
     }
-    if (!result.changes.empty()) simulation.askChange(changeOf(action.target, result.changes));
+    if (!result.changes.empty())
+        simulation.askChange(
+            {[request = changeOf(action.target, result.changes)] { return request; },
+             [this, &simulation, &doer](const std::string& reason) {
+                 refuse(simulation, doer, reason);
+             }});
     return true;
 }
 

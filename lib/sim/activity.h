@@ -24,6 +24,7 @@ namespace ispace {
 class Simulation;
 class World;
 struct DeedMoment;
+struct PersonDeed;
 struct PersonVerb;
 
 /// A piece of an activity.
@@ -139,8 +140,9 @@ class ActivityDirector {
     bool isThere(const World& world, std::size_t mover, const Doer& doer);
     void stay(const World& world, std::size_t mover, Doer& doer) const;
     bool beginWithBody(Simulation& simulation, Doer& doer) const;
+    void askDeed(Simulation& simulation, Doer& doer,
+                 PersonDeed (*deed)(const DeedMoment& moment)) const;
     void beginDeed(Simulation& simulation, Doer& doer) const;
-    bool endDeed(Simulation& simulation, Doer& doer) const;
     bool face(World& world, std::size_t mover, Doer& doer);
     [[nodiscard]] DeedMoment momentOf(const World& world, std::size_t mover,
                                       const Doer& doer) const;

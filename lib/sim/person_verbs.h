@@ -54,12 +54,12 @@ struct PersonVerb {
     std::optional<Point2> (*aim)(const World& world, const std::string& target) = nullptr;
     /// Returns the reason why the person does not set out for it, or "". Null: "".
     std::string (*refusal)(const DeedMoment& moment) = nullptr;
-    /// Called once the person is there.
+    /// Called once the person is there, and changes asked for before are made.
     PersonDeed (*begin)(const DeedMoment& moment) = nullptr;
-    /// Returns the request that ends it after its duration, or ""; null: "".
-    std::string (*end)(const DeedMoment& moment) = nullptr;
+    /// Likewise after its duration, with the change that ends it. Null: none does.
+    PersonDeed (*end)(const DeedMoment& moment) = nullptr;
     /// The second part of the verb, with another target behind a word: `carries cup to
-    /// kitchen`. Null: it has no second part.
+    /// kitchen`, which follows unless the first one is given up. Null: it has no second part.
     const PersonVerb* then = nullptr;
 };
 

@@ -120,7 +120,7 @@ void Simulation::giveScripted() {
     for (; next_ < script_.size() && script_[next_].time <= world_->time(); ++next_) {
         const TimedCommand& timed = script_[next_];
         if (!timed.change.empty()) {
-            due_changes_.push_back(timed.change);
+            askChange(timed.change);
             continue;
         }
         const auto mover = world_->changes() == 0 ? std::optional(timed.robot)
@@ -168,10 +168,23 @@ bool Simulation::isOpenForPeople(const std::string& door) const {
 }
 
 std::string Simulation::takeScriptedChange() {
-    if (due_changes_.empty()) return "";
-    std::string change = std::move(due_changes_.front());
-    due_changes_.pop_front();
-    return change;
+    while (!due_changes_.empty()) {
+        AskedChange change = std::move(due_changes_.front());
+        due_changes_.pop_front();
+        std::string request = change.request();
+        if (request.empty()) continue;
+        when_refused_ = std::move(change.refused);
+        return request;
+    }
+    return "";
+}
+
+void Simulation::refuseScripted(const std::string& answer) {
+    if (when_refused_ == nullptr) return events_.add(EventKind::Mark, "script: " + answer);
+    // Behind ERR and the code.
+    std::size_t begin = 0;
+    for (int word = 0; word < 2; ++word) begin = answer.find(' ', begin) + 1;
+    std::exchange(when_refused_, nullptr)(answer.substr(begin));
 }
 
 void Simulation::tellChange(std::string request, const std::string& scene_text) {

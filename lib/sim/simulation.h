@@ -86,11 +86,24 @@ class Simulation {
     [[nodiscard]] bool isKeptOpen(const std::string& door) const;
     /// Returns true for a door that people on their days have opened, and that is shut behind them.
     [[nodiscard]] bool isOpenForPeople(const std::string& door) const;
+    /// A change of the world that is asked for.
+    struct AskedChange {
+        /// Returns a request of the protocol, once those asked for before are made; "": none.
+        std::function<std::string()> request;
+        /// Called with the reason if the world refuses it. Null: the event `mark` tells.
+        std::function<void(const std::string& reason)> refused = {};
+    };
     /// Asks for a change of the world, as the script does: a request of the protocol.
-    void askChange(std::string request) { due_changes_.push_back(std::move(request)); }
+    void askChange(std::string request) {
+        askChange({[request = std::move(request)] { return request; }});
+    }
+    void askChange(AskedChange change) { due_changes_.push_back(std::move(change)); }
     /// Returns the next change of the script that is due, a request of the protocol, and removes
     /// it; "" if none is. The world must not step before it is made: see isChangeDue().
     std::string takeScriptedChange();
+    /// Takes the answer to the change of takeScriptedChange() that the world refuses:
+    /// `ERR 409 reason`.
+    void refuseScripted(const std::string& answer);
     [[nodiscard]] bool isChangeDue() const { return !due_changes_.empty(); }
 
     /// Adds an observer, called after every step once it is recorded and the script's commands for
@@ -230,7 +243,8 @@ class Simulation {
     std::size_t next_ = 0;               // of script_
     std::shared_ptr<ActivityDirector> director_;  // of people with a plan; null: none
     std::map<std::string, std::pair<SimTime, SimTime>> kept_open_;  // doors: since when, until when
-    std::deque<std::string> due_changes_;                           // of the script
+    std::deque<AskedChange> due_changes_;                           // of the script
+    std::function<void(const std::string& reason)> when_refused_;   // of the one taken last
     std::vector<Event> script_events_;  // of its commands, told in the next step at the latest
     Recorder* recorder_ = nullptr;
     Replay* replay_ = nullptr;

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "scene/thing_kind.h"
 #include "sim/pace.h"
 #include "sim/run_limits.h"
 
@@ -73,6 +74,7 @@ class Editing {
     void prepare() {
         findAll();
         Scene scene = makeScene(goodRecords(), *before_, source_->devices());
+        checkPeople(scene);
         check_(scene);
         // Built here, for the checks of new positions; edits of things share it.
         static_cast<void>(scene.environment.indoorIndex());
@@ -95,6 +97,7 @@ class Editing {
 
   private:
     void findAll();
+    void checkPeople(const Scene& after) const;
     [[nodiscard]] std::vector<std::string> moversOf(const Edit& edit) const;
     [[nodiscard]] std::vector<Record> records() const;
     [[nodiscard]] std::vector<Record> goodRecords() const;
@@ -133,6 +136,28 @@ void Editing::findAll() {
     for (const std::string& id : placed_)
         if (const auto pose = poses.find(id); pose != poses.end())
             places_.emplace(id, pose->second);
+}
+
+/// Asks the kind of people whether they change like this. \throws FormatError
+void Editing::checkPeople(const Scene& after) const {
+    const ThingKind* const kind = thingKind("human");
+    if (kind == nullptr || kind->refusal == nullptr || edits_.front().kind != Edit::Kind::Set)
+        return;
+    // Records keep their order.
+    for (const PlacedRecord& placed : before_->placed) {
+        const Record& record = before_->records[placed.record];
+        if (record.keyword() != "human") continue;
+        const std::string& id = before_->ids[placed.record];
+        if (std::none_of(edits_.begin(), edits_.end(),
+                         [&](const Edit& edit) { return isAbout(edit, id); }))
+            continue;
+        const Record& changed = after.records[placed.record];
+        const bool is_placed = std::find(placed_.begin(), placed_.end(), id) != placed_.end();
+        const Pose2 at = is_placed ? after.people[placed.index].pose
+                                   : poses_[before_->robots.size() + placed.index];
+        if (const std::string reason = kind->refusal(record, changed, at, after); !reason.empty())
+            throw FormatError(changed.finding(reason));
+    }
 }
 
 std::vector<std::string> Editing::moversOf(const Edit& edit) const {

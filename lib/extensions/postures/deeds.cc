@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -63,15 +64,18 @@ bool isFreeOfOthers(const World& world, std::size_t mover, Point2 place) {
 /// Returns the obstacles that part rooms.
 Obstacles dividersOf(const Environment& environment, double height) {
     std::vector<std::size_t> dividers;
-    for (std::size_t i = 0; i < environment.elements().size(); ++i) {
-        const std::string& keyword = environment.elements()[i].record.keyword();
-        for (const char* const known : {"wall", "fence", "ispace", "door", "window"})
-            if (keyword == known) dividers.push_back(i);
-    }
+    for (std::size_t i = 0; i < environment.elements().size(); ++i)
+        if (partsRooms(environment.elements()[i])) dividers.push_back(i);
     return Obstacles(environment.band(0, height, dividers));
 }
 
 }  // namespace
+
+bool partsRooms(const Element& element) {
+    const std::string& keyword = element.record.keyword();
+    return keyword == "wall" || keyword == "fence" || keyword == "ispace" || keyword == "door" ||
+           keyword == "window";
+}
 
 std::optional<double> topAt(const Element& element, Point2 point) {
     std::optional<double> top;
@@ -247,6 +251,16 @@ std::string restText(const DeedMoment& moment, std::string_view posture,
            " support=" + formatDouble(place.support) + ' ' + placeText(place.pose);
 }
 
+/// Returns ` left_arm=0,-90` for each arm that is raised.
+std::string armsDown(const DeedMoment& moment) {
+    constexpr double kHangs = -90;
+    std::string keys;
+    for (const char* const key : {"left_arm", "right_arm"})
+        if (moment.person->has(key) && moment.person->tuple(key)[1] != kHangs)
+            keys.append(" ").append(key).append("=0,-90");
+    return keys;
+}
+
 Pose2 poseOf(const DeedMoment& moment) { return moment.world->status(moment.mover).pose; }
 
 double heightOf(const DeedMoment& moment) { return personOf(*moment.world, moment.mover).height; }
@@ -278,21 +292,21 @@ PersonDeed lieDown(const DeedMoment& moment) {
             const auto bed = bedOn(*thing, heightOf(moment), side * kAside * step);
             is_bed = is_bed || bed;
             if (bed && isFreeOfOthers(*moment.world, moment.mover, bed->pose.position))
-                return {restText(moment, "lie", *bed), ""};
+                return {restText(moment, "lie", *bed) + armsDown(moment), ""};
         }
     return {"", is_bed ? "all of " + moment.target + " is taken"
                        : "one does not lie on " + moment.target};
 }
 
 /// Stands up beside the thing, where the person came from if that is free.
-std::string standUp(const DeedMoment& moment) {
-    if (moment.world->movers()[moment.mover].rest().empty()) return "";
+PersonDeed standUp(const DeedMoment& moment) {
+    if (moment.world->movers()[moment.mover].rest().empty()) return {};
     const PersonPosture posture = postureOf(*moment.person);
-    if (posture.posture == Posture::Fallen) return "";
+    if (posture.posture == Posture::Fallen) return {};
     auto place = roomToStand(*moment.world, moment.mover, moment.stood.position);
     if (!place) place = roomToStand(*moment.world, moment.mover, poseOf(moment).position);
-    if (!place) return "";
-    return "ACT " + moment.id + " posture=stand " + placeText({*place, moment.stood.heading});
+    if (!place) return {"", "there is no room to stand up"};
+    return {"ACT " + moment.id + " posture=stand " + placeText({*place, moment.stood.heading}), ""};
 }
 
 std::string refuseToStand(const DeedMoment& moment) {
@@ -315,13 +329,64 @@ std::string loadOf(const World& world, const std::string& person) {
 }
 
 /// Returns the change that sets a thing down at a point.
-std::string putAt(const std::string& person, const std::string& thing, Point3 at) {
+std::string putAt(const std::string& thing, Point3 at) {
     return thing + " carried= at=" + formatDouble(at.x) + ',' + formatDouble(at.y) + ',' +
-           formatDouble(at.z) + " ; " + person + " holds=none";
+           formatDouble(at.z);
 }
 
 /// Returns a number in whole millimetres.
 double inMillimetres(double metres) { return std::round(metres * 1000) / 1000 + 0.0; }
+
+Point2 inMillimetres(Point2 p) { return {inMillimetres(p.x), inMillimetres(p.y)}; }
+
+/// Finds spots of the floor for a thing that a person sets down or drops.
+class FloorSpots {
+  public:
+    /// \param from where the person is
+    FloorSpots(const World& world, std::size_t mover, Point2 from, const std::string& thing)
+        : world_(world), mover_(mover), from_(from) {
+        const PlacementFrame frame = standingOf(elementNamed(world, thing)->record);
+        const Environment& environment = world.scene().environment;
+        radius_ = std::hypot(frame.length, frame.width) / 2;
+        things_.emplace(environment, std::max(kSpare, frame.height()), nullptr);
+        walls_.emplace(dividersOf(environment, world.movers()[mover].model.height));
+    }
+    /// Returns whether no thing and no other mover overlaps it, and no wall is in between.
+    [[nodiscard]] bool isFree(Point2 at) const {
+        if (things_->overlap(at, radius_) || walls_->near({from_, at}, kSpare)) return false;
+        for (std::size_t i = 0; i < world_.movers().size(); ++i)
+            if (i != mover_ && distance(world_.status(i).pose.position, at) <
+                                   radius_ + world_.movers()[i].model.radius)
+                return false;
+        return true;
+    }
+    /// Radius of a circle that holds the thing.
+    [[nodiscard]] double radius() const { return radius_; }
+
+  private:
+    const World& world_;
+    std::size_t mover_;
+    Point2 from_;
+    double radius_ = 0;
+    std::optional<Obstacles> things_, walls_;
+};
+
+/// Returns where a person that falls drops a thing: ahead of its hand, else beside it.
+std::optional<Point2> dropSpot(const World& world, const DeedMoment& moment, const Pose2& fallen,
+                               const std::string& thing) {
+    // Of the height: where the arm ahead and the arms at the sides end, and a bit more.
+    constexpr double kHand = 0.65, kAhead = 0.7, kArms = 0.17, kAside = 0.3;
+    const double h = heightOf(moment);
+    const FloorSpots spots(world, moment.mover, fallen.position, thing);
+    const double ahead = std::max(kAhead * h, kHand * h + spots.radius());
+    const double aside = std::max(kAside * h, kArms * h + spots.radius());
+    for (const Point2 local :
+         {Point2{ahead, 0}, Point2{ahead, -aside}, Point2{ahead, aside}, Point2{kAside * h, -aside},
+          Point2{kAside * h, aside}, Point2{0, -aside}, Point2{0, aside},
+          Point2{-kAside * h, -aside}, Point2{-kAside * h, aside}})
+        if (const Point2 at = inMillimetres(fallen * local); spots.isFree(at)) return at;
+    return std::nullopt;
+}
 
 PersonDeed fall(const DeedMoment& moment) {
     const World& world = *moment.world;
@@ -334,17 +399,12 @@ PersonDeed fall(const DeedMoment& moment) {
             pose.position = *beside;
     pose.heading = headingOfFall(world, pose, heightOf(moment));
     const bool is_moved = was_on_thing || pose.heading != poseOf(moment).heading;
-    std::string change = "ACT " + moment.id + " posture=fallen support=0";
-    for (const char* const arm : {"left_arm", "right_arm"})
-        if (moment.person->has(arm)) change.append(" ").append(arm).append("=0,-90");
+    std::string change = "ACT " + moment.id + " posture=fallen support=0" + armsDown(moment);
     if (is_moved) change.append(" ").append(placeText(pose));
-    // It drops the thing that it carries, ahead.
-    if (const std::string load = loadOf(world, moment.id); !load.empty()) {
-        constexpr double kAhead = 0.7;
-        const Point2 at = pose * Point2{kAhead * heightOf(moment), 0};
-        change.append(" ; ").append(
-            putAt(moment.id, load, {inMillimetres(at.x), inMillimetres(at.y), 0}));
-    }
+    // It drops the thing that it carries; without room for that the thing stays in the hand.
+    if (const std::string load = loadOf(world, moment.id); !load.empty())
+        if (const auto at = dropSpot(world, moment, pose, load))
+            change.append(" ; ").append(putAt(load, {at->x, at->y, 0}));
     return {std::move(change), ""};
 }
 
@@ -390,14 +450,9 @@ PersonDeed raiseArm(const DeedMoment& moment, bool stretched) {
 PersonDeed point(const DeedMoment& moment) { return raiseArm(moment, true); }
 PersonDeed reachFor(const DeedMoment& moment) { return raiseArm(moment, false); }
 
-/// Lowers the arms that are raised.
-std::string lowerArms(const DeedMoment& moment) {
-    std::string change = "ACT " + moment.id;
-    const std::size_t bare = change.size();
-    for (const char* const key : {"left_arm", "right_arm"})
-        if (moment.person->has(key) && moment.person->tuple(key)[1] != -90)
-            change.append(" ").append(key).append("=0,-90");
-    return change.size() == bare ? "" : change;
+PersonDeed lowerArms(const DeedMoment& moment) {
+    const std::string arms = armsDown(moment);
+    return {arms.empty() ? "" : "ACT " + moment.id + arms, ""};
 }
 
 std::vector<std::string> pointTargets(const World& world) {
@@ -412,34 +467,28 @@ std::optional<Point2> aimOf(const World& world, const std::string& target) {
     return point ? std::optional(point->onFloor()) : std::nullopt;
 }
 
-bool mayBeCarried(const Record& thing) { return thing.schema().find("carried") != nullptr; }
-
 std::vector<std::string> thingsToCarry(const World& world) {
     std::vector<std::string> ids;
     for (const Element& element : world.scene().environment.elements())
-        if (mayBeCarried(element.record)) ids.push_back(element.id);
+        if (element.record.schema().find("carried") != nullptr) ids.push_back(element.id);
     return ids;
 }
 
 std::string refuseToTake(const DeedMoment& moment) {
-    constexpr double kLargest = 0.6;
     const Element* const thing = elementNamed(*moment.world, moment.target);
     if (thing == nullptr) return moment.target + " is gone";
     if (const std::string load = loadOf(*moment.world, moment.id); !load.empty())
         return "it carries " + load;
     if (const std::string by = personWith(thing->record); !by.empty())
         return by + " carries " + moment.target;
-    const PlacementFrame frame = standingOf(thing->record);
-    if (std::max({frame.length, frame.width, frame.height()}) > kLargest)
-        return moment.target + " is larger than " + formatDouble(kLargest) + " m";
+    if (!mayBeCarried(thing->record))
+        return moment.target + " is larger than " + formatDouble(kLargestLoad) + " m";
     return "";
 }
 
 PersonDeed take(const DeedMoment& moment) {
     if (std::string reason = refuseToTake(moment); !reason.empty()) return {"", std::move(reason)};
-    return {"ACT " + moment.target + " carried=" + moment.id + " ; " + moment.id +
-                " holds=" + moment.target,
-            ""};
+    return {"SET " + moment.target + ".carried=" + moment.id, ""};
 }
 
 std::string refuseToPut(const DeedMoment& moment) {
@@ -447,39 +496,87 @@ std::string refuseToPut(const DeedMoment& moment) {
                                                              : "it does not carry " + moment.object;
 }
 
-/// Sets it down on a thing, within its edge, else on the floor ahead.
+/// Finds spots on a thing for another one.
+class TopSpots {
+  public:
+    TopSpots(const Environment& environment, const Element& below, const Record& thing)
+        : environment_(environment), below_(below), frame_(standingOf(thing)) {}
+
+    /// Returns the height of the top that bears the whole thing there, free of others.
+    [[nodiscard]] std::optional<double> topAt(Point2 at) {
+        constexpr double kHighest = 1.6;
+        const auto top = ispace::topAt(below_, at);
+        if (!top || *top > kHighest) return std::nullopt;
+        const Pose2 pose{at, frame_.world_from_body.heading};
+        for (const double x : {-frame_.length / 2, frame_.length / 2})
+            for (const double y : {-frame_.width / 2, frame_.width / 2})
+                if (ispace::topAt(below_, pose * Point2{x, y}) != top) return std::nullopt;
+        return isFree(at, *top) ? top : std::nullopt;
+    }
+
+  private:
+    [[nodiscard]] bool isFree(Point2 at, double top) {
+        auto others = others_.find(top);
+        if (others == others_.end())
+            others = others_
+                         .try_emplace(
+                             top, environment_.band(top + kSpare,
+                                                    top + std::max(2 * kSpare, frame_.height())))
+                         .first;
+        return !others->second.overlap(at, std::hypot(frame_.length, frame_.width) / 2);
+    }
+
+    const Environment& environment_;
+    const Element& below_;
+    PlacementFrame frame_;
+    std::map<double, Obstacles> others_;  // above a top
+};
+
+/// Returns where a person sets a thing down on another: within its edge, or the nearest free spot
+/// to that within reach.
+std::optional<Point3> spotOn(const World& world, const Element& below, const Record& thing,
+                             Point2 from) {
+    constexpr double kInside = 0.15, kReach = 1, kStep = 0.05;
+    constexpr int kDirections = 24;
+    Point2 first = nearestOf(below.body.prisms.front().footprint, from);
+    for (const Prism& prism : below.body.prisms) {
+        const Point2 near = nearestOf(prism.footprint, from);
+        if (distance(near, from) < distance(first, from)) first = near;
+    }
+    const Vec2 in = first - from;
+    if (in != Vec2{}) first = first + kInside / length(in) * in;
+    TopSpots spots(world.scene().environment, below, thing);
+    const double reach = std::max(kReach, distance(first, from));
+    for (int ring = 0; ring * kStep <= 2 * kReach; ++ring)
+        for (int i = 0; i < (ring == 0 ? 1 : kDirections); ++i) {
+            const Angle direction = Angle::degrees(360.0 * i / kDirections);
+            const Point2 at = inMillimetres(first + ring * kStep * unitVector(direction));
+            if (distance(at, from) > reach) continue;
+            if (const auto top = spots.topAt(at)) return Point3{at.x, at.y, *top};
+        }
+    return std::nullopt;
+}
+
+/// Sets it down on a thing, else on the floor ahead.
 PersonDeed putDown(const DeedMoment& moment) {
-    constexpr double kInside = 0.15, kHighest = 1.6;
     if (std::string reason = refuseToPut(moment); !reason.empty()) return {"", std::move(reason)};
     const Element* const thing = elementNamed(*moment.world, moment.target);
     const Pose2 pose = poseOf(moment);
     if (thing != nullptr && !thing->body.prisms.empty()) {
-        Point2 best = nearestOf(thing->body.prisms.front().footprint, pose.position);
-        for (const Prism& prism : thing->body.prisms) {
-            const Point2 near = nearestOf(prism.footprint, pose.position);
-            if (distance(near, pose.position) < distance(best, pose.position)) best = near;
-        }
-        const Vec2 in = best - pose.position;
-        if (in != Vec2{}) best = best + kInside / length(in) * in;
-        const auto top = topAt(*thing, best);
-        if (!top || *top > kHighest) return {"", "there is no room on " + moment.target};
-        return {"ACT " + putAt(moment.id, moment.object,
-                               {inMillimetres(best.x), inMillimetres(best.y), *top}),
-                ""};
+        const auto spot = spotOn(*moment.world, *thing,
+                                 elementNamed(*moment.world, moment.object)->record, pose.position);
+        if (!spot) return {"", "there is no room on " + moment.target};
+        return {"ACT " + putAt(moment.object, *spot), ""};
     }
-    const PlacementFrame frame = standingOf(elementNamed(*moment.world, moment.object)->record);
-    const double wide = std::hypot(frame.length, frame.width) / 2;
-    const double ahead = moment.world->movers()[moment.mover].model.radius + wide + 2 * kSpare;
-    const Obstacles things(moment.world->scene().environment, std::max(kSpare, frame.height()),
-                           nullptr);
+    const FloorSpots spots(*moment.world, moment.mover, pose.position, moment.object);
+    const double ahead =
+        moment.world->movers()[moment.mover].model.radius + spots.radius() + 2 * kSpare;
     constexpr double kStep = 30;
     for (const double turn : {0.0, kStep, -kStep, 2 * kStep, -2 * kStep, 3 * kStep, -3 * kStep,
                               4 * kStep, -4 * kStep, 5 * kStep, -5 * kStep, 6 * kStep}) {
-        const Point2 at = pose.position + ahead * unitVector(pose.heading + Angle::degrees(turn));
-        if (things.overlap(at, wide)) continue;
-        return {
-            "ACT " + putAt(moment.id, moment.object, {inMillimetres(at.x), inMillimetres(at.y), 0}),
-            ""};
+        const Point2 at =
+            inMillimetres(pose.position + ahead * unitVector(pose.heading + Angle::degrees(turn)));
+        if (spots.isFree(at)) return {"ACT " + putAt(moment.object, {at.x, at.y, 0}), ""};
     }
     return {"", "there is no room to set it down"};
 }

@@ -20,6 +20,9 @@ struct RestingPlace {
     double support = 0;
 };
 
+/// Returns true for walls and what is in them.
+bool partsRooms(const Element& element);
+
 /// Returns the highest top of the boxes and prisms of an element at a point, empty outside.
 std::optional<double> topAt(const Element& element, Point2 point);
 

@@ -3,18 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/number.h"
 #include "env/body_shapes.h"
 #include "env/element_schemas.h"
 #include "extensions/postures/deeds.h"
+#include "geom/predicates.h"
+#include "geom/spatial_index.h"
 #include "record/schema.h"
 #include "scene/placement_schemas.h"
 #include "scene/thing_kind.h"
+#include "sim/collision.h"
 
 namespace ispace {
 
@@ -49,12 +54,13 @@ class FigureBuilder {
 
     /// Adds a box from x = `from` to `to`, whose middle lies at y.
     void addBox(double from, double to, double y, double half_width, double bottom, double top,
-                Material material) {
+                Material material, bool faces_down = false) {
         parts_.push_back({.center = {(from + to) / 2, y},
                           .half_length = std::abs(to - from) / 2,
                           .half_width = half_width,
                           .bottom = support_ + bottom,
                           .top = support_ + top,
+                          .faces_down = faces_down,
                           .material = material});
     }
     /// Adds a ball about a point of the person's frame.
@@ -77,11 +83,12 @@ class FigureBuilder {
                           .top = support_ + top,
                           .material = material});
     }
-    /// Adds a box that stands at a point of the person's frame.
-    void addThing(Point3 foot, Vec3 size) {
+    /// Adds a box or a cylinder that stands at a point of the person's frame.
+    void addThing(Point3 foot, Vec3 size, bool is_round) {
         parts_.push_back({.center = foot.onFloor(),
-                          .half_length = size.x / 2,
-                          .half_width = size.y / 2,
+                          .half_length = is_round ? 0 : size.x / 2,
+                          .half_width = is_round ? 0 : size.y / 2,
+                          .radius = is_round ? size.x / 2 : 0,
                           .bottom = foot.z,
                           .top = foot.z + size.z,
                           .material = Material::Box});
@@ -165,11 +172,12 @@ void addSittingArm(const PersonPosture& posture, const Usual& usual, double side
                   usual.hand().material);
 }
 
-/// Adds the parts of a lying person, its head ahead. `ahead`: the left arm is beside the head.
-void addLying(const Usual& usual, bool ahead, FigureBuilder& figure) {
+/// Adds the parts of a lying person, its head ahead. \param fallen on the belly, the left arm
+/// beside the head
+void addLying(const Usual& usual, bool fallen, FigureBuilder& figure) {
     const BodyPart& trunk = usual.trunk();
     const double end = Usual::lengthOf(trunk) / 2;
-    figure.addBox(-end, end, 0, trunk.half_width, 0, 2 * trunk.half_length, trunk.material);
+    figure.addBox(-end, end, 0, trunk.half_width, 0, 2 * trunk.half_length, trunk.material, fallen);
     figure.addHead({end + usual.head().radius, 0, usual.head().radius}, usual.head());
     const BodyPart& leg = usual.leg();
     const BodyPart& sleeve = usual.sleeve();
@@ -177,7 +185,7 @@ void addLying(const Usual& usual, bool ahead, FigureBuilder& figure) {
     for (const double side : {-1.0, 1.0}) {
         figure.addBox(-end - Usual::lengthOf(leg), -end, side * Usual::asideOf(leg), leg.radius, 0,
                       2 * leg.radius, leg.material);
-        const bool is_ahead = ahead && side > 0;
+        const bool is_ahead = fallen && side > 0;
         const double r = sleeve.radius, way = is_ahead ? 1 : -1;
         const double shoulder = is_ahead ? end - 2 * r : end;
         const double wrist = shoulder + way * Usual::lengthOf(sleeve);
@@ -224,11 +232,16 @@ Point3 addLoad(const PersonPosture& posture, const std::optional<ArmPose>& right
         at = handOf(posture, *right, -1);
         at.z += radius;
     }
-    figure.addThing(at, *posture.load);
+    figure.addThing(at, *posture.load, posture.is_load_round);
     return at;
 }
 
 }  // namespace
+
+bool mayBeCarried(const Record& thing) {
+    const PlacementFrame frame = standingOf(thing);
+    return std::max({frame.length, frame.width, frame.height()}) <= kLargestLoad;
+}
 
 double longestReach(double height) {
     const std::vector<BodyPart> parts = humanParts(height);
@@ -253,6 +266,7 @@ PersonPosture postureOf(const Record& person, const Record* thing) {
     if (thing != nullptr) {
         const PlacementFrame frame = standingOf(*thing);
         posture.load = Vec3{frame.length, frame.width, frame.height()};
+        posture.is_load_round = thing->keyword() == "cylinder" && frame.length == frame.width;
     }
     const bool lies = posture.posture == Posture::Lie || posture.posture == Posture::Fallen;
     for (const std::string_view key : {"left_arm", "right_arm"})
@@ -328,61 +342,137 @@ std::shared_ptr<const PersonFigure> figureOf(const PersonPosture& posture) {
             break;
         }
     }
-    if (posture.load) made.load = addLoad(posture, right, builder);
+    if (posture.load) {
+        made.load = addLoad(posture, right, builder);
+        made.load_parts = 1;
+    }
     made.fixed = builder.parts();
     for (const BodyPart& part : made.fixed) made.reach = std::max(made.reach, reachOf(part));
     return std::make_shared<const PersonFigure>(std::move(made));
 }
 
-std::optional<Finding> checkSupport(const Scene& scene, std::size_t record) {
-    constexpr double kGap = 0.02;
-    const Record& person = scene.records[record];
-    const PersonPosture posture = postureOf(person);
-    if (posture.posture == Posture::Stand) return std::nullopt;
-    const Tuple& at = person.tuple("at");
-    const Point2 place{at[0], at[1]};
-    std::optional<double> top;
-    for (const Element& element : scene.environment.elements()) {
-        // Tops of meshes are not looked up.
-        if (!element.body.meshes.empty()) return std::nullopt;
-        if (const auto here = topAt(element, place)) top = std::max(top.value_or(0), *here);
+namespace {
+
+/// Checks the bodies of people, with the elements of the room in a tree.
+class BodyCheck {
+  public:
+    explicit BodyCheck(const Scene& scene) : scene_(&scene) {
+        std::vector<Box2> boxes;
+        for (const Element& element : scene.environment.elements()) {
+            Box2 box;
+            for (const Prism& prism : element.body.prisms)
+                for (const Point2 corner : prism.footprint) box.add(corner);
+            for (const Sheet& sheet : element.body.sheets)
+                for (const Point2 end : {sheet.line.a, sheet.line.b}) box.add(end);
+            has_meshes_ = has_meshes_ || !element.body.meshes.empty();
+            boxes.push_back(box);
+        }
+        elements_ = BoxTree(boxes);
     }
+    [[nodiscard]] std::optional<Finding> operator()(std::size_t record) const {
+        const PersonPosture posture = postureOf(scene_->records[record]);
+        const auto figure = figureOf(posture);
+        if (figure == nullptr) return std::nullopt;
+        const Pose2 pose = floorPoseOf(scene_->records[record]);
+        auto finding = supportOf(record, posture, *figure, pose.position);
+        return finding ? finding : wallOf(record, *figure, pose);
+    }
+
+  private:
+    [[nodiscard]] const Element& element(std::size_t i) const {
+        return scene_->environment.elements()[i];
+    }
+    /// Finds people that sit or lie in the air, or in a thing.
+    [[nodiscard]] std::optional<Finding> supportOf(std::size_t record, const PersonPosture& posture,
+                                                   const PersonFigure& figure, Point2 at) const;
+    /// Finds the wall through which a body reaches.
+    [[nodiscard]] std::optional<Finding> wallOf(std::size_t record, const PersonFigure& figure,
+                                                const Pose2& pose) const;
+
+    const Scene* scene_;
+    BoxTree elements_;
+    bool has_meshes_ = false;
+};
+
+std::optional<Finding> BodyCheck::supportOf(std::size_t record, const PersonPosture& posture,
+                                            const PersonFigure& figure, Point2 at) const {
+    constexpr double kGap = 0.02;
+    // Tops of meshes are not looked up.
+    if (posture.posture == Posture::Stand || has_meshes_) return std::nullopt;
+    std::optional<double> top;
+    elements_.search({at, at}, [&](std::size_t i) {
+        if (const auto here = topAt(element(i), at)) top = std::max(top.value_or(0), *here);
+    });
     const double below = top.value_or(0);
     if (std::abs(below - posture.support) <= kGap) return std::nullopt;
-    const std::string word = std::string(figureOf(posture)->rest);
-    return Finding{.element = scene.ids[record],
-                   .at = place,
-                   .message = "human " + scene.ids[record] + ' ' + word + ' ' +
+    const std::string& id = scene_->ids[record];
+    return Finding{.element = id,
+                   .at = at,
+                   .message = "human " + id + ' ' + figure.rest + ' ' +
                               formatFixed(posture.support, 2) + " m above the floor, where " +
                               (top ? "a thing is " + formatFixed(below, 2) + " m high"
                                    : std::string("no thing is")),
                    .hint = "set support=" + formatFixed(below, 2) + ", or move it",
-                   .source = person.place()};
+                   .source = scene_->records[record].place()};
 }
 
-std::optional<Finding> checkHolds(const Scene& scene, std::size_t record) {
-    const Record& person = scene.records[record];
-    std::string carried;
-    for (std::size_t i = 0; i < scene.records.size(); ++i)
-        if (personWith(scene.records[i]) == scene.ids[record]) {
-            if (!carried.empty())
-                return Finding{.severity = Severity::Error,
-                               .element = scene.ids[record],
-                               .message = "human " + scene.ids[record] + " carries " + carried +
-                                          " and " + scene.ids[i],
-                               .hint = "remove `carried` of one: the right hand has one thing",
-                               .source = scene.records[i].keyPlace("carried")};
-            carried = scene.ids[i];
-        }
-    const std::string holds = person.has("holds") ? person.text("holds") : "none";
-    if (!person.has("holds") || holds == (carried.empty() ? "none" : carried)) return std::nullopt;
-    return Finding{.element = scene.ids[record],
-                   .message = "human " + scene.ids[record] + " holds " + holds + ", but carries " +
-                              (carried.empty() ? "no thing" : carried),
-                   .hint = holds == "none" ? "set holds=" + carried
-                                           : "set carried=" + scene.ids[record] + " of that thing",
-                   .source = person.keyPlace("holds")};
+std::optional<Finding> BodyCheck::wallOf(std::size_t record, const PersonFigure& figure,
+                                         const Pose2& pose) const {
+    std::optional<std::size_t> wall;
+    for (std::size_t k = 0; k + figure.load_parts < figure.fixed.size(); ++k) {
+        const BodyPart& part = figure.fixed[k];
+        const Segment2 way{pose.position, pose * part.center};
+        Box2 box;
+        for (const Point2 end : {way.a, way.b}) box.add(end);
+        elements_.search(box, [&](std::size_t i) {
+            if (!partsRooms(element(i)) || (wall && *wall <= i)) return;
+            const auto meets = [&](const auto& piece, const Segment2& line) {
+                return piece.bottom < part.top && part.bottom < piece.top && intersects(way, line);
+            };
+            bool is_met = false;
+            for (const Prism& prism : element(i).body.prisms)
+                for (std::size_t j = 0; j < prism.footprint.size(); ++j)
+                    is_met =
+                        is_met || meets(prism, {prism.footprint[j],
+                                                prism.footprint[(j + 1) % prism.footprint.size()]});
+            for (const Sheet& sheet : element(i).body.sheets)
+                is_met = is_met || meets(sheet, sheet.line);
+            if (is_met) wall = i;
+        });
+    }
+    if (!wall) return std::nullopt;
+    const std::string& id = scene_->ids[record];
+    return Finding{.element = id,
+                   .at = pose.position,
+                   .message = "human " + id + ' ' +
+                              (figure.rest.empty() ? "reaches" : figure.rest) + " through " +
+                              element(*wall).record.keyword() + ' ' + element(*wall).id,
+                   .hint = "move or turn it",
+                   .source = scene_->records[record].place()};
 }
+
+}  // namespace
+
+std::optional<Finding> checkBody(const Scene& scene, std::size_t record) {
+    return BodyCheck(scene)(record);
+}
+
+namespace {
+
+/// Returns the reason why a person that sits, lies or has fallen does not stand up where it is.
+std::string refusalToStand(const Record& before, const Record& after, const Pose2& at,
+                           const Scene& scene) {
+    const PersonPosture stands = postureOf(after);
+    if (stands.posture != Posture::Stand || postureOf(before).posture == Posture::Stand) return "";
+    const Obstacles things(scene.environment, stands.height, nullptr);
+    const auto thing = things.overlap(at.position, humanRadius(stands.height));
+    if (!thing) return "";
+    return "there is no room to stand at " + formatFixed(at.position.x, 2) + ',' +
+           formatFixed(at.position.y, 2) + ": " + scene.environment.elements()[*thing].id +
+           " is there; set `at` with it";
+}
+
+}  // namespace
 
 void addPostures() {
     const auto arm = [](std::string name, const std::string& side) {
@@ -414,29 +504,40 @@ void addPostures() {
                   arm("right_arm", "right"),
                   {.name = "holds",
                    .type = KeyType::Word,
-                   .help = "id of the thing that the person carries, or none, as told by states"}});
-    for (const char* const thing : {"cube", "cylinder"})
+                   .help = "id of the thing that the person carries, or none, which follows from "
+                           "`carried` of things"}});
+    for (const char* const thing : {"cube", "cylinder"}) {
         addSceneKeys(thing, {{.name = "carried",
                               .type = KeyType::Word,
                               .help = "id of the person that has it in the right hand",
                               .role = Role::Reference}});
-    setCarriedKey("carried");
+        addThingKind(thing, {.check = [](const Record& record) {
+                         if (personWith(record).empty() || mayBeCarried(record)) return;
+                         throw FormatError(record.finding(
+                             "carried", "`carried`: a person carries things of at most " +
+                                            formatDouble(kLargestLoad) + " m"));
+                     }});
+    }
+    setCarryKeys("carried", "holds");
     addThingKind("human",
                  {.states = {"posture", "left_arm", "right_arm", "holds"},
+                  .body_keys = {"support"},
                   .has_states =
                       [](const Record& person) {
                           return person.has("posture") || person.has("left_arm") ||
                                  person.has("right_arm") || person.has("holds");
                       },
                   .check = [](const Record& person) { postureOf(person); },
+                  .refusal = refusalToStand,
                   .entities = {{"posture", "sensor", ""},
                                {"left_arm", "sensor", ""},
                                {"right_arm", "sensor", ""},
                                {"holds", "sensor", ""}},
                   .figure = [](const Record& person,
                                const Record* load) { return figureOf(postureOf(person, load)); }});
-    addRecordCheck("human", checkHolds);
-    addRecordCheck("human", checkSupport);
+    addRecordCheck("human", [](const Scene& scene) {
+        return std::function<std::optional<Finding>(std::size_t record)>(BodyCheck(scene));
+    });
     addDeeds();
 }
 

@@ -31,6 +31,7 @@ struct PersonPosture {
     double support = 0;  ///< height of the seat, the bed or the floor under it, metres
     std::optional<ArmPose> left = {}, right = {};  ///< unset: as they are in the posture
     std::optional<Vec3> load = {};  ///< length, width and height of the thing that it carries
+    bool is_load_round = false;     ///< it is a cylinder, as long as it is wide
 };
 
 /// Reads a `human` record. \param thing that it carries, in the right hand ahead of it; may be null
@@ -44,6 +45,10 @@ double longestReach(double height);
 constexpr double kUsualReach = 0.6 / 1.7;
 /// Height of a seat that `support` does not tell, metres.
 constexpr double kSeatHeight = 0.45;
+
+/// Length, width and height of a thing that a person carries, at most, metres.
+constexpr double kLargestLoad = 0.6;
+bool mayBeCarried(const Record& thing);
 
 /// Returns the joint of a shoulder in the person's frame. \param side 1: left, -1: right
 Point3 shoulderOf(const PersonPosture& posture, double side);
@@ -61,10 +66,8 @@ ArmPose armTo(const PersonPosture& posture, Point3 point, double side);
 /// a row of balls with the arm's radius, two thirds of it apart.
 std::shared_ptr<const PersonFigure> figureOf(const PersonPosture& posture);
 
-/// Finds people whose `holds` differs from the `carried` of things.
-std::optional<Finding> checkHolds(const Scene& scene, std::size_t record);
-/// Finds people that sit or lie in the air, or in a thing.
-std::optional<Finding> checkSupport(const Scene& scene, std::size_t record);
+/// Finds people that sit or lie in the air, in a thing, or through a wall.
+std::optional<Finding> checkBody(const Scene& scene, std::size_t record);
 
 /// Adds the keys and states of `human`, its bodies, and the verbs `sits on`, `lies on`, `falls`,
 /// `stands`, `points at`, `reaches` and `carries` of plans of days.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/sensor/rfid.h"
 
+#include <string_view>
+#include <unordered_map>
+
 #include "base/number.h"
 #include "env/body.h"
 #include "env/body_shapes.h"
@@ -38,21 +41,30 @@ void addRfidKeys(std::vector<KeySpec>& keys) {
                     .upper = 1});
 }
 
-/// Returns the number of a person among the people of a room; past them for an unknown one.
-std::size_t personNumber(const RoomRecords& room, const std::string& id) {
-    std::size_t number = 0;
-    for (std::size_t i = 0; i < room.records.size(); ++i) {
-        if (room.records[i].keyword() != "human") continue;
-        if (room.ids[i] == id) break;
-        ++number;
+/// Numbers of people among those of a room, by their ids.
+class PersonNumbers {
+  public:
+    explicit PersonNumbers(const RoomRecords& room) : room_(room) {}
+    /// Returns the number past all people for an unknown one.
+    std::size_t operator()(const std::string& id) {
+        if (numbers_.empty())
+            for (std::size_t i = 0; i < room_.records.size(); ++i)
+                if (room_.records[i].keyword() == "human")
+                    numbers_.emplace(room_.ids[i], numbers_.size());
+        const auto found = numbers_.find(id);
+        return found == numbers_.end() ? numbers_.size() : found->second;
     }
-    return number;
-}
+
+  private:
+    const RoomRecords& room_;
+    std::unordered_map<std::string_view, std::size_t> numbers_;
+};
 
 std::vector<RfidTag> tagsOf(const RoomRecords& room) {
     using Carrier = RfidTag::Carrier;
     constexpr double kAbove = 0.01;  // a tag lies on a thing, not in its surface
     std::vector<RfidTag> tags;
+    PersonNumbers number_of(room);
     std::size_t robots = 0, people = 0;
     for (const Record& record : room.records) {
         const bool is_robot = record.keyword() == "robot", is_person = record.keyword() == "human";
@@ -66,7 +78,7 @@ std::vector<RfidTag> tagsOf(const RoomRecords& room) {
                     {}};
         if (const std::string person = personWith(record); !person.empty()) {
             tag.carrier = Carrier::Person;
-            tag.mover = personNumber(room, person);
+            tag.mover = number_of(person);
         }
         if (tag.carrier == Carrier::Thing) {
             const Tuple& at = record.tuple("at");
