@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/message.h"
+#include "env/body_shapes.h"
 #include "env/walls.h"
 #include "io/glb/glb_write.h"
 #include "scene/placement_schemas.h"
@@ -104,10 +105,14 @@ std::shared_ptr<const Scene> sceneWithWholeIds(const BuildingScene& building, st
         if (isMoverRecord(scene->records[i])) movers.insert(scene->ids[i]);
     std::vector<Record> records = scene->records;
     for (std::size_t i = 0; i < records.size(); ++i) {
+        const Storey& home = building.document.storeys[storey];
         const bool is_carried = records[i].schema().type == RecordType::Placement &&
                                 movers.contains(carrierOf(records[i]));
         if (isMoverRecord(records[i]) || is_carried)
-            records[i] = inBuilding(building.document.storeys[storey], records[i], scene->ids[i]);
+            records[i] = inBuilding(home, records[i], scene->ids[i]);
+        // A thing in a hand stays one of its storey.
+        else if (const std::string person = personWith(records[i]); movers.contains(person))
+            records[i].set(carriedKey(), wholeId(home, person));
     }
     return std::make_shared<const Scene>(makeScene(std::move(records), *scene, building.devices));
 }
@@ -118,8 +123,15 @@ BuildingScene makeBuildingScene(StoreyedDocument document, const std::vector<Doc
     std::map<const Document*, std::shared_ptr<const Scene>> bare;
     for (std::size_t i = 0; i < building.document.storeys.size(); ++i) {
         const Document& room = *building.document.storeys[i].room;
-        auto& plain = bare[&room];
         const bool has_layout = !layouts.empty() && !layouts[i].records.empty();
+        // A person of the layout may carry a thing of the room, which is no scene without it.
+        if (has_layout && std::any_of(room.records.begin(), room.records.end(),
+                                      [](const Record& one) { return !personWith(one).empty(); })) {
+            building.scenes.push_back(
+                std::make_shared<const Scene>(makeScene(room, &layouts[i], devices)));
+            continue;
+        }
+        auto& plain = bare[&room];
         if (plain == nullptr)
             plain = std::make_shared<const Scene>(makeScene(room, nullptr, devices));
         building.scenes.push_back(has_layout ? std::make_shared<const Scene>(makeScene(

@@ -192,6 +192,7 @@ void BuildingRun::Data::change(std::size_t room, const NextScene& next,
 std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose2& pose,
                                     bool is_put) {
     if (std::string fault = noRoomText(room, pose.position, who); !fault.empty()) return fault;
+    if (std::string fault = loadText(who); !fault.empty()) return fault;
     const std::size_t from = who.room;
     World& left = *rooms[from].world;
     World& entered = *rooms[room].world;
@@ -200,13 +201,16 @@ std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose
     std::string deleted = "DELETE";
     for (std::size_t i = 0; i < left.scene().records.size(); ++i) {
         const std::string& id = left.scene().ids[i];
-        const bool goes = std::any_of(moved.begin(), moved.end(), [&](const Record& record) {
+        const auto goes = std::find_if(moved.begin(), moved.end(), [&](const Record& record) {
             return record.writtenId() == id;
         });
-        if (goes)
-            deleted += ' ' + id;
-        else
+        if (goes == moved.end()) {
             rest.push_back(left.scene().records[i]);
+            continue;
+        }
+        deleted += ' ' + id;
+        // As changes have left it.
+        *goes = left.scene().records[i];
     }
     NextScene without;
     try {

@@ -168,8 +168,10 @@ struct BuildingRun::Data {
     void leaveCabin(Traveller& who, BuildingTrip& trip);
     void step(Traveller& who, BuildingTrip& trip);
     void arrive(Traveller& who, BuildingTrip& trip);
-    void finish(const std::string& id, Outcome outcome);
-    void tellUnreached(const Traveller& who, const BuildingTrip& trip);
+    [[nodiscard]] std::string loadText(const Traveller& who) const;
+    /// \param reason why it is given up, which the event `unreached` tells
+    void finish(const std::string& id, Outcome outcome, const std::string& reason = "");
+    void tellUnreached(const Traveller& who, const BuildingTrip& trip, const std::string& reason);
     void giveUp(Traveller& who, BuildingTrip& trip, Outcome outcome);
     void clearLanding(Traveller& who, BuildingTrip& trip);
     /// Returns how far from a landing it leaves it to others.

@@ -6,8 +6,10 @@
 
 #include "base/message.h"
 #include "base/number.h"
+#include "env/body_shapes.h"
 #include "passage/building_run.h"
 #include "passage/building_run_data.h"
+#include "scene/bodies.h"
 
 namespace ispace {
 
@@ -40,6 +42,10 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
     if (!storey)
         return {.refusal =
                     mover + " is in " + rooms[who.room].id + ": it first goes on to a storey"};
+    World& world = worldOf(who);
+    const std::size_t index = world.moverNamed(mover).value();
+    if (!world.movers()[index].rest().empty())
+        return {.refusal = world.refusal(index, {.verb = Verb::Forward, .value = 1})};
     TripAnswer answer;
     std::size_t from = *storey;
     Point2 at = statusOf(who).pose.position;
@@ -64,6 +70,8 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
                     text += "; " + passages[k].id + ": " + why;
             return {.refusal = text, .unreached = points[i]};
         }
+        if (std::string fault = loadText(who); !route->legs.empty() && !fault.empty())
+            return {.refusal = std::move(fault), .unreached = points[i]};
         answer.length += route->length;
         for (const Leg& leg : route->legs)
             answer.via += (answer.via.empty() ? "" : ",") + passages[leg.passage].id;
@@ -71,8 +79,6 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
         from = points[i].room;
         at = points[i].at;
     }
-    World& world = worldOf(who);
-    const std::size_t index = world.moverNamed(mover).value();
     finish(mover, Outcome::Replaced);
     trip.command = answer.id = world.issueId(index);
     // Ends the command under way as replaced; the trip begins before the next step.
@@ -83,27 +89,44 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
     return answer;
 }
 
-void BuildingRun::Data::finish(const std::string& id, Outcome outcome) {
+/// Returns the reason why a mover that carries a thing stays on its storey; "" without a thing.
+std::string BuildingRun::Data::loadText(const Traveller& who) const {
+    const World& world = *rooms[who.room].world;
+    if (!who.is_person) return "";
+    const auto& figure =
+        world.people()[world.moverNamed(who.id).value() - world.robots().size()].figure;
+    if (figure == nullptr || figure->load_parts == 0) return "";
+    const Scene& scene = world.scene();
+    for (std::size_t i = 0; i < scene.records.size(); ++i)
+        if (personWith(scene.records[i]) == who.id)
+            return who.id + " carries " + scene.ids[i] +
+                   ", which stays on its storey: it first sets it down";
+    return "";
+}
+
+void BuildingRun::Data::finish(const std::string& id, Outcome outcome, const std::string& reason) {
     const auto found = trips.find(id);
     if (found == trips.end()) return;
     release(id);
     const int command = found->second.command;
     if (outcome == Outcome::Unreached || outcome == Outcome::Stall)
-        tellUnreached(travellers.find(id)->second, found->second);
+        tellUnreached(travellers.find(id)->second, found->second, reason);
     new_ends.push_back({id, command, outcome, rooms.front().world->time()});
     trips.erase(found);
     wanderOn(id, command, outcome);
 }
 
 /// Raises the event of a trip that is given up, unless it is one to a random point.
-void BuildingRun::Data::tellUnreached(const Traveller& who, const BuildingTrip& trip) {
+void BuildingRun::Data::tellUnreached(const Traveller& who, const BuildingTrip& trip,
+                                      const std::string& reason) {
     const auto wanderer = wanderers.find(who.id);
     if (wanderer != wanderers.end() && wanderer->second.trip == trip.command) return;
     const RoomPoint goal = trip.given_up.value_or(trip.plan.points[trip.goal]);
     rooms[who.room].simulation->events().tell({.kind = EventKind::Unreached,
                                                .id = who.id,
                                                .other = rooms[goal.room].id,
-                                               .place = goal.at});
+                                               .place = goal.at,
+                                               .text = reason});
 }
 
 std::string BuildingRun::endTrip(const std::string& mover, Outcome outcome) {
@@ -177,6 +200,16 @@ void BuildingRun::Data::advance() {
 
 void BuildingRun::Data::advanceTrip(const std::string& id, BuildingTrip& trip) {
     Traveller& who = travellers.find(id)->second;
+    if (who.is_person && rooms[who.room].storey) {
+        const World& world = worldOf(who);
+        if (!world.movers()[world.moverNamed(id).value()].rest().empty())
+            return finish(id, Outcome::Stopped);
+        if (trip.leg < trip.legs.size())
+            if (const std::string fault = loadText(who); !fault.empty()) {
+                worldOf(who).command(world.moverNamed(id).value(), {Verb::Stop, 0});
+                return finish(id, Outcome::Unreached, fault);
+            }
+    }
     switch (trip.state) {
         case TripState::Setting:
             return setOut(who, trip);

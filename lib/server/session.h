@@ -164,6 +164,7 @@ class Session {
     [[nodiscard]] std::vector<std::string> withJoined(Words words);
     void changeRoom(Words words);
     bool placeMover(Words words);
+    bool changeBody(Words words);
     [[nodiscard]] bool maySeek() const { return state_->areAllAtRest(); }
     [[nodiscard]] bool hasCome() const { return !coming_; }
     [[nodiscard]] bool sendsPendingScan(Words words);

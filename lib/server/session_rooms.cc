@@ -13,6 +13,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "scene/room_state.h"
+#include "scene/thing_kind.h"
 #include "server/change_request.h"
 #include "server/session.h"
 #include "sim/joined_worlds.h"
@@ -284,11 +285,53 @@ bool Session::placeMover(Words words) {
     return true;
 }
 
+/// Sets keys of a person's body, or acts on its states, where it is. \returns false for other
+/// requests
+bool Session::changeBody(Words words) {
+    const bool sets = words[0] == "SET" && words.size() == 2;
+    if (!sets && (words[0] != "ACT" || words.size() < 3)) return false;
+    const JoinedWorlds& worlds = *rooms()->worlds;
+    const std::string_view left = words[1].substr(0, words[1].find('='));
+    const std::size_t dot = sets ? left.rfind('.') : left.size();
+    if (dot == std::string_view::npos) return false;
+    const std::string id(left.substr(0, dot));
+    const auto room = worlds.roomOf(id);
+    if (!room) return false;
+    const JoinedRoom& in = worlds.rooms()[*room];
+    const Scene& scene = in.simulation->world().scene();
+    const auto own = std::find(scene.ids.begin(), scene.ids.end(), id) - scene.ids.begin();
+    const std::string& keyword = scene.records[static_cast<std::size_t>(own)].keyword();
+    std::vector<std::string> keys = stateKeysOf(keyword);
+    if (keys.empty()) return false;
+    if (const ThingKind* const kind = thingKind(keyword))
+        keys.insert(keys.end(), kind->body_keys.begin(), kind->body_keys.end());
+    if (sets && std::find(keys.begin(), keys.end(), left.substr(dot + 1)) == keys.end())
+        return false;
+    if (!worlds.frameOf(*room).is_storey) {
+        error(409, {id, " is in ", in.id, ": it first goes on to a storey"});
+        return true;
+    }
+    if (!mayChange()) {
+        hold(words, &Session::mayChange);
+        return true;
+    }
+    try {
+        const std::string request =
+            sets ? std::string(textOf(words)) : stateChange(scene, id, words.subspan(2));
+        wanted_ = changeWorld(*rooms()->states[*room], request, std::string(words[0]));
+    } catch (const UsageError& bad) {
+        error(400, {bad.what()});
+        return true;
+    }
+    receiveAsked();
+    return true;
+}
+
 /// Changes a thing of a building that stands in a room, or its state, the position of a robot or a
 /// person, or restarts the whole.
 void Session::changeRoom(Words words) {
     if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
-    if (!mayMove() || placeMover(words)) return;
+    if (!mayMove() || placeMover(words) || changeBody(words)) return;
     if (words[0] == "RESET") {
         if (!mayChange()) return hold(words, &Session::mayChange);
         changeRooms(*rooms(), [this] { rooms()->worlds->restart(); });
