@@ -28,7 +28,9 @@ class Scratch:
         self._real = os.path.realpath(os.getcwd())
         self.path = self._root + self._real
         self._mirrored: set[str] = set()
+        self._ways: dict[bytes, bytes] = {}  # to inputs with absolute names, from here, and from the real folder
         self._mirror(self._real)
+        self._from = folder
         self._folder = os.path.join(self.path, folder)
         if not os.path.isabs(folder):
             self._open(folder)
@@ -41,9 +43,18 @@ class Scratch:
 
     def mirror(self, file: str) -> None:
         """Makes the folder of an input a folder here, too, so that relative ways from and to it are right. An absolute
-        name has the same meaning everywhere."""
-        if not os.path.isabs(file) and os.path.dirname(file):
+        name has the same meaning everywhere, but not the way to it."""
+        if os.path.isabs(file):
+            here, there = os.path.realpath(self._folder), os.path.normpath(os.path.join(self._real, self._from))
+            self._ways[os.path.relpath(file, here).encode()] = os.path.relpath(file, there).encode()
+        elif os.path.dirname(file):
             self._open(os.path.dirname(file))
+
+    def placed(self, content: bytes) -> bytes:
+        """Replaces ways from the scratch folder to inputs with absolute names by those from the real one."""
+        for here, there in self._ways.items():
+            content = content.replace(here, there)
+        return content
 
     def real(self, text: str) -> str:
         """Replaces the scratch folder by the current one in a message."""

@@ -95,6 +95,10 @@ class Worker:
         for file in self._sweep.inputs(job):
             self._scratch.mirror(file)
         for step in self._sweep.steps:
+            for word in self._plain.words(job, step)[1:]:
+                if os.sep in word and os.path.exists(word):
+                    self._scratch.mirror(word)
+        for step in self._sweep.steps:
             for suffix in step.makes:
                 self._scratch.free(job.path(suffix))
         try:
@@ -121,7 +125,7 @@ class Worker:
         """The bytes of a file; None if it is missing or empty, which marks a step that is not done."""
         try:
             with open(os.path.join(self._scratch.path, path), "rb") as file:
-                return file.read() or None
+                return self._scratch.placed(file.read()) or None
         except OSError:
             return None
 

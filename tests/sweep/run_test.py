@@ -77,6 +77,21 @@ def equals_files(folder):
         same(form, folder.read(f"files.{form}"), folder.read(f"lines.{form}"))
 
 
+def rooms_of_commands(folder):
+    """Rooms that commands name themselves, above and by absolute names, are found, and the same way from layouts."""
+    for name in ("../other/b.env", str(folder / "rooms/a.env"), str(folder / "../other/b.env")):
+        folder.write("sweep.yaml", SWEEP.replace("{room}", name).replace("axes:\n", "axes:\n  #").replace("1..4", "1"))
+        by_files(folder)
+        wanted = folder.read("results/count1_seed1.3dm").decode()
+        shutil.rmtree(folder / "results")
+        deep = folder / "deep/er/tmp"
+        os.makedirs(deep, exist_ok=True)
+        for place in ("", str(deep)):
+            job = lines(sweep(folder, "run", env=dict(os.environ, TMPDIR=place)))[1]
+            same(f"status with {name}", 0, job["status"])
+            same(f"a layout of {name} made in {place}", wanted, job["files"][".3dm"])
+
+
 def shares(folder):
     """Shares, jobs at a time and standard output make the same lines."""
     folder.write("sweep.yaml", SWEEP)
@@ -431,7 +446,7 @@ def errors(folder):
     check("stdout: error: No space left" in folder.talk, folder.talk)
 
 
-for part in (equals_files, shares, ends_in_the_middle, failures, states_of_parts,
+for part in (equals_files, rooms_of_commands, shares, ends_in_the_middle, failures, states_of_parts,
              parts_that_lack_jobs, grown, others, inputs_stay, errors):
     with Folder() as scratch_folder:
         whole = scratch_folder.path
