@@ -51,7 +51,8 @@ struct BumperOfRun {
     double force = 0;  // N
     std::string into = {};
     SimTime until{};     // it is told as long at least,
-    bool stays = false;  // and while the robot that ran into it stands there
+    bool stays = false;  // and while the robot that ran into it stands there,
+    Point2 at = {};      // where it met it
 };
 
 struct Room {
@@ -101,6 +102,7 @@ void Run::readChanged() {
                 bumper.into = before->second.into;
                 bumper.until = before->second.until;
                 bumper.stays = before->second.stays;
+                bumper.at = before->second.at;
             }
             bumpers.emplace(name, std::move(bumper));
         }
@@ -113,8 +115,9 @@ Vec2 velocityOf(const RobotStatus& status) {
     return status.speed * ahead + status.sidespeed * perpendicular(ahead);
 }
 
-bool stands(const RobotStatus& status) {
-    return status.speed == 0 && status.sidespeed == 0 && status.rotspeed == Angle();
+bool standsAt(const RobotStatus& status, Point2 place) {
+    return status.pose.position == place && status.speed == 0 && status.sidespeed == 0 &&
+           status.rotspeed == Angle();
 }
 
 double massOf(const Scene& scene, std::string_view id) {
@@ -196,7 +199,7 @@ class Bumpers : public RoleService {
             // Speeds, not the flag of the stall: a command clears that, which a replay does not
             // have.
             if (bumper.force > 0 && time_ >= bumper.until &&
-                !(bumper.stays && stands(room.world().status(*mover)))) {
+                !(bumper.stays && standsAt(room.world().status(*mover), bumper.at))) {
                 bumper.force = 0;
                 bumper.into.clear();
                 tellState(bumper);
@@ -267,6 +270,7 @@ class Bumpers : public RoleService {
             std::round(contactForce(speed, bumper.stiffness, mass) * kTenths) / kTenths;
         // The world stops one after the other of two that meet: the first contact is the hard one.
         bumper.stays = bumper.stays || meeting.runs;
+        bumper.at = world.status(meeting.robot).pose.position;
         if (force <= 0 || (time_ < bumper.until && force <= bumper.force)) return;
         bumper.force = force;
         bumper.into = meeting.into;

@@ -160,6 +160,20 @@ TEST_F(BumperRole, FeelsAWall) {
     EXPECT_EQ(force(session, "b"), 0) << "it has left";
 }
 
+TEST_F(BumperRole, FeelsNothingWhereTheRobotWasPut) {
+    Session session(state_);
+    ask(session, "BUMPER *");
+    go("r", 1.2);
+    run(1000);
+    ASSERT_NEAR(force(session, "b"), 600, 1e-9);
+    session.request("SET r.at=-5,0");
+    run(200);
+    ASSERT_EQ(world_.status(*world_.moverNamed("r")).pose.position, (Point2{-5, 0}))
+        << session.take();
+    session.take();
+    EXPECT_EQ(force(session, "b"), 0);
+}
+
 TEST_F(BumperRole, FeelsTheSpeedAcrossASurface) {
     Session session(state_);
     ask(session, "BUMPER *");

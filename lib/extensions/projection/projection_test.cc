@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -208,6 +209,17 @@ TEST(Projection, FindsTheBestPoses) {
                 EXPECT_GE(one.rectangle->least, kDensity);
                 EXPECT_GE(one.rectangle->pan.degrees(), model.pan.least);
                 EXPECT_LE(one.rectangle->tilt.degrees(), model.tilt.most);
+                // Not beyond the picture: the corners have the density, too.
+                const SurfacePicture picture(
+                    model, projectorLens(record, one.rectangle->pan, one.rectangle->tilt));
+                for (const double x : {0.0, one.rectangle->width})
+                    for (const double y : {0.0, one.rectangle->height}) {
+                        const Point3 corner =
+                            facet.at(one.rectangle->left + x, one.rectangle->bottom + y);
+                        const auto density = picture.at(corner, facet.frame.left, facet.frame.up);
+                        ASSERT_TRUE(density) << surface.name;
+                        EXPECT_GE(density->least, kDensity) << surface.name;
+                    }
             }
         }
         EXPECT_GT(projection.projectors.front().carries, 1);
@@ -267,6 +279,15 @@ TEST(ProjectionSurfaces, HaveTheAreasOfWallsAndFloor) {
     EXPECT_NEAR(floor, 8 * 6, 1e-6);
     EXPECT_NEAR(wall, 6 * 3 - 1 * 2, 1e-6) << "the pieces beside the door are one surface";
     EXPECT_NEAR(pillar, std::numbers::pi * 0.6 * 3, 0.02);
+}
+
+TEST(ProjectionSurfaces, HaveDifferentNames) {
+    const Scene scene = sceneOf("fence id=f path=-2,-1;-1,-1;-1,0;0,0;0,1\n");
+    std::set<std::string> names;
+    const std::vector<ProjectionSurface> surfaces = projectionSurfaces(scene.environment, 0.25);
+    for (const ProjectionSurface& surface : surfaces)
+        EXPECT_TRUE(names.insert(surface.name).second) << surface.name;
+    EXPECT_EQ(names.count("fence f, facing 90 (2)"), 1U);
 }
 
 TEST(Projection, ReportsSurfacesOfModels) {

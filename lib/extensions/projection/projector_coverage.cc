@@ -286,19 +286,72 @@ class RectangleSearch {
         }
     }
 
+    /// Returns true if light reaches these cells; cells beyond the surface, whose edge is between,
+    /// do not matter.
+    [[nodiscard]] bool areClear(std::size_t column, std::size_t columns, std::size_t row,
+                                std::size_t rows) const {
+        if (column >= facet_.columns || row >= facet_.rows) return true;  // also -1
+        for (std::size_t r = row; r < row + rows; ++r)
+            for (std::size_t c = column; c < column + columns; ++c) {
+                const std::size_t cell = r * facet_.columns + c;
+                const auto found = std::lower_bound(facet_.cells.begin(), facet_.cells.end(), cell);
+                if (found == facet_.cells.end() || *found != cell ||
+                    view_.is_clear[static_cast<std::size_t>(found - facet_.cells.begin())] == 0)
+                    return false;
+            }
+        return true;
+    }
+
+    /// Returns true if a picture lights a line of the surface with the density.
+    [[nodiscard]] bool lights(const SurfacePicture& picture, Point2 a, Point2 b,
+                              std::size_t steps) const {
+        for (std::size_t i = 0; i <= steps; ++i) {
+            const double share = static_cast<double>(i) / static_cast<double>(steps);
+            const Point2 on = a + share * (b - a);
+            const auto density =
+                picture.at(facet_.at(on.x, on.y), facet_.frame.left, facet_.frame.up);
+            if (!density || density->least < density_) return false;
+        }
+        return true;
+    }
+
+    /// Returns the rectangle of the middles of cells, which are what has been looked at, grown to
+    /// the edge of the cells on each side that the picture lights, too.
+    [[nodiscard]] Box2 grown(const CellRectangle& cells, const SurfacePicture& picture) const {
+        const double wide = facet_.cellWidth(), high = facet_.cellHeight();
+        const std::size_t right = cells.column + cells.columns, upper = cells.row + cells.rows;
+        const auto edge = [](std::size_t cell, double size) {
+            return static_cast<double>(cell) * size;
+        };
+        Box2 box;
+        box.add({edge(cells.column, wide) + wide / 2, edge(cells.row, high) + high / 2});
+        box.add({edge(right, wide) - wide / 2, edge(upper, high) - high / 2});
+        for (const auto& [beside, at] : {std::pair{cells.column - 1, cells.column}, {right, right}})
+            if (const double x = edge(at, wide);
+                areClear(beside, 1, cells.row, cells.rows) &&
+                lights(picture, {x, box.low.y}, {x, box.high.y}, cells.rows))
+                box.add({x, box.low.y});
+        for (const auto& [beside, at] : {std::pair{cells.row - 1, cells.row}, {upper, upper}})
+            if (const double y = edge(at, high);
+                areClear(cells.column, cells.columns, beside, 1) &&
+                lights(picture, {box.low.x, y}, {box.high.x, y}, cells.columns))
+                box.add({box.low.x, y});
+        return box;
+    }
+
     [[nodiscard]] PictureRectangle measured() const {
         const auto& [cells, angles, facing] = best_;
         PictureRectangle out;
-        const double wide = facet_.cellWidth(), high = facet_.cellHeight();
-        out.left = static_cast<double>(cells.column) * wide;
-        out.bottom = static_cast<double>(cells.row) * high;
-        out.width = static_cast<double>(cells.columns) * wide;
-        out.height = static_cast<double>(cells.rows) * high;
+        const SurfacePicture picture = source_.turned(angles);
+        const Box2 box = grown(cells, picture);
+        out.left = box.low.x;
+        out.bottom = box.low.y;
+        out.width = box.width();
+        out.height = box.depth();
         out.middle = facet_.at(out.left + out.width / 2, out.bottom + out.height / 2);
         out.pan = Angle::degrees(angles.pan);
         out.tilt = Angle::degrees(angles.tilt);
         out.slant = Angle::degrees(std::acos(std::clamp(facing, -1.0, 1.0)) * kDegrees);
-        const SurfacePicture picture = source_.turned(angles);
         const ProjectorBeam beam{picture.lens(), source_.model.across, source_.model.upright,
                                  source_.model.lumens};
         bool is_first = true;

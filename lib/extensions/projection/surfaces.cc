@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "base/error.h"
@@ -194,6 +195,10 @@ std::vector<ProjectionSurface> projectionSurfaces(const Environment& environment
             addMesh(mesh, middle, planes);
         addSurfaces(element.id, nameOf(element), planes, cell, surfaces);
     }
+    std::map<std::string, int> same;
+    for (ProjectionSurface& surface : surfaces)
+        if (const int number = ++same[surface.name]; number > 1)
+            surface.name += " (" + std::to_string(number) + ')';
     return surfaces;
 }
 
