@@ -83,8 +83,21 @@ std::string identifiedText(const CoverageReport& report) {
 
 }  // namespace
 
+std::string judgedAtText(const CoverageReport& report) {
+    std::string text;
+    if (report.density > 0) {
+        text = " with " + formatDouble(report.density) + " pixels a metre or more";
+        const auto& classes = densityClasses();
+        for (std::size_t i = 0; i < classes.size(); ++i)
+            if (classes[i].pixels_per_metre == report.density) text += " (" + classNames(i) + ")";
+    }
+    if (report.plane > 0) text += ", " + formatFixed(report.plane, 2) + " m above the floor";
+    return text;
+}
+
 PageText sightText(const CoverageReport& report, std::size_t sensors) {
-    std::string seen = "The sensors see " + shareText(report.coverage) + " of the indoor floor";
+    std::string seen = "The sensors see " + shareText(report.coverage) + " of the indoor floor" +
+                       judgedAtText(report);
     if (const auto twice = seenTwice(report); twice && sensors > 1)
         seen += ", and two or more of them " + percentText(*twice);
     seen += identifiedText(report) + ".";
@@ -119,17 +132,15 @@ PageSection summaryOf(const CoveragePageInput& input) {
     std::vector<JudgedRule> rules;
     if (input.parts.rules != nullptr) rules = judgedRules(*input.parts.rules);
     std::erase_if(rules, [](const JudgedRule& rule) { return !rule.is_required; });
-    if (input.requirements.empty() && rules.empty() && input.parts.run == nullptr &&
-        input.more.empty() && !input.scene.sensors.empty())
-        section.blocks.push_back(PageText{"No requirement was given.", Tone::Small});
     for (const JudgedRequirement& one : input.requirements)
         section.blocks.push_back(PageText{
             "Required are " + one.requirement + ": " + outcomeText(one.is_met, one.finding),
             one.is_met ? Tone::Good : Tone::Bad});
     for (const JudgedRule& one : rules)
-        section.blocks.push_back(
-            PageText{"Required is " + one.rule + ": " + outcomeText(one.is_met, one.finding),
-                     one.is_met ? Tone::Good : Tone::Bad});
+        section.blocks.push_back(PageText{
+            "Required: " + (one.plain.empty() ? one.rule : one.plain + judgedAtText(report)) +
+                ": " + outcomeText(one.is_met, one.finding),
+            one.is_met ? Tone::Good : Tone::Bad});
     return section;
 }
 
@@ -345,10 +356,12 @@ namespace {
 
 void addCameraRules(const CoveragePageInput& input, ReportPage& page) {
     if (input.parts.rules == nullptr) return;
-    page.sections.push_back({"rules",
-                             "Faces and privacy",
-                             {rulesTable("directions of faces, and zones that cameras must not see",
-                                         judgedRules(*input.parts.rules))}});
+    page.sections.push_back(
+        {"rules",
+         "Faces and privacy",
+         {rulesTable("directions of faces" + judgedAtText(input.coverage.report) +
+                         ", and zones that cameras must not see",
+                     judgedRules(*input.parts.rules))}});
 }
 
 void addObjectives(const CoveragePageInput& input, ReportPage& page) {

@@ -41,6 +41,10 @@ struct CoveragePageInput {
     Progress* progress = nullptr;           ///< of the pictures; null: silent
 };
 
+/// Returns " with 250 pixels a metre or more (identify), 1.60 m above the floor" of what was asked
+/// for; "" for any sight of the floor itself.
+std::string judgedAtText(const CoverageReport& report);
+
 /// Tells how much of the floor the sensors see, how much of it two or more see, on which share
 /// cameras identify people, and the largest spot of free floor that none sees.
 /// \param sensors number of those that see the floor

@@ -401,7 +401,7 @@ TEST(CoveragePage, LeavesOutTheSheetWithoutSensors) {
                   "summary", "map", "sensors", "material", "methods", "records",
                   "The room has 16.00 m² of indoor floor, 16.00 m² of it free at 0.15 m, and 1 "
                   "sensor: 1 × laser.",
-                  "The sensors see 100.00% of the indoor floor.", "No requirement was given."}));
+                  "The sensors see 100.00% of the indoor floor."}));
 }
 
 }  // namespace

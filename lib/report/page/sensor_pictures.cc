@@ -3,7 +3,10 @@
 // it serves, of a laser its scan, of others the floor that they see.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "base/number.h"
 #include "coverage/metrics.h"
@@ -16,6 +19,7 @@
 #include "scene/placement_schemas.h"
 #include "scene/sensor/lens_resolution.h"
 #include "sense/photo.h"
+#include "trace/ray_world.h"
 
 namespace ispace {
 
@@ -39,33 +43,40 @@ std::optional<PixelPoint> pixelOf(const Sensor& sensor, Point3 place) {
 }
 
 /// Returns the cell of a set whose centre is nearest to the middle of all of them, of those on
-/// which the camera sees a person whole, if there are any.
-std::optional<Point2> middleCell(const Grid& grid, const CellSet& cells, const Sensor& sensor) {
+/// which the camera sees a person whole, if there are any, else of those on which it sees the face.
+std::optional<Point2> middleCell(const Grid& grid, const CellSet& cells, const Sensor& sensor,
+                                 const RayWorld& room) {
     constexpr double kAboveHead = 1.8;  // metres
-    double x = 0, y = 0;
-    const auto count = static_cast<double>(cells.count());
+    std::vector<Point2> centers;
+    std::vector<Point3> faces;
+    Vec2 sum;
     cells.forEach([&](std::size_t cell) {
-        x += grid.center(cell).x;
-        y += grid.center(cell).y;
+        const Point2 center = grid.center(cell);
+        centers.push_back(center);
+        faces.push_back({center.x, center.y, kFaceHeight});
+        sum = sum + (center - Point2{});
     });
+    std::vector<std::uint8_t> is_free(faces.size(), 0);
+    room.query(sensor.pose.position, faces, is_free);
+    const Point2 middle = Point2{} + 1 / std::max(1.0, static_cast<double>(centers.size())) * sum;
     std::optional<Point2> best;
-    bool is_whole = false;
-    cells.forEach([&](std::size_t cell) {
-        const Point2 center = grid.center(cell), middle{x / count, y / count};
-        const bool is_seen = pixelOf(sensor, {center.x, center.y, kAboveHead}).has_value();
-        if (best &&
-            (is_whole != is_seen ? is_whole : distance(center, middle) >= distance(*best, middle)))
-            return;
+    int most = -1;
+    for (std::size_t i = 0; i < centers.size(); ++i) {
+        const Point2 center = centers[i];
+        const bool is_whole = pixelOf(sensor, {center.x, center.y, kAboveHead}).has_value();
+        const int shown = is_free[i] == 0 || !pixelOf(sensor, faces[i]) ? 0 : is_whole ? 2 : 1;
+        if (shown < most || (shown == most && distance(center, middle) >= distance(*best, middle)))
+            continue;
         best = center;
-        is_whole = is_seen;
-    });
+        most = shown;
+    }
     return best;
 }
 
 /// Returns a spot in each zone of which the camera sees half or more, or one in the floor that it
 /// sees.
 std::vector<ServedSpot> spotsOf(const Scene& scene, const Coverage& coverage,
-                                const SensorView& view) {
+                                const SensorView& view, const RayWorld& room) {
     const Grid& grid = coverage.target.grid;
     const Sensor& sensor = scene.sensors[view.index];
     std::vector<ServedSpot> spots;
@@ -76,13 +87,13 @@ std::vector<ServedSpot> spotsOf(const Scene& scene, const Coverage& coverage,
         if (all == 0 || 2 * cells.count() < all) continue;
         CellSet free = cells;
         free &= coverage.target.free;
-        if (const auto place = middleCell(grid, free.count() > 0 ? free : cells, sensor))
+        if (const auto place = middleCell(grid, free.count() > 0 ? free : cells, sensor, room))
             spots.push_back({zone.id, *place});
     }
     if (!spots.empty()) return spots;
     CellSet free = view.cells;
     free &= coverage.target.free;
-    if (const auto place = middleCell(grid, free, sensor)) spots.push_back({"", *place});
+    if (const auto place = middleCell(grid, free, sensor, room)) spots.push_back({"", *place});
     return spots;
 }
 
@@ -147,11 +158,11 @@ void drawDensityOf(Picture& picture, const Sensor& sensor, const Sensor& small, 
 }
 
 PageFigure photoOf(const Scene& scene, const Coverage& coverage, const SensorView& view,
-                   Color color, double width) {
+                   const RayWorld& room, Color color, double width) {
     constexpr double kBand = 0.012;  // of the picture's width, in the sensor's colour
     const Sensor& sensor = scene.sensors[view.index];
     const Sensor small = reduced(sensor, width);
-    const std::vector<ServedSpot> spots = spotsOf(scene, coverage, view);
+    const std::vector<ServedSpot> spots = spotsOf(scene, coverage, view, room);
     const Scene peopled = withPeople(scene, spots, sensor.pose.position.onFloor());
     // Two samples a pixel, as the page shows the picture at two thirds of its size or less.
     const Photographer photographer(peopled, PhotoOptions{.samples = 2});
@@ -297,6 +308,8 @@ std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& cover
     constexpr std::ptrdiff_t kFew = 8;
     const double width = cameras > kFew ? kNarrow : kWide;
     const std::vector<Color> colors = sensorColors(coverage);
+    std::optional<RayWorld> room;
+    if (cameras > 0) room = RayWorld::ofEnvironment(scene.environment);
     std::vector<PageFigure> figures;
     for (std::size_t i = 0; i < coverage.sensors.size(); ++i) {
         const SensorView& view = coverage.sensors[i];
@@ -305,7 +318,7 @@ std::vector<PageFigure> sensorPictures(const Scene& scene, const Coverage& cover
         const Sensor& sensor = scene.sensors[view.index];
         if (sensor.mount || sensor.person) continue;
         if (sensor.is<Camera>())
-            figures.push_back(photoOf(scene, coverage, view, colors[i], width));
+            figures.push_back(photoOf(scene, coverage, view, *room, colors[i], width));
         else if (!view.beams.empty() && sensor.as<Laser>().sweep == SweepAxis::None)
             figures.push_back(scanOf(scene, view, colors[i]));
         else
