@@ -63,12 +63,15 @@ class CycloneLog {
 
 /// Finds participants of this machine by unicast to the ports of the first 32, and announces this
 /// one each second: nodes of ROS that are set to their whole subnet do not listen before they have
-/// heard it. With other machines, discovery is by multicast, too. At the end, writers do not wait
-/// for readers that are behind: they would do so one after another.
+/// heard it. Programs whose ports are any, as those over Cyclone without a configuration, are found
+/// by multicast; with a time to live of 0 it never leaves the machine, see ip(7). At the end,
+/// writers do not wait for readers that are behind: they would do so one after another.
 std::string configuration(bool is_local) {
-    return std::string("<CycloneDDS><Domain Id=\"any\"><General><AllowMulticast>") +
-           (is_local ? "false" : "spdp") +
-           "</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+    return std::string(
+               "<CycloneDDS><Domain Id=\"any\"><General><AllowMulticast>spdp"
+               "</AllowMulticast>") +
+           (is_local ? "<MulticastTimeToLive>0</MulticastTimeToLive>" : "") +
+           "</General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
            "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
            "<Peers><Peer address=\"localhost\"/></Peers><SPDPInterval>1s</SPDPInterval>"
            "</Discovery><Internal><WriterLingerDuration>0s</WriterLingerDuration></Internal>"
