@@ -109,12 +109,12 @@ PageSection storeySection(const BuildingPageInput& input, std::size_t storey) {
 
 /// Lists the rules of cameras of all storeys.
 PageSection rulesSection(const BuildingPageInput& input) {
-    return {
-        "rules",
-        "Faces and privacy",
-        {rulesTable("directions of faces" + judgedAtText(input.coverage.storeys.front().report) +
-                        ", and zones that cameras must not see, by storey",
-                    judgedInBuilding(input.building, input.coverage.rules))}};
+    return {"rules",
+            "Faces and privacy",
+            {rulesTable("directions of faces" +
+                            facesJudgedAtText(input.coverage.storeys.front().report) +
+                            ", and zones that cameras must not see, by storey",
+                        judgedInBuilding(input.building, input.coverage.rules))}};
 }
 
 /// Adds the installation of a storey, the floor and the pictures of its sensors, and with a cover a

@@ -13,6 +13,7 @@
 #include "base/number.h"
 #include "cli/common_options.h"
 #include "coverage/crowd.h"
+#include "env/body_shapes.h"
 #include "scene/placement_schemas.h"
 #include "scene/run/run_reader.h"
 #include "sim/world.h"
@@ -23,12 +24,13 @@ namespace {
 
 constexpr std::string_view kWander = "wander:";
 
-/// Returns the records of the scene without people and sensors, and with a wanderer for each of the
-/// crowd.
+/// Returns the records of the scene without people, what they carry, and sensors, and with a
+/// wanderer for each of the crowd.
 std::vector<Record> recordsWith(const Crowd& crowd, const Scene& scene) {
     std::vector<Record> records;
     for (const Record& record : scene.records)
-        if (record.keyword() != "human" && sensorKind(record.keyword()) == nullptr)
+        if (record.keyword() != "human" && sensorKind(record.keyword()) == nullptr &&
+            personWith(record).empty())
             records.push_back(record);
     std::set<std::string> taken(scene.ids.begin(), scene.ids.end());
     for (std::size_t i = 0; i < crowd.size(); ++i) {

@@ -358,9 +358,10 @@ Environment makeEnvironment(const std::vector<Record>& records, const std::vecto
     return std::move(*environment);
 }
 
-/// Lets people name the things that they carry, which follows from these.
+/// Lets people name the things that they carry, which follows from these; what a file says of it,
+/// as one of a run does, is replaced.
 /// \param before the scene before a change, or null
-/// \throws FormatError where the file or the change names another thing
+/// \throws FormatError where a change names another thing
 void nameLoads(std::vector<Record>& records, const Scene* before) {
     constexpr std::string_view kNone = "none";
     const std::string& key = holdsKey();
@@ -377,7 +378,7 @@ void nameLoads(std::vector<Record>& records, const Scene* before) {
         if (std::string person = personWith(records[i]); !person.empty())
             loads.emplace(std::move(person), i);
     const auto is_news = [&](std::size_t i) {
-        if (before == nullptr) return true;
+        if (before == nullptr) return false;
         const auto old = std::find(before->ids.begin(), before->ids.end(), ids[i]);
         if (old == before->ids.end()) return true;
         const Record& record = before->records[static_cast<std::size_t>(old - before->ids.begin())];

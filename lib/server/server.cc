@@ -60,6 +60,8 @@ void Server::logTopics(ByteSink write, RosScenery scenery) {
 
 std::size_t Server::topicsLeftOut() const { return data_->log ? data_->log->leftOut() : 0; }
 
+std::size_t Server::nodeTopicsLeftOut() const { return data_->node ? data_->node->leftOut() : 0; }
+
 std::string Server::bagMetadata(const std::string& file) const {
     return data_->log.value().metadata(file);
 }

@@ -120,6 +120,8 @@ class Server {
     void logTopics(ByteSink write, RosScenery scenery = {});
     /// Returns the number of topics that the MCAP file has no channel for.
     [[nodiscard]] std::size_t topicsLeftOut() const;
+    /// Returns the number of topics that nodes of ROS 2 do not see, as there are too many.
+    [[nodiscard]] std::size_t nodeTopicsLeftOut() const;
     /// Returns the text of `metadata.yaml` for that file, by its name in a folder. \pre logTopics()
     [[nodiscard]] std::string bagMetadata(const std::string& file) const;
     /// Serves a robot or sensor through the protocol of a real device at a separate endpoint. Call

@@ -181,8 +181,9 @@ RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_
                 if (is_mover && verb == "SET" && words.size() > 2)
                     return fail(400, "a request sets one key of " + whole + ", at or heading");
                 if (is_mover)
-                    return fail(403, verb == "SET" ? "of " + whole + " at and heading can be set"
-                                                   : whole + " stays in the building");
+                    return fail(403, verb == "SET"
+                                         ? "of " + whole + " at, heading and states can be set"
+                                         : whole + " stays in the building");
                 if (verb == "ADD" && world.sensorNamed(whole))
                     return fail(400, "the id " + whole + " is taken");
             }

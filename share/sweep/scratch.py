@@ -44,10 +44,11 @@ class Scratch:
     def mirror(self, file: str) -> None:
         """Makes the folder of an input a folder here, too, so that relative ways from and to it are right. An absolute
         name has the same meaning everywhere, but not the way to it."""
-        if os.path.isabs(file):
-            here, there = os.path.realpath(self._folder), os.path.normpath(os.path.join(self._real, self._from))
-            self._ways[os.path.relpath(file, here).encode()] = os.path.relpath(file, there).encode()
-        elif os.path.dirname(file):
+        here, there = os.path.realpath(self._folder), os.path.realpath(os.path.join(self._real, self._from))
+        for name in {file, os.path.realpath(file)}:  # the tools look where links lead
+            if os.path.isabs(name):
+                self._ways[os.path.relpath(name, here).encode()] = os.path.relpath(name, there).encode()
+        if not os.path.isabs(file) and os.path.dirname(file):
             self._open(os.path.dirname(file))
 
     def placed(self, content: bytes) -> bytes:

@@ -79,7 +79,9 @@ def equals_files(folder):
 
 def rooms_of_commands(folder):
     """Rooms that commands name themselves, above and by absolute names, are found, and the same way from layouts."""
-    for name in ("../other/b.env", str(folder / "rooms/a.env"), str(folder / "../other/b.env")):
+    os.symlink("rooms", folder / "link")
+    for name in ("../other/b.env", str(folder / "rooms/a.env"), str(folder / "../other/b.env"), "link/a.env",
+                 str(folder / "link/a.env")):
         folder.write("sweep.yaml", SWEEP.replace("{room}", name).replace("axes:\n", "axes:\n  #").replace("1..4", "1"))
         by_files(folder)
         wanted = folder.read("results/count1_seed1.3dm").decode()

@@ -160,6 +160,10 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
     if (options.ros_domain) {
         server.serveDds(static_cast<std::uint32_t>(*options.ros_domain), rosScenery());
         out.ros_domain = options.ros_domain;
+        if (const std::size_t left_out = server.nodeTopicsLeftOut(); left_out > 0)
+            warn(options.common, "simrun",
+                 "--ros2: nodes do not see " + std::to_string(left_out) +
+                     " topics, as there are too many; Foxglove and rosbridge have all");
     }
     if (options.mqtt) {
         MqttOptions mqtt = *options.mqtt;

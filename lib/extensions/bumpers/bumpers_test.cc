@@ -166,11 +166,10 @@ TEST_F(BumperRole, FeelsNothingWhereTheRobotWasPut) {
     go("r", 1.2);
     run(1000);
     ASSERT_NEAR(force(session, "b"), 600, 1e-9);
-    session.request("SET r.at=-5,0");
+    const std::string robot = "r";
+    world_.change(scene_, {&robot, 1});
     run(200);
-    ASSERT_EQ(world_.status(*world_.moverNamed("r")).pose.position, (Point2{-5, 0}))
-        << session.take();
-    session.take();
+    ASSERT_EQ(world_.status(*world_.moverNamed("r")).pose.position, (Point2{-5, 0}));
     EXPECT_EQ(force(session, "b"), 0);
 }
 

@@ -117,6 +117,7 @@ std::optional<RestingPlace> seatOn(const Element& element, Point2 from, double h
 }
 
 std::optional<RestingPlace> bedOn(const Element& element, double height, double aside) {
+    if (element.body.prisms.empty()) return std::nullopt;
     Pose2 frame;
     double along = 0, across = 0;
     if (standsByItself(element.record)) {
@@ -481,6 +482,8 @@ std::string refuseToTake(const DeedMoment& moment) {
         return "it carries " + load;
     if (const std::string by = personWith(thing->record); !by.empty())
         return by + " carries " + moment.target;
+    if (thing->record.schema().find(carriedKey()) == nullptr)
+        return moment.target + " is nothing to carry";
     if (!mayBeCarried(thing->record))
         return moment.target + " is larger than " + formatDouble(kLargestLoad) + " m";
     return "";

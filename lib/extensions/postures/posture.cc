@@ -469,7 +469,7 @@ std::string refusalToStand(const Record& before, const Record& after, const Pose
     if (!thing) return "";
     return "there is no room to stand at " + formatFixed(at.position.x, 2) + ',' +
            formatFixed(at.position.y, 2) + ": " + scene.environment.elements()[*thing].id +
-           " is there; set `at` with it";
+           " is there; set `at` first";
 }
 
 }  // namespace

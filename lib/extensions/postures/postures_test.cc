@@ -20,6 +20,7 @@
 
 #include "base/error.h"
 #include "cli/common_options.h"
+#include "cli/presence_ways.h"
 #include "extensions/postures/deeds.h"
 #include "extensions/postures/posture.h"
 #include "record/edit.h"
@@ -614,6 +615,19 @@ TEST(Deeds, FallsEndWays) {
     EXPECT_GT(home.at("bob").position.x, where.x + 2);
 }
 
+TEST(Postures, WanderersComeWithoutWhatPeopleCarry) {
+    const Scene room = sceneOf("human id=ann at=0,0\n",
+                               std::string(kRoom) + "cube id=cup at=2,0 size=0.1 carried=ann\n");
+    EXPECT_EQ(readWays(parseWays("wander:2,5s"), room, 7).people.size(), 2U);
+}
+
+TEST(Deeds, NobodyLiesOnAFloor) {
+    Home home("floor id=rug at=2,0 size=2,1.2\n", "human id=ann at=0,0\n",
+              "at 00:00:01 ann lies on rug 3s\n");
+    home.run(20);
+    EXPECT_NE(home.marks().find("one does not lie on rug"), std::string::npos) << home.marks();
+}
+
 TEST(Deeds, FallsInterruptThePlan) {
     // On a way, and while it uses a thing for longer.
     for (const char* const first : {"goes far; stays 3s", "stays 40s; goes far"}) {
@@ -899,19 +913,10 @@ TEST(Postures, CarriedThingsNeedTheirPeople) {
               "`carried`: a person carries things of at most 0.6 m");
     EXPECT_EQ(refusal(ann + '\n', "cylinder id=pipe at=2,0 size=0.6,0.6 height=0.6 carried=ann\n"),
               "");
-    EXPECT_EQ(
-        refusal(ann + " holds=mug\n", cup + "ann\n"),
-        "human ann holds mug, but carries cup; `holds` follows from `carried` of things: leave "
-        "it out");
-    EXPECT_EQ(
-        refusal(ann + " holds=cup\nhuman id=bob at=1,1 holds=cup\n", cup + "ann\n"),
-        "human bob holds cup, but carries no thing; `holds` follows from `carried` of things: "
-        "leave it out");
-    EXPECT_EQ(refusal(ann + " holds=cup\nhuman id=bob at=1,1 holds=none\n", cup + "ann\n"), "");
-    // States tell it without the key.
+    // States tell it without the key, whatever a file of a run tells that was edited since.
     std::string states;
     for (const RoomState& state :
-         roomStates(sceneOf(ann + '\n', std::string(kRoom) + cup + "ann\n")))
+         roomStates(sceneOf(ann + " holds=mug\n", std::string(kRoom) + cup + "ann\n")))
         states += state.id + '.' + state.key + '=' + state.value + ' ';
     EXPECT_EQ(states, "ann.holds=cup ");
 }
@@ -973,13 +978,13 @@ TEST(Postures, StandUpWhereThereIsRoom) {
         return "";
     };
     EXPECT_EQ(answer("SET ann.posture=stand"),
-              "there is no room to stand at 2.00,0.00: sofa is there; set `at` with it");
+              "there is no room to stand at 2.00,0.00: sofa is there; set `at` first");
     EXPECT_EQ(answer("SET bob.posture=stand"),
-              "there is no room to stand at -2.00,0.00: w is there; set `at` with it");
+              "there is no room to stand at -2.00,0.00: w is there; set `at` first");
     EXPECT_EQ(answer("SET [ab]*.posture=stand"),
-              "there is no room to stand at 2.00,0.00: sofa is there; set `at` with it");
+              "there is no room to stand at 2.00,0.00: sofa is there; set `at` first");
     EXPECT_EQ(answer("ACT ann posture=stand at=2.2,0"),
-              "there is no room to stand at 2.20,0.00: sofa is there; set `at` with it");
+              "there is no room to stand at 2.20,0.00: sofa is there; set `at` first");
     EXPECT_EQ(answer("ACT ann posture=stand at=2.8,0"), "");
     EXPECT_EQ(answer("SET ann.posture=fallen"), "");
     EXPECT_EQ(answer("SET ann.posture=stand"), "");

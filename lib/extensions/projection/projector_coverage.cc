@@ -208,16 +208,18 @@ class RectangleSearch {
             consider(source_.now);
         } else {
             for (const TurnedAngles& angles : towardsGrid()) consider(angles);
-            if (best_.rectangle.size() == 0) return std::nullopt;
+            if (!(best_.area > 0)) return std::nullopt;
             refine();
         }
-        if (best_.rectangle.size() == 0) return std::nullopt;
+        if (!(best_.area > 0)) return std::nullopt;
         return measured();
     }
 
   private:
     struct Choice {
-        CellRectangle rectangle;
+        CellRectangle cells;
+        Box2 box;
+        double area = 0;
         TurnedAngles angles;
         double facing = -1;  // cosine of the slant
     };
@@ -267,10 +269,14 @@ class RectangleSearch {
         CellRectangle found = largestRectangle(marks_, columns_);
         found.column += first_column_;
         found.row += first_row_;
+        const double most =
+            static_cast<double>(found.size()) * facet_.cellWidth() * facet_.cellHeight();
+        if (found.size() == 0 || most < best_.area) return;
+        const Box2 box = grown(found, picture);
+        const double area = box.width() * box.depth();
         const double facing = -dot(picture.lens().forward, facet_.frame.forward);
-        if (found.size() > best_.rectangle.size() ||
-            (found.size() == best_.rectangle.size() && facing > best_.facing))
-            best_ = {found, angles, facing};
+        if (area > best_.area || (area == best_.area && facing > best_.facing))
+            best_ = {found, box, area, angles, facing};
     }
 
     /// Tries the poses around the best one, in smaller and smaller steps.
@@ -340,10 +346,9 @@ class RectangleSearch {
     }
 
     [[nodiscard]] PictureRectangle measured() const {
-        const auto& [cells, angles, facing] = best_;
+        const auto& [cells, box, area, angles, facing] = best_;
         PictureRectangle out;
         const SurfacePicture picture = source_.turned(angles);
-        const Box2 box = grown(cells, picture);
         out.left = box.low.x;
         out.bottom = box.low.y;
         out.width = box.width();

@@ -95,6 +95,10 @@ std::string judgedAtText(const CoverageReport& report) {
     return text;
 }
 
+std::string facesJudgedAtText(const CoverageReport& report) {
+    return report.plane > 0 ? judgedAtText(report) : judgedAtText(report) + ", judged on the floor";
+}
+
 PageText sightText(const CoverageReport& report, std::size_t sensors) {
     std::string seen = "The sensors see " + shareText(report.coverage) + " of the indoor floor" +
                        judgedAtText(report);
@@ -138,7 +142,7 @@ PageSection summaryOf(const CoveragePageInput& input) {
             one.is_met ? Tone::Good : Tone::Bad});
     for (const JudgedRule& one : rules)
         section.blocks.push_back(PageText{
-            "Required: " + (one.plain.empty() ? one.rule : one.plain + judgedAtText(report)) +
+            "Required: " + (one.plain.empty() ? one.rule : one.plain + facesJudgedAtText(report)) +
                 ": " + outcomeText(one.is_met, one.finding),
             one.is_met ? Tone::Good : Tone::Bad});
     return section;
@@ -359,7 +363,7 @@ void addCameraRules(const CoveragePageInput& input, ReportPage& page) {
     page.sections.push_back(
         {"rules",
          "Faces and privacy",
-         {rulesTable("directions of faces" + judgedAtText(input.coverage.report) +
+         {rulesTable("directions of faces" + facesJudgedAtText(input.coverage.report) +
                          ", and zones that cameras must not see",
                      judgedRules(*input.parts.rules))}});
 }

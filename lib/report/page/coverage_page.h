@@ -44,6 +44,8 @@ struct CoveragePageInput {
 /// Returns " with 250 pixels a metre or more (identify), 1.60 m above the floor" of what was asked
 /// for; "" for any sight of the floor itself.
 std::string judgedAtText(const CoverageReport& report);
+/// The same of rules of faces, which are not on the floor: ", judged on the floor" tells so.
+std::string facesJudgedAtText(const CoverageReport& report);
 
 /// Tells how much of the floor the sensors see, how much of it two or more see, on which share
 /// cameras identify people, and the largest spot of free floor that none sees.

@@ -263,6 +263,21 @@ TEST(SensorPictures, AreDrawnOfFlatAndTinyPictures) {
     }
 }
 
+TEST(CoveragePage, TellsAtWhichDensityAndHeightFloorIsJudged) {
+    CoverageReport report;
+    EXPECT_EQ(judgedAtText(report), "");
+    EXPECT_EQ(facesJudgedAtText(report), ", judged on the floor");
+    report.density = 250;
+    report.plane = 1.6;
+    const std::string all =
+        " with 250 pixels a metre or more (identify / characterise), 1.60 m above the floor";
+    EXPECT_EQ(judgedAtText(report), all);
+    EXPECT_EQ(facesJudgedAtText(report), all);
+    report.density = 77;
+    report.plane = 0;
+    EXPECT_EQ(judgedAtText(report), " with 77 pixels a metre or more");
+}
+
 TEST(CameraSheets, FitOnOneSheetOfEitherPaper) {
     const Scene scene = sceneOf(
         "#env 1\nispace id=hall at=4,3 size=8,8,2.5\n"

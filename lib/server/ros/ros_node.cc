@@ -97,8 +97,14 @@ void RosNode::sync() {
         participant_->remove(one.second.number);
         return true;
     });
-    for (const auto& [number, entry] : feed_->entries())
-        if (!ends_.contains(number)) add(number, entry.channel);
+    left_out_ = 0;
+    for (const auto& [number, entry] : feed_->entries()) {
+        if (ends_.contains(number)) continue;
+        if (ends_.size() < kMostTopics)
+            add(number, entry.channel);
+        else
+            ++left_out_;
+    }
     tellGraph();
 }
 

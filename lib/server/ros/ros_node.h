@@ -48,6 +48,10 @@ class RosNode {
     }
     /// Leaves the network.
     void end();
+    /// More topics of the feed are left out: sensors come before states of things.
+    static constexpr std::size_t kMostTopics = 4096;
+    /// Returns the number of topics that are left out now.
+    [[nodiscard]] std::size_t leftOut() const { return left_out_; }
 
   private:
     /// The writer or reader of a topic of the feed.
@@ -78,6 +82,7 @@ class RosNode {
     std::uint32_t turn_ = 0;  // topic that is the first to be sent
     bool has_unsent_ = false;
     WallTime next_send_{};
+    std::size_t left_out_ = 0;
     int graph_ = 0;              // writer of the node's description
     std::int64_t version_ = -1;  // of the feed's topics
     // Guards answers that outlive the node.

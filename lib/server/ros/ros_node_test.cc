@@ -81,6 +81,23 @@ TEST(RosNode, HasTheNamesOfRos) {
     EXPECT_NE(graph.sent[0].find("simrun"), std::string::npos);
 }
 
+TEST(RosNode, LeavesOutTopicsThatAreTooMany) {
+    Noded noded;
+    EXPECT_EQ(noded.node->leftOut(), 0U);
+    std::string lamps;
+    for (int i = 0; i < 800; ++i) lamps += "lamp id=k" + std::to_string(i) + " at=1,1\n";
+    noded.room.world.change(
+        testing::scene("ispace size=8,6\n" + lamps, "robot id=r1 at=0,0\nlaser id=l2 at=2,2\n"));
+    noded.state.sync();
+    noded.step();
+    EXPECT_GT(noded.node->leftOut(), 100U);
+    EXPECT_EQ(noded.dds->end("rt/l2/scan").topic.depth, 5U) << "sensors come first";
+    noded.room.world.change(testing::scene("ispace size=8,6\n", "robot id=r1 at=0,0\n"));
+    noded.state.sync();
+    noded.step();
+    EXPECT_EQ(noded.node->leftOut(), 0U);
+}
+
 TEST(RosNode, ComputesTopicsWithReaders) {
     Noded noded;
     auto& clock = noded.dds->end("rt/clock");
