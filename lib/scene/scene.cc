@@ -393,13 +393,15 @@ void nameLoads(std::vector<Record>& records, const Scene* before) {
         if (!holds && load == loads.end()) continue;
         const std::string thing(load == loads.end() ? kNone : ids[load->second]);
         if (holds && person.text(key) == thing) continue;
-        if (holds && is_news(i))
-            findings.add(person.finding(
-                key, "human " + ids[i] + ' ' + key + ' ' + person.text(key) + ", but carries " +
-                         (load == loads.end() ? "no thing" : thing) + "; `" + key +
-                         "` follows from `" + carriedKey() + "` of things: leave it out"));
-        else
+        if (!holds || !is_news(i)) {
             person.set(key, thing);
+            continue;
+        }
+        std::string message = "human ";
+        message.append(ids[i]).append(" ").append(key).append(" ").append(person.text(key));
+        message.append(", but carries ").append(load == loads.end() ? "no thing" : thing);
+        message.append("; `").append(key).append("` follows from `").append(carriedKey());
+        findings.add(person.finding(key, message.append("` of things: leave it out")));
     }
     findings.throwIfAny();
 }

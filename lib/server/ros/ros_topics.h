@@ -143,9 +143,9 @@ struct RosChannel {
 };
 /// Returns all topics of the worlds: of rows, of sensors, of states. Inputs that accept two types
 /// are two channels. Cabins of lifts and flights of stairs have neither map nor mesh.
-/// \param lone robot whose topics, and those of the first sensors on it, also have names without a
+/// \param known robot whose topics, and those of the first sensors on it, also have names without a
 /// prefix, if it is there; else the only one
-std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms, const std::string& lone = {});
+std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms, const std::string& known = {});
 /// Returns the id of that robot, "" for none.
 std::string loneRobot(std::span<const RosRoom> rooms, const std::string& lone);
 
