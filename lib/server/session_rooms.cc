@@ -180,10 +180,13 @@ RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_
                 const bool is_mover = world.moverNamed(whole).has_value();
                 if (is_mover && verb == "SET" && words.size() > 2)
                     return fail(400, "a request sets one key of " + whole + ", at or heading");
-                if (is_mover)
-                    return fail(403, verb == "SET"
+                if (is_mover) {
+                    const bool is_person = world.movers()[*world.moverNamed(whole)].is_person;
+                    return fail(403, verb != "SET" ? whole + " stays in the building"
+                                     : is_person
                                          ? "of " + whole + " at, heading and states can be set"
-                                         : whole + " stays in the building");
+                                         : "of " + whole + " at and heading can be set");
+                }
                 if (verb == "ADD" && world.sensorNamed(whole))
                     return fail(400, "the id " + whole + " is taken");
             }
