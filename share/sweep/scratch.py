@@ -45,14 +45,16 @@ class Scratch:
         """Makes the folder of an input a folder here, too, so that relative ways from and to it are right. An absolute
         name has the same meaning everywhere, but not the way to it."""
         here, there = os.path.realpath(self._folder), os.path.realpath(os.path.join(self._real, self._from))
-        for name in {file, os.path.realpath(file)}:  # the tools look where links lead
+        for name in (file, os.path.realpath(file)):  # the tools look where links lead
             if os.path.isabs(name):
                 self._ways[os.path.relpath(name, here).encode()] = os.path.relpath(name, there).encode()
         if not os.path.isabs(file) and os.path.dirname(file):
             self._open(os.path.dirname(file))
 
     def placed(self, content: bytes) -> bytes:
-        """Replaces ways from the scratch folder to inputs with absolute names by those from the real one."""
+        """Replaces ways from the scratch folder to inputs with absolute names, in text, by those from the real one."""
+        if b"\0" in content:
+            return content
         for here, there in self._ways.items():
             content = content.replace(here, there)
         return content

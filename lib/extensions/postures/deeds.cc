@@ -471,7 +471,7 @@ std::optional<Point2> aimOf(const World& world, const std::string& target) {
 std::vector<std::string> thingsToCarry(const World& world) {
     std::vector<std::string> ids;
     for (const Element& element : world.scene().environment.elements())
-        if (element.record.schema().find("carried") != nullptr) ids.push_back(element.id);
+        if (element.record.schema().find(carriedKey()) != nullptr) ids.push_back(element.id);
     return ids;
 }
 

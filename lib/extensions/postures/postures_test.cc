@@ -621,6 +621,16 @@ TEST(Postures, WanderersComeWithoutWhatPeopleCarry) {
     EXPECT_EQ(readWays(parseWays("wander:2,5s"), room, 7).people.size(), 2U);
 }
 
+TEST(Deeds, ThingsMayBecomeOthers) {
+    Home home("cube id=cup at=2,0 size=0.1\nzone id=far at=-4,-4 size=1,1\n",
+              "human id=ann at=0,0\n", "at 00:00:01 ann carries cup to far\n");
+    home.run(0.5);
+    home.act("DELETE cup");
+    home.act("ADD wall id=cup from=3,-1 to=3,1");
+    home.run(20);
+    EXPECT_NE(home.marks().find("cup is nothing to carry"), std::string::npos) << home.marks();
+}
+
 TEST(Deeds, NobodyLiesOnAFloor) {
     Home home("floor id=rug at=2,0 size=2,1.2\n", "human id=ann at=0,0\n",
               "at 00:00:01 ann lies on rug 3s\n");

@@ -272,10 +272,18 @@ std::string RosOrders::pursue(const RosChannel& channel, std::string_view messag
     const std::string robot = robotOf(channel);
     // The reasons answer the request, and are no failures of their own.
     std::string why;
-    const auto tell =
-        std::exchange(tell_, [&why](const std::string& text) { why += why.empty() ? text : ""; });
-    const bool goes = go(robot, goal);
-    tell_ = tell;
+    struct Heard {
+        std::function<void(const std::string&)>& tell;
+        std::function<void(const std::string&)> before;
+        ~Heard() { tell = std::move(before); }
+    };
+    bool goes = false;
+    {
+        const Heard heard{tell_, std::exchange(tell_, [&why](const std::string& text) {
+                              if (why.empty()) why = text;
+                          })};
+        goes = go(robot, goal);
+    }
     if (goes) going_.at(robot).ended = std::move(ended);
     return goes || !why.empty() ? why : "the goal is refused";
 }

@@ -294,9 +294,11 @@ void RosbridgeDialogue::sendGoal(const Json& request) {
 }
 
 void RosbridgeDialogue::cancelGoal(const Json& request) {
-    const std::string id = idOf(request);
-    const auto found =
-        std::ranges::find_if(goals_, [&id](const auto& one) { return one.second.id == id; });
+    const std::string id = idOf(request), action = wordOf(request, "action");
+    const auto found = std::ranges::find_if(goals_, [&](const auto& one) {
+        return one.second.id == id &&
+               (action.empty() || absolute(action) == absolute(one.second.action));
+    });
     const std::string why = found == goals_.end() ? "this goal is not under way"
                                                   : orders().cancel(std::string(found->first));
     if (!why.empty()) tell(Level::Error, why, id);
@@ -306,6 +308,9 @@ void RosbridgeDialogue::cancelGoal(const Json& request) {
 bool RosbridgeDialogue::cancelAll(const std::string& service) {
     constexpr std::string_view kCancel = "/navigate_to_pose/_action/cancel_goal";
     if (!service.ends_with(kCancel)) return false;
+    const std::string robot_topics = service.substr(0, service.size() - kCancel.size());
+    if (input(robot_topics + std::string(kGoalTopic), RosType::PoseStamped) == nullptr)
+        return false;
     std::vector<std::string> robots;
     for (const auto& [robot, goal] : goals_)
         if (service.starts_with(absolute(goal.action) + "/")) robots.push_back(robot);

@@ -315,6 +315,13 @@ TEST(Rosbridge, CancelsReplacesAndRefusesGoals) {
     talk.send({{"op", "call_service"}, {"service", "/r2/navigate_to_pose/_action/cancel_goal"}});
     EXPECT_EQ(talk.text()["status"], 5);
     EXPECT_EQ(talk.text()["op"], "service_response");
+    talk.send(goalOf(3, 1, "fourth"));
+    talk.send({{"op", "cancel_action_goal"}, {"id", "fourth"}, {"action", "/r1/navigate_to_pose"}});
+    EXPECT_EQ(talk.text()["op"], "status") << "of another action";
+    talk.send({{"op", "cancel_action_goal"}, {"id", "fourth"}});
+    EXPECT_EQ(talk.text()["status"], 5);
+    talk.send({{"op", "call_service"}, {"service", "/r9/navigate_to_pose/_action/cancel_goal"}});
+    EXPECT_EQ(talk.text()["result"], false) << "there is no such robot";
     json other = goalOf(0, 0);
     other["action"] = "/r2/dock_robot";
     talk.send(other);
