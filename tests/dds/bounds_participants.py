@@ -64,25 +64,25 @@ def main():
         shutil.copy(SOURCE / "tests" / "data" / "square.env", "square.env")
         with open("layout.3dm", "w", encoding="ascii") as file:
             file.write("#3dm 1\nrobot id=r1 at=-1.2,-0.5\n")
-        run = Run("square.env", "layout.3dm", f"--ros2={domain}")
-        announcement = listener.recv(65536)
-        node = Client(domain, "rt/r1/odom") if CLIENT.exists() else None
-        if node:
-            node.newest("rt/r1/odom")
-        sent = flood(announcement, ("127.0.0.1", base + 10), SECONDS, draw)
-        if node:
-            had = len(node.seen["rt/r1/odom"])
-            node.wait(lambda: len(node.seen["rt/r1/odom"]) > had, "odometry after the flood")
-            threading.Thread(target=node.__exit__, args=(None,) * 3).start()
-        with open(f"/proc/{run.process.pid}/status", encoding="ascii") as status:
-            memory = next(int(line.split()[1]) for line in status if line.startswith("VmRSS")) / 1024
-        check(run.process.poll() is None, "simrun has ended")
-        ended = time.monotonic()
-        run.stop()
-        took = time.monotonic() - ended
-        print(f"{sent} participants, {memory:.0f} MiB, the end took {took:.2f} s")
-        check(memory < 300, f"{memory:.0f} MiB after {sent} participants")
-        check(took < float(os.environ.get("ISPACE_PATIENCE", "3")), f"TERM took {took:.1f} s")
+        with Run("square.env", "layout.3dm", f"--ros2={domain}") as run:
+            announcement = listener.recv(65536)
+            node = Client(domain, "rt/r1/odom") if CLIENT.exists() else None
+            if node:
+                node.newest("rt/r1/odom")
+            sent = flood(announcement, ("127.0.0.1", base + 10), SECONDS, draw)
+            if node:
+                had = len(node.seen["rt/r1/odom"])
+                node.wait(lambda: len(node.seen["rt/r1/odom"]) > had, "odometry after the flood")
+                threading.Thread(target=node.__exit__, args=(None,) * 3).start()
+            with open(f"/proc/{run.process.pid}/status", encoding="ascii") as status:
+                memory = next(int(line.split()[1]) for line in status if line.startswith("VmRSS")) / 1024
+            check(run.process.poll() is None, "simrun has ended")
+            ended = time.monotonic()
+            run.stop()
+            took = time.monotonic() - ended
+            print(f"{sent} participants, {memory:.0f} MiB, the end took {took:.2f} s")
+            check(memory < 300, f"{memory:.0f} MiB after {sent} participants")
+            check(took < float(os.environ.get("ISPACE_PATIENCE", "3")), f"TERM took {took:.1f} s")
 
 
 main()
