@@ -71,6 +71,8 @@ enum class RosLanguage { Foxglove, Rosbridge };
 struct RosScenery {
     std::function<RosGrid(const Scene& scene)> map = {};       ///< null: there is no map
     std::function<std::string(const Scene& scene)> room = {};  ///< a mesh as GLB; null: none
+    /// Id of the robot whose topics have names without a prefix, too; "": the only one.
+    std::string robot = {};
 };
 
 /// Parts of the page that depend on the options of the run.
@@ -108,7 +110,8 @@ class Server {
     /// Serves the running world as topics of ROS 2 at a separate endpoint. Call before run(). An
     /// endpoint for other machines requires ServerLimits::token.
     /// \param title of the run \param scenery of the first call serves all
-    /// \returns "ws://127.0.0.1:8765" \throws std::system_error naming the endpoint
+    /// \returns "ws://127.0.0.1:8765" \throws std::system_error naming the endpoint, UsageError if
+    /// the world has no such robot
     std::string serveRos(RosLanguage language, const Endpoint& endpoint, const std::string& title,
                          RosScenery scenery = {});
     /// Takes part in a domain of DDS as a node of ROS 2, for this machine and

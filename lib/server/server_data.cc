@@ -7,6 +7,9 @@
 #include <chrono>
 #include <utility>
 
+#include "base/error.h"
+#include "server/session.h"
+
 namespace ispace {
 
 namespace {
@@ -96,7 +99,15 @@ bool Server::Data::makeRoom() {
 
 /// Returns the feed that all clients of topics share. \param scenery of the first call
 RosFeed& Server::Data::feedOf(RosScenery scenery) {
-    if (!feed) feed.emplace(state, std::move(scenery));
+    if (feed) return *feed;
+    if (const std::string& robot = scenery.robot; !robot.empty()) {
+        std::vector<std::string> known;
+        for (const auto& [room, world] : state.worlds())
+            for (const std::string& id : idsOf(world->robots())) known.push_back(id);
+        if (std::find(known.begin(), known.end(), robot) == known.end())
+            throw UsageError(unknownThing("robot", robot, known));
+    }
+    feed.emplace(state, std::move(scenery));
     return *feed;
 }
 

@@ -343,6 +343,10 @@ void SimrunCommand::declareRos() {
     line_.countOr("--ros2", o.ros_domain, 0, 0, kLastDomain,
                   "be a node of ROS 2 in this domain, over DDS, for programs of this machine",
                   Enters::Nothing);
+    line_.text("--ros-robot", "ROBOT", o.ros_robot,
+               "give topics of ROS 2 of this robot names without its own, too, such as /odom and "
+               "/scan (default: the only robot)",
+               Enters::Nothing);
     line_.file(
         "--mcap", "FILE", o.mcap,
         "write all topics of ROS 2 to an MCAP file, or as a bag to a folder (DIR/), for Foxglove "
@@ -389,6 +393,10 @@ void SimrunCommand::takeServer() {
     if (o.web_edits && (!o.limits.changes || !o.replay.empty()))
         throw UsageError(std::string("--web-edit changes the room of a run, which ") +
                          (o.replay.empty() ? "--no-changes" : "--replay") + " does not allow");
+    if (line_.given("--ros-robot") && !o.foxglove && !o.rosbridge && !o.ros_domain)
+        throw UsageError(
+            "--ros-robot is about topics of ROS 2: give --ros2, --rosbridge PORT or --foxglove "
+            "PORT");
     if (o.mcap == "-")
         throw UsageError("--mcap writes to a file: standard output has the addresses of the run");
     o.devices.take(line_, o.ros_domain.has_value(), o.limits);

@@ -88,6 +88,7 @@ struct SimrunOptions {
     std::optional<Endpoint> web, foxglove, rosbridge;
     bool web_edits = false;         ///< the page changes the room
     std::optional<int> ros_domain;  ///< of --ros2
+    std::string ros_robot;          ///< "": the only one
     std::string mcap;               ///< "" without
     std::optional<MqttOptions> mqtt;
     std::string mqtt_login;  ///< file; "" without

@@ -151,14 +151,23 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
         out.web = server.serveWeb(
             *options.web, title,
             {.edits = options.web_edits, .marks = recordedMarks(replayed), .mesh = meshOf});
+    RosScenery scenery = rosScenery();
+    scenery.robot = options.ros_robot;
     const auto serve = [&](RosLanguage language, const std::optional<Endpoint>& endpoint) {
-        return endpoint ? server.serveRos(language, *endpoint, "simrun " + title, rosScenery())
+        return endpoint ? ofOption("--ros-robot",
+                                   [&] {
+                                       return server.serveRos(language, *endpoint,
+                                                              "simrun " + title, scenery);
+                                   })
                         : std::string();
     };
     out.foxglove = serve(RosLanguage::Foxglove, options.foxglove);
     out.rosbridge = serve(RosLanguage::Rosbridge, options.rosbridge);
     if (options.ros_domain) {
-        server.serveDds(static_cast<std::uint32_t>(*options.ros_domain), rosScenery());
+        ofOption("--ros-robot", [&] {
+            server.serveDds(static_cast<std::uint32_t>(*options.ros_domain), scenery);
+            return true;
+        });
         out.ros_domain = options.ros_domain;
         if (const std::size_t left_out = server.nodeTopicsLeftOut(); left_out > 0)
             warn(options.common, "simrun",

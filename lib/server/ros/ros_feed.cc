@@ -67,7 +67,7 @@ void RosFeed::number(Entries& entries, bool& is_changed) {
     for (const auto& [number, entry] : entries_)
         known.emplace(std::pair(entry.channel.topic, entry.channel.type), number);
     // It stays the same when others come.
-    lone_ = loneRobot(worlds_, lone_);
+    lone_ = scenery_.robot.empty() ? loneRobot(worlds_, lone_) : scenery_.robot;
     for (RosChannel& channel : rosChannels(worlds_, lone_)) {
         const auto old = known.find({channel.topic, channel.type});
         const bool is_new = old == known.end();

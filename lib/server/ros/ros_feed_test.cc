@@ -289,6 +289,23 @@ TEST(RosFeed, TopicsKeepTheirNumbersInAChangedWorld) {
     EXPECT_EQ(fed.newest("/scan")["header"]["frame_id"], "b") << "of the first on that robot";
 }
 
+TEST(RosFeed, AChosenRobotHasTopicsWithoutAPrefix) {
+    Fed fed("", {.robot = "r2"});
+    fed.feed.want(fed.number("/odom"));
+    EXPECT_EQ(fed.newest("/odom")["child_frame_id"], "r2");
+    EXPECT_NE(fed.number("/cmd_vel"), 0U);
+    fed.room.world.change(testing::scene("ispace size=8,6\n", "robot id=r1 at=0,0\n"));
+    fed.state.sync();
+    fed.feed.sync();
+    EXPECT_EQ(fed.number("/odom"), 0U) << "no other robot takes its names";
+    fed.room.world.change(
+        testing::scene("ispace size=8,6\n", "robot id=r1 at=0,0\nrobot id=r2 at=2,0\n"));
+    fed.state.sync();
+    fed.feed.sync();
+    fed.feed.want(fed.number("/odom"));
+    EXPECT_EQ(fed.newest("/odom")["child_frame_id"], "r2");
+}
+
 TEST(RosFeed, EqualNamesGetNumbers) {
     const Fed fed("laser id=a-b at=0,-2\nlaser id=a_b at=0,2\nlaser id=map at=1,2\n");
     EXPECT_NE(fed.number("/a_b/scan"), 0U);

@@ -466,7 +466,7 @@ std::string loneRobot(std::span<const RosRoom> rooms, const std::string& lone) {
 }
 
 std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms, const std::string& known) {
-    const std::string lone = loneRobot(rooms, known);
+    const std::string lone = known.empty() ? loneRobot(rooms, known) : known;
     std::vector<RosChannel> out;
     for (const RosRow& row : kRows) addOf(row, rooms, lone, out);
     for (std::size_t k = 0; k < rooms.size(); ++k) {

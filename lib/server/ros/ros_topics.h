@@ -144,7 +144,7 @@ struct RosChannel {
 /// Returns all topics of the worlds: of rows, of sensors, of states. Inputs that accept two types
 /// are two channels. Cabins of lifts and flights of stairs have neither map nor mesh.
 /// \param known robot whose topics, and those of the first sensors on it, also have names without a
-/// prefix, if it is there; else the only one
+/// prefix, while it is there; "": the only one
 std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms, const std::string& known = {});
 /// Returns the id of that robot, "" for none.
 std::string loneRobot(std::span<const RosRoom> rooms, const std::string& lone);
