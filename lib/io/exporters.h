@@ -132,6 +132,11 @@ ExportedFiles writeIfc(const Scene& scene, const std::string& title);
 /// floating. Frames have x forward and z up; cameras and rangers with a lens have a second one,
 /// ID_optical, with z forward and x right (REP 103).
 std::string writeUrdf(const Scene& scene, const std::string& title);
+/// Writes a robot and the sensors on it likewise, for programs that know links by other names: the
+/// root is the robot. \param frame of the robot \param sensors frames of all sensors of the scene;
+/// those without one are left out
+std::string writeRobotUrdf(const Scene& scene, std::size_t robot, const std::string& frame,
+                           std::span<const std::string> sensors);
 
 /// Cells of a map along a side, and in all.
 constexpr int kMaxMapSide = 30'000;

@@ -71,6 +71,11 @@ enum class RosLanguage { Foxglove, Rosbridge };
 struct RosScenery {
     std::function<RosGrid(const Scene& scene)> map = {};       ///< null: there is no map
     std::function<std::string(const Scene& scene)> room = {};  ///< a mesh as GLB; null: none
+    /// Describes a robot and the sensors on it in URDF; null: nothing does. \param frame of the
+    /// robot \param sensors frames of all sensors, "" without
+    std::function<std::string(const Scene& scene, std::size_t robot, const std::string& frame,
+                              std::span<const std::string> sensors)>
+        robot_model = {};
     /// Id of the robot whose topics have names without a prefix, too; "": the only one.
     std::string robot = {};
 };

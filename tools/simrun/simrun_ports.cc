@@ -140,7 +140,7 @@ std::string meshOf(const Scene& scene) {
 
 }  // namespace
 
-RosScenery rosScenery() { return {.map = mapOf, .room = meshOf}; }
+RosScenery rosScenery() { return {.map = mapOf, .room = meshOf, .robot_model = writeRobotUrdf}; }
 
 ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title,
                            const std::vector<std::string>& replayed) {

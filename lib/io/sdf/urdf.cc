@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <pugixml.hpp>
+#include <span>
 #include <sstream>
 #include <string>
 
@@ -90,10 +91,10 @@ class UrdfWriter {
     UrdfWriter(const Scene& scene, const std::string& name) : scene_(scene) {
         robot_ = file_.append_child("robot");
         robot_.append_attribute("name").set_value(name.c_str());
-        addLink("world");
     }
 
     std::string write() {
+        addLink("world");
         // Carriers first: joints refer to their links.
         for (const PlacedRecord& placed : scene_.placed)
             if (const std::string& keyword = keywordOf(placed);
@@ -101,6 +102,17 @@ class UrdfWriter {
                 addCarrier(placed);
         for (const PlacedRecord& placed : scene_.placed)
             if (sensorKind(keywordOf(placed)) != nullptr) addSensor(placed);
+        return xmlText(file_);
+    }
+
+    std::string writeRobot(std::size_t robot, const std::string& frame,
+                           std::span<const std::string> sensors) {
+        addRobotBody(addLink(frame), robot);
+        for (const PlacedRecord& placed : scene_.placed)
+            if (placed.mount && placed.mount->robot == robot &&
+                sensorKind(keywordOf(placed)) != nullptr && !sensors[placed.index].empty())
+                addSensor(placed, frame, placed.mount->robot_from_sensor, sensors[placed.index],
+                          sensors[placed.index] + "_optical");
         return xmlText(file_);
     }
 
@@ -167,13 +179,7 @@ class UrdfWriter {
         carriers_[{keywordOf(placed), placed.index}] = name;
         const pugi::xml_node link = addLink(name);
         if (keywordOf(placed) == "robot") {
-            const RobotModel& robot = scene_.robots[placed.index].model;
-            const pugi::xml_node geometry =
-                addVisual(link, {robot.center, 0, robot.height / 2}, Material::Robot);
-            if (robot.length > 0)
-                setBox(geometry, robot.length, robot.width, robot.height);
-            else
-                setCylinder(geometry, robot.radius, robot.height);
+            addRobotBody(link, placed.index);
         } else {
             for (const BodyPart& part : personParts(scene_.people[placed.index])) {
                 const pugi::xml_node geometry =
@@ -191,6 +197,16 @@ class UrdfWriter {
         addJoint("floating", "world", name, placed.pose.position, anglesText(placed.pose));
     }
 
+    void addRobotBody(pugi::xml_node link, std::size_t index) {
+        const RobotModel& robot = scene_.robots[index].model;
+        const pugi::xml_node geometry =
+            addVisual(link, {robot.center, 0, robot.height / 2}, Material::Robot);
+        if (robot.length > 0)
+            setBox(geometry, robot.length, robot.width, robot.height);
+        else
+            setCylinder(geometry, robot.radius, robot.height);
+    }
+
     void addSensor(const PlacedRecord& placed) {
         const Sensor& sensor = scene_.sensors[placed.index];
         std::string parent = "world";
@@ -203,12 +219,18 @@ class UrdfWriter {
             pose = inFrameOf(scene_.people[*sensor.person].pose, placed.pose);
         }
         const std::string name = names_.take(idOf(placed));
+        const bool has_lens = hasPicture(sensor);
+        addSensor(placed, parent, pose, name,
+                  has_lens ? names_.take(idOf(placed) + "_optical") : "");
+    }
+
+    void addSensor(const PlacedRecord& placed, const std::string& parent, const Pose3& pose,
+                   const std::string& name, const std::string& optical) {
         const MeshBox box = boxAround(bodyOf(scene_, placed));
         setBox(addVisual(addLink(name), box.center, Material::Sensor), box.size[0], box.size[1],
                box.size[2]);
         addJoint("fixed", parent, name, pose.position, anglesText(pose));
-        if (!hasPicture(sensor)) return;
-        const std::string optical = names_.take(idOf(placed) + "_optical");
+        if (!hasPicture(scene_.sensors[placed.index])) return;
         addLink(optical);
         addJoint("fixed", name, optical, {}, kOpticalAngles);
     }
@@ -236,6 +258,11 @@ class UrdfWriter {
 };
 
 }  // namespace
+
+std::string writeRobotUrdf(const Scene& scene, std::size_t robot, const std::string& frame,
+                           std::span<const std::string> sensors) {
+    return UrdfWriter(scene, frame).writeRobot(robot, frame, sensors);
+}
 
 std::string writeUrdf(const Scene& scene, const std::string& title) {
     std::string name = title.substr(0, title.find('.'));

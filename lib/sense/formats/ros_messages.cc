@@ -177,6 +177,27 @@ std::string integerMessage(std::int32_t value) { return CdrWriter().put(value).t
 std::string numberMessage(double value) { return CdrWriter().put(value).take(); }
 std::string textMessage(std::string_view text) { return CdrWriter().put(text).take(); }
 
+std::string batteryMessage(const RosHeader& header, float volts) {
+    constexpr std::uint8_t kFull = 4, kGood = 1, kUnknown = 0;
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kWhole = 1;
+    CdrWriter out = headed(header);
+    out.put(volts);
+    for (int i = 0; i < 5; ++i) out.put(kNan);  // temperature, current, charge, capacities
+    out.put(kWhole).put(kFull).put(kGood).put(kUnknown).put(true);
+    return out.count(0).count(0).put("").put("").take();
+}
+
+std::string jointsMessage(const RosHeader& header, std::span<const RosJoint> joints) {
+    CdrWriter out = headed(header);
+    out.count(joints.size());
+    std::vector<double> angles;
+    for (const RosJoint& joint : joints) {
+        out.put(joint.name);
+        angles.push_back(joint.angle.radians());
+    }
+    return out.sequence<double>(angles).count(0).count(0).take();
+}
+
 std::string pointMessage(const RosHeader& header, Point3 point) {
     return headed(header).put(point.x).put(point.y).put(point.z).take();
 }
@@ -369,13 +390,27 @@ RosTwist twistOf(RosType type, std::string_view message) {
     return readTwist(in);
 }
 
-RosPose poseOf(std::string_view message) {
-    CdrReader in(message);
+namespace {
+
+RosPose readPoint(CdrReader& in) {
     RosPose out;
     out.frame = readHeader(in).frame;
     out.pose.position.x = in.number<double>();
     out.pose.position.y = in.number<double>();
     out.height = in.number<double>();
+    return out;
+}
+
+}  // namespace
+
+RosPose pointOf(std::string_view message) {
+    CdrReader in(message);
+    return readPoint(in);
+}
+
+RosPose poseOf(std::string_view message) {
+    CdrReader in(message);
+    RosPose out = readPoint(in);
     const auto x = in.number<double>(), y = in.number<double>(), z = in.number<double>(),
                w = in.number<double>();
     out.pose.heading =

@@ -140,6 +140,15 @@ std::string robotsMessage(const RosHeader& header, std::span<const RosPerson> ro
 /// Writes a mesh by its URI, in the header's frame.
 std::string roomMessage(const RosHeader& header, std::string_view mesh);
 
+/// Writes the state of a full battery, whose charge is not simulated: the rest is unknown (NaN).
+std::string batteryMessage(const RosHeader& header, float volts);
+/// An angle of a joint.
+struct RosJoint {
+    std::string name;
+    Angle angle;
+};
+std::string jointsMessage(const RosHeader& header, std::span<const RosJoint> joints);
+
 struct RosDiagnostic {
     std::string name, message;
     bool is_warning = false;
@@ -163,6 +172,8 @@ struct RosPose {
 };
 /// Reads the pose of a PoseStamped or a PoseWithCovarianceStamped, turned about z alone.
 RosPose poseOf(std::string_view message);
+/// Reads a PointStamped: a pose with the heading 0.
+RosPose pointOf(std::string_view message);
 
 /// A marker that stands for a person or robot: what a tracker tells.
 struct RosTrack {

@@ -121,6 +121,20 @@ constexpr Definition kTypes[] = {
     {"std_msgs/msg/Int32", "int32 data\n"},
     {"std_msgs/msg/Float64", "float64 data\n"},
     {"std_msgs/msg/String", "string data\n"},
+    {"sensor_msgs/msg/BatteryState",
+     "uint8 POWER_SUPPLY_STATUS_UNKNOWN=0\nuint8 POWER_SUPPLY_STATUS_CHARGING=1\n"
+     "uint8 POWER_SUPPLY_STATUS_DISCHARGING=2\nuint8 POWER_SUPPLY_STATUS_NOT_CHARGING=3\n"
+     "uint8 POWER_SUPPLY_STATUS_FULL=4\n"
+     "uint8 POWER_SUPPLY_HEALTH_UNKNOWN=0\nuint8 POWER_SUPPLY_HEALTH_GOOD=1\n"
+     "uint8 POWER_SUPPLY_TECHNOLOGY_UNKNOWN=0\n"
+     "std_msgs/Header header\nfloat32 voltage\nfloat32 temperature\nfloat32 current\n"
+     "float32 charge\nfloat32 capacity\nfloat32 design_capacity\nfloat32 percentage\n"
+     "uint8 power_supply_status\nuint8 power_supply_health\nuint8 power_supply_technology\n"
+     "bool present\nfloat32[] cell_voltage\nfloat32[] cell_temperature\nstring location\n"
+     "string serial_number\n"},
+    {"sensor_msgs/msg/JointState",
+     "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\n"
+     "float64[] effort\n"},
 };
 static_assert(std::size(kTypes) == kRosTypes);
 

@@ -42,9 +42,11 @@ enum class RosType : std::uint16_t {
     RadarScan,
     Int32,
     Float64,
-    String
+    String,
+    BatteryState,
+    JointState
 };
-constexpr std::size_t kRosTypes = static_cast<std::size_t>(RosType::String) + 1;
+constexpr std::size_t kRosTypes = static_cast<std::size_t>(RosType::JointState) + 1;
 constexpr auto kRecordedRosTypes = static_cast<std::size_t>(RosType::Clock),
                kRunRosTypes = static_cast<std::size_t>(RosType::Imu);
 

@@ -166,8 +166,10 @@ void RosFeed::update(Entry& entry) {
     if (period == entry.period) return;
     if (channel.type == RosType::OccupancyGrid && !rooms_[channel.room].map)
         return drawMap(channel.room);
-    publish(entry, period,
-            channel.row->encode(moment(channel.room), channel.subject, channel.part));
+    std::string message = channel.row->encode(moment(channel.room), channel.subject, channel.part);
+    // A change of the world may leave a latched message as it is.
+    if (period == 0 && entry.newest && *entry.newest->cdr() == message) message.clear();
+    publish(entry, period, std::move(message));
 }
 
 /// Publishes a state after a change of the world that has set it.
@@ -215,7 +217,15 @@ RosMoment RosFeed::moment(std::size_t index) {
                 refresh();
                 if (room.bumpers[robot].empty()) room.bumpers[robot] = world.bumper(robot);
                 return room.bumpers[robot];
-            }};
+            },
+            .robot_model =
+                [this, index, &world](std::size_t robot) {
+                    const RosFrames& frames = worlds_[index].frames;
+                    return scenery_.robot_model
+                               ? scenery_.robot_model(world.scene(), robot, frames.movers[robot],
+                                                      frames.sensors)
+                               : std::string();
+                }};
 }
 
 /// Computes the map of a room in the background, then publishes it.

@@ -176,6 +176,35 @@ TEST(RosFeed, RobotsAreMarkers) {
     EXPECT_EQ(markers[2]["text"], "r1");
 }
 
+TEST(RosFeed, RobotsHaveABatteryJointsAndAModel) {
+    int written = 0;
+    Fed fed("", {.robot_model = [&written](const Scene&, std::size_t robot,
+                                           const std::string& frame, auto sensors) {
+                ++written;
+                std::string text = std::to_string(robot) + frame;
+                for (const std::string& each : sensors) text += ' ' + each;
+                return text;
+            }});
+    for (const char* topic : {"/r2/battery_state", "/r1/joint_states", "/r2/robot_description"})
+        fed.feed.want(fed.number(topic));
+    const json battery = fed.newest("/r2/battery_state");
+    EXPECT_EQ(battery["voltage"], 12.5);
+    EXPECT_EQ(battery["percentage"], 1.0);
+    EXPECT_EQ(battery["power_supply_status"], 4);
+    EXPECT_EQ(battery["present"], true);
+    EXPECT_TRUE(battery["current"].is_null());
+    EXPECT_EQ(battery["serial_number"], "");
+    EXPECT_EQ(fed.newest("/r1/joint_states")["name"], json::array()) << "no head is on it";
+    const auto model = fed.entry("/r2/robot_description").newest;
+    EXPECT_EQ(fed.newest("/r2/robot_description")["data"], "1r2 l1 l2");
+    EXPECT_TRUE(fed.entry("/r2/robot_description").channel.quality.is_latched);
+    fed.room.world.change(Scene(fed.room.world.scene()));
+    fed.state.sync();
+    fed.feed.stepped();
+    EXPECT_EQ(written, 2);
+    EXPECT_EQ(fed.entry("/r2/robot_description").newest, model) << "it is the same";
+}
+
 TEST(RosFeed, FramesLeadFromTheMapToEachSensor) {
     Fed fed("camera id=c1 on=r1 at=0,0,1 pixels=4,3\nhuman id=h1 at=-2,2\n");
     for (const char* topic : {"/tf", "/tf_static"}) fed.feed.want(fed.number(topic));

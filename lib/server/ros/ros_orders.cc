@@ -125,7 +125,7 @@ void RosOrders::obey(const RosChannel& channel, std::string_view message) {
     if (state_->simulation().isReplay()) return tell_(kRecorded);
     if (const auto* twist = std::get_if<RosTwist>(&order)) return drive(robot, *twist);
     if (const auto* goal = std::get_if<RosGoal>(&order)) {
-        go(robot, goal->pose);
+        go(robot, *goal);
         return;
     }
     place(robot, std::get<RosPose>(order));
@@ -235,8 +235,8 @@ void RosOrders::place(const std::string& robot, const RosPose& pose) {
 }
 
 /// Sends a robot to a goal, in place of an earlier one.
-bool RosOrders::go(const std::string& robot, const RosPose& goal) {
-    const auto target = targetOf(robot, goal);
+bool RosOrders::go(const std::string& robot, const RosGoal& goal) {
+    const auto target = targetOf(robot, goal.pose);
     if (!target) return false;
     if (const auto driven = driven_.find(robot); driven != driven_.end()) {
         release(robot, driven->second.hold);
@@ -252,8 +252,8 @@ bool RosOrders::go(const std::string& robot, const RosPose& goal) {
     }
     const bool has_role = !is_new || ((token_.empty() || ask(robot, *session, "TOKEN " + token_)) &&
                                       ask(robot, *session, "ROBOT " + robot));
-    const bool goes = has_role && ask(robot, *session,
-                                      "GOTO " + target->at + ',' + formatDouble(target->heading));
+    const std::string heading = goal.has_heading ? ',' + formatDouble(target->heading) : "";
+    const bool goes = has_role && ask(robot, *session, "GOTO " + target->at + heading);
     // A refused goal does not end the way to an earlier one.
     if (!goes && is_new) going_.erase(robot);
     if (goes && going.ended)
@@ -267,7 +267,7 @@ std::string RosOrders::robotOf(const RosChannel& channel) {
 
 std::string RosOrders::pursue(const RosChannel& channel, std::string_view message,
                               GoalEnded ended) {
-    const RosPose goal = poseOf(message);
+    const RosGoal goal{poseOf(message)};
     if (state_->simulation().isReplay()) return kRecorded;
     const std::string robot = robotOf(channel);
     // The reasons answer the request, and are no failures of their own.

@@ -123,7 +123,7 @@ class RosOrders {
         GoalEnded ended = nullptr;
     };
     using AllGoing = std::map<std::string, Going>;
-    bool go(const std::string& robot, const RosPose& goal);
+    bool go(const std::string& robot, const RosGoal& goal);
     AllGoing::iterator endGoal(AllGoing::iterator going, RosGoalEnd end, const std::string& why);
     bool ask(const std::string& robot, Session& session, const std::string& line);
     void watch();

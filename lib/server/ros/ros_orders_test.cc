@@ -127,6 +127,16 @@ TEST(RosOrders, RobotsGoToGoals) {
     EXPECT_TRUE(ordered.state.hold("r2")) << "it is free";
 }
 
+TEST(RosOrders, RobotsGoToClickedPoints) {
+    Ordered ordered;
+    ordered.send("/r2/clicked_point", RosType::PointStamped,
+                 {{"header", {{"frame_id", "map"}}}, {"point", {{"x", -2.0}, {"y", -1.0}}}});
+    EXPECT_LT(ordered.steps(400), 400);
+    EXPECT_EQ(ordered.told, std::vector<std::string>());
+    EXPECT_NEAR(distance(ordered.pose().position, Point2{-2, -1}), 0, 0.05);
+    EXPECT_GT(std::abs(ordered.pose().heading.degrees()), 10) << "it does not turn to any heading";
+}
+
 TEST(RosOrders, GoalsReplaceGoalsAndSpeedsReplaceBoth) {
     Ordered ordered;
     ordered.goTo(-2, -1);

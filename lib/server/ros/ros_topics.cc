@@ -12,6 +12,7 @@
 
 #include "base/number.h"
 #include "scene/bodies.h"
+#include "scene/placement_schemas.h"
 #include "scene/robot.h"
 #include "scene/room_state.h"
 #include "sense/formats/cdr.h"
@@ -25,6 +26,8 @@ namespace {
 constexpr const char* kOptical = "_optical";
 /// Sonars are at this share of the body's height, see sonarRanges().
 constexpr double kSonarHeight = 0.75;
+/// Of a full battery, as robots tell ARIA.
+constexpr float kBatteryVolts = 12.5F;
 
 /// Adds a number to a name that is taken.
 std::string uniqueName(std::set<std::string>& taken, const std::string& name) {
@@ -296,9 +299,40 @@ std::string bumperOf(const RosMoment& moment, std::size_t robot, std::size_t par
     return boolMessage(moment.bumpers(robot)[part]);
 }
 
+std::string batteryOf(const RosMoment& moment, std::size_t robot, std::size_t /*part*/) {
+    return batteryMessage({moment.now(), moment.frames().movers[robot]}, kBatteryVolts);
+}
+
+/// Writes the angles of the things on a robot that turn, such as heads.
+std::string jointsOf(const RosMoment& moment, std::size_t robot, std::size_t /*part*/) {
+    const Scene& scene = moment.world().scene();
+    const std::string& id = moment.world().robots()[robot].id;
+    std::vector<RosJoint> joints;
+    for (std::size_t i = 0; i < scene.records.size(); ++i) {
+        const Record& record = scene.records[i];
+        if (carrierOf(record) != id) continue;
+        for (const std::string& key : stateKeysOf(record.keyword())) {
+            const KeySpec* const spec = record.schema().find(key);
+            if (spec == nullptr || spec->unit != Unit::Angle || spec->type != KeyType::Number)
+                continue;
+            joints.push_back(
+                {rosName(nameAcross(moment.room.id, scene.ids[i])) + '_' + key, record.angle(key)});
+        }
+    }
+    return jointsMessage({moment.now(), moment.frames().movers[robot]}, joints);
+}
+
+std::string modelOf(const RosMoment& moment, std::size_t robot, std::size_t /*part*/) {
+    const std::string model = moment.robot_model(robot);
+    return model.empty() ? "" : textMessage(model);
+}
+
 RosOrder speedsOf(RosType type, std::string_view message) { return twistOf(type, message); }
 RosOrder placeOf(RosType /*type*/, std::string_view message) { return poseOf(message); }
 RosOrder goalOf(RosType /*type*/, std::string_view message) { return RosGoal{poseOf(message)}; }
+RosOrder clickedOf(RosType /*type*/, std::string_view message) {
+    return RosGoal{.pose = pointOf(message), .has_heading = false};
+}
 RosOrder toldOf(RosType /*type*/, std::string_view message) { return tracksOf(message); }
 
 using Of = RosRow::Of;
@@ -322,7 +356,11 @@ constexpr RosRow kRows[] = {
     {"cmd_vel", RosType::TwistStamped, Of::Robot, 0, kNewest, nullptr, speedsOf},
     {"initialpose", RosType::PoseWithCovarianceStamped, Of::Robot, 0, kNewest, nullptr, placeOf},
     {"goal_pose", RosType::PoseStamped, Of::Robot, 0, kNewest, nullptr, goalOf},
-    {"robots", RosType::MarkerArray, Of::Room, 10, kDefault, robotsOf}};
+    {"robots", RosType::MarkerArray, Of::Room, 10, kDefault, robotsOf},
+    {"battery_state", RosType::BatteryState, Of::Robot, 1, kDefault, batteryOf},
+    {"joint_states", RosType::JointState, Of::Robot, 10, kDefault, jointsOf},
+    {"robot_description", RosType::String, Of::Robot, 0, kLatched, modelOf},
+    {"clicked_point", RosType::PointStamped, Of::Robot, 0, kNewest, nullptr, clickedOf}};
 // NOLINTEND(readability-magic-numbers)
 
 /// Adds the channels of a row about one robot.

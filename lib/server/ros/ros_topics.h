@@ -76,6 +76,7 @@ struct RosMoment {
     bool has_mesh = false;              ///< there is a mesh of the room
     std::function<const std::vector<float>&(std::size_t robot)> sonars;
     std::function<const std::vector<bool>&(std::size_t robot)> bumpers;
+    std::function<std::string(std::size_t robot)> robot_model;  ///< in URDF, "" without
 
     [[nodiscard]] const World& world() const { return room.world(); }
     [[nodiscard]] const RosFrames& frames() const { return room.frames; }
@@ -86,6 +87,7 @@ struct RosMoment {
 /// A pose to which a robot goes by its own navigator.
 struct RosGoal {
     RosPose pose;
+    bool has_heading = true;  ///< else any will do
 };
 
 /// A message to a robot: its speeds, its pose in the world, or its goal; or tracks in a room.

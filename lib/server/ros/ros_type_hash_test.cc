@@ -27,6 +27,8 @@ TEST(RosTypeHash, EqualsThatOfRos) {
         {RosType::Int32, "b6578ded3c58c626cfe8d1a6fb6e04f706f97e9f03d2727c9ff4e74b1cef0deb"},
         {RosType::Float64, "705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a"},
         {RosType::String, "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"},
+        {RosType::BatteryState, "4bee5dfce981c98faa6828b868307a0a73f992ed0789f374ee96c8f840e69741"},
+        {RosType::JointState, "a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e"},
         {RosType::Empty, "20b625256f32d5dbc0d04fee44f43c41e51c70d3502f84b4a08e7a9c26a96312"}};
     for (const auto& [type, hash] : kKnown)
         EXPECT_EQ(rosTypeHash(type), "RIHS01_" + std::string(hash)) << nameOf(type);
