@@ -174,10 +174,20 @@ void PressureField::findContacts() {
             massOf(id).value_or(is_person ? massOfPerson(height) : massOfRobot(radius));
         const bool stands =
             status.speed == 0 && status.sidespeed == 0 && status.rotspeed == Angle();
-        if (!stands) still_.erase(id);
-        const SimTime since = stands ? still_.try_emplace(id, now).first->second : now;
         const PersonFigure* const figure = world_->movers()[i].figure.get();
-        const bool rests = !world_->movers()[i].rest().empty();
+        const std::string rest(world_->movers()[i].rest());
+        const bool rests = !rest.empty();
+        SimTime since = now;
+        if (stands) {
+            Stay& stay =
+                stays_.try_emplace(id, Stay{now, status.pose.position, rest}).first->second;
+            // To sit down and to stand up, at once in another place, is motion.
+            if (stay.place != status.pose.position || stay.rest != rest)
+                stay = {now, status.pose.position, rest};
+            since = stay.since;
+        } else {
+            stays_.erase(id);
+        }
         // Others that stand still beside a seat count as on it.
         const bool is_on_floor = rests ? figure->support <= 0 : postured_.contains(id);
         if (is_person && stands && !is_on_floor) {

@@ -86,7 +86,12 @@ class PressureField {
     PressureScene scene_;
     std::set<std::string> postured_;          // people whose record says how they hold their body
     std::map<std::string, double> visitors_;  // kg
-    std::map<std::string, SimTime> still_;    // since when movers that stand do
+    struct Stay {
+        SimTime since;
+        Point2 place;
+        std::string rest;  // of a person that sits or lies
+    };
+    std::map<std::string, Stay> stays_;       // of movers that stand still
     std::vector<FootContact> contacts_;       // on the floor
     std::map<std::string, double> on_seats_;  // kg by seat
 };

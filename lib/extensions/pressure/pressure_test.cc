@@ -263,6 +263,25 @@ TEST_F(FloorRole, ReadsWatchesAndTellsStates) {
     EXPECT_EQ(states, (std::vector<std::string>{"f=1", "f=0", "bed-sensor=1"}));
 }
 
+/// One that stood still, and is at the bed at once by a change, settles there first.
+TEST(Pressure, SettlesAfterEachChangeOfPlace) {
+    const std::string seat = "seat_sensor id=s of=bed\nhuman id=ann at=";
+    const Scene scene = sceneOf(seat + "-2,0\n");
+    World world(scene, milliseconds(100));
+    PressureField field(world, "");
+    const auto run = [&](int steps) {
+        for (int i = 0; i < steps; ++i) {
+            world.step();
+            field.observe();
+        }
+        return field.read(field.seats().front(), 0).is_occupied;
+    };
+    EXPECT_FALSE(run(50));
+    world.change(sceneOf(seat + "3,2.2\n"));
+    EXPECT_FALSE(run(19));
+    EXPECT_TRUE(run(3));
+}
+
 TEST_F(FloorRole, FollowsChanges) {
     Session floor(state_);
     ask(floor, "FLOOR *");
