@@ -11,11 +11,6 @@ namespace ispace {
 
 namespace {
 
-std::uint32_t ownerOf(const RfidTag& tag) {
-    const auto mover = static_cast<std::uint32_t>(tag.mover);
-    return tag.carrier == RfidTag::Carrier::Robot ? mover : kFirstPerson + mover;
-}
-
 /// Returns true if a tag that stands still is in the field, and the way to it is free.
 bool isInField(Point3 tag, const Observer& observer, const Moment& now) {
     const Point3 antenna = now.pose.position;
@@ -34,14 +29,35 @@ bool isRead(const std::string& tag, double share, const Moment& now) {
     return static_cast<double>(uniform[0]) < share;
 }
 
+/// Returns whether a tag is read where its mover is seen.
+bool isWorn(const RfidTag& tag) {
+    return tag.carrier != RfidTag::Carrier::Thing && !tag.is_in_hand;
+}
+
 }  // namespace
+
+std::uint32_t ownerOf(const RfidTag& tag) {
+    const auto mover = static_cast<std::uint32_t>(tag.mover);
+    return tag.carrier == RfidTag::Carrier::Robot ? mover : kFirstPerson + mover;
+}
+
+std::optional<Point3> placeInHand(const RfidTag& tag, const MovingBodies& bodies) {
+    constexpr double kAbove = 0.01;  // as on a thing that stands
+    // A thing in the hand is the last body of a person.
+    const MovingBody* thing = nullptr;
+    for (const MovingBody& body : bodies.bodies())
+        if (body.owner == ownerOf(tag)) thing = &body;
+    if (thing == nullptr) return std::nullopt;
+    const Point2 middle = thing->pose.position;
+    return Point3{middle.x, middle.y, thing->top + kAbove};
+}
 
 RfidTags readingOf(const Rfid& rfid, const Moment& now) {
     RfidTags reading{now.time, now.frame, now.pose, {}};
     const Observer observer{fieldOfView(rfid, now.pose), rfid.min_range, carrierOf(now.sensor)};
     std::vector<std::uint32_t> owners;
     for (const RfidTag& tag : rfid.tags)
-        if (tag.carrier != RfidTag::Carrier::Thing) owners.push_back(ownerOf(tag));
+        if (isWorn(tag)) owners.push_back(ownerOf(tag));
     std::sort(owners.begin(), owners.end());
     std::vector<std::uint32_t> seen;
     if (!owners.empty())
@@ -52,9 +68,11 @@ RfidTags readingOf(const Rfid& rfid, const Moment& now) {
             seen.push_back(sighting.body->owner);
     std::sort(seen.begin(), seen.end());
     for (const RfidTag& tag : rfid.tags) {
-        const bool is_in_field = tag.carrier == RfidTag::Carrier::Thing
-                                     ? isInField(tag.at, observer, now)
-                                     : std::binary_search(seen.begin(), seen.end(), ownerOf(tag));
+        const std::optional<Point3> place =
+            tag.is_in_hand ? placeInHand(tag, now.bodies) : std::optional(tag.at);
+        const bool is_in_field = isWorn(tag)
+                                     ? std::binary_search(seen.begin(), seen.end(), ownerOf(tag))
+                                     : place && isInField(*place, observer, now);
         if (is_in_field && isRead(tag.text, rfid.read, now)) reading.tags.push_back(tag.text);
     }
     std::sort(reading.tags.begin(), reading.tags.end());

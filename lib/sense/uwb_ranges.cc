@@ -15,6 +15,7 @@
 #include "env/point_location.h"
 #include "geom/predicates.h"
 #include "sense/noise.h"
+#include "sense/rfid_tags.h"
 #include "sense/walls_between.h"
 
 namespace ispace {
@@ -53,6 +54,10 @@ std::vector<std::optional<Point3>> placesOf(const SharedList<RfidTag>& tags,
     for (const RfidTag& tag : tags) {
         if (tag.carrier == RfidTag::Carrier::Thing) {
             places.emplace_back(tag.at);
+            continue;
+        }
+        if (tag.is_in_hand) {
+            places.push_back(placeInHand(tag, bodies));
             continue;
         }
         const auto mover = static_cast<std::uint32_t>(tag.mover);

@@ -72,10 +72,10 @@ class UwbFixes {
 };
 
 /// Measures the ranges of the tags that an anchor reaches, of more than Uwb::slots the nearest. The
-/// tag of a thing lies above the middle of its top, that of a robot too; a person wears it on the
-/// chest, and is a mover between for anchors behind. Each wall (see wallsBetween(),
-/// sense/walls_between.h) or mover between divides the greatest range by 10^(loss/20), and with
-/// noise adds to the error; all movers count once.
+/// tag of a thing lies above the middle of its top, in a hand as well, that of a robot too; a
+/// person wears it on the chest, and is a mover between for anchors behind. Each wall (see
+/// wallsBetween(), sense/walls_between.h) or mover between divides the greatest range by
+/// 10^(loss/20), and with noise adds to the error; all movers count once.
 ///
 /// The position comes from the anchors that stand in the room and have the tag in line of sight, at
 /// least kMinAnchors and of more than kMaxAnchors the nearest, by locate() within the height of the

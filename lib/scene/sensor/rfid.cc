@@ -75,10 +75,12 @@ std::vector<RfidTag> tagsOf(const RoomRecords& room) {
                     : is_person ? Carrier::Person
                                 : Carrier::Thing,
                     mover,
-                    {}};
+                    {},
+                    false};
         if (const std::string person = personWith(record); !person.empty()) {
             tag.carrier = Carrier::Person;
             tag.mover = number_of(person);
+            tag.is_in_hand = true;
         }
         if (tag.carrier == Carrier::Thing) {
             const Tuple& at = record.tuple("at");

@@ -21,8 +21,9 @@ struct RfidTag {
 
     std::string text;
     Carrier carrier = Carrier::Thing;
-    std::size_t mover = 0;  ///< index among the scene's robots or people
-    Point3 at;              ///< of a thing: above the middle of its top
+    std::size_t mover = 0;    ///< index among the scene's robots or people
+    Point3 at;                ///< of a thing: above the middle of its top
+    bool is_in_hand = false;  ///< of a thing that the person `mover` carries
     friend bool operator==(const RfidTag&, const RfidTag&) = default;
 };
 
