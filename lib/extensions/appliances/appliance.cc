@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -166,32 +167,42 @@ std::map<std::string, std::size_t> appliancesIn(const Scene& scene) {
     return found;
 }
 
-std::optional<Finding> checkPlug(const Scene& scene, std::size_t record) {
-    const Record& plug = scene.records[record];
+/// Checks the plugs of a scene, whose appliances and plugs it lists once.
+class PlugCheck {
+  public:
+    explicit PlugCheck(const Scene& scene) : scene_(&scene), appliances_(appliancesIn(scene)) {
+        for (std::size_t i = 0; i < scene.records.size(); ++i)
+            if (scene.records[i].keyword() == "plug")
+                first_plugs_.emplace(scene.records[i].text("of"), i);
+    }
+    [[nodiscard]] std::optional<Finding> operator()(std::size_t record) const;
+
+  private:
+    const Scene* scene_;
+    std::map<std::string, std::size_t> appliances_;
+    std::map<std::string, std::size_t> first_plugs_;  // by their appliances
+};
+
+std::optional<Finding> PlugCheck::operator()(std::size_t record) const {
+    const Record& plug = scene_->records[record];
     const std::string& of = plug.text("of");
-    const auto named = std::find(scene.ids.begin(), scene.ids.end(), of);
-    const bool is_known =
-        named != scene.ids.end() &&
-        scene.records[static_cast<std::size_t>(named - scene.ids.begin())].keyword() == "appliance";
     Finding finding{
-        .severity = Severity::Error, .element = scene.ids[record], .source = plug.keyPlace("of")};
-    if (!is_known) {
+        .severity = Severity::Error, .element = scene_->ids[record], .source = plug.keyPlace("of")};
+    if (!appliances_.contains(of)) {
         std::vector<std::string> known;
-        for (const auto& each : appliancesIn(scene)) known.push_back(each.first);
+        for (const auto& each : appliances_) known.push_back(each.first);
         const std::string nearest = nearestWord(of, known);
         finding.message =
-            "plug " + scene.ids[record] + " is of " + excerpt(of) + ", which is no appliance";
+            "plug " + scene_->ids[record] + " is of " + excerpt(of) + ", which is no appliance";
         finding.hint = nearest.empty() ? "name one in `of`" : "name `" + nearest + '`';
         return finding;
     }
-    for (std::size_t i = 0; i < record; ++i) {
-        if (scene.records[i].keyword() != "plug" || scene.records[i].text("of") != of) continue;
-        finding.message = "plug " + scene.ids[record] + " is of " + excerpt(of) +
-                          ", which has the plug " + scene.ids[i];
-        finding.hint = "leave one of them out";
-        return finding;
-    }
-    return std::nullopt;
+    const std::size_t first = first_plugs_.at(of);
+    if (first == record) return std::nullopt;
+    finding.message = "plug " + scene_->ids[record] + " is of " + excerpt(of) +
+                      ", which has the plug " + scene_->ids[first];
+    finding.hint = "leave one of them out";
+    return finding;
 }
 
 }  // namespace
@@ -409,7 +420,9 @@ void addAppliances() {
         "appliance",
         {.states = {"on", "state"}, .emission = emissionOfAppliance, .use = useOfAppliance});
     addThingKind("plug", {.states = {"on"}, .told = {"power", "energy"}});
-    addRecordCheck("plug", checkPlug);
+    addRecordCheck("plug", [](const Scene& scene) {
+        return std::function<std::optional<Finding>(std::size_t record)>(PlugCheck(scene));
+    });
 }
 
 }  // namespace ispace

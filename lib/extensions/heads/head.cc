@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "extensions/heads/head.h"
 
-#include <algorithm>
+#include <functional>
 #include <string>
-#include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "base/error.h"
@@ -73,17 +73,34 @@ Pose3 headMount(const Record& record) {
             {}};
 }
 
+namespace {
+
+/// Checks the heads of a scene, whose carriers it lists once.
+class HeadCheck {
+  public:
+    explicit HeadCheck(const Scene& scene) : scene_(&scene) {
+        for (const Record& each : scene.records) carriers_.insert(carrierOf(each));
+    }
+    [[nodiscard]] std::optional<Finding> operator()(std::size_t record) const {
+        const std::string& id = scene_->ids[record];
+        if (carriers_.contains(id)) return std::nullopt;
+        const Tuple& at = scene_->records[record].tuple("at");
+        return Finding{.element = id,
+                       .at = {at[0], at[1]},
+                       .message = "no sensor is on head " + id,
+                       .hint = "a camera or laser with on=" + id + " turns with it",
+                       .source = scene_->records[record].place()};
+    }
+
+  private:
+    const Scene* scene_;
+    std::unordered_set<std::string> carriers_;
+};
+
+}  // namespace
+
 std::optional<Finding> checkHead(const Scene& scene, std::size_t record) {
-    const std::string& id = scene.ids[record];
-    const bool carries = std::any_of(scene.records.begin(), scene.records.end(),
-                                     [&id](const Record& each) { return carrierOf(each) == id; });
-    if (carries) return std::nullopt;
-    const Tuple& at = scene.records[record].tuple("at");
-    return Finding{.element = id,
-                   .at = {at[0], at[1]},
-                   .message = "no sensor is on head " + id,
-                   .hint = "a camera or laser with on=" + id + " turns with it",
-                   .source = scene.records[record].place()};
+    return HeadCheck(scene)(record);
 }
 
 std::vector<Schema> headSchemas() {
@@ -135,7 +152,9 @@ void addHeads() {
     addThingKind("head", {.states = {"pan", "tilt"},
                           .check = [](const Record& record) { headOf(record); },
                           .mount = headMount});
-    addRecordCheck("head", checkHead);
+    addRecordCheck("head", [](const Scene& scene) {
+        return std::function<std::optional<Finding>(std::size_t record)>(HeadCheck(scene));
+    });
 }
 
 }  // namespace ispace

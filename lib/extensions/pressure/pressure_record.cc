@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <optional>
+#include <unordered_set>
 #include <utility>
 
 #include "base/error.h"
@@ -100,6 +103,24 @@ Finding wrongReference(const Scene& scene, std::size_t record, const std::string
             .source = checked.keyPlace("of")};
 }
 
+/// Checks that `of` names one of these, or its part after a `/` that one ends with: `ann` of a
+/// storey is `ground/ann` in the building.
+std::function<std::optional<Finding>(std::size_t record)> referenceCheck(
+    const Scene& scene, std::string wanted, std::vector<std::string> known) {
+    std::unordered_set<std::string> names;
+    for (const std::string& id : known) {
+        names.insert(id);
+        for (std::size_t i = id.find('/'); i != std::string::npos; i = id.find('/', i + 1))
+            names.insert(id.substr(i + 1));
+    }
+    return [&scene, wanted = std::move(wanted), known = std::move(known),
+            names = std::move(names)](std::size_t record) {
+        return names.contains(scene.records[record].text("of"))
+                   ? std::nullopt
+                   : std::optional(wrongReference(scene, record, wanted, known));
+    };
+}
+
 }  // namespace
 
 std::size_t PressureFloor::columns() const { return cellsAlong(length, cell); }
@@ -185,25 +206,17 @@ std::vector<Schema> pressureSchemas() {
 }
 
 void addPressureChecks() {
-    addRecordCheck("seat_sensor", [](const Scene& scene, std::size_t record) {
+    addRecordCheck("seat_sensor", [](const Scene& scene) {
         std::vector<std::string> things;
         for (const Element& element : scene.environment.elements())
             if (!element.body.prisms.empty()) things.push_back(element.id);
-        const std::string& of = scene.records[record].text("of");
-        return std::find(things.begin(), things.end(), of) != things.end()
-                   ? std::nullopt
-                   : std::optional(wrongReference(scene, record, "thing of the room", things));
+        return referenceCheck(scene, "thing of the room", std::move(things));
     });
-    addRecordCheck("load", [](const Scene& scene, std::size_t record) {
+    addRecordCheck("load", [](const Scene& scene) {
         std::vector<std::string> movers;
         for (const PlacedRobot& robot : scene.robots) movers.push_back(robot.id);
         for (const PlacedPerson& person : scene.people) movers.push_back(person.id);
-        const std::string& of = scene.records[record].text("of");
-        const bool is_known = std::any_of(
-            movers.begin(), movers.end(),
-            [&](const std::string& mover) { return mover == of || mover.ends_with('/' + of); });
-        return is_known ? std::nullopt
-                        : std::optional(wrongReference(scene, record, "robot or person", movers));
+        return referenceCheck(scene, "robot or person", std::move(movers));
     });
 }
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -103,24 +105,43 @@ std::optional<double> signalMargin(const Radio& sender, const Pose3& from, const
     return margin >= 0 ? std::optional(margin) : std::nullopt;
 }
 
-std::optional<Finding> checkRadio(const Scene& scene, std::size_t record) {
-    const Record& own = scene.records[record];
-    const std::string& id = scene.ids[record];
-    const Radio radio = radioOf(own);
-    const Tuple& at = own.tuple("at");
-    for (std::size_t i = 0; i < scene.records.size(); ++i) {
-        if (i == record || scene.records[i].keyword() != own.keyword()) continue;
-        const Radio other = radioOf(scene.records[i]);
-        if (other.is_infrared == radio.is_infrared && other.channel == radio.channel)
-            return std::nullopt;
+namespace {
+
+/// Checks the radios of a scene, which it counts by kind and channel once.
+class RadioCheck {
+  public:
+    explicit RadioCheck(const Scene& scene) : scene_(&scene) {
+        for (const Record& each : scene.records)
+            if (each.keyword() == "radio") ++counts_[groupOf(radioOf(each))];
     }
-    return Finding{.element = id,
-                   .at = {at[0], at[1]},
-                   .message = std::string("no other ") + (radio.is_infrared ? "infrared " : "") +
-                              "radio is on channel " + std::to_string(radio.channel) + " of " + id,
-                   .hint = "its messages reach none; add another with channel=" +
-                           std::to_string(radio.channel),
-                   .source = own.place()};
+    [[nodiscard]] std::optional<Finding> operator()(std::size_t record) const {
+        const Record& own = scene_->records[record];
+        const std::string& id = scene_->ids[record];
+        const Radio radio = radioOf(own);
+        if (counts_.at(groupOf(radio)) > 1) return std::nullopt;
+        const Tuple& at = own.tuple("at");
+        return Finding{.element = id,
+                       .at = {at[0], at[1]},
+                       .message = std::string("no other ") +
+                                  (radio.is_infrared ? "infrared " : "") + "radio is on channel " +
+                                  std::to_string(radio.channel) + " of " + id,
+                       .hint = "its messages reach none; add another with channel=" +
+                               std::to_string(radio.channel),
+                       .source = own.place()};
+    }
+
+  private:
+    using Group = std::pair<bool, int>;
+    static Group groupOf(const Radio& radio) { return {radio.is_infrared, radio.channel}; }
+
+    const Scene* scene_;
+    std::map<Group, std::size_t> counts_;
+};
+
+}  // namespace
+
+std::optional<Finding> checkRadio(const Scene& scene, std::size_t record) {
+    return RadioCheck(scene)(record);
 }
 
 std::vector<Schema> radioSchemas() {
@@ -183,7 +204,9 @@ std::vector<Schema> radioSchemas() {
 
 void addRadios() {
     addThingKind("radio", {.states = {"channel"}, .told = {"heard"}});
-    addRecordCheck("radio", checkRadio);
+    addRecordCheck("radio", [](const Scene& scene) {
+        return std::function<std::optional<Finding>(std::size_t record)>(RadioCheck(scene));
+    });
 }
 
 }  // namespace ispace
