@@ -228,7 +228,50 @@ std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles
     return std::nullopt;
 }
 
+std::vector<BodyDisc> discsOf(const PersonFigure& figure, const Pose2& pose) {
+    std::vector<BodyDisc> discs;
+    for (std::size_t i = 0; i + figure.load_parts < figure.fixed.size(); ++i) {
+        const BodyPart& part = figure.fixed[i];
+        const bool is_round = part.radius > 0;
+        const double radius = is_round ? part.radius : std::min(part.half_length, part.half_width);
+        const double along = is_round ? 0 : part.half_length - radius;
+        const double across = is_round ? 0 : part.half_width - radius;
+        const int count = 1 + static_cast<int>(std::ceil(2 * std::max(along, across) / radius));
+        for (int k = 0; k < count; ++k) {
+            const double share = count == 1 ? 0 : 2.0 * k / (count - 1) - 1;
+            discs.push_back(
+                {pose * (part.center + Vec2{share * along, share * across}), radius, part.bottom});
+        }
+    }
+    return discs;
+}
+
+namespace {
+
+/// Returns true if the move of a robot runs into the body of a person that rests.
+bool meetsBody(const Move& move, const Move& other) {
+    if (move.height <= 0 || other.body == nullptr) return false;
+    const double farthest = move.radius + other.span + move.to.path;
+    const Vec2 apart = move.start() - other.start();
+    if (dot(apart, apart) > farthest * farthest) return false;
+    const int parts = move.to.bulge == 0 ? 1 : Move::kParts;
+    Point2 last = move.start();
+    for (int part = 1; part <= parts; ++part) {
+        const Point2 next = parts == 1 ? move.end() : move.place(part);
+        for (const BodyDisc& disc : *other.body)
+            if (disc.bottom < move.height &&
+                RelativeWay{last - disc.center, next - disc.center}.stops(
+                    move.radius + disc.radius - kContactTolerance))
+                return true;
+        last = next;
+    }
+    return false;
+}
+
+}  // namespace
+
 bool collides(const Move& move, const Move& other, bool other_moves) {
+    if (meetsBody(move, other)) return true;
     const double reach = move.radius + other.radius - kContactTolerance;
     const Point2 other_end = other_moves ? other.end() : other.start();
     const RelativeWay way{move.start() - other.start(), move.end() - other_end};
@@ -262,7 +305,8 @@ Traffic::Traffic(std::span<const Mover> movers, std::span<const std::size_t> ord
     for (std::size_t k = 0; k < order.size(); ++k) rank_[order[k]] = k;
     for (const auto& [id, model, pose, course, place, is_person, figure] : movers)
         reach_ = std::max(
-            reach_, model.radius + std::hypot(model.max_speed, model.max_sidespeed) * duration);
+            {reach_, model.radius + std::hypot(model.max_speed, model.max_sidespeed) * duration,
+             figure == nullptr || figure->rest.empty() ? 0 : figure->reach});
 }
 
 void Traffic::rebuild(std::span<const Motion> motions) {

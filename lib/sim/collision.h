@@ -119,12 +119,25 @@ class Vicinity {
     std::vector<Segment2> lines_;
 };
 
+/// A disc on the floor that a part of a resting body covers.
+struct BodyDisc {
+    Point2 center;
+    double radius = 0, bottom = 0;  ///< bottom: height from which on it stops a robot
+};
+
+/// Covers the body of a person that sits, lies or has fallen, without a thing that it carries, by
+/// discs along its parts, those of boxes as wide as their shorter sides.
+std::vector<BodyDisc> discsOf(const PersonFigure& figure, const Pose2& pose);
+
 /// The step that a mover proposes.
 struct Move {
     const Motion* from = nullptr;
     const MotionLimits* limits = nullptr;
     double duration = 0;
     double radius = 0;
+    double height = 0;  ///< of a robot, which resting bodies stop; 0: of a person, which steps over
+    const std::vector<BodyDisc>* body = nullptr;  ///< of a person that rests
+    double span = 0;                              ///< of the body, from its position
     Advance to;
     Vec2 drift = {};  ///< offset of its end from the noiseless motion; grows linearly with time
 
@@ -132,6 +145,10 @@ struct Move {
     /// Includes the drift, like the pose in `to`.
     [[nodiscard]] Point2 end() const { return to.motion.pose.position; }
     [[nodiscard]] Segment2 chord() const { return {start(), end()}; }
+    /// Returns the radius of the circle about `other` that may stop this one.
+    [[nodiscard]] double reachOf(const Move& other) const {
+        return height > 0 ? std::max(other.radius, other.span) : other.radius;
+    }
     /// Returns its position after `part` of kParts equal intervals of the step.
     static constexpr int kParts = 16;
     [[nodiscard]] Point2 place(int part) const;
@@ -144,7 +161,7 @@ struct Move {
 std::optional<std::size_t> collides(const Move& move, const Obstacles& obstacles);
 
 /// Returns true if the move runs into another mover, which moves at the same time or stays at its
-/// start.
+/// start: into its circle, or a robot into a body that rests.
 bool collides(const Move& move, const Move& other, bool other_moves);
 
 /// Sorts the movers into the order in which their moves are settled: robots, then people, each by

@@ -178,6 +178,10 @@ std::vector<bool> World::bumper(std::size_t robot) const {
         const double radius = data.movers[i].model.radius;
         if (i != robot && distance(place, pose.position) < touch + radius)
             contact.others.emplace_back(place, radius);
+        for (const BodyDisc& disc : data.states[i].body)
+            if (disc.bottom < model.height &&
+                distance(disc.center, pose.position) < touch + disc.radius)
+                contact.others.emplace_back(disc.center, disc.radius);
     }
     if (contact.sameAs(state.contact)) return state.contact.pressed;
     const auto nearest = [&](Point2 place, double farthest) {

@@ -166,6 +166,7 @@ World::Data::Data(std::shared_ptr<SceneResources> room, SimTime length, const Ru
         moves[i].limits = &states[i].limits;
         moves[i].duration = seconds(length);
         moves[i].radius = model.radius;
+        if (!is_person) moves[i].height = model.height;
     }
     // Two movers meet within a step at most two of these apart; the room around a mover is measured
     // as far again.

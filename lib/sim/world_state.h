@@ -94,6 +94,8 @@ struct MoverState {
     // Number of moments at which it was given commands, and the first and last of them.
     std::int64_t told = 0;
     SimTime told_first{}, told_last{};
+    std::vector<BodyDisc> body;  // of a person that rests
+    Pose2 body_at;               // where these are
     bool stall = false;
     Vec2 bump;            // displacement of the step that was cancelled when the stall began
     BumpContact contact;  // of the last stall in which its bumpers were read
@@ -142,6 +144,7 @@ struct World::Data {
     void settle();
     void apply();
 
+    void putBody(std::size_t mover);
     void propose(std::size_t mover, const Surroundings& around);
     [[nodiscard]] std::optional<std::size_t> elementAhead(std::size_t mover);
     [[nodiscard]] bool isAlone(std::size_t mover);

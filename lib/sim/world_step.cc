@@ -53,6 +53,7 @@ void World::Data::propose(std::size_t mover, const Surroundings& around) {
     if (!movers[mover].rest().empty()) {
         move.to = {.motion = motion};
         move.drift = {};
+        putBody(mover);
         return;
     }
     if (const SimTime now = time - step_length; pilots[mover].isDue(now, motion))
@@ -74,6 +75,17 @@ void World::Data::propose(std::size_t mover, const Surroundings& around) {
     if (move.to.motion.drive.speed != 0 || move.to.motion.side.speed != 0)
         move.to.motion.keepForward();
     states[mover].blocked = elementAhead(mover);
+}
+
+/// Puts the body of a person that rests where it is.
+void World::Data::putBody(std::size_t mover) {
+    MoverState& state = states[mover];
+    const Pose2& pose = motions[mover].pose;
+    if (!state.body.empty() && state.body_at == pose) return;
+    state.body = discsOf(*movers[mover].figure, pose);
+    state.body_at = pose;
+    moves[mover].body = &state.body;
+    moves[mover].span = movers[mover].figure->reach;
 }
 
 void World::Data::setLimits(std::size_t mover) {
@@ -126,15 +138,14 @@ bool World::Data::mayMeet(std::size_t mover) {
     const double both = move.to.path + *longest_step;
     double room = options.noise ? 0 : std::min(kSteps * both, 2 * both + kMoverSight);
     bool may_meet = false;
-    traffic.forEachNear(move.start(), move.radius + std::max(room, 2 * both),
-                        [&](std::size_t other) {
-                            if (other == mover || may_meet) return;
-                            const Move& its = moves[other];
-                            room = std::min(room, distance(move.start(), traffic.place(other)) -
-                                                      move.radius - its.radius - kContactTolerance);
-                            if (room < 2 * both)
-                                may_meet = collides(move, its, true) || collides(move, its, false);
-                        });
+    traffic.forEachNear(
+        move.start(), move.radius + std::max(room, 2 * both), [&](std::size_t other) {
+            if (other == mover || may_meet) return;
+            const Move& its = moves[other];
+            room = std::min(room, distance(move.start(), traffic.place(other)) - move.radius -
+                                      move.reachOf(its) - kContactTolerance);
+            if (room < 2 * both) may_meet = collides(move, its, true) || collides(move, its, false);
+        });
     states[mover].room = may_meet ? 0 : room - both;
     return may_meet;
 }

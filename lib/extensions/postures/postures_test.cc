@@ -431,6 +431,28 @@ TEST(Postures, CarriedThingsKeepTheirShapes) {
     EXPECT_EQ(load("cube id=a at=2,0 size=0.1,0.1,0.3").half_width, 0.05);
 }
 
+/// A robot stops at the legs of a person that lies on the floor, and passes below a bed's.
+TEST(Postures, RobotsRunIntoBodies) {
+    const auto way = [](const std::string& keys, double x) {
+        // It lies along +x, with its feet 1.2 m behind the middle.
+        const Scene scene =
+            sceneOf("human id=ann at=0,0 " + keys + "\nrobot id=r at=" + formatDouble(x) +
+                    ",-1.5 heading=90 radius=0.2 height=0.4\n");
+        World world(scene, milliseconds(50));
+        world.command(0, {.verb = Verb::Speed, .value = 0.5});
+        for (int i = 0; i < 100; ++i) world.step();
+        return world.status(0);
+    };
+    const RobotStatus stopped = way("posture=fallen", -0.8);
+    EXPECT_TRUE(stopped.stall);
+    EXPECT_NEAR(stopped.pose.position.y, -0.2 - 0.09 * 1.7, 0.03);
+    EXPECT_FALSE(way("posture=fallen", -1.6).stall) << "beyond the feet";
+    EXPECT_TRUE(way("posture=fallen", 1.1).stall) << "the arm beside the head";
+    EXPECT_FALSE(way("posture=lie support=0.5", -0.8).stall) << "below";
+    EXPECT_FALSE(way("posture=stand", -0.8).stall);
+    EXPECT_TRUE(way("posture=sit support=0.45", 0.4).stall) << "the shanks";
+}
+
 TEST(Postures, MatsAndGatesFeelLyingPeople) {
     const std::string floor =
         "mat id=m at=-1,0 size=0.2,0.2\ngate id=low at=-1,0 height=0.1\n"
