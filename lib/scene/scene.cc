@@ -401,7 +401,14 @@ void nameLoads(std::vector<Record>& records, const Scene* before) {
         message.append(ids[i]).append(" ").append(key).append(" ").append(person.text(key));
         message.append(", but carries ").append(load == loads.end() ? "no thing" : thing);
         message.append("; `").append(key).append("` follows from `").append(carriedKey());
-        findings.add(person.finding(key, message.append("` of things: leave it out")));
+        message.append("` of things: leave it out, or set ");
+        if (load != loads.end()) message.append(thing).append(".").append(carriedKey()).append("=");
+        if (person.text(key) != kNone) {
+            if (load != loads.end()) message.append(" and ");
+            message.append(person.text(key)).append(".").append(carriedKey());
+            message.append("=").append(ids[i]);
+        }
+        findings.add(person.finding(key, message));
     }
     findings.throwIfAny();
 }

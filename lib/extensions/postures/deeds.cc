@@ -196,9 +196,12 @@ std::optional<Point3> pointOf(const World& world, const std::string& id) {
     for (std::size_t i = 0; i < world.movers().size(); ++i) {
         const Mover& mover = world.movers()[i];
         if (mover.id != id) continue;
-        const Point2 at = world.status(i).pose.position;
+        const Pose2 pose = world.status(i).pose;
         const double share = mover.is_person ? kChest : 1.0 / 2;
-        return Point3{at.x, at.y, share * mover.model.height};
+        Point3 local{0, 0, share * mover.model.height};
+        if (mover.figure != nullptr) local = mover.figure->carried(local);
+        const Point2 at = pose * local.onFloor();
+        return Point3{at.x, at.y, local.z};
     }
     const Scene& scene = world.scene();
     for (const Sensor& sensor : scene.sensors)

@@ -752,6 +752,26 @@ TEST(Deeds, PeoplePointAtThingsAndPeople) {
     EXPECT_EQ(home.marks(), "");
 }
 
+TEST(Deeds, PeoplePointAtTheChestsOfThoseWhoRest) {
+    const auto chest = [](const std::string& keys) {
+        const Scene scene = sceneOf("human id=bob at=1,2 heading=90 height=1.7 " + keys + "\n");
+        const World world(scene, milliseconds(100));
+        return pointOf(world, "bob").value();
+    };
+    const auto expect = [&](const std::string& keys, Point3 wanted) {
+        const Point3 found = chest(keys);
+        EXPECT_NEAR(length(found - wanted), 0, 1e-9)
+            << keys << ": " << found.x << ',' << found.y << ',' << found.z;
+    };
+    const double h = 1.7, up = 0.75 * h, hip = 0.48 * h, middle = (0.48 + 0.87) / 2 * h;
+    expect("", {1, 2, up});
+    expect("left_arm=0,0", {1, 2, up});
+    expect("posture=sit support=0.45", {1, 2, 0.45 + up - hip});
+    // The chest is ahead of the middle of the trunk.
+    expect("posture=lie support=0.5", {1, 2 + up - middle, 0.5 + 0.06 * h});
+    expect("posture=fallen", {1, 2 + up - middle, 0.06 * h});
+}
+
 TEST(Deeds, PeopleReachForThings) {
     Home home("cube id=table at=2,0 size=1,1,0.9\n", "human id=ann at=0,0\n",
               "at 00:00 ann reaches table 5s\n");
@@ -1002,8 +1022,14 @@ TEST(Postures, ChangesKeepThingsInOneHand) {
     EXPECT_NE(answer("ACT jug carried=ann"), "");
     EXPECT_NE(answer("ADD cube id=pot at=1,1 size=0.1 carried=ann"), "");
     EXPECT_NE(answer("SET cup.size=0.7"), "");
-    EXPECT_NE(answer("SET ann.holds=none"), "");
-    EXPECT_NE(answer("SET bob.holds=cup"), "");
+    EXPECT_EQ(answer("SET ann.holds=none"),
+              "human ann holds none, but carries cup; `holds` follows from `carried` of things: "
+              "leave it out, or set cup.carried=");
+    EXPECT_EQ(
+        answer("SET bob.holds=cup"),
+        "human bob holds cup, but carries no thing; `holds` follows from `carried` of things: "
+        "leave it out, or set cup.carried=bob");
+    EXPECT_TRUE(answer("SET ann.holds=jug").ends_with("set cup.carried= and jug.carried=ann"));
     EXPECT_NE(answer("DELETE ann"), "");
     // From hand to hand.
     EXPECT_EQ(answer("SET cup.carried=bob"), "");
