@@ -45,8 +45,10 @@ Point2 nearestOn(Point2 a, Point2 b, Point2 place) {
 }
 
 struct BumperOfRun {
-    std::string id, robot;  // of the records
-    std::size_t room = 0;
+    std::string id;        // of its record
+    std::string robot;     // its name across the run
+    std::size_t room = 0;  // of its record
+    std::string of = {};   // as the record says it
     double stiffness = kStiffness;
     double force = 0;  // N
     std::string into = {};
@@ -76,6 +78,16 @@ struct Run {
             if (glob.matches(each.first)) names.push_back(each.first);
         return names;
     }
+    /// Returns the room in which a robot is now, and its number there.
+    struct Place {
+        std::size_t room, mover;
+    };
+    [[nodiscard]] std::optional<Place> placeOf(const std::string& robot) const {
+        for (std::size_t room = 0; room < rooms.size(); ++room)
+            if (const auto mover = rooms[room].world().robotNamed(robot))
+                return Place{room, *mover};
+        return std::nullopt;
+    }
     void readChanged();
 };
 
@@ -96,7 +108,10 @@ void Run::readChanged() {
             if (record.keyword() != "bumper") continue;
             const std::string name =
                 rooms[room].id.empty() ? scene.ids[i] : rooms[room].id + '/' + scene.ids[i];
-            BumperOfRun bumper{scene.ids[i], record.text("of"), room, record.number("stiffness")};
+            const std::string& of = record.text("of");
+            const std::string prefix = rooms[room].id.empty() ? "" : rooms[room].id + '/';
+            BumperOfRun bumper{scene.ids[i], of.starts_with(prefix) ? of : prefix + of, room, of,
+                               record.number("stiffness")};
             if (const auto before = known.find(name); before != known.end()) {
                 bumper.force = before->second.force;
                 bumper.into = before->second.into;
@@ -185,21 +200,22 @@ class Bumpers : public RoleService {
         if (std::exchange(time_, run_.now()) == run_.now()) return;
         run_.readChanged();
         for (auto& [name, bumper] : run_.bumpers) {
-            const Room& room = run_.rooms[bumper.room];
-            const auto mover = room.world().robotNamed(bumper.robot);
-            if (!mover) continue;
+            const auto place = run_.placeOf(bumper.robot);
+            if (!place) continue;
+            const auto& [at, mover] = *place;
+            const Room& room = run_.rooms[at];
             for (const Collision& collision : room.world().collisions()) {
-                if (collision.robot == *mover)
-                    meet(name, bumper, {*mover, collision.other, collision.into, true});
-                else if (collision.other == *mover)
-                    meet(name, bumper,
-                         {*mover, collision.robot, room.world().movers()[collision.robot].id,
-                          false});
+                if (collision.robot == mover)
+                    meet(name, bumper, room, {mover, collision.other, collision.into, true});
+                else if (collision.other == mover)
+                    meet(
+                        name, bumper, room,
+                        {mover, collision.robot, room.world().movers()[collision.robot].id, false});
             }
             // Speeds, not the flag of the stall: a command clears that, which a replay does not
             // have.
             if (bumper.force > 0 && time_ >= bumper.until &&
-                !(bumper.stays && standsAt(room.world().status(*mover), bumper.at))) {
+                !(bumper.stays && standsAt(room.world().status(mover), bumper.at))) {
                 bumper.force = 0;
                 bumper.into.clear();
                 tellState(bumper);
@@ -238,15 +254,14 @@ class Bumpers : public RoleService {
     /// Returns the unit vector from a robot to the place where it meets a body.
     static Vec2 towards(const World& world, const Meeting& meeting, Vec2 velocity) {
         const Point2 here = world.status(meeting.robot).pose.position;
-        const PlacedRobot& robot = world.scene().robots[meeting.robot];
+        const RobotModel& robot = world.movers()[meeting.robot].model;
         std::optional<Point2> there;
         if (meeting.other) {
             there = world.status(*meeting.other).pose.position;
         } else {
             for (const Element& element : world.scene().environment.elements())
                 if (element.id == meeting.into)
-                    there = contactOf(element.body,
-                                      {here, velocity, robot.model.radius, robot.model.height});
+                    there = contactOf(element.body, {here, velocity, robot.radius, robot.height});
         }
         const Vec2 way = there ? *there - here : velocity;
         const double size = length(way);
@@ -254,8 +269,8 @@ class Bumpers : public RoleService {
         return unitVector(world.status(meeting.robot).pose.heading);
     }
 
-    void meet(std::string_view name, BumperOfRun& bumper, const Meeting& meeting) {
-        const Room& room = run_.rooms[bumper.room];
+    void meet(std::string_view name, BumperOfRun& bumper, const Room& room,
+              const Meeting& meeting) {
         const World& world = room.world();
         if (meeting.robot >= room.velocities.size()) return;
         Vec2 velocity = room.velocities[meeting.robot];
@@ -379,10 +394,13 @@ std::unique_ptr<RoleService> makeBumpers(std::span<const RunRoom> rooms, std::ui
     run.readChanged();
     if (run.bumpers.empty()) return nullptr;
     for (const auto& [name, bumper] : run.bumpers) {
+        if (run.placeOf(bumper.robot)) continue;
         const Scene& scene = run.rooms[bumper.room].world().scene();
         for (std::size_t i = 0; i < scene.ids.size(); ++i)
-            if (scene.ids[i] == bumper.id && checkBumper(scene, i))
-                throw FormatError(scene.records[i].finding("of", checkBumper(scene, i)->message));
+            if (scene.ids[i] == bumper.id)
+                throw FormatError(scene.records[i].finding("of", "bumper " + bumper.id + " is of " +
+                                                                     excerpt(bumper.of) +
+                                                                     ", which is no robot"));
     }
     return std::make_unique<Bumpers>(std::move(run));
 }
