@@ -36,6 +36,9 @@ class Radios {
 
     /// Returns the ids of the radios.
     const std::vector<std::string>& radios() const { return radios_; }
+    /// Returns how many messages of its radios it has missed: nextMessage() was called too rarely,
+    /// or too many came in a step.
+    long missed() const { return missed_; }
 
     /// Sends a text from a radio, at most 1000 bytes without line breaks.
     void send(const std::string& radio, const std::string& text) {
@@ -50,8 +53,9 @@ class Radios {
     bool nextMessage(RadioMessage& received, double timeout) {
         Message message;
         while (connection_.nextEvent(message, timeout)) {
-            if (message.word(1) != "message") continue;
             const Fields& fields = message.fields;
+            if (message.word(1) == "missed") missed_ += static_cast<long>(fields.number("n"));
+            if (message.word(1) != "message") continue;
             received.radio = fields.text("id");
             received.sender = fields.text("from");
             received.time = fields.number("t");
@@ -65,6 +69,7 @@ class Radios {
   private:
     Connection connection_;
     std::vector<std::string> radios_;
+    long missed_ = 0;
 };
 
 }  // namespace client

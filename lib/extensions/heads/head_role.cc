@@ -114,9 +114,11 @@ void Run::readChanged() {
     }
 }
 
-std::string anglesText(const HeadOfRun& head) {
-    return " pan=" + formatDouble(head.head.pan) + " tilt=" + formatDouble(head.head.tilt);
+std::string anglesText(double pan, double tilt) {
+    return " pan=" + formatDouble(pan) + " tilt=" + formatDouble(tilt);
 }
+
+std::string anglesText(const HeadOfRun& head) { return anglesText(head.head.pan, head.head.tilt); }
 
 class HeadClient : public ClientRole {
   public:
@@ -139,7 +141,14 @@ class HeadClient : public ClientRole {
         std::string line = "OK ";
         line.append(words[0]).append(" id=").append(words[1]);
         line.append(" t=").append(formatMilliseconds(run_.now()));
-        if (words[0] == "HALT") head.turn.reset();
+        if (words[0] == "HALT") {
+            // A change that the turn has asked for is still made: it stops there.
+            const bool is_due = head.turn && head.asked && head.asked->isPending(head.head);
+            head.turn.reset();
+            return {line +
+                    (is_due ? anglesText(head.asked->pan, head.asked->tilt) : anglesText(head)) +
+                    " moving=0\n"};
+        }
         if (words[0] != "TURN")
             return {line + anglesText(head) + " moving=" + (head.turn ? "1" : "0") + '\n'};
         const auto pan = parseDouble(words[2]), tilt = parseDouble(words[3]);

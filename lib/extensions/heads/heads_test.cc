@@ -231,10 +231,21 @@ TEST_F(HeadRole, StopsAndRefuses) {
     EXPECT_EQ(ask(session, "READ x").substr(0, 8), "ERR 404 ");
     ask(session, "TURN h 40 0");
     run(50);
-    ask(session, "HALT h");
-    const std::size_t made = changes_.size();
-    run(100);
-    EXPECT_LE(changes_.size(), made + 1);
+    // At any moment HALT tells where it stops, also if a change is still due.
+    for (const int steps : {1, 2, 3, 4, 5, 6, 7}) {
+        run(steps);
+        const std::string stopped = ask(session, "HALT h");
+        const std::size_t made = changes_.size();
+        run(100);
+        EXPECT_LE(changes_.size(), made + 1);
+        const auto angles = [](const std::string& answer) {
+            return answer.substr(answer.find(" pan="));
+        };
+        EXPECT_EQ(angles(ask(session, "READ h")), angles(stopped)) << steps;
+        ask(session, "TURN h 40 0");
+        run(20);
+        ask(session, "TURN h -40 0");
+    }
     // A later turn takes over.
     ask(session, "TURN h 90 0");
     run(20);

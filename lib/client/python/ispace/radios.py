@@ -33,6 +33,8 @@ class Radios(Client):
         """radios: those that it sends from and hears, a pattern of ids"""
         super().__init__(f"RADIO {radios}", address, timeout, token)
         self.radios = split(self.info["radios"], ",") if self.info.get("radios") else []  #: ids
+        #: how many messages of its radios it has missed: next_message() was called too rarely, or too many came in a step
+        self.missed = 0
 
     def __enter__(self) -> Radios:
         return self
@@ -48,6 +50,8 @@ class Radios(Client):
     def next_message(self, timeout: float = 0) -> Optional[RadioMessage]:
         """The next message that one of its radios receives; None after this many seconds of wall time."""
         while (message := self.connection.next_event(timeout)) is not None:
+            if message.word(1) == "missed":
+                self.missed += message.fields.integer("n")
             if message.word(1) == "message":
                 fields = message.fields
                 return RadioMessage(fields["id"], fields["from"], fields.number("t"), fields.number("margin"), fields["text"])
