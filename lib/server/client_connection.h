@@ -138,6 +138,8 @@ class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
     }
     /// Time since which the oldest unsent byte has been waiting, or a little later.
     [[nodiscard]] WallTime waitingSince() const { return waiting_since_; }
+    /// True while the peer leaves output unread.
+    [[nodiscard]] bool owes() const { return session_ && writing_ && owed_ > 0; }
     /// Sends pending output and closes without waiting for the peer.
     void end();
     void close();

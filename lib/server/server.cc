@@ -62,6 +62,15 @@ std::size_t Server::topicsLeftOut() const { return data_->log ? data_->log->left
 
 std::size_t Server::nodeTopicsLeftOut() const { return data_->node ? data_->node->leftOut() : 0; }
 
+ReaderLosses Server::readerLosses() const {
+    ReaderLosses all;
+    for (ServerState* const each : data_->states()) {
+        all.readings += each->losses().readings;
+        all.messages += each->losses().messages;
+    }
+    return all;
+}
+
 std::string Server::bagMetadata(const std::string& file) const {
     return data_->log.value().metadata(file);
 }
@@ -138,7 +147,7 @@ void Server::run() {
         std::optional<WallTime> next;
         const bool holds = std::any_of(states.begin(), states.end(),
                                        [](const ServerState* each) { return each->holdsWorld(); });
-        next = holds || data.rolesHoldWorld()
+        next = holds || data.rolesHoldWorld() || data.awaitedReader()
                    ? simulation.flushRecord()
                    : simulation.run(std::chrono::steady_clock::now(), data.turn());
         if (simulation.finished()) break;

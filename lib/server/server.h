@@ -61,11 +61,22 @@ struct ServerLimits {
     std::chrono::nanoseconds watchdog{};
     /// Networks that may use device ports and DDS, besides this machine.
     std::vector<Network> allowed;
+    /// Unless the clock is real, the world waits until clients have read what they subscribed to
+    /// over TCP and WebSockets: for each at most as long as the watchdog, else `patience`.
+    bool waits_for_readers = false;
     bool wall_clock = false;  ///< clocks of devices show wall time instead of simulated time
+};
+
+/// Data that slow readers were not sent, since newer data took its place.
+struct ReaderLosses {
+    std::int64_t readings = 0;  ///< of streams of the protocol
+    std::int64_t messages = 0;  ///< of topics, over Foxglove and rosbridge
 };
 
 /// Protocols that carry topics of ROS over WebSockets.
 enum class RosLanguage { Foxglove, Rosbridge };
+
+class RosSource;
 
 /// Data about the room for clients of ROS topics, computed in background threads.
 struct RosScenery {
@@ -78,7 +89,11 @@ struct RosScenery {
         robot_model = {};
     /// Id of the robot whose topics have names without a prefix, too; "": the only one.
     std::string robot = {};
+    std::vector<std::shared_ptr<RosSource>> sources = {};  ///< of further topics
 };
+
+/// Returns the topics by which Open-RMF runs lifts, doors and fleets, see ispace-ros(7).
+std::shared_ptr<RosSource> rmfTopics();
 
 /// Parts of the page that depend on the options of the run.
 struct WebPageOptions {
@@ -132,6 +147,9 @@ class Server {
     [[nodiscard]] std::size_t nodeTopicsLeftOut() const;
     /// Returns the text of `metadata.yaml` for that file, by its name in a folder. \pre logTopics()
     [[nodiscard]] std::string bagMetadata(const std::string& file) const;
+    /// Returns the number of readings and messages that slow readers have lost so far, by the kind
+    /// of their port.
+    [[nodiscard]] ReaderLosses readerLosses() const;
     /// Serves a robot or sensor through the protocol of a real device at a separate endpoint. Call
     /// before run(). \returns "127.0.0.1:10940"
     /// \throws UsageError if the world has no such device, std::system_error naming the endpoint

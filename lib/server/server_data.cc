@@ -139,10 +139,27 @@ bool Server::Data::rolesHoldWorld() const {
                        [](const auto& role) { return role->holdsWorld(); });
 }
 
+/// Returns the time until which the world waits for readers at most; empty if it need not. Those
+/// that have read nothing for too long are no longer awaited.
+std::optional<WallTime> Server::Data::awaitedReader() const {
+    if (!limits.waits_for_readers || simulation.clock().kind == Clock::Kind::Real) return {};
+    const auto most = limits.watchdog.count() > 0 ? limits.watchdog : limits.patience;
+    const WallTime earliest = steady_clock::now() - most;
+    std::optional<WallTime> latest;
+    const auto wait = [&](std::optional<WallTime> since) {
+        if (since && *since > earliest) latest = std::max(latest.value_or(*since), *since);
+    };
+    for (const auto& connection : connections)
+        if (connection->owes()) wait(connection->waitingSince());
+    for (const WebServer& web : webs) wait(web.awaitedSince(earliest));
+    return latest ? std::optional(*latest + most) : std::nullopt;
+}
+
 /// Next time at which a silent client needs service.
 WallTime Server::Data::nextTurn() const {
     if (state.isOnTheWay()) return steady_clock::now();
     WallTime next = has_news ? next_news : WallTime::max();
+    next = std::min(next, awaitedReader().value_or(next));
     bool may_change = false;
     for (const auto& connection : connections) {
         if (connection->waitsToChange()) may_change = true;
@@ -167,6 +184,7 @@ std::chrono::nanoseconds Server::Data::turn() const {
     const bool may_hold = simulation.clock().kind != Clock::Kind::Real || simulation.isReplay() ||
                           simulation.paused();
     if (may_hold && !roles.empty() && serving > 0) return std::chrono::nanoseconds(0);
+    if (may_hold && limits.waits_for_readers) return std::chrono::nanoseconds(0);
     if (!may_hold || (serving == 0 && webs.empty() && devices.empty() && !node && !log))
         return kTurn;
     const auto has_heavy_sensor = [](Simulation& one) {

@@ -57,6 +57,7 @@ struct Server::Data {
     [[nodiscard]] RosFeed& feedOf(RosScenery scenery);
     void stepped();
     [[nodiscard]] bool rolesHoldWorld() const;
+    [[nodiscard]] std::optional<WallTime> awaitedReader() const;
     [[nodiscard]] WallTime nextTurn() const;
     [[nodiscard]] std::chrono::nanoseconds turn() const;
     void serveClients();

@@ -162,6 +162,52 @@ TEST(Server, WhatStalledReadersHoldIsBoundedInSum) {
     EXPECT_EQ(line, "OK STOP");
 }
 
+/// Streams scans of 120 kB to a reader that begins late. \returns how many of them it gets
+int scansOfALateReader(bool waits, ReaderLosses& losses) {
+    ServerLimits limits;
+    limits.waits_for_readers = waits;
+    limits.watchdog = std::chrono::seconds(30);
+    int count = 0;
+    Running running({Clock::Kind::Step, 1}, limits,
+                    "laser id=big at=0,1 fov=360 step=0.018 range=20\n");
+    Client world(running.port()), late(running.port(), 2048);
+    world.take("WORLD");
+    EXPECT_EQ(late.take("LASER big").ask("STREAM"), "OK STREAM every=1");
+    EXPECT_TRUE(world.send("STEP 100\n"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_EQ(world.quiet(), waits) << "the world waits for the reader";
+    std::thread reader([&late, &count] {
+        for (std::string line = late.line(); line.starts_with("SCAN "); line = late.line()) ++count;
+    });
+    EXPECT_EQ(world.line().substr(0, 13), "OK STEP n=100");
+    EXPECT_TRUE(late.send("STOP\n"));
+    reader.join();
+    running.stop();
+    losses = running.server().readerLosses();
+    return count;
+}
+
+TEST(Server, WaitsForReadersOnRequest) {
+    ReaderLosses losses;
+    EXPECT_EQ(scansOfALateReader(true, losses), 100);
+    EXPECT_EQ(losses.readings, 0);
+    const int count = scansOfALateReader(false, losses);
+    EXPECT_LT(count, 100);
+    EXPECT_EQ(losses.readings, 100 - count) << "and says how many are lost";
+}
+
+TEST(Server, WaitsNoLongerThanTheWatchdog) {
+    ServerLimits limits;
+    limits.waits_for_readers = true;
+    limits.watchdog = std::chrono::milliseconds(200);
+    Running running({Clock::Kind::Step, 1}, limits,
+                    "laser id=big at=0,1 fov=360 step=0.018 range=20\n");
+    Client world(running.port()), stalled(running.port(), 2048);
+    world.take("WORLD");
+    EXPECT_EQ(stalled.take("LASER big").ask("STREAM"), "OK STREAM every=1");
+    EXPECT_EQ(world.ask("STEP 100").substr(0, 13), "OK STEP n=100");
+}
+
 using std::chrono::milliseconds;
 
 int taken(TokenBucket& bucket, WallTime now) {

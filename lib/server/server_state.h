@@ -273,6 +273,8 @@ class ServerState {
     [[nodiscard]] bool isMaking() const { return workshop_ && workshop_->open() > 0; }
     /// True if a background thread has a job running or queued.
     [[nodiscard]] bool isBusy() const { return isMaking() || (builders_ && builders_->open() > 0); }
+    /// What slow readers of this world's data have lost.
+    [[nodiscard]] ReaderLosses& losses() { return losses_; }
     /// Bytes of outdated scans that connections still have to send.
     [[nodiscard]] std::size_t staleBytes() const { return *alive_ - kept_; }
 
@@ -329,6 +331,7 @@ class ServerState {
     std::function<bool()> stopped_;
     // Declared last, since their jobs use the other members: pictures, and changes of the world.
     std::optional<BackgroundWorker> workshop_, builders_;
+    ReaderLosses losses_;
 };
 
 }  // namespace ispace

@@ -155,7 +155,10 @@ void Session::streamSensor() {
     if (seq != seq_ && seq % every_ == 0 && held_.empty()) {
         ReplyForm form = form_;
         form.stream = true;
-        if (scan_ && isHeavy(world().sensors()[subject_]))
+        const bool is_heavy = isHeavy(world().sensors()[subject_]);
+        // The reader has left the last one, which another one replaces.
+        if (scan_ && (!is_heavy || is_stale_)) ++state_->losses().readings;
+        if (scan_ && is_heavy)
             is_stale_ = true;
         else if (!coming_)
             coming_ = state_->ask(subject_, form);

@@ -72,6 +72,14 @@ void WebServer::serve() {
     alarm_.async_wait([](boost::system::error_code) {});
 }
 
+std::optional<WallTime> WebServer::awaitedSince(WallTime earliest) const {
+    std::optional<WallTime> latest;
+    for (const auto& connection : connections_)
+        if (const auto since = connection->awaitedSince(); since && *since > earliest)
+            latest = std::max(latest.value_or(*since), *since);
+    return latest;
+}
+
 bool WebServer::waitsToChange() const {
     return std::any_of(connections_.begin(), connections_.end(),
                        [](const auto& connection) { return connection->waitsToChange(); });

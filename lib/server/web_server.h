@@ -5,6 +5,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ class WebServer {
     void stepped();
     /// Call between steps: answers finished STEPs and sends frames.
     void serve();
+    /// Returns the time since which the latest reader is awaited, among those since `earliest`.
+    [[nodiscard]] std::optional<WallTime> awaitedSince(WallTime earliest) const;
     /// True if a client awaits its turn to change the world.
     [[nodiscard]] bool waitsToChange() const;
     /// Sends a closing message to all browsers.

@@ -93,6 +93,7 @@ void serve(Simulation& simulation, const SimrunCommand& command, const SceneInpu
         progress->end();
         if (record) record->recorder.end(world);
         if (log) log->commit();
+        tellLosses(server, options);
         report(simulation, options);
         if (replay && replay->isCut())
             warn(options.common, "simrun",

@@ -235,6 +235,7 @@ bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
     for (std::size_t i = 0; i < records.size(); ++i)
         records[i]->recorder.end(run.rooms()[i].simulation->world());
     if (log) log->commit();
+    tellLosses(server, options);
     report(simulation, options);
     for (std::size_t i = 0; i < run.rooms().size(); ++i)
         if (run.replay(i) != nullptr && run.replay(i)->isCut())

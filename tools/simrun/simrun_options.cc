@@ -318,6 +318,10 @@ void SimrunCommand::declareServer() {
         },
         "stop the robot or person of a client that is silent for this long (wall time)",
         Enters::Nothing);
+    line_.flag("--wait-for-readers", o.limits.waits_for_readers,
+               "with --clock fast or step: wait until clients have read the streams and topics "
+               "that they asked for, each for at most the time of --watchdog, else 10 s",
+               Enters::Nothing);
     line_.file("--load", "DIR", o.load_folder,
                "folder from which the request LOAD reads (default that of ENV)", Enters::Nothing);
     line_.switchFlag("--changes", "--no-changes", o.changes,
@@ -346,6 +350,10 @@ void SimrunCommand::declareRos() {
     line_.text("--ros-robot", "ROBOT", o.ros_robot,
                "give topics of ROS 2 of this robot names without its own, too, such as /odom and "
                "/scan (default: the only robot)",
+               Enters::Nothing);
+    line_.flag("--rmf", o.rmf,
+               "add the topics by which Open-RMF runs lifts, doors and fleets: lift_states, "
+               "lift_requests, door_states, door_requests, fleet_states",
                Enters::Nothing);
     line_.file(
         "--mcap", "FILE", o.mcap,
@@ -397,6 +405,13 @@ void SimrunCommand::takeServer() {
         throw UsageError(
             "--ros-robot is about topics of ROS 2: give --ros2, --rosbridge PORT or --foxglove "
             "PORT");
+    if (o.rmf && !o.foxglove && !o.rosbridge && !o.ros_domain && o.mcap.empty())
+        throw UsageError(
+            "--rmf is about topics of ROS 2: give --ros2, --rosbridge PORT, --foxglove PORT or "
+            "--mcap FILE");
+    if (o.limits.waits_for_readers && o.clock.kind == Clock::Kind::Real)
+        throw UsageError(
+            "--wait-for-readers requires --clock fast or step: real time does not wait");
     if (o.mcap == "-")
         throw UsageError("--mcap writes to a file: standard output has the addresses of the run");
     o.devices.take(line_, o.ros_domain.has_value(), o.limits);

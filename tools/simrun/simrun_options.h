@@ -89,6 +89,7 @@ struct SimrunOptions {
     bool web_edits = false;         ///< the page changes the room
     std::optional<int> ros_domain;  ///< of --ros2
     std::string ros_robot;          ///< "": the only one
+    bool rmf = false;               ///< topics of Open-RMF
     std::string mcap;               ///< "" without
     std::optional<MqttOptions> mqtt;
     std::string mqtt_login;  ///< file; "" without

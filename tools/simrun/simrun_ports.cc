@@ -140,7 +140,26 @@ std::string meshOf(const Scene& scene) {
 
 }  // namespace
 
-RosScenery rosScenery() { return {.map = mapOf, .room = meshOf, .robot_model = writeRobotUrdf}; }
+RosScenery rosScenery(const SimrunOptions& options) {
+    RosScenery scenery{
+        .map = mapOf, .room = meshOf, .robot_model = writeRobotUrdf, .robot = options.ros_robot};
+    if (options.rmf) scenery.sources.push_back(rmfTopics());
+    return scenery;
+}
+
+void tellLosses(const Server& server, const SimrunOptions& options) {
+    const ReaderLosses losses = server.readerLosses();
+    std::string what;
+    if (losses.readings > 0) what = std::to_string(losses.readings) + " readings of streams";
+    if (losses.messages > 0)
+        what +=
+            (what.empty() ? "" : " and ") + std::to_string(losses.messages) + " messages of topics";
+    if (what.empty()) return;
+    const bool may_wait =
+        options.clock.kind != Clock::Kind::Real && !options.limits.waits_for_readers;
+    tell(options.common, "simrun",
+         "slow readers lost " + what + (may_wait ? " (--wait-for-readers keeps them)" : ""));
+}
 
 ServedAddresses servePorts(Server& server, const SimrunOptions& options, const std::string& title,
                            const std::vector<std::string>& replayed) {
@@ -151,8 +170,7 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
         out.web = server.serveWeb(
             *options.web, title,
             {.edits = options.web_edits, .marks = recordedMarks(replayed), .mesh = meshOf});
-    RosScenery scenery = rosScenery();
-    scenery.robot = options.ros_robot;
+    const RosScenery scenery = rosScenery(options);
     const auto serve = [&](RosLanguage language, const std::optional<Endpoint>& endpoint) {
         return endpoint ? ofOption("--ros-robot",
                                    [&] {
@@ -210,7 +228,7 @@ TopicLog::TopicLog(Server& server, Simulation& simulation, const SimrunOptions& 
             file_.write(bytes);
             bytes_ += bytes.size();
         },
-        rosScenery());
+        rosScenery(options));
     simulation.onStep([this, &simulation] {
         if (bytes_ <= options_->max_recorded || end_ < kMaxTime) return;
         end_ = simulation.world().time();

@@ -55,7 +55,10 @@ class TopicLog {
 /// Writes the first line of output: clients can connect now.
 void announce(const Server& server, const ServedAddresses& addresses);
 
-/// Returns writers of the room's map and mesh for clients of topics.
-RosScenery rosScenery();
+/// Returns writers of the room's map, mesh and robots for clients of topics, and further topics.
+RosScenery rosScenery(const SimrunOptions& options);
+
+/// Says after the run how much slow readers have lost, if any.
+void tellLosses(const Server& server, const SimrunOptions& options);
 
 }  // namespace ispace

@@ -12,8 +12,8 @@ namespace ispace {
 
 namespace {
 
-/// Definitions of ROS 2's common_interfaces and of radar_msgs, without their comments. Types of
-/// other packages are prefixed with the package; contained types precede their users.
+/// Definitions of ROS 2's common_interfaces, of radar_msgs and of Open-RMF, without their comments.
+/// Types of other packages are prefixed with the package; contained types precede their users.
 struct Definition {
     std::string_view name;  ///< as other definitions refer to it
     std::string_view text;
@@ -62,6 +62,23 @@ constexpr Definition kParts[] = {
     {"radar_msgs/RadarReturn",
      "float32 range\nfloat32 azimuth\nfloat32 elevation\nfloat32 doppler_velocity\n"
      "float32 amplitude\n"},
+    {"rmf_door_msgs/DoorMode",
+     "uint32 MODE_CLOSED=0\nuint32 MODE_MOVING=1\nuint32 MODE_OPEN=2\nuint32 MODE_OFFLINE=3\n"
+     "uint32 MODE_UNKNOWN=4\nuint32 value\n"},
+    {"rmf_fleet_msgs/RobotMode",
+     "uint32 MODE_IDLE=0\nuint32 MODE_CHARGING=1\nuint32 MODE_MOVING=2\nuint32 MODE_PAUSED=3\n"
+     "uint32 MODE_WAITING=4\nuint32 MODE_EMERGENCY=5\nuint32 MODE_GOING_HOME=6\n"
+     "uint32 MODE_DOCKING=7\nuint32 MODE_ADAPTER_ERROR=8\nuint32 MODE_CLEANING=9\n"
+     "uint32 MODE_PERFORMING_ACTION=10\nuint32 MODE_ACTION_COMPLETED=11\n"
+     "uint32 mode\nuint64 mode_request_id\nstring performing_action\n"},
+    {"rmf_fleet_msgs/Location",
+     "builtin_interfaces/Time t\nfloat32 x\nfloat32 y\nfloat32 yaw\n"
+     "bool obey_approach_speed_limit false\nfloat32 approach_speed_limit\nstring level_name\n"
+     "uint64 index\n"},
+    {"rmf_fleet_msgs/RobotState",
+     "string name\nstring model\nstring task_id\nuint64 seq\nrmf_fleet_msgs/RobotMode mode\n"
+     "float32 battery_percent\nrmf_fleet_msgs/Location location\n"
+     "rmf_fleet_msgs/Location[] path\n"},
     {"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
     {"diagnostic_msgs/DiagnosticStatus",
      "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n"
@@ -135,6 +152,25 @@ constexpr Definition kTypes[] = {
     {"sensor_msgs/msg/JointState",
      "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\n"
      "float64[] effort\n"},
+    {"rmf_lift_msgs/msg/LiftState",
+     "uint8 DOOR_CLOSED=0\nuint8 DOOR_MOVING=1\nuint8 DOOR_OPEN=2\n"
+     "uint8 MOTION_STOPPED=0\nuint8 MOTION_UP=1\nuint8 MOTION_DOWN=2\nuint8 MOTION_UNKNOWN=3\n"
+     "uint8 MODE_UNKNOWN=0\nuint8 MODE_HUMAN=1\nuint8 MODE_AGV=2\nuint8 MODE_FIRE=3\n"
+     "uint8 MODE_OFFLINE=4\nuint8 MODE_EMERGENCY=5\n"
+     "builtin_interfaces/Time lift_time\nstring lift_name\nstring[] available_floors\n"
+     "string current_floor\nstring destination_floor\nuint8 door_state\nuint8 motion_state\n"
+     "uint8[] available_modes\nuint8 current_mode\nstring session_id\n"},
+    {"rmf_lift_msgs/msg/LiftRequest",
+     "uint8 REQUEST_END_SESSION=0\nuint8 REQUEST_AGV_MODE=1\nuint8 REQUEST_HUMAN_MODE=2\n"
+     "uint8 DOOR_CLOSED=0\nuint8 DOOR_OPEN=2\n"
+     "string lift_name\nbuiltin_interfaces/Time request_time\nstring session_id\n"
+     "uint8 request_type\nstring destination_floor\nuint8 door_state\n"},
+    {"rmf_door_msgs/msg/DoorState",
+     "builtin_interfaces/Time door_time\nstring door_name\nrmf_door_msgs/DoorMode current_mode\n"},
+    {"rmf_door_msgs/msg/DoorRequest",
+     "builtin_interfaces/Time request_time\nstring requester_id\nstring door_name\n"
+     "rmf_door_msgs/DoorMode requested_mode\n"},
+    {"rmf_fleet_msgs/msg/FleetState", "string name\nrmf_fleet_msgs/RobotState[] robots\n"},
 };
 static_assert(std::size(kTypes) == kRosTypes);
 
@@ -158,10 +194,11 @@ struct Primitive {
     Kind kind;
     std::size_t size;
 };
-constexpr Primitive kPrimitives[] = {
-    {"bool", Kind::Bool, 1},       {"byte", Kind::Uint8, 1},      {"int8", Kind::Int8, 1},
-    {"uint8", Kind::Uint8, 1},     {"int32", Kind::Int32, 4},     {"uint32", Kind::Uint32, 4},
-    {"float32", Kind::Float32, 4}, {"float64", Kind::Float64, 8}, {"string", Kind::Text, 0}};
+constexpr Primitive kPrimitives[] = {{"bool", Kind::Bool, 1},       {"byte", Kind::Uint8, 1},
+                                     {"int8", Kind::Int8, 1},       {"uint8", Kind::Uint8, 1},
+                                     {"int32", Kind::Int32, 4},     {"uint32", Kind::Uint32, 4},
+                                     {"uint64", Kind::Uint64, 8},   {"float32", Kind::Float32, 4},
+                                     {"float64", Kind::Float64, 8}, {"string", Kind::Text, 0}};
 
 /// Parses definitions once. Structs never move, as fields point to them.
 class Definitions {

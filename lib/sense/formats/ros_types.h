@@ -44,9 +44,14 @@ enum class RosType : std::uint16_t {
     Float64,
     String,
     BatteryState,
-    JointState
+    JointState,
+    LiftState,
+    LiftRequest,
+    DoorState,
+    DoorRequest,
+    FleetState
 };
-constexpr std::size_t kRosTypes = static_cast<std::size_t>(RosType::JointState) + 1;
+constexpr std::size_t kRosTypes = static_cast<std::size_t>(RosType::FleetState) + 1;
 constexpr auto kRecordedRosTypes = static_cast<std::size_t>(RosType::Clock),
                kRunRosTypes = static_cast<std::size_t>(RosType::Imu);
 
@@ -70,6 +75,7 @@ struct RosField {
         Uint8,
         Int32,
         Uint32,
+        Uint64,
         Float32,
         Float64,
         Text,

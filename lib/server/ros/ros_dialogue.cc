@@ -71,9 +71,13 @@ void RosDialogue::enqueue(std::uint32_t key, Subscription& subscription,
     if (!is_first && now - subscription.last_time < subscription.interval) return;
     subscription.last = message->number();
     subscription.last_time = now;
-    if (subscription.queued.size() >= subscription.depth) dropOldest(subscription);
+    const auto lose_oldest = [this](Subscription& of) {
+        dropOldest(of);
+        ++state_->losses().messages;
+    };
+    if (subscription.queued.size() >= subscription.depth) lose_oldest(subscription);
     while (!queue_.empty() && queue_bytes_ + message->cdr()->size() > kMaxQueue)
-        dropOldest(subscriptions_.at(queue_.front().key));
+        lose_oldest(subscriptions_.at(queue_.front().key));
     queue_.push_back({key, message});
     queue_bytes_ += message->cdr()->size();
     subscription.queued.push_back(std::prev(queue_.end()));

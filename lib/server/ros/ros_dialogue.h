@@ -44,6 +44,7 @@ class RosDialogue : public WebDialogue {
     [[nodiscard]] bool isEngaged() const override {
         return !subscriptions_.empty() || orders_.isDriving();
     }
+    [[nodiscard]] bool isAwaited() const override { return true; }
     void dismiss() override;
     void finish() override { orders_.finish(); }
 

@@ -29,7 +29,8 @@ std::shared_ptr<const std::string> RosMessage::cbor() const {
 }
 
 RosFeed::RosFeed(ServerState& state, RosScenery scenery)
-    : state_(&state), scenery_(std::move(scenery)) {
+    : state_(&state), scenery_(std::move(scenery)), sources_(scenery_.sources) {
+    sources_.push_back(liftTopics());
     if (const ServedRooms* const served = state.rooms()) {
         for (const JoinedRoom& room : served->worlds->rooms())
             worlds_.push_back({.id = room.id, .simulation = room.simulation});
@@ -63,23 +64,47 @@ void RosFeed::place() {
 
 /// Gives each channel its number: that which it had, else a new one.
 void RosFeed::number(Entries& entries, bool& is_changed) {
-    std::map<std::pair<std::string, RosType>, std::uint32_t> known;
-    for (const auto& [number, entry] : entries_)
-        known.emplace(std::pair(entry.channel.topic, entry.channel.type), number);
+    std::map<std::tuple<std::string, RosType, std::string>, std::uint32_t> known;
+    const auto key_of = [](const RosChannel& channel) {
+        return std::tuple(channel.topic, channel.type, channel.about);
+    };
+    for (const auto& [number, entry] : entries_) known.emplace(key_of(entry.channel), number);
     // It stays the same when others come.
     lone_ = scenery_.robot.empty() ? loneRobot(worlds_, lone_) : scenery_.robot;
-    for (RosChannel& channel : rosChannels(worlds_, lone_)) {
-        const auto old = known.find({channel.topic, channel.type});
+    std::vector<RosChannel> channels = rosChannels(worlds_, lone_);
+    addSources(channels);
+    for (RosChannel& channel : channels) {
+        const auto old = known.find(key_of(channel));
         const bool is_new = old == known.end();
         const std::uint32_t number = is_new ? next_number_++ : old->second;
         Entry& entry = entries[number];
         if (!is_new) entry = std::move(entries_[number]);
         entry.channel = std::move(channel);
         entry.period = -1;  // a changed world has new readings
-        if (entry.channel.row != nullptr && entry.channel.rate > 0)
-            entry.periods.emplace(entry.channel.rate);
+        const bool is_timed = entry.channel.row != nullptr || entry.channel.source != nullptr;
+        if (is_timed && entry.channel.rate > 0) entry.periods.emplace(entry.channel.rate);
         is_changed = is_changed || is_new;
     }
+}
+
+RosRun RosFeed::run() const {
+    const ServedRooms* const served = state_->rooms();
+    return {worlds_, served == nullptr ? nullptr : served->worlds};
+}
+
+void RosFeed::addSources(std::vector<RosChannel>& out) {
+    for (const auto& source : sources_)
+        for (RosSourceTopic& topic : source->topics(run()))
+            out.push_back(
+                {.topic = std::move(topic.topic),
+                 .type = topic.type,
+                 .rate = topic.rate,
+                 .quality = {.depth = topic.rate > 0 || topic.is_input ? RosQuality{}.depth
+                                                                       : std::size_t{1},
+                             .is_latched = topic.rate == 0 && !topic.is_input},
+                 .source = source.get(),
+                 .about = std::move(topic.about),
+                 .is_input = topic.is_input});
 }
 
 /// Topics that remain keep their numbers and subscriptions.
@@ -150,6 +175,7 @@ void RosFeed::update(Entry& entry) {
     const RosChannel& channel = entry.channel;
     if (channel.isInput()) return;
     if (channel.state) return updateState(entry);
+    if (channel.source != nullptr) return updateSource(entry);
     const World& world = worlds_[channel.room].world();
     if (channel.sensor != nullptr) {
         const Sensor& sensor = world.sensors()[channel.subject];
@@ -170,6 +196,17 @@ void RosFeed::update(Entry& entry) {
     // A change of the world may leave a latched message as it is.
     if (period == 0 && entry.newest && *entry.newest->cdr() == message) message.clear();
     publish(entry, period, std::move(message));
+}
+
+void RosFeed::updateSource(Entry& entry) {
+    const RosChannel& channel = entry.channel;
+    const World& world = worlds_.front().world();
+    const std::int64_t period = entry.periods ? entry.periods->newest(world.time()) : world.steps();
+    if (period == entry.period) return;
+    std::string message =
+        channel.source->message({channel.topic, channel.type, channel.about, channel.rate}, run());
+    const bool is_same = !entry.periods && entry.newest && *entry.newest->cdr() == message;
+    publish(entry, period, is_same ? std::string() : std::move(message));
 }
 
 /// Publishes a state after a change of the world that has set it.

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/ros/ros_source.h"
 #include "server/ros/ros_topics.h"
 #include "server/server_state.h"
 #include "sim/sensor_reading.h"
@@ -114,6 +115,9 @@ class RosFeed {
 
     void update(Entry& entry);
     void updateState(Entry& entry);
+    void updateSource(Entry& entry);
+    [[nodiscard]] RosRun run() const;
+    void addSources(std::vector<RosChannel>& out);
     void publish(Entry& entry, std::int64_t period, std::string message);
     [[nodiscard]] bool hasChanged();
     void number(Entries& entries, bool& is_changed);
@@ -125,6 +129,7 @@ class RosFeed {
 
     ServerState* state_;
     RosScenery scenery_;
+    std::vector<std::shared_ptr<RosSource>> sources_;
     std::vector<RosRoom> worlds_;  // of the run
     std::vector<Room> rooms_;      // in the same order
     std::string lone_;             // robot whose topics have names without a prefix, too

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "server/ros/ros_orders.h"
+#include "server/ros/ros_text.h"
 #include "sim/sensor_reading.h"
 #include "support/test_source.h"
 #include "support/test_world.h"
@@ -165,6 +166,36 @@ TEST(RosFeed, StatesAreTopicsOnceTheyChange) {
     EXPECT_EQ(fed.newest("/main_light/on")["data"], false);
     EXPECT_EQ(fed.newest("/main_light/level")["data"], 0.25);
     EXPECT_EQ(fed.entry("/warm/on").newest, kept) << "it has not changed";
+}
+
+TEST(RosFeed, DoorsAreThoseOfOpenRmf) {
+    Fed fed("door id=d1 at=0,-3 open=yes\ndoor id=d2 at=0,3 open=no\n", {.sources = {rmfTopics()}});
+    EXPECT_EQ(fed.number("/lift_states"), 0U) << "a room has no lifts";
+    const auto numbers = fed.feed.numbersOf("/door_states");
+    ASSERT_EQ(numbers.size(), 2U) << "a channel each";
+    for (const std::uint32_t number : numbers) fed.feed.want(number);
+    const auto door = [&](std::size_t i) {
+        return json::parse(*fed.feed.entries().at(numbers[i]).newest->json());
+    };
+    EXPECT_EQ(door(0)["door_name"], "d1");
+    EXPECT_EQ(door(0)["current_mode"]["value"], 2);
+    EXPECT_EQ(door(1)["door_name"], "d2");
+    EXPECT_EQ(door(1)["current_mode"]["value"], 0);
+    RosOrders orders(fed.state, [](const std::string& why) { FAIL() << why; });
+    orders.obey(fed.entry("/door_requests").channel,
+                rosMessage(RosType::DoorRequest,
+                           {{"door_name", "d2"}, {"requested_mode", {{"value", 2}}}}));
+    for (int i = 0; i < 2000 && door(1)["current_mode"]["value"] != 2; ++i) {
+        fed.step();
+        orders.proceed();
+        orders.stepped();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_EQ(door(1)["current_mode"]["value"], 2);
+    fed.feed.want(fed.number("/fleet_states"));
+    const json fleet = fed.newest("/fleet_states");
+    EXPECT_EQ(fleet["robots"].size(), 2U);
+    EXPECT_EQ(fleet["robots"][0]["location"]["level_name"], "L1");
 }
 
 TEST(RosFeed, RobotsAreMarkers) {

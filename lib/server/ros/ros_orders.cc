@@ -11,6 +11,7 @@
 #include "base/number.h"
 #include "env/point_location.h"
 #include "record/schema.h"
+#include "server/ros/ros_source.h"
 #include "sim/odometry.h"
 
 namespace ispace {
@@ -117,6 +118,7 @@ void RosOrders::takeAnswer() {
 }
 
 void RosOrders::obey(const RosChannel& channel, std::string_view message) {
+    if (channel.source != nullptr) return request(channel, message);
     if (channel.state) return set(*channel.state, stateValue(channel.type, message));
     const RosOrder order = channel.row->decode(channel.type, message);
     if (const auto* tracks = std::get_if<std::vector<RosTrack>>(&order))
@@ -151,6 +153,24 @@ void RosOrders::take(const std::vector<RosTrack>& tracks, ServerState& state) {
                                        .place = track.place}))
             return tell_("too many tracks are told");
     }
+}
+
+/// Makes the request that a message to a source asks for.
+void RosOrders::request(const RosChannel& channel, std::string_view message) {
+    const ServedRooms* const rooms = state_->rooms();
+    const std::string line =
+        channel.source->request({channel.topic, channel.type, channel.about, channel.rate, true},
+                                message, rooms == nullptr ? nullptr : rooms->worlds);
+    if (line.empty()) return;
+    if (state_->simulation().isReplay())
+        return tell_("this run is a replay: things are as recorded");
+    constexpr std::size_t kMaxLine = 512;
+    if (line.size() > kMaxLine || line.find_first_of(std::string_view("\r\n\0", 3)) != line.npos)
+        return tell_("the message to " + channel.topic + " names no thing");
+    if (!mayRequest()) return tell_("too many commands at once");
+    request(line, [this](bool is_done, std::string_view text) {
+        if (!is_done) tell_(std::string(text));
+    });
 }
 
 /// Sets a state of a thing, as the request ACT does.

@@ -106,6 +106,7 @@ class RosOrders {
     [[nodiscard]] ServerState& stateOf(std::size_t room);
     [[nodiscard]] ServerState& stateOf(const std::string& robot);
     void take(const std::vector<RosTrack>& tracks, ServerState& state);
+    void request(const RosChannel& channel, std::string_view message);
     void set(const RosState& state, const std::string& value);
     void drive(const std::string& robot, const RosTwist& twist);
     void release(const std::string& robot, std::int64_t hold);

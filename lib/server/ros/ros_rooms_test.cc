@@ -51,6 +51,8 @@ class ThreeRooms final : public JoinedWorlds {
     std::optional<RoomPoint> placed;  ///< of place()
     std::optional<Angle> turned;
     int restarts = 0;
+    LiftState lift{.id = "l1", .storey = "ground", .riders = {}, .calls = {}};
+    std::vector<std::string> calls;  ///< of call()
 
     [[nodiscard]] std::span<const JoinedRoom> rooms() const override { return rooms_; }
     [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view mover) const override {
@@ -62,8 +64,9 @@ class ThreeRooms final : public JoinedWorlds {
         if (room == 1) return {{{10, 0, 3}, Angle::degrees(90), {}, {}}, true};
         return {{}, true};
     }
-    [[nodiscard]] std::vector<PassageOutline> passageOutlines(std::size_t /*room*/) const override {
-        return {};
+    [[nodiscard]] std::vector<PassageOutline> passageOutlines(std::size_t room) const override {
+        if (room == 2) return {};
+        return {{.id = "l1", .kind = "lift", .outline = {}}};
     }
     [[nodiscard]] std::vector<PlannedWay> plannedWays(std::size_t /*room*/) const override {
         return {};
@@ -85,8 +88,11 @@ class ThreeRooms final : public JoinedWorlds {
         return busy;
     }
     void restart() override { ++restarts; }
-    std::string call(std::string_view /*lift*/, std::string_view /*storey*/) override { return ""; }
-    [[nodiscard]] std::vector<LiftState> lifts() const override { return {}; }
+    std::string call(std::string_view lift, std::string_view storey) override {
+        calls.push_back(std::string(lift) + ' ' + std::string(storey));
+        return lift == "l1" ? "" : "there is no such lift";
+    }
+    [[nodiscard]] std::vector<LiftState> lifts() const override { return {lift}; }
     [[nodiscard]] std::span<const TripEnd> tripEnds() const override { return {}; }
     void onMove(Observer observer) override { observers_.push_back(std::move(observer)); }
 
@@ -109,7 +115,7 @@ class ThreeRooms final : public JoinedWorlds {
 };
 
 struct Served {
-    explicit Served(const ServerLimits& limits = {}) {
+    explicit Served(const ServerLimits& limits = {}, RosScenery scenery = {}) {
         for (std::size_t i = 0; i < 3; ++i) states.emplace_back(worlds.simulation(i), limits);
         for (ServerState& state : states) served.states.push_back(&state);
         served.worlds = &worlds;
@@ -117,7 +123,7 @@ struct Served {
         worlds.onMove([this](const std::string& mover, std::size_t from, std::size_t to) {
             states[to].takeOver(states[from], mover);
         });
-        feed.emplace(states.front(), RosScenery{});
+        feed.emplace(states.front(), std::move(scenery));
     }
     void step() {
         worlds.simulation(0).allow(1);
@@ -182,6 +188,91 @@ TEST(RosRooms, StandInOneMapAtTheirHeights) {
     EXPECT_EQ(served.transforms()["l1"]["transform"]["translation"]["z"], 1.5);
     EXPECT_EQ(served.newest("/upper_l/scan")["header"]["frame_id"], "upper_l");
     EXPECT_EQ(served.newest("/ground/people")["markers"][0]["header"]["frame_id"], "ground");
+}
+
+TEST(RosRooms, LiftsHaveStatesAndAreCalled) {
+    Served served;
+    EXPECT_EQ(served.newest("/l1/storey")["data"], "ground");
+    EXPECT_EQ(served.newest("/l1/open")["data"], false);
+    EXPECT_TRUE(served.entry("/l1/storey").channel.quality.is_latched);
+    const auto storey = served.entry("/l1/storey").newest;
+    served.worlds.lift.door = 0.5;
+    served.step();
+    EXPECT_EQ(served.newest("/l1/open")["data"], true);
+    EXPECT_EQ(served.entry("/l1/storey").newest, storey) << "it has not changed";
+    std::vector<std::string> told;
+    RosOrders orders(served.states.front(), [&](const std::string& text) { told.push_back(text); });
+    const RosChannel& set = served.entry("/l1/storey/set").channel;
+    EXPECT_TRUE(set.isInput());
+    orders.obey(set, textMessage("upper"));
+    orders.obey(set, textMessage("two words"));
+    orders.proceed();
+    EXPECT_EQ(served.worlds.calls, std::vector<std::string>{"l1 upper"});
+    EXPECT_EQ(told.size(), 1U);
+}
+
+TEST(RosRooms, LiftsAndFleetsAreThoseOfOpenRmf) {
+    Served served({}, {.sources = {rmfTopics()}});
+    json lift = served.newest("/lift_states");
+    EXPECT_EQ(lift["lift_name"], "l1");
+    EXPECT_EQ(lift["available_floors"], json({"ground", "upper"}));
+    EXPECT_EQ(lift["current_floor"], "ground");
+    EXPECT_EQ(lift["destination_floor"], "ground");
+    EXPECT_EQ(lift["door_state"], 0);
+    EXPECT_EQ(lift["motion_state"], 0);
+    EXPECT_EQ(lift["available_modes"], "AQI=") << "bytes 1, 2";
+    EXPECT_EQ(lift["current_mode"], 2);
+    EXPECT_EQ(lift["session_id"], "");
+
+    std::vector<std::string> told;
+    RosOrders orders(served.states.front(), [&](const std::string& text) { told.push_back(text); });
+    const auto ask = [&](const char* name, const char* session, int type, const char* floor) {
+        orders.obey(served.entry("/lift_requests").channel,
+                    rosMessage(RosType::LiftRequest, {{"lift_name", name},
+                                                      {"session_id", session},
+                                                      {"request_type", type},
+                                                      {"destination_floor", floor}}));
+        orders.proceed();
+    };
+    ask("l1", "adapter/r1", 1, "upper");
+    ask("l1", "adapter/r2", 1, "ground");
+    EXPECT_EQ(served.worlds.calls, std::vector<std::string>{"l1 upper"}) << "r1 has the lift";
+    served.worlds.lift.calls = {"upper"};
+    served.worlds.lift.height = 1;
+    for (int i = 0; i < 3; ++i) served.step();
+    lift = served.newest("/lift_states");
+    EXPECT_EQ(lift["session_id"], "adapter/r1");
+    EXPECT_EQ(lift["destination_floor"], "upper");
+    EXPECT_EQ(lift["motion_state"], 1);
+    served.worlds.lift = {
+        .id = "l1", .storey = "upper", .height = 3, .door = 1, .riders = {}, .calls = {}};
+    ask("l1", "adapter/r1", 0, "");
+    ask("l1", "adapter/r2", 1, "ground");
+    EXPECT_EQ(served.worlds.calls.back(), "l1 ground");
+    for (int i = 0; i < 3; ++i) served.step();
+    lift = served.newest("/lift_states");
+    EXPECT_EQ(lift["current_floor"], "upper");
+    EXPECT_EQ(lift["door_state"], 2);
+    EXPECT_EQ(lift["motion_state"], 0);
+    EXPECT_EQ(lift["session_id"], "adapter/r2");
+    EXPECT_EQ(told, std::vector<std::string>());
+    ask("l9", "adapter/r1", 1, "upper");
+    EXPECT_EQ(told.size(), 1U);
+
+    const auto robots = [&] { return served.newest("/fleet_states")["robots"]; };
+    ASSERT_EQ(robots().size(), 1U);
+    EXPECT_EQ(robots()[0]["name"], "ground/r1");
+    EXPECT_EQ(robots()[0]["battery_percent"], 100.0);
+    EXPECT_EQ(robots()[0]["mode"]["mode"], 0);
+    EXPECT_EQ(robots()[0]["location"]["level_name"], "ground");
+    EXPECT_EQ(robots()[0]["location"]["x"], 1.0);
+    served.worlds.go(0, 1);
+    for (int i = 0; i < 6; ++i) served.step();
+    EXPECT_EQ(robots()[0]["location"]["level_name"], "upper");
+    // That storey stands at 10,0, turned by a quarter.
+    EXPECT_NEAR(robots()[0]["location"]["x"].get<double>(), 8, 1e-6);
+    EXPECT_NEAR(robots()[0]["location"]["y"].get<double>(), 1, 1e-6);
+    EXPECT_NEAR(robots()[0]["location"]["yaw"].get<double>(), std::acos(-1.0), 1e-6);
 }
 
 TEST(RosRooms, FollowARobotToAnotherStorey) {

@@ -30,6 +30,7 @@ void withNumber(Kind kind, Visit visit) {
     if (kind == Kind::Uint8) visit(std::uint8_t());
     if (kind == Kind::Int32) visit(std::int32_t());
     if (kind == Kind::Uint32) visit(std::uint32_t());
+    if (kind == Kind::Uint64) visit(std::uint64_t());
     if (kind == Kind::Float32) visit(float());
     if (kind == Kind::Float64) visit(double());
 }
@@ -305,8 +306,11 @@ class FromJson {
             out_.put(value.is_null() ? std::numeric_limits<Number>::quiet_NaN()
                                      : static_cast<Number>(value.get<double>()));
         } else {
-            const double least = std::numeric_limits<Number>::min(),
-                         most = std::numeric_limits<Number>::max();
+            // Doubles have all whole numbers up to 2^53.
+            constexpr double kMost = 9007199254740992.0;
+            const auto least = static_cast<double>(std::numeric_limits<Number>::min()),
+                       most =
+                           std::min(static_cast<double>(std::numeric_limits<Number>::max()), kMost);
             const double number = value.is_number() ? value.get<double>() : least - 1;
             if (!(number >= least && number <= most) || number != std::floor(number))
                 refuse(field.name, "a whole number of its type");

@@ -125,6 +125,8 @@ std::string stateMessage(RosType type, const std::string& value);
 /// Reads a command: a value of the record language. \throws FormatError
 std::string stateValue(RosType type, std::string_view message);
 
+class RosSource;
+
 /// A topic of a scene.
 struct RosChannel {
     std::string topic;  ///< "/r1/odom"
@@ -138,9 +140,14 @@ struct RosChannel {
     const RosTopic* sensor = nullptr;    ///< null: a topic of a row or a state
     std::optional<RosState> state = {};  ///< of neither a row nor a sensor
     bool is_alias = false;               ///< a robot's topic without its name
+    RosSource* source = nullptr;         ///< null: a topic of one of these
+    std::string about = {};              ///< of a source, see RosSourceTopic
+    bool is_input = false;               ///< of a source
 
     [[nodiscard]] bool isInput() const {
-        return state ? state->is_command : row != nullptr && row->decode != nullptr;
+        return source != nullptr ? is_input
+               : state           ? state->is_command
+                                 : row != nullptr && row->decode != nullptr;
     }
 };
 /// Returns all topics of the worlds: of rows, of sensors, of states. Inputs that accept two types

@@ -14,15 +14,16 @@ namespace ispace {
 namespace {
 
 /// Numbers of type_description_interfaces/msg/FieldType.
-constexpr std::array<std::pair<std::string_view, int>, 9> kTypeIds{{{"bool", 15},
-                                                                    {"byte", 16},
-                                                                    {"int8", 2},
-                                                                    {"uint8", 3},
-                                                                    {"int32", 6},
-                                                                    {"uint32", 7},
-                                                                    {"float32", 10},
-                                                                    {"float64", 11},
-                                                                    {"string", 17}}};
+constexpr std::array<std::pair<std::string_view, int>, 10> kTypeIds{{{"bool", 15},
+                                                                     {"byte", 16},
+                                                                     {"int8", 2},
+                                                                     {"uint8", 3},
+                                                                     {"int32", 6},
+                                                                     {"uint32", 7},
+                                                                     {"uint64", 9},
+                                                                     {"float32", 10},
+                                                                     {"float64", 11},
+                                                                     {"string", 17}}};
 constexpr int kNested = 1, kFixedArray = 48, kSequence = 144;
 
 /// "geometry_msgs/Point" is "geometry_msgs/msg/Point" there.

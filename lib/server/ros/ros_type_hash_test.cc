@@ -29,6 +29,10 @@ TEST(RosTypeHash, EqualsThatOfRos) {
         {RosType::String, "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"},
         {RosType::BatteryState, "4bee5dfce981c98faa6828b868307a0a73f992ed0789f374ee96c8f840e69741"},
         {RosType::JointState, "a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e"},
+        {RosType::LiftState, "ce0553cd08eeeb321bdae554efdb6d2ebb2be9755df2e34895cbef55b51f4c06"},
+        {RosType::LiftRequest, "e8f1e0aa4d172703d0d7840c1876448c6c5d75ab58955faf7de7dddc17c096ac"},
+        {RosType::DoorRequest, "3145b5d97064f89b0a0db953b8167ddeeefbc2914c24a603c3bdc51f122f143e"},
+        {RosType::FleetState, "9ea5bb9f2c076a587b20c04974581c8d8e2ec7d02300244f9e39e37d7d9192f4"},
         {RosType::Empty, "20b625256f32d5dbc0d04fee44f43c41e51c70d3502f84b4a08e7a9c26a96312"}};
     for (const auto& [type, hash] : kKnown)
         EXPECT_EQ(rosTypeHash(type), "RIHS01_" + std::string(hash)) << nameOf(type);

@@ -69,6 +69,10 @@ class Browser final : public WebConnection, public std::enable_shared_from_this<
     void offerFrame() override {
         if (wantsFrame()) flush();
     }
+    [[nodiscard]] std::optional<WallTime> awaitedSince() const override {
+        const bool is_awaited = writing_ && !closed_ && dialogue_ && dialogue_->isAwaited();
+        return is_awaited ? std::optional(writing_since_) : std::nullopt;
+    }
     void checkPatience(WallTime now) override {
         if (writing_ && now - writing_since_ > patience_) close();
     }

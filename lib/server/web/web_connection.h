@@ -28,6 +28,8 @@ class WebConnection {
     [[nodiscard]] virtual bool expires() const = 0;
     /// Sends the newest frame if it is wanted and was not sent already.
     virtual void offerFrame() = 0;
+    /// Time since which the peer has left a message unread for which the world may wait.
+    [[nodiscard]] virtual std::optional<WallTime> awaitedSince() const = 0;
     /// Closes it if the peer has not read for too long.
     virtual void checkPatience(WallTime now) = 0;
     /// True once it is a WebSocket.

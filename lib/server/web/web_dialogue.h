@@ -58,6 +58,8 @@ class WebDialogue {
     [[nodiscard]] virtual bool expires() const { return false; }
     /// True if the client has asked for the state of the world, see WebSite::look().
     [[nodiscard]] virtual bool wantsFrame() const { return false; }
+    /// True if the world waits for this reader on request, see ServerLimits::waits_for_readers.
+    [[nodiscard]] virtual bool isAwaited() const { return false; }
     /// Replaces pending output by the reason of the end: the client was idle.
     virtual void dismiss() = 0;
     /// Ends pending requests at the end of the run.
