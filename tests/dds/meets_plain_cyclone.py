@@ -26,6 +26,19 @@ def main():
         with Run("square.env", "layout.3dm", "-q", f"--ros2={domain}"):
             done = subprocess.run(found, check=False, capture_output=True, text=True)
         check(done.stdout == "rosgraph_msgs::msg::dds_::Clock_\n", f"not found: {done}")
+        for name in ("tower.yaml", "tower.3dm"):
+            shutil.copy(SOURCE / "tests" / "data" / name, name)
+        with Run("tower.yaml", "tower.3dm", "-q", "--rmf", f"--ros2={domain}"):
+            for topic, kind in {
+                    "rt/lift_states": "rmf_lift_msgs::msg::dds_::LiftState_",
+                    "rt/fleet_states": "rmf_fleet_msgs::msg::dds_::FleetState_",
+                    "rt/l1/storey": "std_msgs::msg::dds_::String_",
+                    "rt/ground_r1/battery_state": "sensor_msgs::msg::dds_::BatteryState_",
+                    "rt/ground_r1/navigate_to_pose/_action/status": "action_msgs::msg::dds_::GoalStatusArray_",
+                    "rr/ground_r1/navigate_to_pose/_action/send_goalReply":
+                        "nav2_msgs::action::dds_::NavigateToPose_SendGoal_Response_"}.items():
+                done = subprocess.run([PLAIN, str(domain), topic], check=False, capture_output=True, text=True)
+                check(done.stdout == kind + "\n", f"{topic}: {done}")
 
 
 main()

@@ -10,6 +10,7 @@
 #include "base/message.h"
 #include "raster/codec.h"
 #include "sense/formats/cdr.h"
+#include "server/ros/ros_queries.h"
 #include "server/ros/ros_type_hash.h"
 
 namespace ispace {
@@ -21,8 +22,6 @@ constexpr std::size_t kServiceDepth = 10;
 /// once.
 constexpr std::size_t kBurst = std::size_t{1} << 15U;
 constexpr auto kPause = std::chrono::milliseconds(1);
-/// Before the content of requests and answers, nodes over Cyclone have the client and a number.
-constexpr std::size_t kServiceHeader = 16;
 
 std::unique_ptr<DdsParticipant> openModule(const DdsSettings& settings) {
     std::string error;
@@ -59,6 +58,7 @@ RosNode::RosNode(ServerState& state, RosFeed& feed, const DdsSettings& settings)
 
 RosNode::RosNode(ServerState& state, RosFeed& feed, std::unique_ptr<DdsParticipant> participant)
     : feed_(&feed),
+      simulation_(&state.simulation()),
       orders_(state, [](const std::string& /*error*/) {}),
       participant_(std::move(participant)) {
     graph_ =
@@ -66,6 +66,7 @@ RosNode::RosNode(ServerState& state, RosFeed& feed, std::unique_ptr<DdsParticipa
                                  .type = ddsTypeOf("rmw_dds_common/msg/ParticipantEntitiesInfo"),
                                  .is_latched = true});
     addServices();
+    actions_.emplace(state, feed, orders_, *participant_);
     sync();
 }
 
@@ -74,17 +75,25 @@ RosNode::~RosNode() {
         if (end.is_wanted) feed_->unwant(topic);
 }
 
+RosNode::Service RosNode::addService(std::string_view name, std::string_view type) {
+    const auto topic = [&](const char* prefix, const char* side, const char* end) {
+        return DdsTopic{.name = ddsTopicOf(prefix, name) + side,
+                        .type = ddsTypeOf(type) + end,
+                        .depth = kServiceDepth};
+    };
+    return {.request = "",
+            .reader = participant_->addReader(topic("rq", "Request", "Request_")),
+            .writer = participant_->addWriter(topic("rr", "Reply", "Response_"))};
+}
+
 void RosNode::addServices() {
-    const std::string type = ddsTypeOf(kRosEmptyService);
     for (const RosService& service : rosServices()) {
-        const auto topic = [&](const char* prefix, const char* side, const char* end) {
-            return DdsTopic{.name = ddsTopicOf(prefix, service.name) + side,
-                            .type = type + end,
-                            .depth = kServiceDepth};
-        };
-        services_.push_back({.request = std::string(service.request),
-                             .reader = participant_->addReader(topic("rq", "Request", "Request_")),
-                             .writer = participant_->addWriter(topic("rr", "Reply", "Response_"))});
+        services_.push_back(addService(service.name, kRosEmptyService));
+        services_.back().request = service.request;
+    }
+    for (const RosQuery& query : rosQueries()) {
+        services_.push_back(addService(query.name, query.type));
+        services_.back().query = &query;
     }
 }
 
@@ -105,6 +114,7 @@ void RosNode::sync() {
         else
             ++left_out_;
     }
+    actions_->sync();
     tellGraph();
 }
 
@@ -132,6 +142,7 @@ void RosNode::tellGraph() {
         readers.push_back(participant_->guid(service.reader));
         writers.push_back(participant_->guid(service.writer));
     }
+    actions_->addEnds(readers, writers);
     CdrWriter out;
     const DdsGuid own = participant_->guid();
     out.array(std::span<const std::uint8_t>(own)).count(1).put("/").put("simrun");
@@ -183,6 +194,7 @@ void RosNode::stepped() {
     feed_->stepped();
     send();
     orders_.stepped();
+    actions_->stepped();
 }
 
 void RosNode::serve() {
@@ -198,6 +210,7 @@ void RosNode::serve() {
     send();
     takeOrders();
     takeRequests();
+    actions_->serve();
 }
 
 void RosNode::takeOrders() {
@@ -219,6 +232,10 @@ void RosNode::takeOrders() {
 void RosNode::takeRequests() {
     for (const Service& service : services_) {
         for (const std::string& message : participant_->take(service.reader)) {
+            if (service.query != nullptr) {
+                answer(service, message);
+                continue;
+            }
             if (!orders_.mayRequest()) continue;
             // Nodes over Fast DDS have no such header, and do not find an answer without their own.
             const bool has_header = message.size() > kCdrHead.size() + kServiceHeader;
@@ -238,8 +255,26 @@ void RosNode::takeRequests() {
     }
 }
 
+/// Answers a query of a node over Cyclone.
+void RosNode::answer(const Service& service, const std::string& message) {
+    const std::size_t head = kCdrHead.size() + kServiceHeader;
+    if (message.size() <= head) return;
+    CdrWriter out;
+    try {
+        CdrReader in(message);
+        in.values(kServiceHeader, 1);
+        service.query->answer(in, *simulation_, feed_->isOfOneRoom(), out);
+    } catch (const FormatError&) {
+        return;  // too short: no request
+    }
+    participant_->write(service.writer, std::string(kCdrHead) +
+                                            message.substr(kCdrHead.size(), kServiceHeader) +
+                                            out.take().substr(kCdrHead.size()));
+}
+
 void RosNode::end() {
     orders_.finish();
+    actions_.reset();
     participant_.reset();
 }
 

@@ -12,15 +12,21 @@
 #include <vector>
 
 #include "server/ros/module/dds_participant.h"
+#include "server/ros/ros_actions.h"
 #include "server/ros/ros_feed.h"
 #include "server/ros/ros_orders.h"
 
 namespace ispace {
 
+struct RosQuery;
+
 /// The names that nodes of ROS 2 give topics and types in DDS: "/scan" is "rt/scan",
 /// "sensor_msgs/msg/LaserScan" is "sensor_msgs::msg::dds_::LaserScan_".
 std::string ddsTopicOf(std::string_view prefix, std::string_view topic);
 std::string ddsTypeOf(std::string_view type);
+
+/// Before the content of requests and answers, nodes over Cyclone have the client and a number.
+constexpr std::size_t kServiceHeader = 16;
 
 /// The running world as a node of ROS 2, over DDS. Only topics with readers are computed.
 ///
@@ -62,9 +68,11 @@ class RosNode {
         std::int64_t last = 0;  ///< number of the last message
     };
     struct Service {
-        std::string request;
+        std::string request;              ///< of the protocol, "" for a query
+        const RosQuery* query = nullptr;  ///< null for a request
         int reader = 0, writer = 0;
     };
+    Service addService(std::string_view name, std::string_view type);
     void addServices();
     void sync();
     void add(std::uint32_t topic, const RosChannel& channel);
@@ -73,13 +81,16 @@ class RosNode {
     void send();
     void takeOrders();
     void takeRequests();
+    void answer(const Service& service, const std::string& message);
 
     RosFeed* feed_;
+    const Simulation* simulation_;
     RosOrders orders_;
     std::unique_ptr<DdsParticipant> participant_;  // null after end()
     std::map<std::uint32_t, End> ends_;            // by number in the feed
     std::vector<Service> services_;
-    std::uint32_t turn_ = 0;  // topic that is the first to be sent
+    std::optional<RosActions> actions_;  // empty after end()
+    std::uint32_t turn_ = 0;             // topic that is the first to be sent
     bool has_unsent_ = false;
     WallTime next_send_{};
     std::size_t left_out_ = 0;

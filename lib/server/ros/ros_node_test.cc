@@ -3,11 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "sense/formats/cdr.h"
 #include "support/fake_participant.h"
@@ -163,6 +168,177 @@ TEST(RosNode, EndsOnce) {
     noded.node->end();
     EXPECT_FALSE(noded.node->waiting());
     EXPECT_FALSE(noded.node->nextSend().has_value());
+}
+
+/// Bytes of a request with the head of Cyclone's nodes, or of the answer to it.
+CdrWriter request() {
+    CdrWriter out;
+    out.put(std::uint64_t{7}).put(std::int64_t{9});
+    return out;
+}
+
+std::array<std::uint8_t, 16> goalId(std::uint8_t number) { return {number, 1}; }
+
+std::string goalRequest(std::uint8_t number, double x, double y) {
+    CdrWriter out = request();
+    out.array(std::span<const std::uint8_t>(goalId(number)));
+    out.put(std::int32_t{0}).put(std::uint32_t{0}).put("map");
+    for (const double value : {x, y, 0.0, 0.0, 0.0, 0.0, 1.0}) out.put(value);
+    return out.put("").take();
+}
+
+std::string idRequest(std::uint8_t number, bool has_time) {
+    CdrWriter out = request();
+    out.array(std::span<const std::uint8_t>(goalId(number)));
+    if (has_time) out.put(std::int32_t{0}).put(std::uint32_t{0});
+    return out.take();
+}
+
+CdrReader answerOf(const std::string& message) {
+    CdrReader in(message);
+    EXPECT_EQ(in.number<std::uint64_t>(), 7U);
+    EXPECT_EQ(in.number<std::int64_t>(), 9);
+    return in;
+}
+
+/// The action of r2.
+struct Acting : Noded {
+    static std::string side(const std::string& service, bool is_request) {
+        return std::string(is_request ? "rq" : "rr") + "/r2/navigate_to_pose/_action/" + service +
+               (is_request ? "Request" : "Reply");
+    }
+    void ask(const std::string& service, const std::string& message) {
+        send(side(service, true), message);
+    }
+    [[nodiscard]] std::vector<std::string>& answers(const std::string& service) {
+        return dds->end(side(service, false)).sent;
+    }
+    [[nodiscard]] std::vector<std::string>& told(const std::string& topic) {
+        return dds->end("rt/r2/navigate_to_pose/_action/" + topic).sent;
+    }
+    /// Returns the newest status of the last goal.
+    int status() {
+        CdrReader in(told("status").back());
+        int newest = -1;
+        for (std::size_t left = in.count(); left > 0; --left) {
+            in.values(16, 1);
+            in.number<std::int32_t>();
+            in.number<std::uint32_t>();
+            newest = in.number<std::int8_t>();
+        }
+        return newest;
+    }
+};
+
+TEST(RosActions, HaveTheNamesOfRos) {
+    Acting acting;
+    EXPECT_EQ(acting.dds->end(Acting::side("send_goal", true)).topic.type,
+              "nav2_msgs::action::dds_::NavigateToPose_SendGoal_Request_");
+    EXPECT_EQ(acting.dds->end(Acting::side("get_result", false)).topic.type,
+              "nav2_msgs::action::dds_::NavigateToPose_GetResult_Response_");
+    EXPECT_EQ(acting.dds->end(Acting::side("cancel_goal", true)).topic.type,
+              "action_msgs::srv::dds_::CancelGoal_Request_");
+    EXPECT_EQ(acting.dds->end("rt/r2/navigate_to_pose/_action/feedback").topic.type,
+              "nav2_msgs::action::dds_::NavigateToPose_FeedbackMessage_");
+    const DdsTopic& status = acting.dds->end("rt/r2/navigate_to_pose/_action/status").topic;
+    EXPECT_EQ(status.type, "action_msgs::msg::dds_::GoalStatusArray_");
+    EXPECT_TRUE(status.is_latched);
+    EXPECT_FALSE(acting.dds->has("rq/navigate_to_pose/_action/send_goalRequest")) << "two robots";
+}
+
+TEST(RosActions, LeadARobotToItsGoal) {
+    Acting acting;
+    acting.ask("send_goal", goalRequest(1, -2, -1));
+    ASSERT_EQ(acting.answers("send_goal").size(), 1U);
+    EXPECT_EQ(answerOf(acting.answers("send_goal")[0]).number<std::uint8_t>(), 1) << "accepted";
+    EXPECT_EQ(acting.status(), 2) << "under way";
+    acting.ask("get_result", idRequest(1, false));
+    EXPECT_TRUE(acting.answers("get_result").empty()) << "not before the end";
+    acting.step(400);
+    EXPECT_EQ(acting.status(), 4);
+    ASSERT_EQ(acting.answers("get_result").size(), 1U);
+    CdrReader result = answerOf(acting.answers("get_result")[0]);
+    EXPECT_EQ(result.number<std::int8_t>(), 4);
+    EXPECT_EQ(result.number<std::uint16_t>(), 0);
+    EXPECT_EQ(result.text(), "");
+    ASSERT_GT(acting.told("feedback").size(), 5U);
+    CdrReader feedback(acting.told("feedback")[0]);
+    EXPECT_EQ(feedback.values(16, 1)[0], '\1');
+    feedback.number<std::int32_t>();
+    feedback.number<std::uint32_t>();
+    EXPECT_EQ(feedback.text(), "map");
+    for (int i = 0; i < 7; ++i) feedback.number<double>();
+    for (int i = 0; i < 4; ++i) feedback.number<std::uint32_t>();  // two durations
+    EXPECT_EQ(feedback.number<std::int16_t>(), 0);
+    EXPECT_GT(feedback.number<float>(), 1.F);
+    acting.ask("get_result", idRequest(1, false));
+    EXPECT_EQ(acting.answers("get_result").size(), 2U) << "again, at once";
+    acting.ask("get_result", idRequest(9, false));
+    EXPECT_EQ(answerOf(acting.answers("get_result").back()).number<std::int8_t>(), 0) << "unknown";
+}
+
+TEST(RosActions, RefuseReplaceAndCancel) {
+    Acting acting;
+    acting.ask("send_goal", goalRequest(1, 40, 0));
+    EXPECT_EQ(answerOf(acting.answers("send_goal")[0]).number<std::uint8_t>(), 0) << "no way";
+    acting.ask("send_goal", "short");
+    EXPECT_EQ(acting.answers("send_goal").size(), 1U);
+    acting.ask("send_goal", goalRequest(2, -2, -1));
+    acting.step(5);
+    acting.ask("send_goal", goalRequest(3, 3, 1));
+    EXPECT_EQ(acting.status(), 2);
+    acting.ask("get_result", idRequest(2, false));
+    CdrReader replaced = answerOf(acting.answers("get_result").back());
+    EXPECT_EQ(replaced.number<std::int8_t>(), 6);
+    EXPECT_EQ(replaced.number<std::uint16_t>(), 1);
+    EXPECT_NE(replaced.text(), "");
+    acting.ask("cancel_goal", idRequest(9, true));
+    EXPECT_EQ(answerOf(acting.answers("cancel_goal").back()).number<std::int8_t>(), 2) << "unknown";
+    acting.ask("cancel_goal", idRequest(3, true));
+    CdrReader canceled = answerOf(acting.answers("cancel_goal").back());
+    EXPECT_EQ(canceled.number<std::int8_t>(), 0);
+    ASSERT_EQ(canceled.count(), 1U);
+    EXPECT_EQ(canceled.values(16, 1)[0], '\3');
+    EXPECT_EQ(acting.status(), 5);
+    acting.ask("cancel_goal", idRequest(3, true));
+    EXPECT_EQ(answerOf(acting.answers("cancel_goal").back()).number<std::int8_t>(), 3) << "over";
+}
+
+TEST(RosQueries, ListAndDescribeParameters) {
+    Noded noded;
+    const auto ask = [&](const std::string& service, const std::string& message) {
+        noded.send("rq/simrun/" + service + "Request", message);
+        return answerOf(noded.dds->end("rr/simrun/" + service + "Reply").sent.back());
+    };
+    EXPECT_EQ(noded.dds->end("rq/simrun/list_parametersRequest").topic.type,
+              "rcl_interfaces::srv::dds_::ListParameters_Request_");
+    CdrReader list = ask("list_parameters", request().count(0).put(std::uint64_t{0}).take());
+    std::vector<std::string> names;
+    for (std::size_t left = list.count(); left > 0; --left) names.emplace_back(list.text());
+    EXPECT_NE(std::find(names.begin(), names.end(), "clock.rate"), names.end());
+    EXPECT_NE(std::find(names.begin(), names.end(), "r1.at"), names.end());
+    CdrReader some =
+        ask("list_parameters", request().count(1).put("r1").put(std::uint64_t{0}).take());
+    EXPECT_EQ(some.count(), 2U);
+    EXPECT_EQ(some.text(), "r1.at");
+    EXPECT_EQ(some.text(), "r1.heading");
+    EXPECT_EQ(some.count(), 1U);
+    EXPECT_EQ(some.text(), "r1");
+    CdrReader described =
+        ask("describe_parameters", request().count(2).put("clock.paused").put("none").take());
+    EXPECT_EQ(described.count(), 2U);
+    EXPECT_EQ(described.text(), "clock.paused");
+    EXPECT_EQ(described.number<std::uint8_t>(), 1);
+    EXPECT_NE(described.text(), "");
+    CdrReader types = ask("get_parameter_types",
+                          request().count(3).put("clock.rate").put("r1.at").put("none").take());
+    EXPECT_EQ(types.values(types.count(), 1), std::string_view("\3\10\0", 3));
+    CdrReader values = ask("get_parameters", request().count(1).put("clock.rate").take());
+    EXPECT_EQ(values.count(), 1U);
+    EXPECT_EQ(values.number<std::uint8_t>(), 3);
+    values.number<std::uint8_t>();
+    values.number<std::int64_t>();
+    EXPECT_EQ(values.number<double>(), 1.0);
 }
 
 }  // namespace

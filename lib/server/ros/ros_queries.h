@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/server.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "sense/formats/cdr.h"
+#include "sim/simulation.h"
+
+namespace ispace {
+
+/// A service of the node that answers at once: those by which nodes list and describe parameters.
+struct RosQuery {
+    std::string_view name, type;  ///< "/simrun/list_parameters", "rcl_interfaces/srv/..."
+    /// Writes the answer. \param with_things parameters of things are known, too
+    /// \throws FormatError for a request that ends too early
+    void (*answer)(CdrReader& request, const Simulation& simulation, bool with_things,
+                   CdrWriter& out);
+};
+std::span<const RosQuery> rosQueries();
+
+}  // namespace ispace
