@@ -57,6 +57,7 @@ std::string namedThings(const ServerState& state) {
             if (kind == nullptr || kind->figure == nullptr) continue;
             for (const std::string& key : kind->states) add(scene.records[i].has(key) ? "+" : "-");
         }
+        for (const Mover& mover : world->movers()) add(mover.id);
         // A sensor has a state once it has a pose.
         for (const Sensor& sensor : world->sensors()) add(sensor.id);
     }
@@ -74,6 +75,7 @@ MqttBridge::MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, s
       client_(std::move(client)),
       prefix_(std::move(prefix)),
       survey_(*client_, prefix_),
+      movers_(state, *client_, prefix_),
       session_(state) {
     if (!state.limits().token.empty()) session_.request("TOKEN " + state.limits().token);
     // Of all things, also of later ones; an id of a building has its storey before it.
@@ -98,7 +100,9 @@ void MqttBridge::introduce(bool all) {
     Topics topics;
     Descriptions descriptions;
     std::vector<MqttMessage> news;
-    for (const MqttThing& thing : thingsOf(*state_, prefix_)) {
+    std::vector<MqttThing> things = thingsOf(*state_, prefix_);
+    for (MqttThing& one : movers_.things()) things.push_back(std::move(one));
+    for (const MqttThing& thing : things) {
         const auto known = descriptions_.find({thing.id, thing.keyword});
         bool has_news = all || known == descriptions_.end();
         for (const MqttKey& key : thing.keys) {
@@ -117,7 +121,10 @@ void MqttBridge::introduce(bool all) {
         }
     }
     // An empty retained message removes the one that the broker has.
-    const auto remove = [this](const std::string& topic) { client_->publish({topic, "", true}); };
+    const auto remove = [this](const std::string& topic) {
+        client_->publish({topic, "", true});
+        movers_.forget(topic);
+    };
     std::set<std::string_view> kept;
     for (const auto& [thing, described] : descriptions)
         kept.insert(described.begin(), described.end());
@@ -136,6 +143,7 @@ void MqttBridge::introduce(bool all) {
 
 void MqttBridge::publishAll() {
     for (const RoomState& state : state_->statesOfAll()) publish(state);
+    movers_.publishAll();
 }
 
 void MqttBridge::publish(const RoomState& state) {
@@ -168,6 +176,12 @@ void MqttBridge::receive(const MqttMessage& message) {
     // A retained command is of an earlier run.
     if (!topic.starts_with(prefix_ + '/') || !topic.ends_with(kSet) || message.retain) return;
     topic.remove_suffix(kSet.size());
+    if (std::string robot; movers_.isRobot(topic, robot)) {
+        if (const std::string why = movers_.command(robot, message.payload); !why.empty())
+            refuse(message, "`" + printable(message.payload.substr(0, kMaxPayload)) +
+                                "` is given: " + printable(why));
+        return;
+    }
     const auto found = topics_.find(topic);
     if (found == topics_.end())
         return refuse(message, "no thing of the room has this state, see " + prefix_ + "/+/+");
@@ -231,6 +245,7 @@ std::int64_t MqttBridge::changesOfAll() const {
 void MqttBridge::stepped() {
     session_.stepped();
     if (changes_ != changesOfAll()) introduce(false);
+    movers_.stepped();
     answer();
 }
 

@@ -13,6 +13,7 @@
 
 #include "scene/room_state.h"
 #include "server/mqtt/mqtt_client.h"
+#include "server/mqtt/mqtt_movers.h"
 #include "server/mqtt/mqtt_survey.h"
 #include "server/session.h"
 
@@ -23,8 +24,8 @@ namespace ispace {
 ///
 /// A state is the retained message PREFIX/ID/KEY: ON or OFF, a share in per cent, a colour as three
 /// numbers up to 255, or the value as in events. A message to PREFIX/ID/KEY/set, in the same form,
-/// is a command to an actuator; PREFIX/error reports refused ones. The topics of Home Assistant's
-/// discovery describe all of them.
+/// is a command to an actuator; robots, people and cameras are those of MqttMovers; PREFIX/error
+/// reports refused ones. The topics of Home Assistant's discovery describe all of them.
 class MqttBridge {
   public:
     /// \throws FormatError if another run serves the prefix
@@ -61,6 +62,7 @@ class MqttBridge {
     std::unique_ptr<MqttClient> client_;
     std::string prefix_;
     MqttSurvey survey_;
+    MqttMovers movers_;
     Session session_;
     std::deque<std::string> requests_;
     Topics topics_;  // of all states

@@ -77,7 +77,18 @@ TEST(MqttTopics, DiscoveryDescribesEachKey) {
     EXPECT_NE(heater.at(1).payload.find("\"max\":100"), std::string::npos);
     const auto window = discoveryOf(
         {"w", "window", {{"open", "t/open", &flag}, {"blind", "t/blind", &flag}}}, "home");
-    EXPECT_EQ(window.at(1).topic, "homeassistant/switch/home_w___blind/config");
+    EXPECT_EQ(window.at(1).topic, "homeassistant/cover/home_w___blind/config");
+    EXPECT_NE(window.at(1).payload.find("\"device_class\":\"blind\""), std::string::npos);
+    EXPECT_NE(window.at(1).payload.find("\"payload_close\":\"ON\""), std::string::npos);
+    const auto mat = discoveryOf({"m", "mat", {{"n", "t/n"}, {"on", "t/on"}}}, "home");
+    EXPECT_EQ(mat.at(0).topic, "homeassistant/binary_sensor/home_m/config");
+    EXPECT_NE(mat.at(0).payload.find("\"device_class\":\"occupancy\""), std::string::npos);
+    EXPECT_NE(mat.at(0).payload.find("value_template"), std::string::npos);
+    const auto gate = discoveryOf(
+        {"g", "gate", {{"in", "t/in"}, {"out", "t/out"}, {"broken", "t/broken"}}}, "home");
+    EXPECT_NE(gate.at(0).payload.find("\"state_class\":\"total_increasing\""), std::string::npos);
+    EXPECT_NE(gate.at(1).payload.find("\"state_class\":\"total_increasing\""), std::string::npos);
+    EXPECT_EQ(gate.at(2).topic, "homeassistant/binary_sensor/home_g___broken/config");
     const auto weather = discoveryOf({"w", "weather", {{"sun", "t/sun", &pan}}}, "home");
     ASSERT_EQ(weather.size(), 1U);
     EXPECT_EQ(weather[0].topic, "homeassistant/number/home_w___sun/config");
@@ -314,7 +325,7 @@ TEST_F(BridgeTest, DescribesAThingOfAnotherKeyword) {
     ask("ADD door id=w at=0,-3");
     step();
     EXPECT_NE(broker.last(topic).find("\"device_class\":\"door\""), std::string::npos);
-    EXPECT_EQ(broker.last("homeassistant/switch/home_w___blind/config"), "");
+    EXPECT_EQ(broker.last("homeassistant/cover/home_w___blind/config"), "");
     EXPECT_EQ(broker.last("home/w/blind"), "");
 }
 
@@ -332,6 +343,46 @@ TEST_F(BridgeTest, RemovesThingsThatAreGone) {
     step();
     EXPECT_EQ(broker.last("home/lp/on"), "OFF");
     EXPECT_NE(broker.last("homeassistant/switch/home_lp/config"), "");
+}
+
+TEST_F(BridgeTest, RobotsAreVacuumCleaners) {
+    const std::string description = broker.last("homeassistant/vacuum/home_r2/config");
+    for (const char* part :
+         {R"("state_topic":"home/r2/vacuum")", R"("command_topic":"home/r2/vacuum/set")",
+          R"("supported_features":["stop","return_home"])"})
+        EXPECT_NE(description.find(part), std::string::npos) << description;
+    EXPECT_EQ(broker.last("home/r2/vacuum"), R"({"state":"idle"})");
+    Session& robot = talk.client("ROBOT r2");
+    testing::Talk::ask(robot, "SPEED 0.3");
+    for (int i = 0; i < 20; ++i) step();
+    EXPECT_EQ(broker.last("home/r2/vacuum"), R"({"state":"cleaning"})");
+    tell("home/r2/vacuum/set", "stop");
+    EXPECT_NE(broker.last("home/error"), "") << "another client drives it";
+    testing::Talk::ask(robot, "QUIT");
+    tell("home/r2/vacuum/set", "dance");
+    EXPECT_NE(broker.last("home/error").find("wanted stop or return_to_base"), std::string::npos);
+}
+
+TEST_F(BridgeTest, PeopleArePresent) {
+    ask("ADD human id=ann at=1,0");
+    step();
+    for (int i = 0; i < 6; ++i) step();
+    EXPECT_NE(broker.last("homeassistant/device_tracker/home_ann/config")
+                  .find(R"("state_topic":"home/ann/presence")"),
+              std::string::npos);
+    EXPECT_EQ(broker.last("home/ann/presence"), "home");
+    ask("DELETE ann");
+    step();
+    EXPECT_EQ(broker.last("home/ann/presence"), "");
+}
+
+TEST_F(BridgeTest, CamerasHavePictures) {
+    ask("ADD camera id=c1 at=0,-2,2 pixels=4,3");
+    step();
+    EXPECT_NE(broker.last("homeassistant/camera/home_c1/config").find(R"("topic":"home/c1/image")"),
+              std::string::npos);
+    for (int i = 0; i < 210; ++i) step();
+    EXPECT_TRUE(broker.last("home/c1/image").starts_with("\x89PNG"));
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ void MqttSurvey::collect(const MqttMessage& message) {
     if (!is("manufacturer", "ispace") || !is("name", prefix_)) return;
     leftovers_.insert(message.topic);
     for (const auto& [key, value] : entity.items())
-        if (key.ends_with("state_topic") && value.is_string())
+        if ((key.ends_with("state_topic") || key == "topic") && value.is_string())
             if (const auto topic = value.get<std::string>(); topic.starts_with(prefix_ + '/'))
                 leftovers_.insert(topic);
 }

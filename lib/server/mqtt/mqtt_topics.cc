@@ -21,7 +21,7 @@ bool isShare(std::string_view key) { return key == "level"; }
 bool isColor(std::string_view key) { return key == "color"; }
 /// Returns true for states that are on or off: any other 0 or 1 is a number.
 bool isFlag(std::string_view key) {
-    return key == "on" || key == "open" || key == "blind" || key == "motion";
+    return key == "on" || key == "open" || key == "blind" || key == "motion" || key == "broken";
 }
 
 /// Rounds to significant digits.
@@ -51,20 +51,28 @@ std::string scaled(std::string_view list, double factor, bool is_whole) {
 /// A component of Home Assistant for the records of a keyword, whose entity holds the first key.
 struct Component {
     std::string_view keyword, component, device_class, unit;
+    std::string_view state_class = {};  ///< of numbers; of those with a unit `measurement`
+    std::string_view form = {};         ///< of the state in its payload, if that is not the state
 };
-constexpr Component kComponents[] = {{"lamp", "light", "", ""},
-                                     {"projector", "light", "", ""},
-                                     {"switch", "switch", "", ""},
-                                     {"speaker", "switch", "", ""},
-                                     {"heater", "switch", "", ""},
-                                     {"door", "cover", "door", ""},
-                                     {"window", "cover", "window", ""},
-                                     {"pir", "binary_sensor", "motion", ""},
-                                     {"contact", "binary_sensor", "door", ""},
-                                     {"lux", "sensor", "illuminance", "lx"},
-                                     {"mote", "sensor", "illuminance", "lx"},
-                                     {"microphone", "sensor", "sound_pressure", "dB"},
-                                     {"thermometer", "sensor", "temperature", "°C"}};
+constexpr Component kComponents[] = {
+    {kRobotThing, "vacuum", "", ""},
+    {kPersonThing, "device_tracker", "", ""},
+    {kPictureThing, "camera", "", ""},
+    {"mat", "binary_sensor", "occupancy", "", "", "{{ 'ON' if value | int > 0 else 'OFF' }}"},
+    {"gate", "sensor", "", "", "total_increasing"},
+    {"lamp", "light", "", ""},
+    {"projector", "light", "", ""},
+    {"switch", "switch", "", ""},
+    {"speaker", "switch", "", ""},
+    {"heater", "switch", "", ""},
+    {"door", "cover", "door", ""},
+    {"window", "cover", "window", ""},
+    {"pir", "binary_sensor", "motion", ""},
+    {"contact", "binary_sensor", "door", ""},
+    {"lux", "sensor", "illuminance", "lx"},
+    {"mote", "sensor", "illuminance", "lx"},
+    {"microphone", "sensor", "sound_pressure", "dB"},
+    {"thermometer", "sensor", "temperature", "°C"}};
 
 bool isPlain(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
@@ -189,7 +197,9 @@ struct Measure {
     std::string_view key, device_class, unit, state_class;
 };
 constexpr Measure kMeasures[] = {{"power", "power", "W", "measurement"},
-                                 {"energy", "energy", "kWh", "total_increasing"}};
+                                 {"energy", "energy", "kWh", "total_increasing"},
+                                 {"in", "", "", "total_increasing"},
+                                 {"out", "", "", "total_increasing"}};
 
 /// Returns the entity that a kind names for a state, or null.
 const StateEntity* entityOf(std::string_view keyword, std::string_view key) {
@@ -231,17 +241,43 @@ MqttMessage describeAs(const StateEntity& named, Entity entity, MqttKey key,
     return entity.message(named.component, prefix);
 }
 
+/// A robot goes as a vacuum cleaner does: it stops, and returns to where it began.
+void addVacuum(Entity& entity, const MqttKey& key) {
+    entity.json().key("command_topic").value(key.topic + "/set");
+    entity.json().key("supported_features").beginArray();
+    for (const char* feature : {"stop", "return_home"}) entity.json().value(feature);
+    entity.json().endArray();
+    entity.json().key("payload_stop").value(kStopRobot);
+    entity.json().key("payload_return_to_base").value(kReturnRobot);
+}
+
+/// Describes a blind, which is on while it is down, as a cover.
+MqttMessage describeBlind(Entity entity, const MqttKey& key, const std::string& prefix) {
+    entity.addTopics("", key);
+    JsonWriter& json = entity.json();
+    json.key("device_class").value("blind");
+    json.key("payload_open").value("OFF").key("payload_close").value("ON");
+    json.key("state_open").value("OFF").key("state_closed").value("ON");
+    json.key("payload_stop").null();
+    return entity.message("cover", prefix);
+}
+
 /// Describes a key that the entity of its thing does not hold.
 MqttMessage describeKey(Entity entity, const MqttKey& key, const std::string& prefix) {
+    if (key.name == "blind" && key.spec != nullptr)
+        return describeBlind(std::move(entity), key, prefix);
     entity.addTopics("", key);
     if (key.spec == nullptr) {
         for (const Measure& measure : kMeasures) {
             if (measure.key != key.name) continue;
-            entity.json().key("device_class").value(measure.device_class);
-            entity.json().key("unit_of_measurement").value(measure.unit);
+            if (!measure.device_class.empty())
+                entity.json().key("device_class").value(measure.device_class);
+            if (!measure.unit.empty()) entity.json().key("unit_of_measurement").value(measure.unit);
             entity.json().key("state_class").value(measure.state_class);
         }
-        return entity.message("sensor", prefix);
+        if (!isFlag(key.name)) return entity.message("sensor", prefix);
+        if (key.name == "broken") entity.json().key("device_class").value("occupancy");
+        return entity.message("binary_sensor", prefix);
     }
     if (key.spec->type == KeyType::Flag) return entity.message("switch", prefix);
     if (key.spec->type == KeyType::Choice) {
@@ -279,13 +315,18 @@ std::vector<MqttMessage> discoveryOf(const MqttThing& thing, const std::string& 
         if (!component.device_class.empty())
             entity.json().key("device_class").value(component.device_class);
         // Home Assistant keeps statistics of numbers that say so.
-        if (!component.unit.empty())
-            entity.json()
-                .key("unit_of_measurement")
-                .value(component.unit)
-                .key("state_class")
-                .value("measurement");
-        entity.addTopics("", thing.keys[held++]);
+        std::string_view state_class = component.state_class;
+        if (!component.unit.empty()) {
+            entity.json().key("unit_of_measurement").value(component.unit);
+            state_class = "measurement";
+        }
+        if (!state_class.empty()) entity.json().key("state_class").value(state_class);
+        if (!component.form.empty()) entity.json().key("value_template").value(component.form);
+        if (component.component == "camera")
+            entity.json().key("topic").value(thing.keys[held++].topic);
+        else
+            entity.addTopics("", thing.keys[held++]);
+        if (component.component == "vacuum") addVacuum(entity, thing.keys.front());
         for (; component.component == "light" && held < thing.keys.size(); ++held) {
             const MqttKey& key = thing.keys[held];
             if (isShare(key.name)) {

@@ -40,6 +40,13 @@ struct MqttThing {
     std::vector<MqttKey> keys;
 };
 
+/// Keywords of things that have no record of states: a robot, a person and the pictures of a
+/// camera, beside what else of them has states.
+inline constexpr const char *kRobotThing = "robot as vacuum", *kPersonThing = "person as tracker",
+                            *kPictureThing = "camera as pictures";
+/// Commands to a robot, of Home Assistant's vacuum cleaners.
+inline constexpr std::string_view kStopRobot = "stop", kReturnRobot = "return_to_base";
+
 /// Returns the messages of Home Assistant's discovery for a thing, retained: an entity of its
 /// keyword, and one for each key that this entity does not hold, such as the `pan` of a projector:
 /// of the component that the kind of the thing names (ThingKind::entities), else of the key's type.
