@@ -29,8 +29,7 @@ bool isRmfSite(const YamlNode& top);
 StoreyedDocument readRmfSite(const YamlNode& top, const std::string& operand,
                              const ImportOptions& import, Budget& work);
 
-/// Reads all storeys of an IFC building that have walls or spaces, see readIfc(); of these, if
-/// options.storey is a pattern, those with names that match it in any case.
+/// Reads all storeys of an IFC building that have walls or spaces, see readIfcStoreys().
 ///
 /// A flight of stairs from one of them to the next becomes `stairs`: the file gives the box around
 /// it, and the end with free floor before it is the foot. A transport element becomes a `lift` of

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/glob.h"
 #include "base/message.h"
 #include "building/building_imports.h"
 #include "building/building_scene.h"
@@ -16,7 +15,6 @@
 #include "env/walls.h"
 #include "io/ifc/ifc_import.h"
 #include "io/import_records.h"
-#include "io/plan/layer_names.h"
 #include "scene/placement_schemas.h"
 
 namespace ispace {
@@ -183,30 +181,6 @@ std::vector<Record> liftsOf(const StoreyedDocument& building, const IfcStoreys& 
 
 }  // namespace
 
-namespace {
-
-/// Leaves the storeys with names that match a pattern, in any case. \throws FormatError if none
-/// does
-void keepStoreys(const Glob& pattern, const std::string& operand, std::vector<StoreyInput>& storeys,
-                 std::vector<std::string>& notes) {
-    const auto name_of = [](const StoreyInput& storey) {
-        return storey.record.has("name") ? storey.record.text("name") : storey.record.text("id");
-    };
-    std::string others;
-    const std::size_t left = std::erase_if(storeys, [&](const StoreyInput& storey) {
-        if (pattern.matches(lowerCased(name_of(storey)))) return false;
-        others.append(others.empty() ? "" : ", ").append(printable(name_of(storey)));
-        return true;
-    });
-    if (storeys.empty())
-        throw FormatError({displayName(operand), 0, 0,
-                           "no storey is called " + excerpt(pattern.text()) +
-                               "; those with spaces or walls: " + others});
-    if (left > 0) notes.push_back("left out by --storey: " + others);
-}
-
-}  // namespace
-
 StoreyedDocument readIfcBuilding(std::string_view bytes, const std::string& operand,
                                  const ImportOptions& options) {
     ImportOptions each = options;
@@ -225,8 +199,6 @@ StoreyedDocument readIfcBuilding(std::string_view bytes, const std::string& oper
         storeys.push_back(
             {std::move(record), std::make_shared<const Document>(std::move(storey.room))});
     }
-    if (const Glob pattern(lowerCased(options.storey)); pattern.isPattern())
-        keepStoreys(pattern, operand, storeys, all.notes);
     StoreyedDocument building = makeBuilding(std::move(storeys), {}, operand);
     std::vector<Record> passages = flightsOf(building, all, names);
     Budget work(bytes.size(), options.max_work);

@@ -7,6 +7,7 @@
 
 #include "building/building_imports.h"
 #include "building/building_scene.h"
+#include "building/chosen_storeys.h"
 #include "record/text.h"
 #include "support/test_ifc.h"
 
@@ -144,24 +145,39 @@ TEST(IfcBuilding, HasTheStoreysThatAPatternMatches) {
         ifc.storey(i == 2 ? "Roof" : "Level " + std::to_string(i), 3 * i);
         addHall(ifc, i != 1);
     }
-    ImportOptions options;
-    options.storey = "level *";
-    const StoreyedDocument building = readIfcBuilding(ifc.text(), "tower.ifc", options);
+    const std::string text = ifc.text();
+    const auto read = [&](std::vector<std::string> words) {
+        const StoreyChoice choice{std::move(words)};
+        return chosenStoreys(readStoreys(text, "tower.ifc", {}, choice).value(), choice,
+                             "tower.ifc");
+    };
+    const StoreyedDocument building = read({"level *"});
     EXPECT_EQ(building.storeyList(), "level-0, level-1");
     EXPECT_EQ(building.storeys[1].record.number("height"), 3) << "up to the roof";
-    EXPECT_NE(std::find(building.notes.begin(), building.notes.end(), "left out by --storey: Roof"),
+    EXPECT_NE(std::find(building.notes.begin(), building.notes.end(), "left out by --storey: roof"),
               building.notes.end());
-    options.storey = "Attic*";
+    EXPECT_EQ(read({"roof", "Level 0"}).storeyList(), "level-0, roof");
+    EXPECT_EQ(read({"all"}).storeyList(), "level-0, level-1, roof");
+    EXPECT_EQ(read({}).storeyList(), "level-0, level-1, roof");
     std::string error;
     try {
-        (void)readIfcBuilding(ifc.text(), "tower.ifc", options);
-    } catch (const FormatError& failure) {
-        error = failure.diagnostics().front().text();
+        (void)read({"Attic*"});
+    } catch (const UsageError& failure) {
+        error = failure.what();
     }
-    EXPECT_EQ(
-        error,
-        "tower.ifc: error: no storey is called `attic*`; those with spaces or walls: Level 0, "
-        "Level 1, Roof");
+    EXPECT_EQ(error, "the building has no storey `Attic*` (level-0, level-1, roof)");
+}
+
+TEST(IfcBuilding, OfOneStoreyIsARoom) {
+    IfcBoxes ifc;
+    ifc.storey("Roof", 3);
+    ifc.storey("Ground", 0);
+    addHall(ifc, true);
+    const std::string text = ifc.text();
+    EXPECT_TRUE(mayHoldStoreys(text, {}));
+    EXPECT_FALSE(mayHoldStoreys(text, {{"Ground"}}));
+    EXPECT_FALSE(readStoreys(text, "hut.ifc", {}, {}));
+    EXPECT_EQ(readStoreys(text, "hut.ifc", {}, {{"all"}}).value().storeys.size(), 1U);
 }
 
 TEST(IfcBuilding, ComparingLiftsWithDoorsIsBounded) {

@@ -16,6 +16,7 @@
 #include "base/message.h"
 #include "base/run_files.h"
 #include "building/building_sight.h"
+#include "building/chosen_storeys.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "env/zone.h"
@@ -143,17 +144,27 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
 
 namespace {
 
-ImportOptions importOf(const SceneRules& rules) {
+ImportOptions importOf(const SceneRules& rules, ImportReport* report = nullptr) {
     ImportOptions options;
+    options.report = report;
     options.includes = rules.includes;
     options.max_work.max = rules.max_work;
     addModelFolders(options);
     return options;
 }
 
-/// Reads a file that is seen before it is read as a room; empty for streams and compiled rooms,
+bool beginsLayout(const std::string& bytes) {
+    return withoutBom(bytes).starts_with("#3dm") || bytes.starts_with("# ispace yaml 1 layout");
+}
+
+/// Reads a file that is seen before it is read as a room; empty for pipes and compiled rooms,
 /// which are read once or in parts.
-std::optional<std::string> glance(const std::string& operand) {
+std::optional<std::string> glance(const std::string& operand, const StoreyChoice& choice) {
+    if (operand == "-") {
+        const std::string& kept = peekStdin();
+        const bool is_ours = mayHoldStoreys(kept, choice) || beginsLayout(kept);
+        return is_ours ? std::optional(kept) : std::nullopt;
+    }
     if (isStream(operand)) return std::nullopt;
     if (isGlbRoom(operand)) return std::nullopt;
     return readAll(operand);
@@ -206,15 +217,14 @@ Document readLayout(const std::string& bytes, const std::string& operand, const 
     return layout;
 }
 
-bool beginsLayout(const std::string& bytes) {
-    return withoutBom(bytes).starts_with("#3dm") || bytes.starts_with("# ispace yaml 1 layout");
-}
-
 std::optional<Operands> findBuilding(const SceneRequest& request) {
     Operands found;
-    for (const std::string& operand : request.operands) {
-        const auto bytes = glance(operand);
-        if (bytes && isBuilding(*bytes)) {
+    const StoreyChoice& choice = request.rules.storeys;
+    std::vector<std::string> operands = request.operands;
+    if (operands.empty() && request.layout_from_stdin) operands.emplace_back("-");
+    for (const std::string& operand : operands) {
+        const auto bytes = glance(operand, choice);
+        if (bytes && mayHoldStoreys(*bytes, choice)) {
             if (found.building)
                 throw UsageError("two environments given, one is wanted: " + operand);
             found.building = bytes;
@@ -235,8 +245,8 @@ std::optional<Operands> findBuilding(const SceneRequest& request) {
         std::error_code missing;
         if (!std::filesystem::is_regular_file(found.environment, missing))
             return std::nullopt;  // readScene() reports it
-        const auto bytes = glance(found.environment);
-        if (bytes && isBuilding(*bytes)) found.building = bytes;
+        const auto bytes = glance(found.environment, choice);
+        if (bytes && mayHoldStoreys(*bytes, choice)) found.building = bytes;
         found.is_named = false;
     }
     if (!found.building) return std::nullopt;
@@ -246,16 +256,24 @@ std::optional<Operands> findBuilding(const SceneRequest& request) {
 }  // namespace
 
 std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
-    if (!request.rules.storey.empty()) return std::nullopt;
+    const StoreyChoice& choice = request.rules.storeys;
+    if (choice.isOne()) return std::nullopt;
     mustReadStdinOnce(request.operands);
     auto found = findBuilding(request);
     if (!found) return std::nullopt;
-    StoreyedDocument document =
-        readBuilding(*found->building, found->environment, importOf(request.rules));
+    ImportReport report;
+    const std::optional<StoreyedDocument> whole =
+        readStoreys(*found->building, found->environment, importOf(request.rules, &report), choice);
+    if (!whole) return std::nullopt;
+    StoreyedDocument document = chosenStoreys(*whole, choice, found->environment);
     BuildingInput input;
+    input.choices = std::move(report.choices);
     input.named = request.operands;
+    if (input.named.empty()) input.named.emplace_back("-");
     if (found->layout.empty() && request.layout_from_stdin &&
         !hasPlaced(document, request.is_meant)) {
+        if (found->environment == "-")
+            throw UsageError("the building on stdin holds no placed sensor: give a LAYOUT");
         found->layout = "-";
         input.named.emplace_back("-");
     }
@@ -269,6 +287,9 @@ std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
         found->layout_document = readLayout(bytes, layout, request.rules);
     }
     std::vector<Document> layouts;
+    if (found->layout_document)
+        found->layout_document =
+            layoutOfStoreys(*std::move(found->layout_document), *whole, document);
     input.files = {found->environment};
     input.warnings = document.warnings;
     if (found->layout_document) {
@@ -287,6 +308,12 @@ std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
     input.environment_operand = std::move(found->environment);
     input.layout_operand = std::move(found->layout);
     return input;
+}
+
+void warnOfImport(const CommonOptions& options, const std::string& tool,
+                  const BuildingInput& input) {
+    warn(options, tool, input.choices);
+    warn(options, tool, input.warnings);
 }
 
 namespace {
@@ -346,6 +373,35 @@ void addZones(std::span<const std::string> zones, BuildingScene& building) {
         building.scenes[storey] =
             std::make_shared<const Scene>(makeScene(std::move(records), scene, building.devices));
     }
+}
+
+namespace {
+
+constexpr std::string_view kMark = "%s";
+
+}  // namespace
+
+bool isStoreyPattern(std::string_view output) {
+    return output.find(kMark) != std::string_view::npos;
+}
+
+std::string storeyFile(std::string pattern, const std::string& id) {
+    for (std::size_t at = pattern.find(kMark); at != std::string::npos;
+         at = pattern.find(kMark, at + id.size()))
+        pattern.replace(at, kMark.size(), id);
+    return pattern;
+}
+
+void mustNameStoreys(std::string_view output, std::string_view format, std::string_view suffix) {
+    if (isStoreyPattern(output)) return;
+    throw UsageError(std::string(format) +
+                     " holds one storey: name the files with %s for its id (-o 'map-%s." +
+                     std::string(suffix) + "'), or choose one with --storey");
+}
+
+void refuseSeveralRooms(const std::string& option, const StoreyedDocument& building) {
+    throw UsageError(option + " needs one room: choose one with --storey (" +
+                     building.storeyList() + ')');
 }
 
 }  // namespace ispace

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "building/building_run_coverage.h"
@@ -33,9 +34,9 @@ struct BuildingInput {
     BuildingScene building;
     std::optional<Document> layout;  ///< as read
     std::string environment_operand, layout_operand;
-    std::vector<std::string> named;  ///< as SceneInput::named
-    std::vector<std::string> files;  ///< all that were read, for -MD
-    std::vector<Diagnostic> warnings;
+    std::vector<std::string> named;             ///< as SceneInput::named
+    std::vector<std::string> files;             ///< all that were read, for -MD
+    std::vector<Diagnostic> warnings, choices;  ///< of importers
 };
 
 /// Name of the building in the folder of its run's record, with the scenes of the start.
@@ -55,8 +56,26 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
 /// \throws UsageError without a storey, for an unknown one, and as readZones()
 void addZones(std::span<const std::string> zones, BuildingScene& building);
 
-/// Reads ENV and LAYOUT if ENV is a building and no storey of it is chosen; std::nullopt for
-/// others, which readScene() reads. \throws as readScene() and readBuilding()
+/// Prints the choices and warnings of importers, as of a room.
+void warnOfImport(const CommonOptions& options, const std::string& tool,
+                  const BuildingInput& input);
+
+/// Reads ENV and LAYOUT if ENV is a building, or the storeys of it that are chosen; std::nullopt
+/// for others and for one storey that is a room, which readScene() reads. \throws as readScene()
+/// and readBuilding()
 std::optional<BuildingInput> readBuildingInput(const SceneRequest& request);
+
+/// Returns true if the name has a mark for the storey's id, %s.
+bool isStoreyPattern(std::string_view output);
+
+/// Returns the name with the id for each mark.
+std::string storeyFile(std::string pattern, const std::string& id);
+
+/// \throws UsageError unless the output is a pattern, for a format of which a file holds one storey
+/// \param suffix of the format's files
+void mustNameStoreys(std::string_view output, std::string_view format, std::string_view suffix);
+
+/// \throws UsageError: the option is about one room, of which the building has several
+[[noreturn]] void refuseSeveralRooms(const std::string& option, const StoreyedDocument& building);
 
 }  // namespace ispace

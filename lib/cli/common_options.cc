@@ -327,16 +327,17 @@ std::string editCommand(const std::vector<std::string>& operands, const SceneRul
         const bool is_like_option = operand.size() > 1 && operand.front() == '-';
         command += ' ' + shellQuote((is_like_option ? "./" : "") + operand);
     }
-    if (!rules.storey.empty()) command += " --storey " + shellQuote(rules.storey);
+    for (const std::string& word : rules.storeys.words) command += " --storey " + shellQuote(word);
     return command + readingText(rules);
 }
 
 void addStoreyOption(CommandLine& line, SceneRules& rules, const std::string& without) {
-    line.text("--storey", "ID", rules.storey,
-              "the storey of a building to take, by its id or name; layouts may have ids of the "
-              "storey or of the building (" +
-                  without + ")",
-              Enters::History);
+    line.texts(
+        "--storey", "ID|GLOB", rules.storeys.words,
+        "the storeys of a building to take, by ids or names: one is a room, whose ids have no "
+        "prefix; several, or a pattern, a building of them (" +
+            without + ")",
+        Enters::History);
 }
 
 std::uint64_t byteCount(const std::string& text) {

@@ -136,7 +136,7 @@ void keepRooms(std::span<const std::string> operands) {
 }
 
 std::shared_ptr<const KeptRoom> keptRoom(const std::string& file, const SceneRules& rules) {
-    if (rules.includes != IncludeFiles::InFolder || rules.max_work || !rules.storey.empty())
+    if (rules.includes != IncludeFiles::InFolder || rules.max_work || !rules.storeys.isEmpty())
         return nullptr;
     const std::shared_ptr<Entry> entry = entries().find(file, false);
     if (entry == nullptr) return nullptr;

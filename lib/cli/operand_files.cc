@@ -2,6 +2,7 @@
 // Files that operands and their records name, and stdin.
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,6 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What peekStdin() has read and readStdin() has not taken yet.
+std::optional<std::string>& peeked() {
+    static std::optional<std::string> bytes;
+    return bytes;
+}
+
 }  // namespace
 
 void mustReadStdinOnce(const std::vector<std::string>& files) {
@@ -27,7 +34,13 @@ void mustReadStdinOnce(const std::vector<std::string>& files) {
         throw UsageError("stdin cannot be read twice: only one operand can be -");
 }
 
+const std::string& peekStdin() {
+    if (!peeked()) peeked() = readStdin();
+    return *peeked();
+}
+
 std::string readStdin() {
+    if (peeked()) return *std::exchange(peeked(), std::nullopt);
     if (isTerminalInput())
         throw UsageError("stdin is a terminal: give a file, or send data through a pipe");
     return readAll("-");

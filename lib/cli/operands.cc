@@ -36,7 +36,7 @@ ImportOptions defaultImport(const SceneRules& rules, ImportReport* report) {
     ImportOptions options;
     options.includes = rules.includes;
     options.max_work.max = rules.max_work;
-    options.storey = rules.storey;
+    options.storey = rules.storeys.one();
     addModelFolders(options);
     options.report = report;
     return options;
@@ -58,7 +58,7 @@ Document readStorey(const std::string& operand, std::string_view bytes, const Sc
                     ImportReport& report, std::optional<StoreyedDocument>& building) {
     if (!isBuilding(bytes)) return parse(bytes, operand, rules, &report);
     building = readBuilding(bytes, operand, defaultImport(rules, &report));
-    return chosenStorey(*building, operand, rules.storey);
+    return chosenStorey(*building, operand, rules.storeys.one());
 }
 
 bool hasPlaced(const Document& document, bool (*is_meant)(const SensorKind&)) {
@@ -156,11 +156,11 @@ class OperandReader {
         }
         const bool is_operand = environment_.has_value();
         if (!is_operand) findEnvironment();
-        if (!request_.rules.storey.empty() && !building_ && !report_.has_storeys)
+        if (!request_.rules.storeys.isEmpty() && !building_ && !report_.has_storeys)
             throw UsageError("--storey is about buildings, and " +
                              displayName(environment_operand_) + " is one room");
         if (layout_ && building_)
-            layout_ = layoutOfStorey(*layout_, *building_, request_.rules.storey);
+            layout_ = layoutOfStorey(*layout_, *building_, request_.rules.storeys.one());
         if (layout_)
             checkDigest(*layout_, {environment_->records, environment_operand_, is_operand},
                         request_.rules.same_environment, environment_->warnings);

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "io/importers.h"
+#include "io/storey_choice.h"
 #include "record/record.h"
 #include "record/yaml/yaml.h"
 #include "scene/run/run_changes.h"
@@ -24,7 +25,7 @@ struct SceneRules {
     std::optional<bool> same_environment = {};
     IncludeFiles includes = IncludeFiles::InFolder;
     std::optional<std::uint64_t> max_work = {};  ///< of each input, see Budget; unset: by its size
-    std::string storey = {};  ///< of --storey, to take out of a building; "": not given
+    StoreyChoice storeys = {};                   ///< of --storey
 };
 
 /// Returns the changes that clients made to the world of a recorded run, which began in a scene.
@@ -88,6 +89,8 @@ void mustReadStdinOnce(const std::vector<std::string>& files);
 
 /// Reads all of stdin unless it is a terminal. \throws UsageError
 std::string readStdin();
+/// Reads stdin in the same way, and leaves it to the next readStdin(). \throws UsageError
+const std::string& peekStdin();
 
 /// Returns `file=` of an `environment` record in a layout written to `output`: the path of ENV
 /// relative to its folder, never absolute; "" if ENV came from a stream.

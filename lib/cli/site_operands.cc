@@ -56,6 +56,7 @@ SiteInput readSite(const SceneRequest& request) {
         site.files = std::move(found->files);
         site.layout = std::move(found->layout);
         site.warnings = std::move(found->warnings);
+        site.choices = std::move(found->choices);
         site.rooms = found->building.scenes;
         for (const Storey& storey : found->building.document.storeys) site.ids.push_back(storey.id);
         site.building = std::move(found->building);
@@ -86,9 +87,7 @@ std::vector<Diagnostic> siteWarnings(const SiteInput& input, const FindingFilter
 }
 
 void mustBeOneRoom(const SiteInput& input, const std::string& option) {
-    if (input.building && !option.empty())
-        throw UsageError(option + " needs one room: choose one with --storey (" +
-                         input.building->document.storeyList() + ')');
+    if (input.building && !option.empty()) refuseSeveralRooms(option, input.building->document);
 }
 
 void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,

@@ -65,8 +65,8 @@ std::vector<Diagnostic> siteWarnings(const SiteInput& input, const FindingFilter
 void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,
                    const std::function<void(std::size_t room, const std::string& text)>& read);
 
-/// \throws UsageError saying that an option needs one room, with the storeys to choose from; does
-/// nothing for "" and for a room alone
+/// \throws UsageError saying that an option needs one room, with the storeys to choose from;
+/// accepts "" and a room alone
 void mustBeOneRoom(const SiteInput& input, const std::string& option);
 
 }  // namespace ispace

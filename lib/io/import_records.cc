@@ -148,8 +148,7 @@ void ImportRecords::cube(Point2 middle, double length, double width) {
     record.set("size", Tuple{wholeMicrometres(length), wholeMicrometres(width), wall_height_});
 }
 
-std::string ImportRecords::freeId(std::string_view name, const std::string& fallback,
-                                  Letters letters) {
+std::string ImportRecords::idWord(std::string_view name, Letters letters) {
     std::string word;
     for (const char original : withPlainLetters(name)) {
         const char c = letters == Letters::Lower ? lowerCase(original) : original;
@@ -160,6 +159,12 @@ std::string ImportRecords::freeId(std::string_view name, const std::string& fall
     }
     while (!word.empty() && (word.back() == '-' || word.back() == '.')) word.pop_back();
     word.erase(0, word.find_first_not_of("-."));
+    return word;
+}
+
+std::string ImportRecords::freeId(std::string_view name, const std::string& fallback,
+                                  Letters letters) {
+    std::string word = idWord(name, letters);
     if (word.empty()) word = fallback;
     std::string id = word;
     for (int& last = last_numbers_.try_emplace(word, 1).first->second; !ids_.insert(id).second;)

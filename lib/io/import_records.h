@@ -58,6 +58,9 @@ class ImportRecords {
     /// left.
     std::string freeId(std::string_view name, const std::string& fallback,
                        Letters letters = Letters::Lower);
+    /// Returns the word of which freeId() makes ids: "level-1" of "Level 1"; "" if no readable
+    /// character is left.
+    static std::string idWord(std::string_view name, Letters letters = Letters::Lower);
 
     void note(std::string sentence) { document_.notes.push_back(std::move(sentence)); }
     /// Adds a warning, shown without -v; `line` of the file, 0 for the file as a whole.
@@ -137,7 +140,7 @@ std::string_view trimmed(std::string_view text);
 constexpr double kSurveyed = 100'000;
 /// Readers that move a plan to the origin accept coordinates up to this far out, in metres.
 constexpr double kMaxSurveyed = 1e8;
-/// Returns whole metres to subtract from surveyors' coordinates of a place; nothing for others.
+/// Returns whole metres to subtract from surveyors' coordinates of a place; none for others.
 std::optional<Vec2> wayFromSurvey(Point2 place);
 /// Returns "moved by (-450000, -5400000) m: the drawing stands in surveyors' coordinates".
 std::string surveyText(Vec2 moved, const std::string& thing);

@@ -2,6 +2,7 @@
 #include "io/importers.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -336,6 +337,15 @@ Document parseDocument(std::string_view bytes, const std::string& operand,
 
 void ImportReport::addChoice(const std::string& operand, const std::string& sentence) {
     choices.push_back({operand, 0, 0, sentence, Severity::Note});
+}
+
+void ImportReport::add(ImportReport other) {
+    const auto append = [](std::vector<Diagnostic>& to, std::vector<Diagnostic>& from) {
+        to.insert(to.end(), std::move_iterator(from.begin()), std::move_iterator(from.end()));
+    };
+    append(choices, other.choices);
+    append(doubts, other.doubts);
+    has_storeys |= other.has_storeys;
 }
 
 void loadFiles(Document& document, const std::string& operand, const ImportOptions& options) {

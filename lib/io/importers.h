@@ -36,6 +36,8 @@ struct ImportReport {
     bool has_storeys = false;         ///< an input is a building with storeys
 
     void addChoice(const std::string& operand, const std::string& sentence);
+    /// Appends the messages of another report.
+    void add(ImportReport other);
 };
 
 class MeshFiles;

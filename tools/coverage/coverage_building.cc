@@ -34,35 +34,19 @@ namespace ispace {
 
 namespace {
 
-/// The mark for the storey's id in the name of a file.
-constexpr std::string_view kMark = "%s";
-
-bool isPattern(const std::string& output) { return output.find(kMark) != std::string::npos; }
-
-std::string fileOf(std::string pattern, const std::string& id) {
-    for (std::size_t at = pattern.find(kMark); at != std::string::npos;
-         at = pattern.find(kMark, at + id.size()))
-        pattern.replace(at, kMark.size(), id);
-    return pattern;
-}
-
 /// \throws UsageError for an option that is about one room
 void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocument& building) {
     std::string option;
-    if (!options.run.empty() && recordedBuilding(options.run).empty()) option = "--run of one room";
+    if (!options.run.empty() && recordedBuilding(options.run).empty())
+        option = "--run by the record of one room";
     if (options.presence && !options.presence->record.empty() &&
         recordedBuilding(options.presence->record).empty())
         option = "--presence by the record of one room";
     if (!options.paths.empty()) option = "--path";
     if (!options.trace.empty()) option = "--trace";
-    if (!option.empty())
-        throw UsageError(option +
-                         " is about one storey of the building: choose it with --storey (" +
-                         building.storeyList() + ')');
-    if (options.format != nullptr && !options.format->picture && !isPattern(options.common.output))
-        throw UsageError(std::string(options.format->name) +
-                         " holds one storey: name the files with %s for its id (-o 'map-%s." +
-                         std::string(options.format->suffix) + "'), or choose one with --storey");
+    if (!option.empty()) refuseSeveralRooms(option, building);
+    if (options.format != nullptr && !options.format->picture)
+        mustNameStoreys(options.common.output, options.format->name, options.format->suffix);
 }
 
 std::vector<JunitCase> judgeBuilding(const CoverageToolOptions& options,
@@ -258,7 +242,7 @@ void writeFiles(const CoverageToolOptions& options, const BuildingInput& input,
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         const Storey& storey = input.building.document.storeys[i];
         CoverageToolOptions own = options;
-        own.common.output = fileOf(options.common.output, storey.id);
+        own.common.output = storeyFile(options.common.output, storey.id);
         own.map.title = storey.id;
         own.map.redundancy_scale = redundancyScale(coverage);
         own.map.run = runOf(results.run, i);
@@ -360,7 +344,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     BuildingInput& input = *read;
     mustBeAboutBuildings(options, input.building.document);
     addZones(options.zones, input.building);
-    warn(options.common, "coverage", input.warnings);
+    warnOfImport(options.common, "coverage", input);
     if (!options.report.empty()) mustBeWritable(options.report);
     const std::vector<Diagnostic> findings = findingsOf(input.building);
     warn(options.common, "coverage", findings);
@@ -387,7 +371,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
         for (JunitCase& verdict : judge(options.presence_requirements, *results.presence_sum))
             verdicts.push_back(std::move(verdict));
     if (options.format != nullptr) {
-        if (isPattern(options.common.output))
+        if (isStoreyPattern(options.common.output))
             writeFiles(options, input, coverage, results);
         else
             writePanels(options, input, coverage, results);

@@ -9,21 +9,24 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/glob.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
 #include "building/building_edit.h"
-#include "building/building_imports.h"
 #include "building/building_scene.h"
+#include "building/chosen_storeys.h"
 #include "building/coupling.h"
+#include "cli/building_operands.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "passage/building_run.h"
 #include "passage/landing_check.h"
 #include "record/text.h"
+#include "report/page/page.h"
+#include "report/page/room_page.h"
 #include "scene/findings/findings.h"
+#include "scene/findings/remedies.h"
 #include "scene/placement_schemas.h"
 #include "sim/course_check.h"
 
@@ -38,19 +41,12 @@ constexpr std::string_view kFormats[] = {"glb", "env", "yaml", "svg", "png", "pd
 /// \throws UsageError for an option that is about one room
 void mustBeAboutBuildings(const EnvcOptions& options, const StoreyedDocument& building) {
     std::string option;
-    if (options.slice) option = "--slice";
-    if (!options.zones.empty()) option = "--zone";
-    if (!options.report.empty()) option = "--report";
-    if (options.suggestions) option = "--suggest";
     if (options.list_rooms) option = "--rooms list";
-    if (option.empty() && options.format != nullptr &&
-        std::find(std::begin(kFormats), std::end(kFormats), options.format->name) ==
-            std::end(kFormats))
-        option = "--to " + std::string(options.format->name);
-    if (!option.empty())
-        throw UsageError(option +
-                         " is about one storey of the building: choose it with --storey (" +
-                         building.storeyList() + ')');
+    if (!option.empty()) refuseSeveralRooms(option, building);
+    if (options.format != nullptr &&
+        (options.slice || std::find(std::begin(kFormats), std::end(kFormats),
+                                    options.format->name) == std::end(kFormats)))
+        mustNameStoreys(options.common.output, options.format->name, options.format->suffix);
 }
 
 /// Adds the records of a layout to the rooms of their storeys.
@@ -82,6 +78,42 @@ void applyEdits(const EnvcOptions& options, const std::string& operand, const Im
     }
 }
 
+/// Adds zones to the rooms of their storeys: `ground/rect:1,1,2,2`, `*/door:*`. Storeys that share
+/// a room keep sharing it if they get the same zones. \throws UsageError for a storey that does not
+/// exist, a rectangle or polygon without one, and as zoneRecords() if no storey fits
+void addZones(std::span<const std::string> zones, StoreyedDocument& building) {
+    for (const std::string& text : zones) {
+        if (text.starts_with("rect:") || text.starts_with("poly:"))
+            throw UsageError("--zone: " + excerpt(text) + " names no storey, as in " +
+                             building.storeys.front().id + '/' + text);
+        const StoreyText named = splitStoreys(building, "--zone", text);
+        // By the room that storeys share; null: it has no such door.
+        std::map<const Document*, std::shared_ptr<const Document>> changed;
+        std::string first;
+        bool is_read = false;
+        for (const std::size_t i : named.storeys) {
+            Storey& storey = building.storeys[i];
+            const auto [known, is_new] = changed.try_emplace(storey.room.get());
+            if (is_new) {
+                auto room = std::make_shared<Document>(*storey.room);
+                try {
+                    addZones(std::vector<std::string>{named.text}, *room);
+                    known->second = std::move(room);
+                } catch (const UsageError& error) {
+                    if (first.empty()) first = storey.id + ": " + error.what();
+                }
+            }
+            if (known->second == nullptr) continue;
+            storey.room = known->second;
+            is_read = true;
+        }
+        if (!is_read)
+            throw UsageError(
+                "--zone: " + first +
+                (named.storeys.size() > 1 ? "; neither does it fit another storey" : ""));
+    }
+}
+
 /// Makes names of files in the rooms relative to the folder of the output. Storeys keep sharing
 /// rooms.
 void rebaseRooms(const EnvcOptions& options, const std::string& from, StoreyedDocument& building) {
@@ -102,6 +134,20 @@ void rebaseRooms(const EnvcOptions& options, const std::string& from, StoreyedDo
     }
 }
 
+/// Writes moves that resolve findings of a storey, by the ids of the building.
+void suggestMoves(const EnvcOptions& options, const BuildingScene& building, std::size_t storey,
+                  const FindingFilter& filter, int& left, std::string& text) {
+    const auto scene = sceneOfBuilding(building, storey);
+    const std::vector<Finding> found = checkScene(*scene, filter);
+    const std::size_t count = found.size() + checkCourses(*scene).size();
+    if (count == 0) return;
+    const std::vector<Remedy> remedies =
+        remediesOf(*scene, found, filter, static_cast<std::size_t>(left), building.devices,
+                   [](const Scene& one) { return checkCourses(one).size(); });
+    left -= static_cast<int>(remedies.size());
+    text += building.document.storeys[storey].id + ": " + remediesText(options, count, remedies);
+}
+
 /// \throws FormatError with the findings of all storeys, each room once
 void check(const EnvcOptions& options, const BuildingScene& building, const ImportReport& report) {
     Diagnostics findings;
@@ -114,6 +160,8 @@ void check(const EnvcOptions& options, const BuildingScene& building, const Impo
     // As of a room: arrange accepts a sensor without a position.
     warn(options.common, "envc", storeyWarnings(coupling, {.checks = {"unplaced"}}));
     std::vector<const Scene*> checked;
+    std::string moves;
+    int moves_left = options.suggestions.value_or(0);
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         const Scene* const scene = building.scenes[i].get();
         const bool is_new = std::find(checked.begin(), checked.end(), scene) == checked.end();
@@ -121,6 +169,7 @@ void check(const EnvcOptions& options, const BuildingScene& building, const Impo
         for (Diagnostic& finding : storeyFindings(coupling, i, mistakes, is_new))
             findings.add(std::move(finding));
         if (!is_new) continue;
+        if (options.suggestions) suggestMoves(options, building, i, mistakes, moves_left, moves);
         for (const Finding& finding : checkCourses(*scene)) {
             Diagnostic diagnostic = finding.diagnostic();
             diagnostic.message = building.document.storeys[i].id + ": " + diagnostic.message;
@@ -131,8 +180,44 @@ void check(const EnvcOptions& options, const BuildingScene& building, const Impo
     for (Diagnostic& finding : BuildingRun::tripFindings(building))
         findings.add(std::move(finding));
     for (Diagnostic& finding : landingFindings(building)) findings.add(std::move(finding));
+    if (options.suggestions) writeAll("-", moves);
     findings.throwIfAny();
     logInfo(options.common, "envc", "nothing found");
+}
+
+/// Returns the page of a building: of each storey that of its room, on sheets of its own.
+ReportPage buildingPage(const EnvcOptions& options, const BuildingScene& building,
+                        const std::vector<Diagnostic>& warnings) {
+    ReportPage page;
+    const std::string& input = options.inputs.front();
+    page.title = isStream(input) ? "Building" : baseName(input);
+    double area = 0;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Scene& scene = *building.scenes[i];
+        area += scene.environment.indoor().area();
+        const Storey& storey = building.document.storeys[i];
+        const std::string name = storey.record.has("name") ? storey.record.text("name") : storey.id;
+        RoomPageInput room{scene, name, options.history_line};
+        if (i == 0) room.warnings = warnings;
+        ReportPage own = roomPage(room);
+        for (std::size_t k = 0; k < own.sections.size(); ++k) {
+            PageSection& section = own.sections[k];
+            section.id = storey.id + '-' + section.id;
+            section.title = name + ": " + section.title;
+            section.begins_sheet |= k == 0 && i > 0;
+            page.sections.push_back(std::move(section));
+        }
+    }
+    page.subtitle = squareMetres(area) + " · " + building.document.digest();
+    return typeset(std::move(page));
+}
+
+void writeReport(const EnvcOptions& options, const BuildingScene& building,
+                 const std::vector<Diagnostic>& warnings) {
+    const std::string kind = suffixOf(options.report);
+    if (kind == "json") return writeAll(options.report, buildingInfoJson(building));
+    const ReportPage page = buildingPage(options, building, warnings);
+    writeAll(options.report, kind == "pdf" ? pdfOf(page) : htmlOf(page));
 }
 
 /// Writes the building and the files of its rooms.
@@ -152,7 +237,26 @@ void writeRecords(const std::string& output, const StoreyedDocument& building) {
     writeTogether(files);
 }
 
+/// Writes a file for each storey, as of its room alone.
+void writeStoreys(const EnvcOptions& options, const BuildingScene& building) {
+    for (std::size_t i = 0; i < building.document.storeys.size(); ++i) {
+        const Storey& storey = building.document.storeys[i];
+        EnvcOptions own = options;
+        own.common.output = storeyFile(options.common.output, storey.id);
+        claimOutput(own.common.output, "the storey " + storey.id);
+        if (options.format->write_records == nullptr) {
+            writeProduct(own, *building.scenes[i], *storey.room, nullptr);
+            continue;
+        }
+        Document room = *storey.room;
+        room.history.insert(room.history.end(), building.document.history.begin(),
+                            building.document.history.end());
+        writeAll(own.common.output, options.format->write_records(std::move(room)));
+    }
+}
+
 void writeProduct(const EnvcOptions& options, const BuildingScene& building) {
+    if (isStoreyPattern(options.common.output)) return writeStoreys(options, building);
     const std::string& output = options.common.output;
     const std::string_view format = options.format->name;
     if (format == "env") return writeRecords(output, building.document);
@@ -175,17 +279,20 @@ void writeProduct(const EnvcOptions& options, const BuildingScene& building) {
 std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
                                                   const std::vector<RawInput>& raw,
                                                   const InputRequest& request) {
-    const std::string& storey = request.import.storey;
+    const StoreyChoice& choice = options.rules.storeys;
+    // A height of the building and a point in it are of one storey.
+    const bool names_storey = request.import.slice_walls || !request.import.inside.empty() ||
+                              (options.list_rooms && choice.isEmpty());
     const auto is_whole = [&](const RawInput& input) {
-        if (storey.empty()) return isBuilding(input.bytes);
-        return (storey == "all" || Glob(storey).isPattern()) && isIfc(input.bytes);
+        return mayHoldStoreys(input.bytes, choice) && !(names_storey && isIfc(input.bytes));
     };
     const auto found = std::find_if(raw.begin(), raw.end(), is_whole);
     if (found == raw.end()) return std::nullopt;
     ImportOptions import = request.import;
     import.load_files = request.compiles;
-    StoreyedDocument building = storey.empty() ? readBuilding(found->bytes, found->name, import)
-                                               : readIfcBuilding(found->bytes, found->name, import);
+    const auto whole = readStoreys(found->bytes, found->name, import, choice);
+    if (!whole) return std::nullopt;
+    StoreyedDocument building = chosenStoreys(*whole, choice, found->name);
     mustBeAboutBuildings(options, building);
     for (const RawInput& input : raw) {
         if (&input == &*found) continue;
@@ -193,10 +300,13 @@ std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
         if (layout.kind != DocumentKind::Layout || is_whole(input))
             throw UsageError(displayName(input.name) + " beside the building " +
                              displayName(found->name) + ": a building goes with layouts alone");
-        addLayout(layout, building);
+        addLayout(layoutOfStoreys(layout, *whole, building), building);
         building.sources.push_back(input.name);
     }
     applyEdits(options, found->name, import, building);
+    if (options.format != nullptr && options.format->takes_zones)
+        refuseSeveralRooms("--to " + std::string(options.format->name), building);
+    addZones(options.zones, building);
     building.sources.insert(building.sources.begin(), found->name);
     building.history.push_back(options.history_line);
     if (options.format != nullptr) rebaseRooms(options, found->name, building);
@@ -209,6 +319,7 @@ void writeBuilding(const EnvcOptions& options, StoreyedDocument document,
     if (!options.check) warn(options.common, "envc", document.warnings);
     for (const std::string& note : document.notes) logInfo(options.common, "envc", note);
     const std::vector<std::string> files = document.sources;
+    const std::vector<Diagnostic> warnings = document.warnings;
     if (options.format != nullptr && options.format->write_records != nullptr) {
         writeProduct(options, {std::move(document), {}, {}});
         return writeDependencies(options.common, files);
@@ -218,10 +329,11 @@ void writeBuilding(const EnvcOptions& options, StoreyedDocument document,
     const DeviceCatalogue& devices = devicesFor(std::span<const Document* const>(rooms));
     const BuildingScene building = makeBuildingScene(std::move(document), {}, devices);
     if (options.check) return check(options, building, report);
+    if (!options.report.empty()) writeReport(options, building, warnings);
     if (options.info)
         writeAll(options.common.output,
                  options.json ? buildingInfoJson(building) : buildingInfoText(building));
-    else
+    else if (options.format != nullptr)
         writeProduct(options, building);
     writeDependencies(options.common, files);
 }

@@ -214,11 +214,6 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
                 "take the points of a cloud between two heights as walls (default: IFC is cut 1 m "
                 "above the floor, SDF at 0.3 m where its boxes enclose no room)",
                 Enters::History);
-    line.text("--storey", "ID|NAME|NUMBER|GLOB|all", import.storey,
-              "storey of a building to take out: its id or name (default: all of them); of IFC its "
-              "name, its number from 1 for the lowest (default: the lowest that has spaces or "
-              "doors), or a building of all, or of those that a pattern matches ('Level *')",
-              Enters::History);
     line.texts("--wall-layer", "GLOB", import.wall_layers,
                "layers of a drawing that hold walls (default: all others)", Enters::History);
     line.texts("--door-layer", "GLOB", import.door_layers,
@@ -319,6 +314,8 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     addRoomOptions(line, options);
     line.group("Imports");
     addImportOptions(line, options.import);
+    addStoreyOption(line, options.rules,
+                    "of IFC also by number, from 1 for the lowest; default: all storeys");
     ToolExtensions extensions(toolExtensions(), "envc");
     extensions.declare(line);
     addSceneRules(line, options.rules);
@@ -346,7 +343,9 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     if ((options.info || options.list_rooms) && !options.json)
         options.json = outputFormat({}, options.common.output, {"txt", "json"}) == "json";
     options.history_line = line.historyLine(options.inputs);
-    options.changing = editCommand(options.inputs, options.rules);
+    SceneRules rules = options.rules;
+    rules.storeys = {};  // which the history has
+    options.changing = editCommand(options.inputs, rules);
     for (const std::string& folder : options.import.model_folders)
         options.changing += " --models " + shellQuote(folder);
     options.changing += line.historyLine({}).substr(std::string_view("envc").size());

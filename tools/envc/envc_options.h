@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "io/importers.h"
 #include "record/edit.h"
 #include "record/record.h"
+#include "scene/findings/remedies.h"
 #include "scene/scene.h"
 
 namespace ispace {
@@ -45,5 +48,12 @@ std::string besideOf(const EnvcOptions& options);
 /// Writes the product and its accompanying file. \throws as OutputFile and the format's writer
 void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document,
                   const FoundRooms* found);
+
+/// Adds the zones of --zone to a room, as records. \throws UsageError as zoneRecords()
+void addZones(std::span<const std::string> zones, Document& document);
+
+/// Returns remedies as suggestionsText() writes suggestions. \param findings their number before
+std::string remediesText(const EnvcOptions& options, std::size_t findings,
+                         const std::vector<Remedy>& remedies);
 
 }  // namespace ispace

@@ -24,7 +24,6 @@
 #include "io/exporters.h"
 #include "io/importers.h"
 #include "report/page/room_page.h"
-#include "report/suggestion_report.h"
 #include "scene/devices.h"
 #include "scene/findings/findings.h"
 #include "scene/findings/remedies.h"
@@ -38,22 +37,6 @@ namespace {
 using namespace ispace;
 namespace fs = std::filesystem;
 
-/// Adds the records of --zone.
-void addZones(const EnvcOptions& options, Document& document) {
-    if (options.zones.empty()) return;
-    // Meshes that are not loaded bound no room.
-    std::vector<Record> records = document.records;
-    std::vector<std::string> ids = assignIds(records);
-    const Schemas& schemas = sceneSchemas();
-    for (std::size_t i = records.size(); i-- > 0;)
-        if (records[i].keyword() == "mesh") {
-            records.erase(records.begin() + static_cast<std::ptrdiff_t>(i));
-            ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(i));
-        }
-    for (Record& zone : zoneRecords(options.zones, Environment(records, ids), schemas))
-        document.records.push_back(std::move(zone));
-}
-
 /// \param found receives the rooms of plans; null: not requested
 /// \param report receives the other messages of the imports
 InputRequest requestOf(const EnvcOptions& options, FoundRooms* found, ImportReport& report) {
@@ -63,6 +46,7 @@ InputRequest requestOf(const EnvcOptions& options, FoundRooms* found, ImportRepo
     addModelFolders(request.import);
     request.import.found = found;
     request.import.report = &report;
+    request.import.storey = options.rules.storeys.one();
     request.compiles = options.format == nullptr || options.format->write != nullptr;
     request.import.load_files = request.compiles;
     request.added = addedRecords(options.edits, sceneSchemas());
@@ -91,12 +75,13 @@ Document readModel(const EnvcOptions& options, const std::vector<RawInput>& raw,
     std::vector<Diagnostic> other_rooms;
     Document document = readInputs(raw, request, other_rooms);
     warnOfResolution(options, raw, document);
-    if (!options.import.storey.empty() && !report.has_storeys)
+    if (!options.rules.storeys.isEmpty() && !report.has_storeys)
         throw UsageError("--storey is about buildings, and no input is one");
     warn(options.common, "envc", other_rooms);
     document.records = edited(std::move(document.records), options.edits, sceneSchemas());
     if (request.compiles) loadFiles(document, "", request.import);
-    if (options.format == nullptr || !options.format->takes_zones) addZones(options, document);
+    if (options.format == nullptr || !options.format->takes_zones)
+        addZones(options.zones, document);
     document.history.push_back(options.history_line);
     warn(options.common, "envc", report.choices);
     if (!options.check) warn(options.common, "envc", document.warnings);
@@ -108,20 +93,6 @@ Document readModel(const EnvcOptions& options, const std::vector<RawInput>& raw,
 void rebaseTo(const std::string& output, Document& document) {
     rebaseFiles(document.records, "",
                 isStream(output) ? "" : fs::path(output).parent_path().string());
-}
-
-/// Returns remedies as suggestionsText() writes suggestions.
-std::string remediesText(const EnvcOptions& options, std::size_t findings,
-                         const std::vector<Remedy>& remedies) {
-    if (remedies.empty()) return findings == 0 ? "" : "no move of one thing resolves a finding\n";
-    std::string text = "suggestions:\n";
-    for (const Remedy& remedy : remedies) {
-        text += "  " + printable(remedy.text) + ": " + std::to_string(remedy.resolved) +
-                (remedy.resolved == 1 ? " finding" : " findings") + " fewer, " +
-                std::to_string(findings - remedy.resolved) + " left\n";
-        text += "    " + commandOf(options.changing, std::span(&remedy.edit, 1)) + '\n';
-    }
-    return text;
 }
 
 /// Reports the warnings of an import together with the findings of the scene; the former also if

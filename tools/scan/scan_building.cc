@@ -28,10 +28,7 @@ void mustBeAboutBuildings(const ScanToolOptions& options, const StoreyedDocument
     if (!options.view.run.empty()) option = "--run";
     if (options.batch.shard) option = "--shard";
     if (options.batch.resume) option = "--resume";
-    if (!option.empty())
-        throw UsageError(option +
-                         " is about one storey of the building: choose it with --storey (" +
-                         building.storeyList() + ')');
+    if (!option.empty()) refuseSeveralRooms(option, building);
 }
 
 /// The sensors that are read on a storey, with ids of the building.
@@ -118,7 +115,7 @@ bool scanBuilding(const ScanCommand& command) {
     if (!read) return false;
     const BuildingInput& input = *read;
     mustBeAboutBuildings(options, input.building.document);
-    warn(options.common, "scan", input.warnings);
+    warnOfImport(options.common, "scan", input);
     const Coupling coupling(input.building);
     if (options.view.views.empty())
         warn(options.common, "scan",

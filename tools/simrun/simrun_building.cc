@@ -33,7 +33,7 @@ namespace ispace {
 namespace {
 
 void warnOfScenes(const SimrunOptions& options, const BuildingInput& input) {
-    warn(options.common, "simrun", input.warnings);
+    warnOfImport(options.common, "simrun", input);
     warn(options.common, "simrun",
          storeyWarnings(Coupling(input.building),
                         {.checks = {"unplaced", "outside", "buried", "paths"}}));

@@ -91,7 +91,8 @@ std::size_t storeyCalled(const Building& building, const std::string& wanted) {
         const std::string whole = nameOf(building.storeys[i], several);
         known.push_back(whole);
         if (lowerCase(whole) == lowerCase(wanted) ||
-            lowerCase(building.storeys[i].name) == lowerCase(wanted))
+            lowerCase(building.storeys[i].name) == lowerCase(wanted) ||
+            ImportRecords::idWord(building.storeys[i].name) == wanted)
             found.push_back(i);
     }
     if (found.size() == 1) return found.front();
@@ -335,6 +336,7 @@ IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
     Budget work(bytes.size(), options.max_work);
     Building building = wholeBuilding(bytes, operand, options, work);
     IfcStoreys all;
+    std::string read, left_out;
     if (const auto moved = movedHome(building)) all.notes.push_back(surveyText(*moved, "building"));
     if (options.report != nullptr) options.report->has_storeys = true;
     const bool any_rooms =
@@ -347,9 +349,10 @@ IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
         const bool is_level =
             !all.storeys.empty() && !(storey.elevation > all.storeys.back().elevation);
         if (!is_room || is_level) {
-            all.notes.push_back("storey " + describe(building, i) + " is left out");
+            left_out.append(left_out.empty() ? "" : "; ").append(describe(building, i));
             continue;
         }
+        read.append(read.empty() ? "" : "; ").append(describe(building, i));
         ImportRecords out(schemas, operand, options);
         out.setStorey(storeyWord(building, i));
         const bool is_first = all.storeys.empty();
@@ -359,6 +362,13 @@ IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
         all.storeys.push_back({storey.name, storey.elevation, out.take()});
     }
     if (all.storeys.empty()) failFile(operand, "no storey has walls or spaces");
+    std::string sentence = "read " + countText(all.storeys.size(), "storey") + ": " + read;
+    if (!left_out.empty()) sentence += "; left out: " + left_out;
+    sentence += "; --storey NAME chooses";
+    if (options.report != nullptr)
+        options.report->addChoice(operand, sentence);
+    else
+        all.notes.push_back(std::move(sentence));
     all.flights = boxesOf(building, {"IFCSTAIR", "IFCSTAIRFLIGHT"});
     all.lifts = boxesOf(building, {"IFCTRANSPORTELEMENT"});
     return all;

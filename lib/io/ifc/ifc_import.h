@@ -49,7 +49,8 @@ struct IfcStoreys {
 };
 
 /// Reads all storeys as readIfc() reads one. Storeys without walls and spaces, and those that are
-/// level with a lower one, are left out, with a note. \throws FormatError as readIfc()
+/// level with a lower one, are left out. A choice of the report, or a note, lists all of them.
+/// \throws FormatError as readIfc()
 IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
                           const ImportOptions& options, const Schemas& schemas);
 
