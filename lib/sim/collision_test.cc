@@ -47,7 +47,11 @@ struct Step {
         from.drive = {.goal = {AxisGoal::Kind::Speed, speed}, .speed = speed};
         from.turn = {.goal = {AxisGoal::Kind::Speed, rotspeed}, .speed = rotspeed};
         limits.drive.max = limits.turn.max = 1e6;
-        move = {&from, &limits, duration, radius, advance(from, limits, duration)};
+        move = {.from = &from,
+                .limits = &limits,
+                .duration = duration,
+                .radius = radius,
+                .to = advance(from, limits, duration)};
     }
     Step(const Step&) = delete;
     Step& operator=(const Step&) = delete;
@@ -136,11 +140,20 @@ TEST(Collision, ArcsAreNotTheirChords) {
     from.drive = {.goal = {AxisGoal::Kind::Speed, -9}, .speed = 0.6};
     MotionLimits limits = limitsOf({}, 0);
     limits.drive = {.top = 9, .max = 9, .accel = 1.2};
-    const Move back{&from, &limits, 1, 0.3, advance(from, limits, 1)};
+    const Move back{.from = &from,
+                    .limits = &limits,
+                    .duration = 1,
+                    .radius = 0.3,
+                    .to = advance(from, limits, 1)};
     EXPECT_NEAR(distance(back.start(), back.end()), 0, 1e-12);
     EXPECT_TRUE(collides(back, obstacles));
     from.pose.position = {1.5, 2};
-    EXPECT_FALSE(collides({&from, &limits, 1, 0.3, advance(from, limits, 1)}, obstacles));
+    const Move beside{.from = &from,
+                      .limits = &limits,
+                      .duration = 1,
+                      .radius = 0.3,
+                      .to = advance(from, limits, 1)};
+    EXPECT_FALSE(collides(beside, obstacles));
 }
 
 TEST(Collision, RobotsMeet) {
