@@ -56,6 +56,10 @@ std::vector<WayFinder::Spot> World::Data::standingBeside(std::size_t mover) cons
         const Motion& motion = motions[i];
         if (i != mover && std::abs(motion.drive.speed) + std::abs(motion.side.speed) < kStands)
             standing.push_back({motion.pose.position, movers[i].model.radius});
+        if (movers[mover].is_person) continue;
+        for (const BodyDisc& disc : states[i].body)
+            if (disc.bottom < movers[mover].model.height)
+                standing.push_back({disc.center, disc.radius});
     }
     return standing;
 }

@@ -175,6 +175,7 @@ struct World::Data {
     /// open;
     /// "" if that does not help.
     [[nodiscard]] std::string doorsBetween(std::size_t mover, Point2 goal) const;
+    /// Of people that rest, also the parts that stop a robot.
     [[nodiscard]] std::vector<WayFinder::Spot> standingBeside(std::size_t mover) const;
     /// Goes on with a Goto whose way came to an end. \returns false if that ends the command
     bool continueTrip(std::size_t mover, Outcome outcome);

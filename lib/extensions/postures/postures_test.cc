@@ -453,6 +453,19 @@ TEST(Postures, RobotsRunIntoBodies) {
     EXPECT_TRUE(way("posture=sit support=0.45", 0.4).stall) << "the shanks";
 }
 
+/// A GOTO that such a body stops is tried again round it.
+TEST(Postures, RobotsGoRoundBodies) {
+    const Scene scene = sceneOf(
+        "human id=ann at=0.8,0 posture=fallen\nrobot id=r at=0,-1.5 heading=90 radius=0.2\n");
+    World world(scene, milliseconds(50));
+    Command there{.verb = Verb::Goto};
+    there.course.path = {{0, 1.5}};
+    ASSERT_EQ(world.findWay(0, there), "");
+    world.command(0, there);
+    for (int i = 0; i < 1200; ++i) world.step();
+    EXPECT_NEAR(distance(world.status(0).pose.position, Point2{0, 1.5}), 0, 0.1);
+}
+
 TEST(Postures, MatsAndGatesFeelLyingPeople) {
     const std::string floor =
         "mat id=m at=-1,0 size=0.2,0.2\ngate id=low at=-1,0 height=0.1\n"
