@@ -112,7 +112,7 @@ class Flat:
         self.env.append(f"{record} id={name} at={n(x)},{n(y)} size={n(length)},{n(width)},{n(top)}{extra}")
 
     def make_room(self, number, kind, middle, side, width, depth):
-        """A room whose door is in the wall to the hall; (u, v) from the middle of that wall into the room."""
+        """A room with its door in the wall to the hall; (u, v) from the middle of that wall into the room."""
         base = 0.0 if side < 0 else HALL
 
         def at(u, v):
@@ -134,7 +134,7 @@ class Flat:
             keys = f" access={','.join(door['access'])}" + (" locked=yes" if door["locked"] else "")
         elif door["open"]:
             keys = " open=yes"
-        if kind == "kitchen":  # everybody may cook
+        if kind == "kitchen":  # all may cook
             door.update(access=None, locked=False, open=True)
             keys = " open=yes"
         self.doors[f"d{number}"] = door

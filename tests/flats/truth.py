@@ -438,7 +438,7 @@ class Judge:
             first = self.heard.before.get(f"{name}.on") == "1"
             if uses is None:
                 continue
-            phases = [(0.0, 0.0 if first else None)]  # (time, since when it is on)
+            phases = [(0.0, 0.0 if first else None)]
             if goes_on:
                 on_until = -1.0
                 for begin, _ in uses:

@@ -167,7 +167,7 @@ std::map<std::string, std::size_t> appliancesIn(const Scene& scene) {
     return found;
 }
 
-/// Checks the plugs of a scene, whose appliances and plugs it lists once.
+/// Checks the plugs of a scene, with lists of its appliances and plugs.
 class PlugCheck {
   public:
     explicit PlugCheck(const Scene& scene) : scene_(&scene), appliances_(appliancesIn(scene)) {

@@ -75,7 +75,7 @@ Pose3 headMount(const Record& record) {
 
 namespace {
 
-/// Checks the heads of a scene, whose carriers it lists once.
+/// Checks the heads of a scene, with a list of its carriers.
 class HeadCheck {
   public:
     explicit HeadCheck(const Scene& scene) : scene_(&scene) {

@@ -57,7 +57,7 @@ std::vector<FootContact> restingContacts(const PersonFigure& figure, double mass
     if (figure.support > 0) return {{pose.position, kTrunk, mass * kGravity}};
     std::vector<FootContact> contacts;
     double volume = 0;
-    // Things have no weight: one that lies beside the person bears nothing.
+    // Things have no weight: those that lie beside the person do not press.
     for (std::size_t i = 0; i + figure.load_parts < figure.fixed.size(); ++i) {
         const BodyPart& part = figure.fixed[i];
         if (part.bottom > 0) continue;
