@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "env/body_shapes.h"
 #include "passage/building_run_data.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -197,6 +198,9 @@ std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose
     World& left = *rooms[from].world;
     World& entered = *rooms[room].world;
     std::vector<Record> moved = who.records, added = entered.scene().records, rest;
+    // The thing in its hand goes along, with the sensors on it.
+    const std::string load = loadOf(left.scene(), who.id);
+    std::vector<Record> loads;
     std::vector<std::string> requests;
     std::string deleted = "DELETE";
     for (std::size_t i = 0; i < left.scene().records.size(); ++i) {
@@ -205,7 +209,14 @@ std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose
             return record.writtenId() == id;
         });
         if (goes == moved.end()) {
-            rest.push_back(left.scene().records[i]);
+            const Record& record = left.scene().records[i];
+            const bool is_load =
+                !load.empty() && (id == load || (record.schema().type == RecordType::Placement &&
+                                                 carrierOf(record) == load));
+            (is_load ? loads : rest).push_back(record);
+            if (!is_load) continue;
+            loads.back().set("id", Value(id));
+            deleted += ' ' + id;
             continue;
         }
         deleted += ' ' + id;
@@ -219,7 +230,13 @@ std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose
         own.set("heading", wrapped(pose.heading).degrees());
         // The way of its record is one of its first storey.
         for (const char* key : {"path", "trip", "loop", "pause", "walk"}) own.erase(key);
+        // It follows from the thing, which a replay adds next.
+        if (!loads.empty()) own.erase(holdsKey());
         for (const Record& record : moved) {
+            added.push_back(record);
+            requests.push_back("ADD " + formatRecord(record));
+        }
+        for (const Record& record : loads) {
             added.push_back(record);
             requests.push_back("ADD " + formatRecord(record));
         }

@@ -169,6 +169,8 @@ struct BuildingRun::Data {
     void step(Traveller& who, BuildingTrip& trip);
     void arrive(Traveller& who, BuildingTrip& trip);
     [[nodiscard]] std::string loadText(const Traveller& who) const;
+    /// Returns the id of the thing that a person carries, or "".
+    [[nodiscard]] static std::string loadOf(const Scene& scene, const std::string& person);
     /// \param reason why it is given up, which the event `unreached` tells
     void finish(const std::string& id, Outcome outcome, const std::string& reason = "");
     void tellUnreached(const Traveller& who, const BuildingTrip& trip, const std::string& reason);

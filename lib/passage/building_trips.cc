@@ -89,18 +89,27 @@ TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip)
     return answer;
 }
 
-/// Returns the reason why a mover that carries a thing stays on its storey; "" without a thing.
+std::string BuildingRun::Data::loadOf(const Scene& scene, const std::string& person) {
+    for (std::size_t i = 0; i < scene.records.size(); ++i)
+        if (personWith(scene.records[i]) == person) return scene.ids[i];
+    return "";
+}
+
+/// Returns the reason why a mover that carries a thing stays on its storey: another room has a
+/// thing of that name. "" if it may go.
 std::string BuildingRun::Data::loadText(const Traveller& who) const {
     const World& world = *rooms[who.room].world;
     if (!who.is_person) return "";
     const auto& figure =
         world.people()[world.moverNamed(who.id).value() - world.robots().size()].figure;
     if (figure == nullptr || figure->load_parts == 0) return "";
-    const Scene& scene = world.scene();
-    for (std::size_t i = 0; i < scene.records.size(); ++i)
-        if (personWith(scene.records[i]) == who.id)
-            return who.id + " carries " + scene.ids[i] +
-                   ", which stays on its storey: it first sets it down";
+    const std::string load = loadOf(world.scene(), who.id);
+    for (const Room& room : rooms) {
+        const std::vector<std::string>& ids = room.world->scene().ids;
+        if (&room != &rooms[who.room] && std::find(ids.begin(), ids.end(), load) != ids.end())
+            return who.id + " carries " + load + ", and " + room.id + " has another " + load +
+                   ": it first sets it down";
+    }
     return "";
 }
 

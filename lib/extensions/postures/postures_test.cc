@@ -1193,14 +1193,40 @@ TEST(Postures, ThingsOfStoreysAreInHands) {
     EXPECT_THROW(testing::buildingOf("human id=ground/ann at=6,4\n", text), FormatError);
 }
 
-TEST(Postures, ThingsInHandsStayOnTheirStorey) {
+TEST(Postures, ThingsInHandsGoAlong) {
     House house(
         "human id=ground/ann at=6,4\ncube id=ground/cup at=7,4 size=0.1 carried=ground/ann\n"
         "cube id=ground/jug at=8,5 size=0.1\n");
     ASSERT_NE(house.figure(), nullptr);
     EXPECT_EQ(house.figure()->load_parts, 1U);
+    ASSERT_EQ(house.run().travel("ground/ann", {{{1, {9, 6}}}}).refusal, "");
+    auto end = testing::await(house.run(), "ground/ann", 60);
+    ASSERT_TRUE(end);
+    EXPECT_EQ(end->outcome, Outcome::Done);
+    ASSERT_EQ(house.run().roomOf("ground/ann"), 1U);
+    ASSERT_NE(house.figure(), nullptr);
+    EXPECT_EQ(house.figure()->load_parts, 1U);
+    EXPECT_EQ(house.ask("SET upper/cup.carried="), "OK SET");
+    EXPECT_EQ(house.figure(), nullptr);
+    EXPECT_EQ(house.ask("SET ground/cup.size=0.2").substr(0, 4), "ERR ") << "it is upstairs";
+    // And back, by a change, with a tag on it.
+    EXPECT_EQ(house.ask("ADD tag id=upper/t on=cup"), "OK ADD id=upper/t");
+    EXPECT_EQ(house.ask("SET upper/cup.carried=ground/ann"), "OK SET");
+    EXPECT_EQ(house.ask("SET ground/ann.at=ground/6,5"), "OK SET");
+    ASSERT_EQ(house.run().roomOf("ground/ann"), 0U);
+    EXPECT_EQ(house.figure()->load_parts, 1U);
+    EXPECT_EQ(house.run().world(0).sensors().size(), 1U);
+    EXPECT_EQ(house.run().world(1).sensors().size(), 0U);
+}
+
+/// A storey with a thing of that name has no room for another.
+TEST(Postures, ThingsInHandsStayWhereTheirNameIsTaken) {
+    House house(
+        "human id=ground/ann at=6,4\ncube id=ground/cup at=7,4 size=0.1 carried=ground/ann\n"
+        "cube id=upper/cup at=8,5 size=0.1\ncube id=ground/jug at=8,5 size=0.1\n"
+        "cube id=upper/jug at=8,4 size=0.1\n");
     const std::string reason =
-        "ground/ann carries cup, which stays on its storey: it first sets it down";
+        "ground/ann carries cup, and upper has another cup: it first sets it down";
     EXPECT_EQ(house.run().travel("ground/ann", {{{1, {9, 6}}}}).refusal, reason);
     EXPECT_NE(house.ask("SET ground/ann.at=upper/9,6").find(reason), std::string::npos);
     EXPECT_EQ(house.run().travel("ground/ann", {{{0, {9, 6}}}}).refusal, "");
@@ -1213,7 +1239,7 @@ TEST(Postures, ThingsInHandsStayOnTheirStorey) {
     ASSERT_TRUE(end);
     EXPECT_EQ(end->outcome, Outcome::Unreached);
     EXPECT_EQ(house.unreached(),
-              "ground/ann carries jug, which stays on its storey: it first sets it down");
+              "ground/ann carries jug, and upper has another jug: it first sets it down");
     EXPECT_EQ(house.run().roomOf("ground/ann"), 0U);
 }
 
