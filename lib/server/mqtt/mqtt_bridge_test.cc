@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -84,6 +86,7 @@ TEST(MqttTopics, DiscoveryDescribesEachKey) {
     EXPECT_EQ(mat.at(0).topic, "homeassistant/binary_sensor/home_m/config");
     EXPECT_NE(mat.at(0).payload.find("\"device_class\":\"occupancy\""), std::string::npos);
     EXPECT_NE(mat.at(0).payload.find("value_template"), std::string::npos);
+    EXPECT_EQ(mat.at(1).topic, "homeassistant/sensor/home_m___on/config");
     const auto gate = discoveryOf(
         {"g", "gate", {{"in", "t/in"}, {"out", "t/out"}, {"broken", "t/broken"}}}, "home");
     EXPECT_NE(gate.at(0).payload.find("\"state_class\":\"total_increasing\""), std::string::npos);
@@ -119,6 +122,65 @@ TEST(MqttTopics, DiscoveryDescribesChoicesAndPower) {
     EXPECT_NE(known.at(1).payload.find("\"options\":[\"off\",\"hold\"]"), std::string::npos);
     EXPECT_EQ(wantedPayload("state", &state, "hold"), "");
     EXPECT_EQ(wantedPayload("state", &state, "boil"), "one of off, hold");
+}
+
+/// Keys of Home Assistant's documentation of MQTT, by component.
+TEST(MqttTopics, DiscoveryHasKnownKeys) {
+    const std::set<std::string> all{"name",   "unique_id", "availability_topic",
+                                    "device", "origin",    "state_topic"};
+    const std::map<std::string, std::set<std::string>> known{
+        {"light",
+         {"command_topic", "brightness_state_topic", "brightness_command_topic", "brightness_scale",
+          "rgb_state_topic", "rgb_command_topic"}},
+        {"switch", {"command_topic", "device_class"}},
+        {"cover",
+         {"command_topic", "device_class", "payload_open", "payload_close", "payload_stop",
+          "state_open", "state_closed", "position_topic", "position_template", "set_position_topic",
+          "set_position_template"}},
+        {"binary_sensor", {"device_class", "value_template"}},
+        {"sensor", {"device_class", "unit_of_measurement", "state_class", "value_template"}},
+        {"number", {"command_topic", "min", "max", "step", "unit_of_measurement"}},
+        {"select", {"command_topic", "options"}},
+        {"text", {"command_topic"}},
+        {"vacuum",
+         {"command_topic", "supported_features", "payload_stop", "payload_return_to_base"}},
+        {"device_tracker", {}},
+        {"camera", {"topic"}}};
+    const KeySpec flag{.name = "on", .type = KeyType::Flag, .help = ""};
+    const KeySpec share{.name = "level", .unit = Unit::Share, .help = "", .lower = 0, .upper = 1};
+    const KeySpec word{.name = "state", .type = KeyType::Choice, .help = "", .choices = {"a"}};
+    const KeySpec text{.name = "text", .type = KeyType::Word, .help = ""};
+    std::set<std::string> seen;
+    for (const char* keyword :
+         {"lamp", "projector", "switch", "speaker", "heater", "door", "window", "pir", "contact",
+          "lux", "mote", "microphone", "thermometer", "mat", "gate", "rfid", kRobotThing,
+          kPersonThing, kPictureThing}) {
+        // No command sets what a sensor reports.
+        const auto set = [is_actuator = isActuator(keyword)](const KeySpec& spec) {
+            return is_actuator ? &spec : nullptr;
+        };
+        for (const MqttMessage& message : discoveryOf({"x",
+                                                       keyword,
+                                                       {{"on", "t/on", set(flag)},
+                                                        {"level", "t/level", set(share)},
+                                                        {"color", "t/color", set(text)},
+                                                        {"blind", "t/blind", set(flag)},
+                                                        {"state", "t/state", set(word)},
+                                                        {"power", "t/power"},
+                                                        {"broken", "t/broken"}}},
+                                                      "home")) {
+            const std::string component =
+                message.topic.substr(14, message.topic.find('/', 14) - 14);
+            seen.insert(component);
+            ASSERT_TRUE(known.contains(component)) << component;
+            const auto entity = nlohmann::json::parse(message.payload);
+            for (const auto& [key, value] : entity.items())
+                EXPECT_TRUE(all.contains(key) || known.at(component).contains(key))
+                    << component << ' ' << key;
+            EXPECT_EQ(entity["device"]["manufacturer"], "ispace");
+        }
+    }
+    EXPECT_EQ(seen.size(), known.size()) << "each component is checked";
 }
 
 TEST(MqttTopics, DistinctIdsStayDistinct) {

@@ -275,7 +275,8 @@ MqttMessage describeKey(Entity entity, const MqttKey& key, const std::string& pr
             if (!measure.unit.empty()) entity.json().key("unit_of_measurement").value(measure.unit);
             entity.json().key("state_class").value(measure.state_class);
         }
-        if (!isFlag(key.name)) return entity.message("sensor", prefix);
+        // On a mat are movers, by their ids.
+        if (!isFlag(key.name) || key.name == "on") return entity.message("sensor", prefix);
         if (key.name == "broken") entity.json().key("device_class").value("occupancy");
         return entity.message("binary_sensor", prefix);
     }

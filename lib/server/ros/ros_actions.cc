@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kGoalTopic = "/goal_pose", kAction = "/navigate_to_pose";
 constexpr std::size_t kDepth = 10;
-/// Goals of an action whose results can be asked for, those under way included.
+/// Goals of an action that are remembered for their results, those under way included.
 constexpr std::size_t kMostGoals = 32;
 /// Requests for the result of a goal that are answered at its end.
 constexpr std::size_t kMostWaiting = 16;

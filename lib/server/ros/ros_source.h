@@ -25,9 +25,8 @@ struct RosRun {
 struct RosSourceTopic {
     std::string topic;  ///< "/lift_states"
     RosType type = RosType::String;
-    std::string
-        about;        ///< id of a thing; each of several that share a topic has its messages
-    double rate = 0;  ///< messages in a simulated second; 0: one for each change
+    std::string about;  ///< id of a thing; each of several that share a topic has its messages
+    double rate = 0;    ///< messages in a simulated second; 0: one for each change
     bool is_input = false;
 };
 
