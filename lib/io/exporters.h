@@ -117,9 +117,9 @@ std::string writeStl(const Scene& scene);
 ExportedFiles writeSdf(const Scene& scene, const std::string& title, const std::string& mesh_name);
 
 /// Writes the room as an IFC4 building of one storey: lines of walls as IfcWall with
-/// IfcOpeningElement and the IfcDoor or IfcWindow in it, rooms and zones as IfcSpace, furniture,
-/// pillars and other things, sensors as IfcSensor and IfcAudioVisualAppliance with the property set
-/// `ispace_Sensor`.
+/// IfcOpeningElement and the IfcDoor or IfcWindow in it, a slab below each floor, rooms and zones
+/// as IfcSpace, furniture, pillars and other things, sensors as IfcSensor and
+/// IfcAudioVisualAppliance with the property set `ispace_Sensor`.
 ///
 /// A room is the indoor region without the walls that have a thickness; walls without one become 5
 /// mm thick. GUIDs are hashes of the scene's digest, the class and the id. Movers are left out:

@@ -36,6 +36,9 @@ scan square.env sensors.3dm --frames 2 -o lasers.las
 scan square.env sensors.3dm --frames 2 --to csv |
     awk -F, -v OFS=, 'NR > 1 && $7 != "" { print $1, $4, $8, $9, $10 }' >lasers.csv
 compare lasers.las lasers.csv
+scan square.env sensors.3dm --frames 2 --las-version 1.3 -o old.las
+[ "$(od -An -tu1 -j24 -N2 old.las | tr -d ' ')" = 13 ] || fail "not LAS 1.3"
+compare old.las lasers.csv
 scan square.env ranger.3dm --frames 3 -o ranger.las
 scan square.env ranger.3dm --frames 3 --to csv |
     awk -F, -v OFS=, 'NR > 1 && $6 != "" { print $1, $3, $7, $8, $9 }' >ranger.csv

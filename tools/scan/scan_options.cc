@@ -72,6 +72,7 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     o.color = color_.value_or(true);
     o.encoding = encoding_ == "ascii" ? Encoding::Ascii : Encoding::Binary;
     if (compression_ == "zstd") o.compression = McapCompression::Zstd;
+    if (las_version_ == "1.3") o.las_minor = 3;
     o.coordinates = coordinates_ == "sensor" ? Coordinates::Sensor : Coordinates::World;
     o.photo.light = light_ == "lamps" ? Illumination::Lamps
                     : light_ == "sky" ? Illumination::Sky
@@ -120,6 +121,8 @@ void ScanCommand::declare(ToolExtensions& extensions) {
                  "encoding of pcd and ply (default binary)", Enters::History);
     line_.choice("--compression", compression_, {"none", "zstd"},
                  "mcap: compression of its chunks (default none)", Enters::History);
+    line_.choice("--las-version", las_version_, {"1.4", "1.3"},
+                 "version of las: 1.3 for older programs (default 1.4)", Enters::History);
     constexpr double kMaxScale = 1e6;
     line_.parsed(
         "--depth-scale", "N",
@@ -214,6 +217,8 @@ void ScanCommand::check() {
                              std::to_string(kMinPixels) + " to " + std::to_string(kMaxPixels) +
                              " pixels a side");
     }
+    if (line_.given("--las-version") && o.format != "las")
+        throw UsageError("--las-version is about las, and --to says " + o.format);
     if (line_.given("--compression") && o.format != "mcap")
         throw UsageError("--compression is about mcap, and --to says " + o.format);
     if (line_.given("--layers") && o.format != "png" && o.format != "jpeg")

@@ -28,6 +28,7 @@ struct ScanToolOptions {
     std::string model;  ///< of --poses
     bool motion = false;
     Coordinates coordinates = Coordinates::World;
+    int las_minor = 4;  ///< of version 1.3 or 1.4
     Encoding encoding = Encoding::Binary;
     double depth_per_metre = 1000;
     bool color = true;
@@ -60,7 +61,7 @@ class ScanCommand : public ToolCommand<ScanToolOptions> {
     void checkBatch() const;
 
     std::optional<bool> noise_, color_, sensor_bodies_;
-    std::string to_, encoding_, coordinates_, light_, compression_;
+    std::string to_, encoding_, coordinates_, light_, compression_, las_version_;
 };
 
 }  // namespace ispace

@@ -331,6 +331,7 @@ FormatOptions formatOptions(const ScanCommand& command, const ScanToolOptions& o
             .spectrum = options.spectrum,
             .map_pixels = options.map_pixels,
             .compression = options.compression,
+            .las_minor = options.las_minor,
             .labels = options.photo.labels,
             .depths = options.photo.depths,
             .scene = &input.scene};

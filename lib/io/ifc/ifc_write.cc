@@ -30,6 +30,8 @@ using Id = IfcModel::Id;
 
 /// Openings reach this far beyond the faces of their wall, in metres, so that no skin is left.
 constexpr double kOpeningRim = 0.01;
+/// Thickness of the slabs below floors, metres.
+constexpr double kSlab = 0.2;
 /// Coverings of the floor are this thick, in metres.
 constexpr double kCovering = 0.001;
 
@@ -124,6 +126,7 @@ class RoomWriter {
         addSolids(walls);
         addOpenings(walls);
         addSpaces(walls);
+        addFloors();
         for (const Element& element : elements_)
             if (isThing(element.record)) addThing(element);
         for (const PlacedRecord& placed : scene_.placed) addPlaced(placed);
@@ -314,6 +317,22 @@ class RoomWriter {
         constexpr std::array<std::string_view, 4> kNames{"open", "leaf", "clear pane",
                                                          "opaque pane"};
         return kNames[static_cast<std::size_t>(filling)];
+    }
+
+    /// Adds a slab below each indoor region.
+    void addFloors() {
+        const Id place = model_.addPlacement(place_, {{0, 0, -kSlab}, {}, {}, {}});
+        const std::vector<Region>& floors = scene_.environment.indoor().parts;
+        for (std::size_t i = 0; i < floors.size(); ++i) {
+            const std::string id =
+                floors.size() == 1 ? "floor slab" : "floor slab " + std::to_string(i + 1);
+            const Id slab =
+                addProduct("IFCSLAB", id, "", place, model_.addShape(floors[i], kSlab), ".FLOOR.");
+            contain(slab);
+            model_.addQuantities(
+                slab, id, "Qto_SlabBaseQuantities",
+                {{"LENGTH", "Depth", kSlab}, {"AREA", "GrossArea", floors[i].area()}});
+        }
     }
 
     /// Adds the rooms, minus the walls in them, and the zones, as parts of the rooms around them.

@@ -57,6 +57,17 @@ TEST(IfcWrite, AWallThatRoomsShareStandsOnceWithItsDoor) {
     EXPECT_EQ(count(text, "=IFCRELFILLSELEMENT("), 1U);
 }
 
+TEST(IfcWrite, EachFloorHasASlabBelowIt) {
+    const std::string text = written(
+        "#env 1\nispace id=a size=4,3\nispace id=b at=9,0 size=4,3\ninside at=0,0\ninside "
+        "at=9,0\n");
+    EXPECT_EQ(count(text, "=IFCSLAB("), 2U);
+    EXPECT_EQ(count(text, ".FLOOR."), 2U);
+    EXPECT_NE(text.find("'floor slab 1'"), std::string::npos);
+    EXPECT_EQ(count(text, "'Qto_SlabBaseQuantities'"), 2U);
+    EXPECT_NE(text.find("(0.,0.,-0.2)"), std::string::npos);
+}
+
 TEST(IfcWrite, AnOpeningThroughTwoWallsIsFilledOnce) {
     const std::string text = written(
         "#env 1\nispace size=6,4\nwall from=-1,-2 to=-1,2 thickness=0.2\n"

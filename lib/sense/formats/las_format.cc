@@ -37,12 +37,14 @@ std::vector<std::string> sensorTexts(const Sensors& sensors) {
     return texts;
 }
 
-/// Writes LAS 1.4, point format 1. Its header holds the number of points and their bounds, so
-/// points wait for the last one.
+constexpr int kOldMinor = 3;  // LAS 1.3
+
+/// Writes LAS 1.4 or 1.3, point format 1. Its header holds the number of points and their bounds,
+/// so points wait for the last one.
 class LasStream final : public ReadingStream {
   public:
-    LasStream(ByteSink write, const Sensors& sensors)
-        : write_(std::move(write)), sensors_(sensors) {}
+    LasStream(ByteSink write, const Sensors& sensors, int minor)
+        : write_(std::move(write)), sensors_(sensors), minor_(minor) {}
 
     void write(std::string_view appended) override {
         for (std::size_t at = 0; at < appended.size(); at += kPointBytes)
@@ -56,13 +58,20 @@ class LasStream final : public ReadingStream {
     }
 
     void finish() override {
+        const std::uint64_t count = points_.size() / kPointBytes;
+        if (minor_ == kOldMinor && count > std::numeric_limits<std::uint32_t>::max())
+            throw FormatError({"", 0, 0,
+                               "LAS 1.3 counts points to 4294967295, and there are " +
+                                   std::to_string(count) + ": take --las-version 1.4"});
         write_(head());
         points_.copyTo(write_);
     }
 
   private:
     [[nodiscard]] std::string head() const {
-        constexpr std::uint16_t kHead = 375;
+        constexpr std::uint16_t kOldHead = 235, kNewHead = 375;
+        const bool is_old = minor_ == kOldMinor;
+        const std::uint16_t size = is_old ? kOldHead : kNewHead;
         std::string records;
         const std::vector<std::string> texts = sensorTexts(sensors_);
         for (const std::string& text : texts) {
@@ -81,12 +90,12 @@ class LasStream final : public ReadingStream {
         std::string out = "LASF";
         appendLittle(out, std::uint32_t{0});  // source unknown; GPS times are seconds
         out.append(16, '\0');                 // project unset
-        out.append("\1\4");                   // version 1.4
+        out.append(is_old ? "\1\3" : "\1\4");
         appendFixed(out, "simulation", kTextBytes);
         appendFixed(out, "ispace", kTextBytes);
         appendLittle(out, std::uint32_t{0});  // date unset, so that bytes do not depend on it
-        appendLittle(out, kHead);
-        appendLittle(out, static_cast<std::uint32_t>(kHead + records.size()));
+        appendLittle(out, size);
+        appendLittle(out, static_cast<std::uint32_t>(size + records.size()));
         appendLittle(out, static_cast<std::uint32_t>(texts.size()));
         appendLittle(out, std::uint8_t{1});  // point format
         appendLittle(out, static_cast<std::uint16_t>(kPointBytes));
@@ -96,8 +105,9 @@ class LasStream final : public ReadingStream {
         for (std::size_t axis = 0; axis < 3; ++axis)
             for (const std::int32_t value : {high_[axis], low_[axis]})
                 appendLittle(out, count == 0 ? 0.0 : kScale * value);
-        for (int i = 0; i < 2; ++i)
-            appendLittle(out, std::uint64_t{0});  // no waveforms, no extended records
+        appendLittle(out, std::uint64_t{0});  // no waveforms
+        if (is_old) return out + records;
+        appendLittle(out, std::uint64_t{0});  // no extended records
         appendLittle(out, std::uint32_t{0});
         appendLittle(out, count);
         constexpr int kReturns = 15;
@@ -107,6 +117,7 @@ class LasStream final : public ReadingStream {
 
     ByteSink write_;
     const Sensors& sensors_;
+    int minor_;
     Spool points_;
     std::array<std::int32_t, 3> low_ = all(std::numeric_limits<std::int32_t>::max()),
                                 high_ = all(std::numeric_limits<std::int32_t>::min());
@@ -143,7 +154,7 @@ class Las final : public FormatBase {
         }
     }
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
-        return std::make_unique<LasStream>(std::move(write), sensors_);
+        return std::make_unique<LasStream>(std::move(write), sensors_, options_.las_minor);
     }
     [[nodiscard]] bool isPlain() const override { return false; }
     [[nodiscard]] bool isBinary() const override { return true; }

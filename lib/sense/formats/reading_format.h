@@ -82,6 +82,7 @@ struct FormatOptions {
     std::optional<DepthSpectrum> spectrum;  ///< of the colour picture
     int map_pixels = 800;                   ///< of png: side of an obstacle map
     McapCompression compression = McapCompression::None;  ///< of mcap
+    int las_minor = 4;                                    ///< of las: version 1.3 or 1.4
     /// Of png and jpeg: writes these files beside pictures; the table of labels requires the scene.
     bool labels = false, depths = false;
     const Scene* scene = nullptr;
