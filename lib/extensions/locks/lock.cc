@@ -2,6 +2,8 @@
 #include "extensions/locks/lock.h"
 
 #include <algorithm>
+#include <functional>
+#include <unordered_set>
 #include <utility>
 
 #include "base/error.h"
@@ -122,23 +124,43 @@ std::string shutOfLock(const Record& door, std::string changes) {
     return door.flag("forced") || !hasLock(door) ? "open=no" : std::move(changes);
 }
 
-std::optional<Finding> checkAccess(const Scene& scene, std::size_t record) {
-    const Record& door = scene.records[record];
-    if (!door.has("access")) return std::nullopt;
-    std::vector<std::string> known;
-    for (const Record& each : scene.records)
-        if (hasTag(each)) known.push_back(each.text("tag"));
-    for (const std::string& tag : lockOf(door).access) {
-        if (std::find(known.begin(), known.end(), tag) != known.end()) continue;
-        const std::string nearest = nearestWord(tag, known);
-        return Finding{
-            .element = scene.ids[record],
-            .message = "door " + scene.ids[record] + " opens to the tag " + excerpt(tag) +
-                       ", which no record has",
-            .hint = nearest.empty() ? "give it to a person by tag=" : "write `" + nearest + '`',
-            .source = door.keyPlace("access")};
+namespace {
+
+/// Checks the tags of doors, with those of all records of the scene listed once.
+class AccessCheck {
+  public:
+    explicit AccessCheck(const Scene& scene) : scene_(&scene) {
+        for (const Record& each : scene.records)
+            if (hasTag(each)) known_.push_back(each.text("tag"));
+        tags_.insert(known_.begin(), known_.end());
     }
-    return std::nullopt;
+    [[nodiscard]] std::optional<Finding> operator()(std::size_t record) const {
+        const Record& door = scene_->records[record];
+        if (!door.has("access")) return std::nullopt;
+        const std::string& id = scene_->ids[record];
+        for (const std::string& tag : lockOf(door).access) {
+            if (tags_.contains(tag)) continue;
+            const std::string nearest = nearestWord(tag, known_);
+            return Finding{
+                .element = id,
+                .message =
+                    "door " + id + " opens to the tag " + excerpt(tag) + ", which no record has",
+                .hint = nearest.empty() ? "give it to a person by tag=" : "write `" + nearest + '`',
+                .source = door.keyPlace("access")};
+        }
+        return std::nullopt;
+    }
+
+  private:
+    const Scene* scene_;
+    std::vector<std::string> known_;
+    std::unordered_set<std::string> tags_;
+};
+
+}  // namespace
+
+std::optional<Finding> checkAccess(const Scene& scene, std::size_t record) {
+    return AccessCheck(scene)(record);
 }
 
 std::optional<Finding> checkDrive(const Scene& scene, std::size_t record) {
@@ -174,8 +196,7 @@ Point2 besideDoorway(const Doorway& doorway, double side) {
 
 /// Returns true for a door that stays shut to a person.
 bool isBarred(const Record& door, const Record& person) {
-    const Lock lock = lockOf(door);
-    return lock.is_locked && !lock.opensTo(person);
+    return isLocked(door) && !lockOf(door).opensTo(person);
 }
 
 }  // namespace
@@ -259,7 +280,9 @@ void addLocks() {
                       return isLocked(door) ? "locked" : "";
                   },
                   .entities = {{"locked", "lock", ""}, {"forced", "binary_sensor", "tamper"}}});
-    addRecordCheck("door", checkAccess);
+    addRecordCheck("door", [](const Scene& scene) {
+        return std::function<std::optional<Finding>(std::size_t record)>(AccessCheck(scene));
+    });
     addRecordCheck("door", checkDrive);
     addRecordCheck("human", checkExit);
 }
