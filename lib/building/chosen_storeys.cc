@@ -21,7 +21,7 @@ namespace {
 /// Returns the storeys that a word fits: exactly, else in any case. \throws UsageError for none
 std::vector<std::size_t> storeysCalled(const StoreyedDocument& building, const std::string& word) {
     const auto matching = [&](const auto& fold) {
-        const Glob wanted(word == kAllStoreys ? "*" : fold(word));
+        const Glob wanted(StoreyChoice::isAll(word) ? "*" : fold(word));
         std::vector<std::size_t> found;
         for (std::size_t i = 0; i < building.storeys.size(); ++i) {
             const Storey& storey = building.storeys[i];
@@ -108,17 +108,25 @@ std::optional<StoreyedDocument> readStoreys(std::string_view bytes, const std::s
 }
 
 Document layoutOfStoreys(Document layout, const StoreyedDocument& whole,
-                         const StoreyedDocument& chosen) {
+                         const StoreyedDocument& chosen, std::vector<Diagnostic>& told) {
     if (whole.storeys.size() == chosen.storeys.size()) return layout;
     const auto is_of = [](const StoreyedDocument& building, const std::string& id) {
         return std::any_of(building.storeys.begin(), building.storeys.end(),
                            [&](const Storey& storey) { return id.starts_with(storey.id + '/'); });
     };
-    std::erase_if(layout.records, [&](const Record& record) {
+    const std::size_t left_out = std::erase_if(layout.records, [&](const Record& record) {
         if (record.schema().type == RecordType::Meta) return false;
         const std::string id = record.writtenId();
         return is_of(whole, id) && !is_of(chosen, id);
     });
+    if (left_out > 0) {
+        Diagnostic note;
+        note.message = std::to_string(left_out) +
+                       (left_out == 1 ? " record of another storey is left out of the layout"
+                                      : " records of other storeys are left out of the layout");
+        note.severity = Severity::Note;
+        told.push_back(std::move(note));
+    }
     for (Record& record : layout.records)
         if (record.keyword() == "environment" && record.has("digest") &&
             record.text("digest") == whole.digest())

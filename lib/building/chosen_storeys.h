@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "building/storeys.h"
 #include "io/importers.h"
@@ -32,7 +33,8 @@ std::optional<StoreyedDocument> readStoreys(std::string_view bytes, const std::s
 
 /// Returns the part of a layout that is about these storeys of a whole building. The whole
 /// building's digest in its `environment` record becomes that of the storeys.
+/// \param told gets a note with the number of records that are left out
 Document layoutOfStoreys(Document layout, const StoreyedDocument& whole,
-                         const StoreyedDocument& chosen);
+                         const StoreyedDocument& chosen, std::vector<Diagnostic>& told);
 
 }  // namespace ispace

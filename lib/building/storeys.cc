@@ -20,6 +20,7 @@
 #include "io/glb/glb_read.h"
 #include "io/import_records.h"
 #include "io/mesh/mesh_file.h"
+#include "io/plan/layer_names.h"
 #include "record/text.h"
 #include "record/yaml/yaml.h"
 #include "scene/placement_schemas.h"
@@ -270,6 +271,11 @@ const Storey& StoreyedDocument::storey(const std::string& called) const {
         if (storey.id == called) return storey;
     for (const Storey& storey : storeys)
         if (storey.record.has("name") && storey.record.text("name") == called) return storey;
+    const std::string folded = lowerCased(called);
+    for (const Storey& storey : storeys)
+        if (lowerCased(storey.id) == folded ||
+            (storey.record.has("name") && lowerCased(storey.record.text("name")) == folded))
+            return storey;
     if (called.starts_with("door:"))
         throw UsageError("the building has no storey " + excerpt(called) +
                          ": the storey comes first, as in " + storeys.front().id + "/door:NAME (" +

@@ -56,7 +56,8 @@ struct StoreyedDocument {
     [[nodiscard]] std::string digest() const;
     /// Returns the ids, lowest first, as "ground, upper".
     [[nodiscard]] std::string storeyList() const;
-    /// Finds a storey by its id, else by its name. \throws UsageError with the nearest id
+    /// Finds a storey by its id, else by its name, else by either in any case. \throws UsageError
+    /// with the nearest id
     [[nodiscard]] const Storey& storey(const std::string& called) const;
 };
 

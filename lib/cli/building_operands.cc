@@ -38,6 +38,26 @@ Document chosenStorey(const StoreyedDocument& building, const std::string& opera
     return room;
 }
 
+bool beginsLayout(std::string_view bytes) {
+    return withoutBom(bytes).starts_with("#3dm") || bytes.starts_with("# ispace yaml 1 layout");
+}
+
+bool namesStoreys(const Document& layout) {
+    return std::any_of(layout.records.begin(), layout.records.end(), [](const Record& record) {
+        return record.schema().type != RecordType::Meta &&
+               record.writtenId().find('/') != std::string::npos;
+    });
+}
+
+Document layoutOfRoom(const Document& layout, const StoreyedDocument& building,
+                      std::span<const Record> room) {
+    const std::string digest = environmentDigest(room);
+    for (const Storey& storey : building.storeys)
+        if (environmentDigest(storey.room->records) == digest)
+            return layoutOfStorey(layout, building, storey.id);
+    return layout;
+}
+
 Document layoutOfStorey(const Document& layout, const StoreyedDocument& building,
                         const std::string& storey) {
     const Storey& chosen = building.storey(storey);
@@ -153,19 +173,14 @@ ImportOptions importOf(const SceneRules& rules, ImportReport* report = nullptr) 
     return options;
 }
 
-bool beginsLayout(const std::string& bytes) {
-    return withoutBom(bytes).starts_with("#3dm") || bytes.starts_with("# ispace yaml 1 layout");
-}
-
-/// Reads a file that is seen before it is read as a room; empty for pipes and compiled rooms,
-/// which are read once or in parts.
+/// Reads a file that is seen before it is read as a room; empty for compiled rooms, which are read
+/// in parts, and for streams with rooms, which are left to their readers.
 std::optional<std::string> glance(const std::string& operand, const StoreyChoice& choice) {
-    if (operand == "-") {
-        const std::string& kept = peekStdin();
+    if (isStream(operand)) {
+        const std::string& kept = peekStream(operand);
         const bool is_ours = mayHoldStoreys(kept, choice) || beginsLayout(kept);
         return is_ours ? std::optional(kept) : std::nullopt;
     }
-    if (isStream(operand)) return std::nullopt;
     if (isGlbRoom(operand)) return std::nullopt;
     return readAll(operand);
 }
@@ -222,6 +237,7 @@ std::optional<Operands> findBuilding(const SceneRequest& request) {
     const StoreyChoice& choice = request.rules.storeys;
     std::vector<std::string> operands = request.operands;
     if (operands.empty() && request.layout_from_stdin) operands.emplace_back("-");
+    std::string unknown;  // a stream that is neither, which is to be the layout
     for (const std::string& operand : operands) {
         const auto bytes = glance(operand, choice);
         if (bytes && mayHoldStoreys(*bytes, choice)) {
@@ -230,13 +246,19 @@ std::optional<Operands> findBuilding(const SceneRequest& request) {
             found.building = bytes;
             found.environment = operand;
         } else if (bytes && beginsLayout(*bytes)) {
+            if (!found.layout.empty())
+                throw UsageError("two layouts given, one is wanted: " + operand);
             found.layout = operand;
             found.layout_document = readLayout(*bytes, operand, request.rules);
-        } else if (isStream(operand) && found.layout.empty()) {
-            found.layout = operand;
+        } else if (isStream(operand) && unknown.empty()) {
+            unknown = operand;
         } else {
             return std::nullopt;
         }
+    }
+    if (!unknown.empty()) {
+        if (!found.building || !found.layout.empty()) return std::nullopt;
+        found.layout = unknown;
     }
     if (!found.building && found.layout_document) {
         const auto reference = environmentReference(*found.layout_document);
@@ -279,7 +301,7 @@ std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
     }
     if (!found->layout.empty() && !found->layout_document) {
         const std::string& layout = found->layout;
-        const std::string bytes = layout == "-" ? readStdin() : readAll(layout);
+        const std::string bytes = readOperand(layout);
         if (bytes.empty())
             throw FormatError({displayName(layout), 0, 0,
                                "empty, where a layout (`#3dm 1`) is wanted: " +
@@ -289,7 +311,7 @@ std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
     std::vector<Document> layouts;
     if (found->layout_document)
         found->layout_document =
-            layoutOfStoreys(*std::move(found->layout_document), *whole, document);
+            layoutOfStoreys(*std::move(found->layout_document), *whole, document, input.choices);
     input.files = {found->environment};
     input.warnings = document.warnings;
     if (found->layout_document) {
@@ -352,7 +374,7 @@ void addZones(std::span<const std::string> zones, BuildingScene& building) {
     std::map<std::size_t, std::vector<std::string>> by_storey;
     for (const std::string& text : zones) {
         const std::size_t slash = text.find('/');
-        if (slash == std::string::npos)
+        if (slash == std::string::npos && !text.starts_with(kDoorPrefix))
             throw UsageError("--zone: " + excerpt(text) + " names no storey, as in " +
                              document.storeys.front().id + "/rect:0,0,1,1");
         const StoreyText split = splitStoreys(document, "--zone", text);

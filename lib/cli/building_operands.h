@@ -29,6 +29,15 @@ Document chosenStorey(const StoreyedDocument& building, const std::string& opera
 Document layoutOfStorey(const Document& layout, const StoreyedDocument& building,
                         const std::string& storey);
 
+/// Returns true for the bytes of a layout, as our tools write it.
+bool beginsLayout(std::string_view bytes);
+/// Returns true if ids of a layout have storeys before them.
+bool namesStoreys(const Document& layout);
+/// Returns layoutOfStorey() for the storey whose room has these records; the layout itself if there
+/// is none.
+Document layoutOfRoom(const Document& layout, const StoreyedDocument& building,
+                      std::span<const Record> room);
+
 /// A building and a layout, as operands.
 struct BuildingInput {
     BuildingScene building;

@@ -15,7 +15,7 @@
 #include "base/file.h"
 #include "base/missed_files.h"
 #include "base/run_files.h"
-#include "building/storeys.h"
+#include "building/chosen_storeys.h"
 #include "cli/common_options.h"
 #include "io/glb/glb_read.h"
 #include "scene/placement_schemas.h"
@@ -88,7 +88,7 @@ std::optional<KeptRoom> roomIn(const std::string& file) {
         loadFiles(*document, file, import);
     } else {
         const std::string bytes = readAll(file, InputKind::Regular);
-        if (isBuilding(bytes)) return std::nullopt;
+        if (mayHoldStoreys(bytes, {})) return std::nullopt;
         document = parseDocument(bytes, file, import, sceneSchemas());
     }
     if (document->kind != DocumentKind::Environment || report.has_storeys) return std::nullopt;

@@ -2,7 +2,7 @@
 // Files that operands and their records name, and stdin.
 #include <algorithm>
 #include <filesystem>
-#include <optional>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What peekStdin() has read and readStdin() has not taken yet.
-std::optional<std::string>& peeked() {
-    static std::optional<std::string> bytes;
+/// What peekStream() has read and readOperand() has not taken yet, by operand.
+std::map<std::string, std::string>& peeked() {
+    static std::map<std::string, std::string> bytes;
     return bytes;
 }
 
@@ -34,13 +34,19 @@ void mustReadStdinOnce(const std::vector<std::string>& files) {
         throw UsageError("stdin cannot be read twice: only one operand can be -");
 }
 
-const std::string& peekStdin() {
-    if (!peeked()) peeked() = readStdin();
-    return *peeked();
+const std::string& peekStream(const std::string& operand) {
+    const auto known = peeked().find(operand);
+    if (known != peeked().end()) return known->second;
+    return peeked().emplace(operand, readOperand(operand)).first->second;
+}
+
+std::string readOperand(const std::string& operand) {
+    if (auto kept = peeked().extract(operand)) return std::move(kept.mapped());
+    return operand == "-" ? readStdin() : readAll(operand);
 }
 
 std::string readStdin() {
-    if (peeked()) return *std::exchange(peeked(), std::nullopt);
+    if (auto kept = peeked().extract("-")) return std::move(kept.mapped());
     if (isTerminalInput())
         throw UsageError("stdin is a terminal: give a file, or send data through a pipe");
     return readAll("-");

@@ -12,7 +12,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/run_files.h"
-#include "building/storeys.h"
+#include "building/chosen_storeys.h"
 #include "cli/building_operands.h"
 #include "cli/common_options.h"
 #include "cli/kept_rooms.h"
@@ -56,9 +56,26 @@ Document read(const std::string& operand, const SceneRules& rules, ImportReport*
 /// \param building receives the building
 Document readStorey(const std::string& operand, std::string_view bytes, const SceneRules& rules,
                     ImportReport& report, std::optional<StoreyedDocument>& building) {
-    if (!isBuilding(bytes)) return parse(bytes, operand, rules, &report);
-    building = readBuilding(bytes, operand, defaultImport(rules, &report));
+    const ImportOptions import = defaultImport(rules, &report);
+    std::optional<StoreyedDocument> read;
+    if (isBuilding(bytes))
+        read = readBuilding(bytes, operand, import);
+    else if (mayHoldStoreys(bytes, rules.storeys))
+        read = readStoreys(bytes, operand, import, rules.storeys);
+    if (!read) return parse(bytes, operand, rules, &report);
+    building = std::move(read);
     return chosenStorey(*building, operand, rules.storeys.one());
+}
+
+/// Returns the building of an IFC file that is read as the room of one storey; empty for others.
+std::optional<StoreyedDocument> ifcBuilding(std::string_view bytes, const std::string& operand,
+                                            const ImportOptions& import) {
+    if (!isIfc(bytes)) return std::nullopt;
+    ImportReport ignored;
+    ImportOptions whole = import;
+    whole.storey.clear();
+    whole.report = &ignored;
+    return readStoreys(bytes, operand, whole, {});
 }
 
 bool hasPlaced(const Document& document, bool (*is_meant)(const SensorKind&)) {
@@ -159,6 +176,10 @@ class OperandReader {
         if (!request_.rules.storeys.isEmpty() && !building_ && !report_.has_storeys)
             throw UsageError("--storey is about buildings, and " +
                              displayName(environment_operand_) + " is one room");
+        if (layout_ && namesStoreys(*layout_) && !ifc_.empty())
+            if (const auto whole =
+                    ifcBuilding(ifc_, environment_operand_, defaultImport(request_.rules, nullptr)))
+                layout_ = layoutOfRoom(*layout_, *whole, environment_->records);
         if (layout_ && building_)
             layout_ = layoutOfStorey(*layout_, *building_, request_.rules.storeys.one());
         if (layout_)
@@ -187,8 +208,13 @@ class OperandReader {
                 loadFiles(*room, operand, defaultImport(request_.rules, &report_));
                 return *std::move(room);
             }
-        return readStorey(operand, operand == "-" ? readStdin() : readAll(operand), request_.rules,
-                          report_, building_);
+        return readBytes(operand, ispace::readOperand(operand));
+    }
+
+    Document readBytes(const std::string& operand, std::string bytes) {
+        Document document = readStorey(operand, bytes, request_.rules, report_, building_);
+        if (isIfc(bytes)) ifc_ = std::move(bytes);
+        return document;
     }
 
     void take(const std::string& operand, Document document) {
@@ -244,7 +270,7 @@ class OperandReader {
         const std::string operand = (folder / reference->file).string();
         take(operand,
              documentReferenced(*reference, operand, layout_operand_, [&](std::string_view bytes) {
-                 return readStorey(operand, bytes, request_.rules, report_, building_);
+                 return readBytes(operand, std::string(bytes));
              }));
     }
 
@@ -254,6 +280,7 @@ class OperandReader {
     std::vector<std::string> named_;
     ImportReport report_;
     std::optional<StoreyedDocument> building_;   // of which the environment is a storey
+    std::string ifc_;                            // bytes of the environment, if it is one
     std::shared_ptr<const KeptRoom> kept_ = {};  // the environment, if it was read before
 };
 
@@ -363,6 +390,14 @@ std::vector<Document> parseInputs(const std::vector<RawInput>& raw, const InputR
             if (!plans && any_plan) addKnown(documents[i].records, import);
         }
     if (!any_plan && !import.inside.empty()) setInside(import.inside, documents);
+    if (std::any_of(documents.begin(), documents.end(), [](const Document& document) {
+            return document.kind == DocumentKind::Layout && namesStoreys(document);
+        }))
+        for (std::size_t i = 0; i < raw.size(); ++i)
+            if (const auto whole = ifcBuilding(raw[i].bytes, raw[i].name, import))
+                for (Document& document : documents)
+                    if (document.kind == DocumentKind::Layout)
+                        document = layoutOfRoom(document, *whole, documents[i].records);
     if (building) {
         if (import.report != nullptr) import.report->has_storeys = true;
         for (Document& document : documents)
@@ -389,7 +424,12 @@ std::string addEnvironment(std::vector<Document>& documents, const InputRequest&
         // Names are relative to the current folder by now.
         Document environment = documentReferenced(
             *reference, reference->file, request.inputs[i], [&](const std::string& bytes) {
-                return parseInput({reference->file, bytes}, request, request.import, building);
+                Document room =
+                    parseInput({reference->file, bytes}, request, request.import, building);
+                if (namesStoreys(documents[i]))
+                    if (const auto whole = ifcBuilding(bytes, reference->file, request.import))
+                        documents[i] = layoutOfRoom(documents[i], *whole, room.records);
+                return room;
             });
         environment.sources.insert(environment.sources.begin(), reference->file);
         if (building) {

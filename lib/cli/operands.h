@@ -89,8 +89,10 @@ void mustReadStdinOnce(const std::vector<std::string>& files);
 
 /// Reads all of stdin unless it is a terminal. \throws UsageError
 std::string readStdin();
-/// Reads stdin in the same way, and leaves it to the next readStdin(). \throws UsageError
-const std::string& peekStdin();
+/// Reads a file, or stdin for "-". \throws as readStdin() and readAll()
+std::string readOperand(const std::string& operand);
+/// Reads a stream in the same way, and leaves it to the next readOperand() of the same name.
+const std::string& peekStream(const std::string& operand);
 
 /// Returns `file=` of an `environment` record in a layout written to `output`: the path of ENV
 /// relative to its folder, never absolute; "" if ENV came from a stream.

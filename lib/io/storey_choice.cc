@@ -2,11 +2,15 @@
 #include "io/storey_choice.h"
 
 #include "base/glob.h"
+#include "io/plan/layer_names.h"
 
 namespace ispace {
 
+bool StoreyChoice::isAll(const std::string& word) { return lowerCased(word) == "all"; }
+
 bool StoreyChoice::isOne() const {
-    return words.size() == 1 && words.front() != kAllStoreys && !Glob(words.front()).isPattern();
+    return words.size() == 1 && !words.front().empty() && !isAll(words.front()) &&
+           !Glob(words.front()).isPattern();
 }
 
 }  // namespace ispace

@@ -15,14 +15,13 @@ struct StoreyChoice {
     std::vector<std::string> words = {};  ///< of --storey, in their order; none: all
 
     [[nodiscard]] bool isEmpty() const { return words.empty(); }
+    /// Returns true for the word `all`, in any case.
+    [[nodiscard]] static bool isAll(const std::string& word);
     /// Returns true for one word that is no pattern: the room of that storey is meant, with ids
     /// without a prefix.
     [[nodiscard]] bool isOne() const;
     /// Returns the word of isOne(), else "".
     [[nodiscard]] std::string one() const { return isOne() ? words.front() : std::string(); }
 };
-
-/// The word for all storeys.
-constexpr const char* kAllStoreys = "all";
 
 }  // namespace ispace

@@ -22,6 +22,7 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "coverage/coverage_run.h"
+#include "passage/least_seen_trip.h"
 #include "report/coverage_formats.h"
 #include "report/coverage_report.h"
 #include "report/map/map.h"
@@ -42,7 +43,6 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
     if (options.presence && !options.presence->record.empty() &&
         recordedBuilding(options.presence->record).empty())
         option = "--presence by the record of one room";
-    if (!options.paths.empty()) option = "--path";
     if (!options.trace.empty()) option = "--trace";
     if (!option.empty()) refuseSeveralRooms(option, building);
     if (options.format != nullptr && !options.format->picture)
@@ -127,16 +127,25 @@ void measurePresences(const CoverageToolOptions& options, BuildingInput& input,
     results.presence_sum = sumOverStoreys(results.presence);
 }
 
-/// Measures --localise on each storey, and over all.
-void measureObjectives(const CoverageToolOptions& options, const BuildingCoverage& coverage,
-                       BuildingResults& results) {
+/// Measures --path through the building, and --localise on each storey and over all.
+void measureObjectives(const CoverageToolOptions& options, const BuildingScene& building,
+                       const BuildingCoverage& coverage, BuildingResults& results) {
+    if (options.paths.empty() && !options.localise_to) return;
+    results.objectives.resize(coverage.storeys.size());
+    results.objectives_sum.emplace();
+    for (const WayChoice& path : options.paths) {
+        LeastSeenTrip trip = findLeastSeenTrip(building, coverage, path);
+        for (LeastSeenTrip::Part& part : trip.parts)
+            results.objectives[part.storey].ways.push_back(std::move(part.way));
+        results.objectives_sum->ways.push_back(std::move(trip.whole));
+    }
     if (!options.localise_to) return;
     std::vector<Localisation> storeys;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         storeys.push_back(localise(*coverage.floors[i], coverage.storeys[i], *options.localise_to));
-        results.objectives.push_back({{}, storeys.back()});
+        results.objectives[i].localisation = storeys.back();
     }
-    results.objectives_sum = ObjectiveFigures{{}, localisedOver(storeys, coverage.storeys)};
+    results.objectives_sum->localisation = localisedOver(storeys, coverage.storeys);
 }
 
 /// Returns the crowds of --crowd: by sample, then by storey.
@@ -365,7 +374,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
         verdicts.push_back(std::move(verdict));
     BuildingResults results;
     results.run = measureStoreyRuns(options, input);
-    measureObjectives(options, coverage, results);
+    measureObjectives(options, input.building, coverage, results);
     measurePresences(options, input, coverage, results);
     if (results.presence_sum)
         for (JunitCase& verdict : judge(options.presence_requirements, *results.presence_sum))

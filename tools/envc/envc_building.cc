@@ -42,6 +42,8 @@ constexpr std::string_view kFormats[] = {"glb", "env", "yaml", "svg", "png", "pd
 void mustBeAboutBuildings(const EnvcOptions& options, const StoreyedDocument& building) {
     std::string option;
     if (options.list_rooms) option = "--rooms list";
+    if (options.format != nullptr && options.format->takes_zones)
+        option = "--to " + std::string(options.format->name);
     if (!option.empty()) refuseSeveralRooms(option, building);
     if (options.format != nullptr &&
         (options.slice || std::find(std::begin(kFormats), std::end(kFormats),
@@ -276,13 +278,40 @@ void writeProduct(const EnvcOptions& options, const BuildingScene& building) {
 
 }  // namespace
 
+namespace {
+
+/// Adds the building that layouts name if there is no other input.
+std::vector<RawInput> withNamedBuilding(std::vector<RawInput> raw, const InputRequest& request,
+                                        const StoreyChoice& choice) {
+    if (!request.compiles || !std::all_of(raw.begin(), raw.end(), [](const RawInput& input) {
+            return beginsLayout(input.bytes);
+        }))
+        return raw;
+    for (const RawInput& input : raw) {
+        const auto reference = environmentReference(
+            parseDocument(input.bytes, input.name, request.import, sceneSchemas()));
+        if (!reference || reference->file.empty() || reference->file == "-") continue;
+        const std::string file = sideFilePath(input.name, reference->file);
+        std::error_code missing;
+        if (!fs::is_regular_file(file, missing)) break;  // readInputs() reports it
+        std::string bytes = readAll(file);
+        if (mayHoldStoreys(bytes, choice)) raw.push_back({file, std::move(bytes)});
+        break;
+    }
+    return raw;
+}
+
+}  // namespace
+
 std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
-                                                  const std::vector<RawInput>& raw,
+                                                  const std::vector<RawInput>& inputs,
                                                   const InputRequest& request) {
+    const std::vector<RawInput> raw = withNamedBuilding(inputs, request, options.rules.storeys);
     const StoreyChoice& choice = options.rules.storeys;
     // A height of the building and a point in it are of one storey.
-    const bool names_storey = request.import.slice_walls || !request.import.inside.empty() ||
-                              (options.list_rooms && choice.isEmpty());
+    const bool names_storey =
+        choice.isEmpty() &&
+        (request.import.slice_walls || !request.import.inside.empty() || options.list_rooms);
     const auto is_whole = [&](const RawInput& input) {
         return mayHoldStoreys(input.bytes, choice) && !(names_storey && isIfc(input.bytes));
     };
@@ -300,12 +329,10 @@ std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
         if (layout.kind != DocumentKind::Layout || is_whole(input))
             throw UsageError(displayName(input.name) + " beside the building " +
                              displayName(found->name) + ": a building goes with layouts alone");
-        addLayout(layoutOfStoreys(layout, *whole, building), building);
+        addLayout(layoutOfStoreys(layout, *whole, building, building.warnings), building);
         building.sources.push_back(input.name);
     }
     applyEdits(options, found->name, import, building);
-    if (options.format != nullptr && options.format->takes_zones)
-        refuseSeveralRooms("--to " + std::string(options.format->name), building);
     addZones(options.zones, building);
     building.sources.insert(building.sources.begin(), found->name);
     building.history.push_back(options.history_line);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -32,6 +33,8 @@ namespace ispace {
 namespace {
 
 constexpr std::size_t kMaxListed = 40;
+/// The id of an unnamed storey in a site.
+constexpr const char* kStoreyId = "storey";
 
 bool severalBuildings(const Building& building) {
     std::set<std::string> names;
@@ -83,6 +86,39 @@ std::string lowerCase(std::string text) {
     return text;
 }
 
+/// Returns the storeys that become rooms of a site, from the lowest on: those with doors or spaces,
+/// or all in a building without any, but for those that are level with a lower one.
+std::vector<std::size_t> roomStoreys(const Building& building) {
+    const bool any_rooms =
+        std::any_of(building.storeys.begin(), building.storeys.end(),
+                    [](const BuildingStorey& storey) { return storey.doors > 0; }) ||
+        !building.spaces.empty();
+    std::vector<std::size_t> rooms;
+    for (std::size_t i = 0; i < building.storeys.size(); ++i) {
+        const BuildingStorey& storey = building.storeys[i];
+        const bool is_level =
+            !rooms.empty() && !(storey.elevation > building.storeys[rooms.back()].elevation);
+        if (!is_level && (!any_rooms || storey.doors > 0 || !spaceAreas(building, i).empty()))
+            rooms.push_back(i);
+    }
+    return rooms;
+}
+
+/// Finds the storey of an id in the site of the building, in any case.
+std::optional<std::size_t> storeyOfId(const Building& building, const std::string& wanted) {
+    std::map<std::string, int> numbers;
+    std::set<std::string> ids;
+    for (const std::size_t storey : roomStoreys(building)) {  // numbered as by freeId()
+        std::string word = ImportRecords::idWord(building.storeys[storey].name);
+        if (word.empty()) word = kStoreyId;
+        std::string id = word;
+        for (int& last = numbers.try_emplace(word, 1).first->second; !ids.insert(id).second;)
+            id = word + '-' + std::to_string(++last);
+        if (id == lowerCase(wanted)) return storey;
+    }
+    return std::nullopt;
+}
+
 std::size_t storeyCalled(const Building& building, const std::string& wanted) {
     std::vector<std::size_t> found;
     std::vector<std::string> known;
@@ -91,11 +127,11 @@ std::size_t storeyCalled(const Building& building, const std::string& wanted) {
         const std::string whole = nameOf(building.storeys[i], several);
         known.push_back(whole);
         if (lowerCase(whole) == lowerCase(wanted) ||
-            lowerCase(building.storeys[i].name) == lowerCase(wanted) ||
-            ImportRecords::idWord(building.storeys[i].name) == wanted)
+            lowerCase(building.storeys[i].name) == lowerCase(wanted))
             found.push_back(i);
     }
     if (found.size() == 1) return found.front();
+    if (const auto storey = storeyOfId(building, wanted)) return *storey;
     const auto number = parseInteger(wanted);
     if (found.empty() && number && *number >= 1 &&
         static_cast<std::size_t>(*number) <= building.storeys.size())
@@ -160,10 +196,8 @@ double areaOfSection(const BuildingSection& section) { return totalArea(areaOf(s
 std::size_t chosenStorey(const Building& building, const ImportOptions& options) {
     const std::size_t count = building.storeys.size();
     if (lowerCase(options.storey) == "all" && count > 1)
-        refuse(
-            "one storey is read here: choose it with --storey, or make a building of all of them "
-            "with `envc --storey all`; the storeys: " +
-            listOf(building));
+        refuse("one storey is read here: choose it with --storey; the storeys: " +
+               listOf(building));
     if (!options.storey.empty() && lowerCase(options.storey) != "all")
         return storeyCalled(building, options.storey);
     if (options.slice_walls)
@@ -339,16 +373,10 @@ IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
     std::string read, left_out;
     if (const auto moved = movedHome(building)) all.notes.push_back(surveyText(*moved, "building"));
     if (options.report != nullptr) options.report->has_storeys = true;
-    const bool any_rooms =
-        std::any_of(building.storeys.begin(), building.storeys.end(),
-                    [](const BuildingStorey& storey) { return storey.doors > 0; }) ||
-        !building.spaces.empty();
+    const std::vector<std::size_t> rooms = roomStoreys(building);
     for (std::size_t i = 0; i < building.storeys.size(); ++i) {
         const BuildingStorey& storey = building.storeys[i];
-        const bool is_room = !any_rooms || storey.doors > 0 || !spaceAreas(building, i).empty();
-        const bool is_level =
-            !all.storeys.empty() && !(storey.elevation > all.storeys.back().elevation);
-        if (!is_room || is_level) {
+        if (!std::binary_search(rooms.begin(), rooms.end(), i)) {
             left_out.append(left_out.empty() ? "" : "; ").append(describe(building, i));
             continue;
         }

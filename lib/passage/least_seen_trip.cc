@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "passage/least_seen_trip.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "env/zone.h"
+#include "passage/storey_ways.h"
+#include "scene/bodies.h"
+
+namespace ispace {
+
+namespace {
+
+/// Half the edge of the floor at a landing, and the height of the intruder, metres.
+constexpr double kLanding = 0.3, kHeight = 1.75;
+
+/// A zone at an end of the way, or the floor before a stop.
+struct Stop {
+    std::size_t storey = 0;
+    std::string zone;                    ///< as readZone() takes it
+    std::string name;                    ///< across the building
+    std::optional<std::size_t> passage;  ///< index of its link
+};
+
+/// Finds the storey of a zone. \throws UsageError
+Stop stopAt(const BuildingScene& building, const std::string& text) {
+    const StoreyText named = splitStoreys(building.document, "--path", text);
+    std::vector<Stop> found;
+    std::string first;
+    for (const std::size_t storey : named.storeys) {
+        try {
+            static_cast<void>(readZone(named.text, building.scenes[storey]->environment));
+            const std::string& id = building.document.storeys[storey].id;
+            found.push_back({storey, named.text, id + '/' + named.text, {}});
+        } catch (const UsageError& error) {
+            if (first.empty()) first = building.document.storeys[storey].id + ": " + error.what();
+        }
+    }
+    if (found.empty()) throw UsageError("--path: " + first);
+    if (found.size() > 1)
+        throw UsageError("--path: several storeys have the zone " + excerpt(named.text) +
+                         ": name one, as in " + found.front().name);
+    return found.front();
+}
+
+std::string squareAbout(Point2 at) {
+    return "rect:" + formatDouble(at.x - kLanding) + ',' + formatDouble(at.y - kLanding) + ',' +
+           formatDouble(at.x + kLanding) + ',' + formatDouble(at.y + kLanding);
+}
+
+/// The ways on all storeys between stops, and the shortest of them end to end.
+class TripFinder {
+  public:
+    TripFinder(const BuildingScene& building, const BuildingCoverage& coverage, const WayChoice& of)
+        : coverage_(coverage) {
+        stops_ = {stopAt(building, of.from), stopAt(building, of.to)};
+        const std::vector<StoreyLink> links = passagesOf(building);
+        if (links.empty()) return;
+        const StoreyWays ways(building, links, {humanRadius(kHeight), kHeight});
+        for (const Landing& landing : ways.landings())
+            stops_.push_back({landing.storey, squareAbout(landing.at.position),
+                              links[landing.passage].id, landing.passage});
+    }
+
+    [[nodiscard]] WayChoice ends() const { return {stops_[0].name, stops_[1].name}; }
+
+    /// Dijkstra's algorithm over the stops, by the length that is seen, then by the length.
+    void find(LeastSeenTrip& trip) {
+        constexpr double kInfinite = std::numeric_limits<double>::infinity();
+        using Cost = std::pair<double, double>;
+        std::vector<Cost> costs(stops_.size(), {kInfinite, kInfinite});
+        std::vector<std::size_t> before(stops_.size(), 0);
+        std::vector<bool> is_done(stops_.size(), false);
+        costs[0] = {0, 0};
+        while (!is_done[1]) {
+            std::optional<std::size_t> next;
+            for (std::size_t i = 0; i < stops_.size(); ++i)
+                if (!is_done[i] && costs[i].first < kInfinite && (!next || costs[i] < costs[*next]))
+                    next = i;
+            if (!next) {
+                trip.whole.exists = false;
+                return;
+            }
+            is_done[*next] = true;
+            for (std::size_t i = 1; i < stops_.size(); ++i) {
+                if (is_done[i]) continue;
+                const auto cost = costBetween(*next, i);
+                if (!cost) continue;
+                const Cost sum{costs[*next].first + cost->first,
+                               costs[*next].second + cost->second};
+                if (!(sum < costs[i])) continue;
+                costs[i] = sum;
+                before[i] = *next;
+            }
+        }
+        trip.whole.seen = 0;
+        for (std::size_t at = 1; at != 0; at = before[at]) {
+            if (stops_[at].storey != stops_[before[at]].storey) continue;
+            const LeastSeenWay& way = wayBetween(before[at], at);
+            trip.whole.length += way.length;
+            if (!way.seen) trip.whole.seen.reset();
+            if (trip.whole.seen) *trip.whole.seen += *way.seen;
+            trip.parts.push_back({stops_[at].storey, way});
+        }
+        std::reverse(trip.parts.begin(), trip.parts.end());
+    }
+
+  private:
+    /// Returns what is seen on the way, and its length; empty if there is none.
+    std::optional<std::pair<double, double>> costBetween(std::size_t from, std::size_t to) {
+        const Stop &a = stops_[from], &b = stops_[to];
+        if (a.storey != b.storey)
+            return a.passage && a.passage == b.passage ? std::optional(std::pair(0.0, 0.0))
+                                                       : std::nullopt;
+        const LeastSeenWay& way = wayBetween(from, to);
+        if (!way.exists) return std::nullopt;
+        return std::pair(way.seen.value_or(0), way.length);
+    }
+
+    const LeastSeenWay& wayBetween(std::size_t from, std::size_t to) {
+        const auto [known, is_new] = ways_.try_emplace({from, to});
+        if (!is_new) return known->second;
+        const std::size_t storey = stops_[from].storey;
+        LeastSeenWay& way = known->second;
+        try {
+            way = findLeastSeenWay(*coverage_.floors[storey], coverage_.storeys[storey],
+                                   {stops_[from].zone, stops_[to].zone});
+        } catch (const UsageError&) {
+            // A landing under a beam, say, has no floor at the height of the coverage.
+            if (!stops_[from].passage && !stops_[to].passage) throw;
+            way.exists = false;
+        }
+        way.of = {stops_[from].name, stops_[to].name};
+        return way;
+    }
+
+    const BuildingCoverage& coverage_;
+    std::vector<Stop> stops_;  // the zones come first
+    std::map<std::pair<std::size_t, std::size_t>, LeastSeenWay> ways_;
+};
+
+}  // namespace
+
+LeastSeenTrip findLeastSeenTrip(const BuildingScene& building, const BuildingCoverage& coverage,
+                                const WayChoice& of) {
+    TripFinder finder(building, coverage, of);
+    LeastSeenTrip trip{{finder.ends()}};
+    finder.find(trip);
+    return trip;
+}
+
+}  // namespace ispace

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "passage/least_seen_trip.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/error.h"
+#include "building/building_scene.h"
+#include "building/storeys.h"
+
+namespace ispace {
+namespace {
+
+/// Two storeys of 12 m by 8 m. The zone `a` lies in the west below, `b` in the west above.
+/// \param ground,upper further records of the storeys \param passages further records
+BuildingScene house(const std::string& ground, const std::string& upper,
+                    const std::string& passages) {
+    const std::string room =
+        "records: [{fence: {path: [[0, 0], [12, 0], [12, 8], [0, 8]], closed: yes}}, ";
+    return makeBuildingScene(
+        readBuilding("- storey: {id: g, height: 3, " + room +
+                         "{zone: {id: a, at: [1, 4], size: 1 x 1}}" + ground +
+                         "]}\n- storey: {id: u, z: 3, height: 3, " + room +
+                         "{zone: {id: b, at: [1, 4], size: 1 x 1}}" + upper + "]}\n" + passages,
+                     "house.yaml", {}),
+        {}, {});
+}
+
+constexpr const char* kSouth =
+    "- stairs: {id: south, storeys: 'g,u', at: [6, 1.2], heading: 0, size: [1.2, 3]}\n";
+constexpr const char* kNorth =
+    "- stairs: {id: north, storeys: 'g,u', at: [6, 6.8], heading: 0, size: [1.2, 3]}\n";
+/// A level laser that sees all that lies south of y = 3 and east of x = 3.
+constexpr const char* kWatched =
+    ", {laser: {id: l, at: [3, 0.1, 0.15], heading: 22, fov: 44, range: 12}}";
+
+LeastSeenTrip tripIn(const BuildingScene& building, const WayChoice& of) {
+    return findLeastSeenTrip(building, measureBuilding(building, {}), of);
+}
+
+TEST(LeastSeenTrip, TakesTheStairsThatAreNotWatched) {
+    const BuildingScene building = house(kWatched, "", std::string(kSouth) + kNorth);
+    const LeastSeenTrip trip = tripIn(building, {"g/a", "u/b"});
+    ASSERT_TRUE(trip.whole.exists);
+    EXPECT_EQ(trip.whole.seen, 0);
+    ASSERT_EQ(trip.parts.size(), 2U);
+    EXPECT_EQ(trip.parts[0].storey, 0U);
+    EXPECT_EQ(trip.parts[0].way.of.from, "g/a");
+    EXPECT_EQ(trip.parts[0].way.of.to, "north");
+    EXPECT_EQ(trip.parts[1].way.of.from, "north");
+    EXPECT_EQ(trip.parts[1].way.of.to, "u/b");
+    EXPECT_DOUBLE_EQ(trip.whole.length, trip.parts[0].way.length + trip.parts[1].way.length);
+}
+
+TEST(LeastSeenTrip, IsSeenWhereTheOnlyStairsAreWatched) {
+    const BuildingScene building = house(kWatched, "", kSouth);
+    const LeastSeenTrip trip = tripIn(building, {"g/a", "u/b"});
+    ASSERT_TRUE(trip.whole.exists);
+    EXPECT_GT(trip.whole.seen.value(), 0.5);
+    EXPECT_EQ(trip.parts[1].way.seen, 0) << "the storey above has no sensor";
+    EXPECT_DOUBLE_EQ(*trip.whole.seen, trip.parts[0].way.seen.value());
+    // A further way never makes it worse, and the way back is seen as long.
+    const LeastSeenTrip back = tripIn(building, {"u/b", "g/a"});
+    EXPECT_NEAR(*back.whole.seen, *trip.whole.seen, 1e-9);
+    const LeastSeenTrip both =
+        tripIn(house(kWatched, "", std::string(kSouth) + kNorth), {"g/a", "u/b"});
+    EXPECT_LE(*both.whole.seen, *trip.whole.seen);
+}
+
+TEST(LeastSeenTrip, OfOneStoreyIsItsLeastSeenWay) {
+    const BuildingScene building =
+        house(", {zone: {id: c, at: [11, 1], size: 1 x 1}}" + std::string(kWatched), "", kNorth);
+    const BuildingCoverage coverage = measureBuilding(building, {});
+    const LeastSeenTrip trip = findLeastSeenTrip(building, coverage, {"a", "c"});
+    const LeastSeenWay way = findLeastSeenWay(*coverage.floors[0], coverage.storeys[0], {"a", "c"});
+    EXPECT_EQ(trip.whole.of.from, "g/a");
+    EXPECT_EQ(trip.whole.seen, way.seen);
+    EXPECT_DOUBLE_EQ(trip.whole.length, way.length);
+    ASSERT_EQ(trip.parts.size(), 1U);
+    EXPECT_EQ(trip.parts[0].way.pieces.size(), way.pieces.size());
+}
+
+TEST(LeastSeenTrip, MayLeadOverAnotherStorey) {
+    // A wall with a watched gap divides the storey below.
+    const std::string wall =
+        ", {wall: {from: [8, 0], to: [8, 5.8]}}, {wall: {from: [8, 6.3], to: [8, 8]}}"
+        ", {laser: {id: l, at: [8, 5.9, 0.15], heading: 90, fov: 360, range: 2}}"
+        ", {zone: {id: c, at: [11, 4], size: 1 x 1}}";
+    const char* const stairs =
+        "- stairs: {id: west, storeys: 'g,u', at: [3, 1.2], heading: 0, size: [1.2, 3]}\n"
+        "- stairs: {id: east, storeys: 'g,u', at: [9, 1.2], heading: 90, size: [1.2, 3]}\n";
+    const LeastSeenTrip trip = tripIn(house(wall, "", stairs), {"g/a", "g/c"});
+    ASSERT_TRUE(trip.whole.exists);
+    EXPECT_EQ(trip.whole.seen, 0);
+    ASSERT_EQ(trip.parts.size(), 3U);
+    EXPECT_EQ(trip.parts[1].storey, 1U);
+    EXPECT_EQ(trip.parts[1].way.of.from, "west");
+    EXPECT_EQ(trip.parts[1].way.of.to, "east");
+}
+
+TEST(LeastSeenTrip, NeedsAWay) {
+    EXPECT_FALSE(tripIn(house("", "", ""), {"g/a", "u/b"}).whole.exists);
+    const BuildingScene building = house("", ", {zone: {id: a, at: [9, 4], size: 1 x 1}}", kSouth);
+    EXPECT_THROW(tripIn(building, {"a", "b"}), UsageError) << "two storeys have it";
+    EXPECT_THROW(tripIn(building, {"g/b", "u/b"}), UsageError);
+}
+
+}  // namespace
+}  // namespace ispace
