@@ -31,7 +31,7 @@ struct FloorOpening {
     std::size_t below = 0, above = 0;  ///< storeys
     Polygon outline;                   ///< in the building, counter-clockwise
     /// Of stairs: the edge of the lowest step and that of the highest one, each from the right of
-    /// those who go up to their left. Between them the steps block sight.
+    /// people that go up to their left. Between them the steps block sight.
     std::vector<Segment2> flight = {};
 };
 

@@ -82,7 +82,7 @@ class RosSource;
 struct RosScenery {
     std::function<RosGrid(const Scene& scene)> map = {};       ///< null: there is no map
     std::function<std::string(const Scene& scene)> room = {};  ///< a mesh as GLB; null: none
-    /// Describes a robot and the sensors on it in URDF; null: nothing does. \param frame of the
+    /// Describes a robot and the sensors on it in URDF; null: none does. \param frame of the
     /// robot \param sensors frames of all sensors, "" without
     std::function<std::string(const Scene& scene, std::size_t robot, const std::string& frame,
                               std::span<const std::string> sensors)>

@@ -140,7 +140,7 @@ bool Server::Data::rolesHoldWorld() const {
 }
 
 /// Returns the time until which the world waits for readers at most; empty if it need not. Those
-/// that have read nothing for too long are no longer awaited.
+/// that have not read for too long are no longer awaited.
 std::optional<WallTime> Server::Data::awaitedReader() const {
     if (!limits.waits_for_readers || simulation.clock().kind == Clock::Kind::Real) return {};
     const auto most = limits.watchdog.count() > 0 ? limits.watchdog : limits.patience;
