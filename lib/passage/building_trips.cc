@@ -104,13 +104,13 @@ std::string BuildingRun::Data::loadText(const Traveller& who) const {
         world.people()[world.moverNamed(who.id).value() - world.robots().size()].figure;
     if (figure == nullptr || figure->load_parts == 0) return "";
     const std::string load = loadOf(world.scene(), who.id);
-    for (const Room& room : rooms) {
+    const auto other = std::find_if(rooms.begin(), rooms.end(), [&](const Room& room) {
         const std::vector<std::string>& ids = room.world->scene().ids;
-        if (&room != &rooms[who.room] && std::find(ids.begin(), ids.end(), load) != ids.end())
-            return who.id + " carries " + load + ", and " + room.id + " has another " + load +
-                   ": it first sets it down";
-    }
-    return "";
+        return &room != &rooms[who.room] && std::find(ids.begin(), ids.end(), load) != ids.end();
+    });
+    if (other == rooms.end()) return "";
+    return who.id + " carries " + load + ", and " + other->id + " has another " + load +
+           ": it first sets it down";
 }
 
 void BuildingRun::Data::finish(const std::string& id, Outcome outcome, const std::string& reason) {

@@ -14,7 +14,7 @@ namespace ispace {
 /// Reads the building if one input is a building without a chosen storey, with the layouts beside
 /// it; std::nullopt for rooms. \throws UsageError for options about one room, and beside rooms
 std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
-                                                  const std::vector<RawInput>& raw,
+                                                  const std::vector<RawInput>& inputs,
                                                   const InputRequest& request);
 
 /// Checks, reports on, draws or writes the building, as the options say.

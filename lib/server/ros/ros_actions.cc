@@ -122,7 +122,9 @@ void RosActions::addEnds(std::vector<DdsGuid>& readers, std::vector<DdsGuid>& wr
 }
 
 void RosActions::serve() {
-    for (auto& [name, action] : actions_) {
+    for (auto& named : actions_) {
+        const std::string& name = named.first;
+        Action& action = named.second;
         const auto take = [&](const Service& service, auto read) {
             for (const std::string& message : participant_->take(service.reader)) {
                 try {
