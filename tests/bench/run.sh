@@ -14,6 +14,8 @@ for program in start planner days kernel plan load ray_rate sight_scan depth_rat
         --benchmark_out_format=json
 done
 
+/usr/bin/python3 "$(dirname "$0")/latency.py" "$build" --csv "$build/bench/latency.csv"
+
 # Clipper 2 is in npm alone.
 if [ -d "$build/npm/node_modules/clipper2-wasm" ] && command -v node >/dev/null; then
     outlines=$(mktemp -d)
