@@ -20,7 +20,9 @@ namespace {
 /// Measures of the storeys, each room once, and their sums.
 struct BuildingInfo {
     std::vector<EnvironmentInfo> storeys;
-    double indoor_area = 0, free_area = 0;
+    Box2 limits;        // in the building
+    double height = 0;  // from the lowest floor to the highest wall
+    double indoor_area = 0, free_area = 0, perimeter = 0;
     std::size_t triangles = 0;
     std::map<std::string, int> counts;
 };
@@ -45,6 +47,14 @@ BuildingInfo describe(const BuildingScene& building) {
         info.storeys.push_back(room->second);
         info.indoor_area += room->second.indoor_area;
         info.free_area += room->second.free_area;
+        info.perimeter += room->second.perimeter;
+        const Storey& storey = building.document.storeys[i];
+        const Box2& box = room->second.limits;
+        for (const Point2 corner :
+             {box.low, Point2{box.high.x, box.low.y}, box.high, Point2{box.low.x, box.high.y}})
+            info.limits.add(storey.building_from_storey * corner);
+        info.height = std::max(info.height, storey.floor - building.document.storeys.front().floor +
+                                                room->second.height);
         info.triangles += room->second.triangles;
         for (const auto& [keyword, count] : room->second.counts) info.counts[keyword] += count;
     }
@@ -79,8 +89,14 @@ std::string buildingInfoJson(const BuildingScene& building) {
         for (const std::size_t i : passage.storeys) json.value(building.document.storeys[i].id);
         json.endArray().endObject();
     }
+    json.endArray().key("limits").beginArray();
+    for (const double limit :
+         {info.limits.low.x, info.limits.low.y, info.limits.high.x, info.limits.high.y})
+        json.value(roundSignificant(limit));
     json.endArray().key("indoor_area").value(roundSignificant(info.indoor_area));
     json.key("free_area").value(roundSignificant(info.free_area));
+    json.key("height").value(roundSignificant(info.height));
+    json.key("perimeter").value(roundSignificant(info.perimeter));
     json.key("counts").beginObject();
     for (const auto& [keyword, count] : info.counts) json.key(keyword).value(count);
     json.endObject().key("triangles").value(info.triangles).endObject();

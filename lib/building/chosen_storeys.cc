@@ -37,14 +37,23 @@ std::vector<std::size_t> storeysCalled(const StoreyedDocument& building, const s
     return found;
 }
 
-/// Returns true for a building in IFC of which more than one storey may have rooms.
+/// Returns true if a file has two or more instances of a type. \param type in capitals
+bool hasSeveral(std::string_view bytes, std::string_view type) {
+    int count = 0;
+    for (std::size_t at = bytes.find(type); at != std::string_view::npos && count < 2;
+         at = bytes.find(type, at + type.size())) {
+        const std::size_t next = bytes.find_first_not_of(" \t\r\n", at + type.size());
+        if (next != std::string_view::npos && bytes[next] == '(') ++count;
+    }
+    return count == 2;
+}
+
+/// Returns true for one building in IFC of which more than one storey may have rooms. Buildings
+/// side by side are no site: their storeys lie beside each other.
 bool isIfcOfStoreys(std::string_view bytes) {
     if (!isIfc(bytes)) return false;
-    if (!bytes.starts_with("ISO") && bytes.starts_with("PK")) return true;  // known once unpacked
-    constexpr std::string_view kStorey = "IFCBUILDINGSTOREY";
-    const std::size_t first = bytes.find(kStorey);
-    return first != std::string_view::npos &&
-           bytes.find(kStorey, first + kStorey.size()) != std::string_view::npos;
+    if (bytes.starts_with("PK")) return true;  // known once unpacked
+    return hasSeveral(bytes, "IFCBUILDINGSTOREY") && !hasSeveral(bytes, "IFCBUILDING");
 }
 
 }  // namespace

@@ -254,8 +254,8 @@ MADE = {
 # niches of windows and doorways are 5 % less.
 FOUND = {
     "strangers/ifc/openhouse.ifc": ((), 45, "right"),
-    "strangers/ifc/duplex.ifc": ((), 129.6, "right"),
-    "strangers/ifc/fzk-haus.ifc": ((), 104.6, "right"),
+    "strangers/ifc/duplex.ifc": (("--storey", "level-1"), 129.6, "right"),
+    "strangers/ifc/fzk-haus.ifc": (("--storey", "Erdgeschoss"), 104.6, "right"),
     "strangers/nav2/garage.yaml": ((), 54.1, "right"),
     "strangers/nav2/map.yaml": ((), 72.9, "right"),
     "strangers/nav2/office.yaml": ((), 37.9, "right"),

@@ -85,7 +85,12 @@ expect_again deep.env
 grep -q '"indoor_area":30.19' want.json || fail "the door does not join the rooms: $(cat want.json)"
 envc again.dxf --to env | has '^door .* size=0.9,0.7 ' || fail "a door lost its depth: $(envc again.dxf --to env)"
 for building in "$data"/ifc/[ch]*.ifc ${ISPACE_TEST_DATA:+"$ISPACE_TEST_DATA"/strangers/ifc/*.ifc}; do
-    envc "$building" -q -o building.glb 2>/dev/null
+    case $building in
+    *duplex*) storey=(--storey level-1) ;;
+    *fzk*) storey=(--storey erdgeschoss) ;;
+    *) storey=() ;;
+    esac
+    envc "$building" "${storey[@]}" -q -o building.glb 2>/dev/null
     expect_again building.glb
 done
 cat >stacked.env <<'END'

@@ -54,9 +54,10 @@ done
 command -v node >/dev/null || skip "no node here"
 # Buildings of others come back as the same rooms.
 contents() { sed -n 's/^\(door\|window\|zone\|cube\) .*/\1/p' "$1" | sort | uniq -c; }
-for building in "${ISPACE_TEST_DATA:-/nonexistent}"/strangers/ifc/{duplex,fzk-haus}.ifc; do
+for storey in duplex.ifc:level-1 fzk-haus.ifc:erdgeschoss; do
+    building=${ISPACE_TEST_DATA:-/nonexistent}/strangers/ifc/${storey%:*}
     [ -r "$building" ] || continue
-    envc "$building" -o once.env 2>/dev/null
+    envc "$building" --storey "${storey#*:}" -o once.env 2>/dev/null
     envc once.env -o once.ifc 2>/dev/null
     envc once.ifc -o twice.env 2>/dev/null
     same_area "$(indoor once.env)" "$(indoor twice.env)" 0.002

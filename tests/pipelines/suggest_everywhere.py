@@ -99,6 +99,8 @@ def options_for(path):
         "units_lie.dxf": ["--units", "m"],
         "ml3.dxf": ["--wall-layer", "Walls"],
         "room-y-up.obj": ["--slice-walls", "1.2"],
+        "duplex.ifc": ["--storey", "level-1"],
+        "fzk-haus.ifc": ["--storey", "Erdgeschoss"],
     }
     models = path.parent / "models"
     if path.suffix == ".world" and "turtlebot3_gazebo" in path.parts and models.exists() \

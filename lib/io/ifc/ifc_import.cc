@@ -67,13 +67,21 @@ std::string describe(const Building& building, std::size_t i) {
                           : areaText(sum) + " in " + countText(areas.size(), "space"));
 }
 
-std::string listOf(const Building& building, std::optional<std::size_t> but = std::nullopt) {
+std::string listOf(const Building& building, std::span<const std::size_t> storeys) {
     std::string list;
-    for (std::size_t i = 0; i < std::min(building.storeys.size(), kMaxListed); ++i)
-        if (i != but) list += (list.empty() ? "" : "; ") + describe(building, i);
-    if (building.storeys.size() > kMaxListed)
-        list += "; and " + std::to_string(building.storeys.size() - kMaxListed) + " more";
+    for (const std::size_t i : storeys.first(std::min(storeys.size(), kMaxListed)))
+        list.append(list.empty() ? "" : "; ").append(describe(building, i));
+    if (storeys.size() > kMaxListed)
+        list += "; and " + std::to_string(storeys.size() - kMaxListed) + " more";
     return list;
+}
+
+/// Lists all storeys, or all but one.
+std::string listOf(const Building& building, std::optional<std::size_t> but = std::nullopt) {
+    std::vector<std::size_t> storeys;
+    for (std::size_t i = 0; i < building.storeys.size(); ++i)
+        if (i != but) storeys.push_back(i);
+    return listOf(building, storeys);
 }
 
 [[noreturn]] void refuse(const std::string& message) {
@@ -93,13 +101,15 @@ std::vector<std::size_t> roomStoreys(const Building& building) {
         std::any_of(building.storeys.begin(), building.storeys.end(),
                     [](const BuildingStorey& storey) { return storey.doors > 0; }) ||
         !building.spaces.empty();
+    std::vector<bool> has_space(building.storeys.size(), false);
+    for (const BuildingSpace& space : building.spaces)
+        if (space.storey < has_space.size()) has_space[space.storey] = true;
     std::vector<std::size_t> rooms;
     for (std::size_t i = 0; i < building.storeys.size(); ++i) {
         const BuildingStorey& storey = building.storeys[i];
         const bool is_level =
             !rooms.empty() && !(storey.elevation > building.storeys[rooms.back()].elevation);
-        if (!is_level && (!any_rooms || storey.doors > 0 || !spaceAreas(building, i).empty()))
-            rooms.push_back(i);
+        if (!is_level && (!any_rooms || storey.doors > 0 || has_space[i])) rooms.push_back(i);
     }
     return rooms;
 }
@@ -370,17 +380,16 @@ IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
     Budget work(bytes.size(), options.max_work);
     Building building = wholeBuilding(bytes, operand, options, work);
     IfcStoreys all;
-    std::string read, left_out;
+    std::vector<std::size_t> left_out;
     if (const auto moved = movedHome(building)) all.notes.push_back(surveyText(*moved, "building"));
     if (options.report != nullptr) options.report->has_storeys = true;
     const std::vector<std::size_t> rooms = roomStoreys(building);
     for (std::size_t i = 0; i < building.storeys.size(); ++i) {
         const BuildingStorey& storey = building.storeys[i];
         if (!std::binary_search(rooms.begin(), rooms.end(), i)) {
-            left_out.append(left_out.empty() ? "" : "; ").append(describe(building, i));
+            left_out.push_back(i);
             continue;
         }
-        read.append(read.empty() ? "" : "; ").append(describe(building, i));
         ImportRecords out(schemas, operand, options);
         out.setStorey(storeyWord(building, i));
         const bool is_first = all.storeys.empty();
@@ -390,8 +399,9 @@ IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
         all.storeys.push_back({storey.name, storey.elevation, out.take()});
     }
     if (all.storeys.empty()) failFile(operand, "no storey has walls or spaces");
-    std::string sentence = "read " + countText(all.storeys.size(), "storey") + ": " + read;
-    if (!left_out.empty()) sentence += "; left out: " + left_out;
+    std::string sentence =
+        "read " + countText(rooms.size(), "storey") + ": " + listOf(building, rooms);
+    if (!left_out.empty()) sentence += "; left out: " + listOf(building, left_out);
     sentence += "; --storey NAME chooses";
     if (options.report != nullptr)
         options.report->addChoice(operand, sentence);
