@@ -29,7 +29,9 @@
 #include <sim_aria/connection.h>
 #include <sim_aria/connector.h>
 #include <sim_aria/data_logger.h>
+#include <sim_aria/file_parser.h>
 #include <sim_aria/functor_kinds.h>
+#include <sim_aria/gps_coords.h>
 #include <sim_aria/hardware.h>
 #include <sim_aria/interpolation.h>
 #include <sim_aria/keys.h>
@@ -40,7 +42,9 @@
 #include <sim_aria/process.h>
 #include <sim_aria/range_device.h>
 #include <sim_aria/robot.h>
+#include <sim_aria/sim_util.h>
 #include <sim_aria/sounds.h>
+#include <sim_aria/statistics.h>
 #include <sim_aria/tcp_socket.h>
 #include <sim_aria/thread.h>
 #include <sim_aria/util.h>

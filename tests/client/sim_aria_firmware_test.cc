@@ -191,6 +191,140 @@ TEST_F(SimAriaFirmware, PointsMoveWithTheRobot) {
     EXPECT_GT(old(), 3000);
 }
 
+TEST_F(SimAriaFirmware, TheSimulatorKnowsAndSetsTheTruePose) {
+    ArSimUtil simulator(&robot);
+    EXPECT_FALSE(simulator.setSimTruePose(ArPose(0, 0, 0)));  // not connected
+    EXPECT_EQ(simulator.getSimTruePose(), ArPose());
+    connect();
+    EXPECT_EQ(simulator.getSimTruePose(), ArPose(-1000, 0, 0));
+    robot.move(500);
+    ArUtil::sleep(5000);
+    const double way = robot.getX();
+    EXPECT_NEAR(way, 500, 20);
+    EXPECT_NEAR(simulator.getSimTrueX(), -1000 + way, 2);
+    EXPECT_TRUE(simulator.setSimTruePose(ArPose(-500, -1000, 90)));
+    ArUtil::sleep(500);
+    EXPECT_EQ(simulator.getSimTruePoseFunc()->invokeR(), ArPose(-500, -1000, 90));
+    EXPECT_EQ(robot.getX(), way);                                // by its wheels it has not moved
+    EXPECT_FALSE(simulator.setSimTruePose(ArPose(1950, 0, 0)));  // in the wall
+    ArUtil::sleep(500);
+    EXPECT_EQ(simulator.getSimTrueY(), -1000);
+    robot.move(300);
+    ArUtil::sleep(5000);
+    EXPECT_NEAR(simulator.getSimTrueY(), -700, 20);
+    EXPECT_NEAR(robot.getX(), way + 300, 20);
+    robot.disconnect();
+    EXPECT_NEAR(simulator.getSimTrueY(), -700, 20);  // the last one known
+}
+
+/// Counts packets and keeps the numbers of the last one that has this id.
+struct PacketReader {
+    int id = 0, count = 0;
+    std::size_t skip = 0;
+    long first = 0, second = 0;
+    bool read(ArRobotPacket* packet) {
+        if (packet->getID() != id) return false;
+        ++count;
+        for (std::size_t i = 0; i < skip; ++i) packet->bufToUByte2();
+        first = packet->bufToByte4();
+        second = packet->bufToByte4();
+        return true;
+    }
+};
+
+TEST_F(SimAriaFirmware, PacketsOfEncodersAndOfTheSimulatorComeOnRequest) {
+    PacketReader encoders, simulator;
+    encoders.id = 0x90;
+    simulator.id = 0x62;
+    simulator.skip = 6;
+    ArRetFunctor1C<bool, PacketReader, ArRobotPacket*> read(encoders, &PacketReader::read),
+        read_simulator(simulator, &PacketReader::read);
+    robot.addPacketHandler(&read, ArListPos::FIRST);
+    robot.addPacketHandler(&read_simulator);
+    connect();
+    ArUtil::sleep(1000);
+    EXPECT_EQ(encoders.count + simulator.count, 0);
+    robot.requestEncoderPackets();
+    robot.comInt(ArCommands::SIM_STAT, 1);
+    robot.setVel(200);
+    ArUtil::sleep(2000);
+    EXPECT_NEAR(encoders.count, 20, 1);
+    EXPECT_GT(encoders.first, 10000);
+    EXPECT_EQ(encoders.first, encoders.second);
+    EXPECT_EQ(simulator.count, 1);
+    robot.stopEncoderPackets();
+    robot.comInt(ArCommands::SIM_STAT, 2);
+    ArUtil::sleep(1000);
+    EXPECT_NEAR(encoders.count, 20, 1);
+    EXPECT_NEAR(simulator.count, 11, 1);
+    EXPECT_NEAR(static_cast<double>(simulator.first), -1000 + robot.getX(), 2);
+    EXPECT_EQ(simulator.second, 0);
+    robot.remPacketHandler(&read);
+    robot.remPacketHandler(&read_simulator);
+}
+
+struct HalfTurns {
+    double half(ArPoseWithTime change) { return change.getTh() / 2; }
+};
+
+TEST_F(SimAriaFirmware, ACorrectionChangesTheHeading) {
+    HalfTurns turns;
+    ArRetFunctor1C<double, HalfTurns, ArPoseWithTime> half(turns, &HalfTurns::half);
+    robot.setEncoderCorrectionCallback(&half);
+    EXPECT_EQ(robot.getEncoderCorrectionCallback(), &half);
+    connect();
+    robot.setRotVel(30);
+    ArUtil::sleep(3000);
+    robot.lock();
+    EXPECT_GT(robot.getEncoderPose().getTh(), 50);
+    EXPECT_NEAR(robot.getTh(), robot.getEncoderPose().getTh() / 2, 1e-6);
+    robot.setEncoderCorrectionCallback(nullptr);
+    const double corrected = robot.getTh(), wheels = robot.getEncoderPose().getTh();
+    robot.unlock();
+    ArUtil::sleep(1000);
+    EXPECT_NEAR(robot.getTh() - corrected, robot.getEncoderPose().getTh() - wheels, 1e-6);
+}
+
+TEST_F(SimAriaFirmware, ADroppedConnectionIsALoss) {
+    Arrivals lost;
+    ArFunctorC<Arrivals> on_loss(&lost, &Arrivals::add);
+    robot.addDisconnectOnErrorCB(&on_loss);
+    EXPECT_EQ(robot.waitForConnectOrConnFail(), ArRobot::WAIT_RUN_EXIT);
+    robot.runAsync(false);
+    ASSERT_TRUE(robot.asyncConnect());
+    EXPECT_EQ(robot.waitForConnectOrConnFail(), ArRobot::WAIT_CONNECTED);
+    robot.dropConnection();
+    EXPECT_FALSE(robot.isConnected());
+    EXPECT_EQ(lost.count, 1);
+    robot.dropConnection();
+    EXPECT_EQ(lost.count, 1);
+    setenv("ISPACE_ROBOT", "r9", 1);
+    ASSERT_TRUE(robot.asyncConnect());
+    EXPECT_EQ(robot.waitForConnectOrConnFail(), ArRobot::WAIT_FAILED_CONN);
+    unsetenv("ISPACE_ROBOT");
+}
+
+TEST_F(SimAriaFirmware, ALaserIgnoresWhatIsNearerThanItsMinimum) {
+    connect();
+    ArLaser laser(1, "");
+    robot.addLaser(&laser, 1);
+    ASSERT_TRUE(laser.blockingConnect());
+    ArUtil::sleep(500);
+    // To the sides the walls are 2 m away, ahead 3 m.
+    EXPECT_EQ(laser.getCurrentReadings().size(), 3U);
+    laser.lock();
+    laser.setMinRange(2500);
+    laser.unlock();
+    ArUtil::sleep(500);
+    laser.lock();
+    ASSERT_EQ(laser.getCurrentReadings().size(), 1U);
+    EXPECT_NEAR(laser.getCurrentReadings().front().getX(), 3000, 2);
+    EXPECT_EQ(laser.getRawReadings()->size(), 3U);
+    EXPECT_TRUE(laser.getRawReadings()->front()->getIgnoreThisReading());
+    laser.unlock();
+    laser.disconnect();
+}
+
 TEST_F(SimAriaFirmware, DevicesThatAPioneerLacks) {
     connect();
     EXPECT_TRUE(robot.getBatteryMap()->empty());

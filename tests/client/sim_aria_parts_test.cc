@@ -3,10 +3,12 @@
 // configurations, arguments, sockets, poses, sonars.
 #include <Sim_Aria.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <list>
 #include <memory>
 #include <string>
 #include <thread>
@@ -49,6 +51,7 @@ TEST(SimAriaFunctors, StoredAndGivenParameters) {
     EXPECT_FALSE(three.invokeR("abc"));
     EXPECT_TRUE(three.invokeR("abc", 0));
     EXPECT_TRUE(three.invokeR("abc", 2, 1));
+    EXPECT_EQ((ArRetFunctor1C<int, Callee, int>().invokeR(5)), 0);
     const Callee fixed{};
     ArConstRetFunctorC<int, Callee> constant(fixed, &Callee::constant);
     ArRetFunctor<int>* const as_base = &constant;
@@ -116,6 +119,13 @@ TEST(SimAriaResolver, SharesStrengthByPriority) {
     EXPECT_NEAR(resolve()->getDeltaHeading(), 170, 1e-9);
 }
 
+TEST(SimAriaResolver, NeedsNoRobot) {
+    ArActionConstantVelocity slow("slow", 200), fast("fast", 400);
+    ArResolver::ActionMap actions = {{50, &slow}, {50, &fast}};
+    ArPriorityResolver resolver;
+    EXPECT_EQ(resolver.resolve(&actions, nullptr)->getVel(), 300);
+}
+
 TEST(SimAriaMath, AWholeTurnHasAllAngles) {
     for (const double angle : {-180.0, -90.0, 0.0, 33.0, 180.0}) {
         EXPECT_TRUE(ArMath::angleBetween(angle, -180, 180)) << angle;
@@ -164,6 +174,18 @@ TEST(SimAriaPackets, ReadWhatWasWritten) {
     EXPECT_TRUE(packet.isValid());
     packet.bufToUByte4();
     EXPECT_FALSE(packet.isValid());
+}
+
+TEST(SimAriaPackets, BytesBeforeTheFooterAreLeft) {
+    ArBasePacket packet(64, 4, nullptr, 10);
+    packet.setLength(5);
+    packet.setReadLength(4);
+    EXPECT_FALSE(packet.bufferContainsBytes(1));
+    packet.setLength(16);
+    EXPECT_TRUE(packet.bufferContainsBytes(2));
+    EXPECT_FALSE(packet.bufferContainsBytes(3));
+    packet.setReadLength(2);
+    EXPECT_EQ(packet.getDataReadLength(), 0);
 }
 
 class Counter : public ArASyncTask {
@@ -224,6 +246,132 @@ TEST(SimAriaConfig, RoundTripAndErrors) {
     EXPECT_EQ(share, 1);
     std::remove(file.c_str());
     EXPECT_FALSE(config.parseFile(file.c_str(), true, true, error, sizeof error));
+}
+
+struct Waypoints {
+    std::list<ArArgumentBuilder> read;
+    std::list<ArArgumentBuilder*> pointers;
+    bool add(ArArgumentBuilder* words) {
+        read.push_back(*words);
+        return words->getArgc() == 2;
+    }
+    const std::list<ArArgumentBuilder*>* all() {
+        pointers.clear();
+        for (ArArgumentBuilder& one : read) pointers.push_back(&one);
+        return &pointers;
+    }
+};
+
+TEST(SimAriaConfig, FunctorsSectionsAndOptions) {
+    const ispace::testing::TestFolder folder;
+    const std::string file = folder.file("aria.cfg");
+    Waypoints points;
+    ArRetFunctor1C<bool, Waypoints, ArArgumentBuilder*> set(points, &Waypoints::add);
+    ArRetFunctorC<const std::list<ArArgumentBuilder*>*, Waypoints> get(points, &Waypoints::all);
+    int speed = 1, range = 1;
+    ArConfig config;
+    config.addParam(ArConfigArg("Point", &set, &get, "a point of the way"), "Way");
+    config.addParam(ArConfigArg("Speed", &speed, "mm/s"), "Way");
+    config.addParam(ArConfigArg("Range", &range, "mm"), "Other");
+    const auto write = [&](const char* text) {
+        std::FILE* const out = std::fopen(file.c_str(), "w");
+        std::fputs(text, out);
+        std::fclose(out);
+    };
+    write("Section Way\nPoint 1 2\nPoint 3 4\nSpeed 5\nSection Other\nRange 6\n");
+    char name[] = "test", option[] = "-Speed", value[] = "7";
+    char* words[] = {name, option, value, nullptr};
+    int count = 3;
+    ArArgumentParser parser(&count, words);
+    config.useArgumentParser(&parser);
+    std::list<std::string> sections = {"way"};
+    ASSERT_TRUE(config.parseFile(file.c_str(), false, false, nullptr, 0, &sections));
+    EXPECT_EQ(speed, 7);
+    EXPECT_EQ(range, 1);
+    EXPECT_EQ(count, 1);
+    ASSERT_EQ(points.read.size(), 2U);
+    EXPECT_STREQ(points.read.back().getFullString(), "3 4");
+    EXPECT_STREQ(points.read.back().getExtraString(), "Point");
+    // Both lines are written, and read again.
+    ASSERT_TRUE(config.writeFile(file.c_str()));
+    ASSERT_TRUE(config.parseFile(file.c_str()));
+    EXPECT_EQ(points.read.size(), 4U);
+    write("Section Way\nPoint 1\n");
+    EXPECT_FALSE(config.parseFile(file.c_str()));
+}
+
+TEST(SimAriaFileParser, LinesByTheirFirstWord) {
+    const ispace::testing::TestFolder folder;
+    std::FILE* const out = std::fopen(folder.file("points.txt").c_str(), "w");
+    std::fputs("POINT 1 2 ; first\n\n# none\nspeed 3\npoint 4\npoint 5 6\n", out);
+    std::fclose(out);
+    Waypoints points, others;
+    ArRetFunctor1C<bool, Waypoints, ArArgumentBuilder*> add(points, &Waypoints::add),
+        add_other(others, &Waypoints::add);
+    ArFileParser parser(folder.path().c_str());
+    EXPECT_TRUE(parser.addHandler("point", &add));
+    EXPECT_FALSE(parser.addHandler("Point", &add));
+    EXPECT_FALSE(parser.parseFile("points.txt", false));  // ends at the unknown word
+    EXPECT_EQ(points.read.size(), 1U);
+    EXPECT_TRUE(parser.addHandler(nullptr, &add_other));
+    EXPECT_FALSE(parser.parseFile("points.txt"));  // a point has two numbers
+    EXPECT_EQ(points.read.size(), 4U);
+    ASSERT_EQ(others.read.size(), 1U);
+    EXPECT_STREQ(others.read.front().getFullString(), "speed 3");
+    EXPECT_EQ(others.read.front().getArgInt(1), 3);
+    EXPECT_TRUE(parser.remHandler(&add));
+    EXPECT_FALSE(parser.remHandler("point"));
+    EXPECT_FALSE(parser.parseFile("missing.txt", true, true));
+}
+
+TEST(SimAriaKeys, FunctionKeysHaveNumbers) {
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    std::FILE* const input = fdopen(ends[0], "r");
+    {
+        ArKeyHandler keys(false, false, input);
+        const std::string typed = "\033OP\033[15~\033[24~\033[17;2~\033[6~\033[3~x";
+        ASSERT_EQ(write(ends[1], typed.data(), typed.size()), static_cast<ssize_t>(typed.size()));
+        for (const int key : {ArKeyHandler::F1, ArKeyHandler::F5, ArKeyHandler::F12,
+                              ArKeyHandler::F6, ArKeyHandler::PAGEDOWN, ArKeyHandler::DEL})
+            EXPECT_EQ(keys.getKey(), key);
+        EXPECT_EQ(keys.getKey(), 'x');
+        EXPECT_EQ(keys.getKey(), -1);
+    }
+    close(ends[1]);
+    std::fclose(input);
+}
+
+TEST(SimAriaStatistics, SectorsAndTheMeanSquare) {
+    ArSectors<> sectors;
+    for (double angle = 0; angle < 315; angle += 45) sectors.update(angle);
+    EXPECT_FALSE(sectors.didAll());
+    sectors.update(-1);
+    EXPECT_TRUE(sectors.didAll());
+    ArRootMeanSquareCalculator square;
+    EXPECT_EQ(square.getRootMeanSquare(), 0);
+    square.add(100000);
+    square.add(-100000);
+    EXPECT_NEAR(square.getRootMeanSquare(), 100000, 1e-6);
+    char name[4];
+    EXPECT_TRUE(ArUtil::getFileName("/tmp/robots", name, sizeof name));
+    EXPECT_STREQ(name, "rob");
+}
+
+// A second of latitude is 30.9 m, of longitude the cosine of it.
+TEST(SimAriaGps, MapsLieOnTheEarth) {
+    const ArMapGPSCoords map(ArLLACoords(48.1, 11.6, 500));
+    double east = 0, north = 0, up = 0;
+    map.convertLLA2MapCoords(ArLLACoords(48.1 + 1.0 / 3600, 11.6 + 1.0 / 3600, 501), east, north,
+                             up);
+    EXPECT_NEAR(north, 30892, 10);
+    EXPECT_NEAR(east, 20696, 20);
+    EXPECT_NEAR(up, 1000, 1);
+    double latitude = 0, longitude = 0, altitude = 0;
+    map.convertMap2LLACoords(east, north, up, latitude, longitude, altitude);
+    EXPECT_NEAR(latitude, 48.1 + 1.0 / 3600, 1e-10);
+    EXPECT_NEAR(longitude, 11.6 + 1.0 / 3600, 1e-10);
+    EXPECT_NEAR(altitude, 501, 1e-5);
 }
 
 TEST(SimAriaArguments, ValuesDefaultsAndTheRest) {
@@ -393,6 +541,41 @@ TEST(SimAriaPose, IsInMillimetresAndDegrees) {
     EXPECT_TRUE(ArMath::angleBetween(175, 170, -170));
     EXPECT_FALSE(ArMath::angleBetween(0, 170, -170));
     EXPECT_EQ(ArMath::roundInt(-2.5), -3);
+}
+
+TEST(SimAriaRangeBuffer, ReadingsAndPointersAreTheSame) {
+    ArRangeDevice device(4, 8, "device", 5000);
+    for (int i = 1; i <= 6; ++i) device.addReading(1000 * i, 0);
+    const std::list<ArPoseWithTime>& readings = device.getCurrentReadings();
+    ASSERT_EQ(readings.size(), 4U);
+    EXPECT_EQ(readings.front().getX(), 6000);  // the newest first
+    EXPECT_EQ(device.getCumulativeReadings().size(), 6U);
+    EXPECT_EQ(device.getCurrentRangeBuffer().getCapacity(), 4U);
+    device.getCurrentRangeBufferPtr()->addReadingConditional(4010, 0, 100 * 100);
+    auto at = readings.begin();
+    for (const ArPoseWithTime* pointer : *device.getCurrentBuffer()) EXPECT_EQ(pointer, &*at++);
+    EXPECT_EQ(at, readings.end());
+    device.applyTransform(ArTransform(ArPose(0, 100)));
+    EXPECT_EQ(device.getCurrentBuffer()->front()->getY(), 100);
+}
+
+TEST(SimAriaRangeBuffer, NearPointsAreNotAddedAndSweepsRemove) {
+    ArRangeBuffer buffer(10);
+    bool added = false;
+    for (int i = 0; i < 5; ++i) buffer.addReadingConditional(1000 * i, 0, 100 * 100, &added);
+    EXPECT_TRUE(added);
+    buffer.addReadingConditional(1050, 0, 100 * 100, &added);
+    EXPECT_FALSE(added);
+    EXPECT_EQ(buffer.getCurrentSize(), 5U);
+    EXPECT_EQ(buffer.getBegin()->getX(), 1000);  // now the newest
+    buffer.beginInvalidationSweep();
+    for (auto at = buffer.getBegin(); at != buffer.getEnd(); ++at)
+        if (at->getX() < 2500) buffer.invalidateReading(at);
+    EXPECT_EQ(buffer.getCurrentSize(), 5U);
+    buffer.endInvalidationSweep();
+    ASSERT_EQ(buffer.getCurrentSize(), 2U);
+    EXPECT_EQ(buffer.getBuffer()->size(), 2U);
+    EXPECT_EQ(buffer.getBuffer()->back()->getX(), 3000);
 }
 
 TEST(SimAriaSonar, SectorsLookFromTheRobot) {

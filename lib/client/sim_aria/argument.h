@@ -6,15 +6,21 @@
 #include <climits>
 #include <cstdio>
 #include <cstdlib>
+#include <list>
 #include <string>
+#include <vector>
 
+#include <sim_aria/arguments.h>
+#include <sim_aria/functor.h>
 #include <sim_aria/typedefs.h>
 #include <sim_aria/util.h>
 
 /// A named parameter: refers to a variable of an action or of a configuration.
 class ArArg {
   public:
-    enum Type { INVALID, INT, DOUBLE, STRING, BOOL, DESCRIPTION_HOLDER, SEPARATOR };
+    enum Type { INVALID, INT, DOUBLE, STRING, BOOL, FUNCTOR, DESCRIPTION_HOLDER, SEPARATOR };
+    using Setter = ArRetFunctor1<bool, ArArgumentBuilder*>;
+    using Getter = ArRetFunctor<const std::list<ArArgumentBuilder*>*>;
 
     ArArg() {}
     ArArg(const char* name, int* pointer, const char* description = "", int minInt = INT_MIN,
@@ -42,6 +48,11 @@ class ArArg {
           myDescription(description),
           myPointer(pointer),
           mySize(maxStrLen) {}
+
+    /// A parameter of any number of lines: `set` is called with the words of each that is read,
+    /// `get` returns those to write.
+    ArArg(const char* name, Setter* set, Getter* get, const char* description)
+        : myType(FUNCTOR), myName(name), myDescription(description), mySetter(set), myGetter(get) {}
 
     Type getType() const { return myType; }
     const char* getName() const { return myName.c_str(); }
@@ -78,6 +89,20 @@ class ArArg {
         std::strcpy(static_cast<char*>(myPointer), value);
         return true;
     }
+    bool setArgWithFunctor(ArArgumentBuilder* words) {
+        return myType == FUNCTOR && mySetter && mySetter->invokeR(words);
+    }
+    const std::list<ArArgumentBuilder*>* getArgsWithFunctor() const {
+        return myType == FUNCTOR && myGetter ? myGetter->invokeR() : nullptr;
+    }
+    /// Texts of the values, as in a configuration file: one, but for functors.
+    std::vector<std::string> texts() const {
+        if (myType != FUNCTOR) return std::vector<std::string>(1, text());
+        std::vector<std::string> all;
+        if (const std::list<ArArgumentBuilder*>* const lines = getArgsWithFunctor())
+            for (const ArArgumentBuilder* line : *lines) all.push_back(line->getFullString());
+        return all;
+    }
     /// Text of the value, as in a configuration file.
     std::string text() const {
         char number[64];
@@ -99,6 +124,12 @@ class ArArg {
     bool setText(const std::string& text) {
         char* end = nullptr;
         if (myType == STRING) return setString(text.c_str());
+        if (myType == FUNCTOR) {
+            ArArgumentBuilder words;
+            words.addPlain(text.c_str());
+            words.setExtraString(getName());
+            return setArgWithFunctor(&words);
+        }
         if (myType == BOOL) {
             if (ArUtil::strcasequal(text, "true") || text == "1") return setBool(true);
             return (ArUtil::strcasequal(text, "false") || text == "0") && setBool(false);
@@ -120,6 +151,8 @@ class ArArg {
     Type myType = INVALID;
     std::string myName, myDescription;
     void* myPointer = nullptr;
+    Setter* mySetter = nullptr;
+    Getter* myGetter = nullptr;
     double myMin = 0, myMax = 0;
     std::size_t mySize = 0;
 };

@@ -27,6 +27,16 @@ inline bool isInt(long long value) {
 class ArArgumentBuilder {
   public:
     ArArgumentBuilder() {}
+    ArArgumentBuilder(const ArArgumentBuilder& other)
+        : myWords(other.myWords), myExtra(other.myExtra) {
+        refer();
+    }
+    ArArgumentBuilder& operator=(const ArArgumentBuilder& other) {
+        myWords = other.myWords;
+        myExtra = other.myExtra;
+        refer();
+        return *this;
+    }
     virtual ~ArArgumentBuilder() {}
 
     /// Splits text at spaces; quotes keep a word together.
@@ -101,10 +111,18 @@ class ArArgumentBuilder {
         myWords.erase(myWords.begin() + static_cast<std::ptrdiff_t>(i));
         refer();
     }
-    std::string getFullString() const {
-        std::string text;
-        for (const std::string& word : myWords) text += (text.empty() ? "" : " ") + word;
-        return text;
+    /// Words as they are, such as those of the command line.
+    void addStrings(int argc, char** argv) {
+        myWords.insert(myWords.end(), argv, argv + argc);
+        refer();
+    }
+    /// All words, with spaces between.
+    const char* getFullString() const { return myText.c_str(); }
+    /// Text that goes with the words, such as the keyword before them.
+    const char* getExtraString() const { return myExtra.c_str(); }
+    void setExtraString(const char* text) { myExtra = text; }
+    void log() const {
+        for (const std::string& word : myWords) ArLog::log(ArLog::Terse, "\t%s", word.c_str());
     }
 
   private:
@@ -121,9 +139,12 @@ class ArArgumentBuilder {
         myPointers.clear();
         for (std::string& word : myWords) myPointers.push_back(&word[0]);
         myPointers.push_back(nullptr);
+        myText.clear();
+        for (const std::string& word : myWords) myText += (myText.empty() ? "" : " ") + word;
     }
 
     std::vector<std::string> myWords;
+    std::string myText, myExtra;
     std::vector<char*> myPointers;
 };
 

@@ -3,7 +3,7 @@
 #define SIM_ARIA_COMMANDS_H
 
 /// Command numbers of a Pioneer. ArRobot::comInt supports ENABLE, SONAR, VEL, RVEL, MOVE, ROTATE,
-/// HEAD, DHEAD, STOP, ESTOP and SETO; others are accepted without effect.
+/// HEAD, DHEAD, STOP, ESTOP, SETO, ENCODER and SIM_STAT; others are accepted without effect.
 class ArCommands {
   public:
     enum Commands {

@@ -2,6 +2,7 @@
 #ifndef SIM_ARIA_CONFIG_H
 #define SIM_ARIA_CONFIG_H
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include <sim_aria/argument.h>
+#include <sim_aria/arguments.h>
 #include <sim_aria/aria.h>
 
 /// A parameter of a configuration.
@@ -97,10 +99,12 @@ class ArConfig {
     }
 
     /// Reads a file, relative to the base directory, then calls the callbacks. Unknown parameters
-    /// are skipped.
+    /// are skipped, and, if `sectionsToParse` is given, all other sections. Options of the command
+    /// line come before the file: see useArgumentParser().
     bool parseFile(const char* fileName, bool continueOnError = false,
                    bool noFileNotFoundMessage = false, char* errorBuffer = nullptr,
-                   std::size_t errorBufferLen = 0) {
+                   std::size_t errorBufferLen = 0,
+                   std::list<std::string>* sectionsToParse = nullptr) {
         if (errorBuffer && errorBufferLen > 0) *errorBuffer = 0;
         std::ifstream file(path(fileName));
         if (!file) {
@@ -113,14 +117,25 @@ class ArConfig {
         std::string line;
         bool good = true;
         for (int number = 1; std::getline(file, line); ++number) {
-            if (parseLine(line, &section)) continue;
+            if (parseLine(line, &section, sectionsToParse)) continue;
             report(fileName + (":" + std::to_string(number)) + ": bad value in `" + line + "`",
                    errorBuffer, errorBufferLen);
             good = false;
             if (!continueOnError) return false;
         }
-        return callProcessFileCallBacks(continueOnError, errorBuffer, errorBufferLen) && good;
+        if (!parseOptions()) {
+            report("an option of the command line has a bad value", errorBuffer, errorBufferLen);
+            good = false;
+            if (!continueOnError) return false;
+        }
+        return processFile() &&
+               callProcessFileCallBacks(continueOnError, errorBuffer, errorBufferLen) && good;
     }
+    /// Called after a file was read, before the callbacks; false is an error.
+    virtual bool processFile() { return true; }
+    /// Lets parseFile() take options by the names of the parameters, as in `-Distance 300`: they
+    /// overrule the file.
+    void useArgumentParser(ArArgumentParser* parser) { myParser = parser; }
     bool writeFile(const char* fileName, bool /*append*/ = false) {
         std::FILE* const file = std::fopen(path(fileName).c_str(), "w");
         if (!file) return false;
@@ -129,8 +144,9 @@ class ArConfig {
             std::fprintf(file, "Section %s\n", section.getName());
             if (*section.getComment() != 0) std::fprintf(file, "; %s\n", section.getComment());
             for (const ArConfigArg& param : *section.getParams())
-                std::fprintf(file, "%s %s\t; %s\n", param.getName(), param.text().c_str(),
-                             param.getDescription());
+                for (const std::string& text : param.texts())
+                    std::fprintf(file, "%s %s\t; %s\n", param.getName(), text.c_str(),
+                                 param.getDescription());
             std::fprintf(file, "\n");
         }
         const bool written = std::ferror(file) == 0;
@@ -153,7 +169,18 @@ class ArConfig {
         if (*name == '/' || myDirectory.empty()) return name;
         return myDirectory + (myDirectory.back() == '/' ? "" : "/") + name;
     }
-    bool parseLine(const std::string& line, ArConfigSection** section) {
+    bool parseOptions() {
+        bool good = true;
+        for (ArConfigSection& section : mySections)
+            for (ArConfigArg& param : *section.getParams()) {
+                if (!myParser || param.getType() == ArArg::FUNCTOR) continue;
+                if (const char* const text = myParser->checkParameterArgument(param.getName()))
+                    good = param.setText(text) && good;
+            }
+        return good;
+    }
+    bool parseLine(const std::string& line, ArConfigSection** section,
+                   const std::list<std::string>* wanted) {
         const std::string text = trimmed(line.substr(0, line.find_first_of(";#")));
         if (text.empty()) return true;
         const std::size_t space = text.find_first_of(" \t");
@@ -161,6 +188,11 @@ class ArConfig {
         const std::string value = space == std::string::npos ? "" : trimmed(text.substr(space));
         if (ArUtil::strcasequal(name, "section")) {
             *section = findSection(value.c_str());
+            const bool is_wanted =
+                !wanted || std::any_of(wanted->begin(), wanted->end(), [&](const std::string& one) {
+                    return ArUtil::strcasequal(one, value);
+                });
+            if (!is_wanted) *section = nullptr;
             return true;
         }
         ArConfigArg* const param = *section ? (*section)->findParam(name.c_str()) : nullptr;
@@ -176,6 +208,7 @@ class ArConfig {
     std::list<ArConfigSection> mySections;
     std::list<ArConfigSection*> myPointers;
     Callbacks myCallbacks;
+    ArArgumentParser* myParser = nullptr;
 };
 
 inline ArConfig* Aria::getConfig() {

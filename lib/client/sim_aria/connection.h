@@ -131,6 +131,11 @@ class ArSerialConnection : public ArDeviceConnection {
         return true;
     }
     int getBaud() const { return myBaud; }
+    /// Lines of a modem: there is none.
+    bool getDCD() const { return false; }
+    bool getCTS() const { return false; }
+    bool getDSR() const { return false; }
+    bool getRing() const { return false; }
 
   private:
     std::string myPort = "/dev/ttyS0";

@@ -108,6 +108,8 @@ class ArConstFunctor2C : public sim_aria::Call2<P1, P2> {
 template <class Ret, class T>
 class ArRetFunctorC : public sim_aria::RetCall0<Ret> {
   public:
+    /// Returns the value 0, or an empty one.
+    ArRetFunctorC() : sim_aria::RetCall0<Ret>([] { return Ret(); }) {}
     ArRetFunctorC(T* object, Ret (T::*function)())
         : sim_aria::RetCall0<Ret>([=]() { return (object->*function)(); }) {}
     ArRetFunctorC(T& object, Ret (T::*function)()) : ArRetFunctorC(&object, function) {}
@@ -116,6 +118,9 @@ class ArRetFunctorC : public sim_aria::RetCall0<Ret> {
 template <class Ret, class T, class P1>
 class ArRetFunctor1C : public sim_aria::RetCall1<Ret, P1> {
   public:
+    /// Returns the value 0, or an empty one.
+    ArRetFunctor1C()
+        : sim_aria::RetCall1<Ret, P1>([](P1) { return Ret(); }, sim_aria::Stored<P1>()) {}
     ArRetFunctor1C(T* object, Ret (T::*function)(P1),
                    sim_aria::Stored<P1> p1 = sim_aria::Stored<P1>())
         : sim_aria::RetCall1<Ret, P1>(
@@ -128,6 +133,10 @@ class ArRetFunctor1C : public sim_aria::RetCall1<Ret, P1> {
 template <class Ret, class T, class P1, class P2>
 class ArRetFunctor2C : public sim_aria::RetCall2<Ret, P1, P2> {
   public:
+    /// Returns the value 0, or an empty one.
+    ArRetFunctor2C()
+        : sim_aria::RetCall2<Ret, P1, P2>([](P1, P2) { return Ret(); }, sim_aria::Stored<P1>(),
+                                          sim_aria::Stored<P2>()) {}
     ArRetFunctor2C(T* object, Ret (T::*function)(P1, P2),
                    sim_aria::Stored<P1> p1 = sim_aria::Stored<P1>(),
                    sim_aria::Stored<P2> p2 = sim_aria::Stored<P2>())
@@ -145,6 +154,11 @@ class ArRetFunctor2C : public sim_aria::RetCall2<Ret, P1, P2> {
 template <class Ret, class T, class P1, class P2, class P3>
 class ArRetFunctor3C : public sim_aria::RetCall3<Ret, P1, P2, P3> {
   public:
+    /// Returns the value 0, or an empty one.
+    ArRetFunctor3C()
+        : sim_aria::RetCall3<Ret, P1, P2, P3>([](P1, P2, P3) { return Ret(); },
+                                              sim_aria::Stored<P1>(), sim_aria::Stored<P2>(),
+                                              sim_aria::Stored<P3>()) {}
     ArRetFunctor3C(T* object, Ret (T::*function)(P1, P2, P3),
                    sim_aria::Stored<P1> p1 = sim_aria::Stored<P1>(),
                    sim_aria::Stored<P2> p2 = sim_aria::Stored<P2>(),

@@ -6,6 +6,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cstdio>
 #include <functional>
 #include <iterator>
@@ -33,6 +34,14 @@ class ArKeyHandler {
         F2,
         F3,
         F4,
+        F5,
+        F6,
+        F7,
+        F8,
+        F9,
+        F10,
+        F11,
+        F12,
         HOME,
         END,
         INSERT,
@@ -150,14 +159,21 @@ class ArKeyHandler {
         static const std::map<char, int> letters = {
             {'A', UP},  {'B', DOWN}, {'C', RIGHT}, {'D', LEFT}, {'H', HOME},
             {'F', END}, {'P', F1},   {'Q', F2},    {'R', F3},   {'S', F4}};
-        static const std::map<char, int> digits = {{'1', HOME}, {'2', INSERT}, {'3', DEL},
-                                                   {'4', END},  {'5', PAGEUP}, {'6', PAGEDOWN}};
+        static const std::map<int, int> numbers = {
+            {1, HOME}, {2, INSERT}, {3, DEL}, {4, END},  {5, PAGEUP}, {6, PAGEDOWN}, {7, HOME},
+            {8, END},  {11, F1},    {12, F2}, {13, F3},  {14, F4},    {15, F5},      {17, F6},
+            {18, F7},  {19, F8},    {20, F9}, {21, F10}, {23, F11},   {24, F12}};
         const auto letter = letters.find(static_cast<char>(byte));
         if (letter != letters.end()) return letter->second;
-        const auto digit = digits.find(static_cast<char>(byte));
-        while (byte != '~' && take(&byte)) {
-        }
-        return digit == digits.end() ? ESCAPE : digit->second;
+        // ESC [ 15 ~, or with a modifier ESC [ 15;2 ~
+        int number = 0;
+        bool reads = true;
+        do {
+            reads = reads && std::isdigit(byte) != 0 && number < 100;
+            if (reads) number = 10 * number + (byte - '0');
+        } while (byte != '~' && take(&byte));
+        const auto found = numbers.find(number);
+        return found == numbers.end() ? ESCAPE : found->second;
     }
 
     int myFile;

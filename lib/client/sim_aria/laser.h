@@ -44,6 +44,9 @@ class ArLaser : public ArRangeDevice {
     bool isFlipped() const { return false; }
     ArPose getSensorPosition() const { return mySensor; }
     bool hasSensorPosition() const { return true; }
+    /// Beams that end nearer than this are to ignore, mm.
+    void setMinRange(unsigned int mm) { myMinRange = mm; }
+    unsigned int getMinRange() const { return myMinRange; }
     double getAbsoluteMaxRange() const { return getMaxRange(); }
     /// Scans read in total.
     int getReadingCount() const { return myCount; }
@@ -72,6 +75,7 @@ class ArLaser : public ArRangeDevice {
     void adopt(const ispace::client::Scan& scan);
 
     int myNumber;
+    unsigned int myMinRange = 0;
     std::string myId;
     ArFunctorC<ArLaser> myTask;
     ArRobot* myReader = nullptr;  // robot whose cycle runs the task

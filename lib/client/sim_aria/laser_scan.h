@@ -82,12 +82,13 @@ inline void ArLaser::adopt(const ispace::client::Scan& scan) {
         const bool returned = std::isfinite(scan.ranges[k]);
         const double range =
             returned ? 1000.0 * static_cast<double>(scan.ranges[k]) : getMaxRange();
+        const bool counts = returned && range >= myMinRange;
         ArSensorReading& reading = myReadings[k];
         reading.resetSensorPosition(mySensor.getX(), mySensor.getY(),
                                     mySensor.getTh() + scan.angle(k));
         reading.newData(range, taken, getRobot()->getEncoderPose(), to_global,
-                        getRobot()->getCounter(), ArTime(), !returned);
-        if (returned) myCurrentBuffer.addReading(reading.getX(), reading.getY());
+                        getRobot()->getCounter(), ArTime(), !counts);
+        if (counts) myCurrentBuffer.addReading(reading.getX(), reading.getY());
     }
 }
 

@@ -72,13 +72,10 @@ class Link {
         const ispace::client::Odometry odometry = robot_->odometry();
         Packet packet;
         packet.time = odometry.time;
-        const double c = ArMath::cos(-start_.heading), s = ArMath::sin(-start_.heading);
-        const double x = 1000 * (odometry.pose.x - start_.x),
-                     y = 1000 * (odometry.pose.y - start_.y);
+        const ispace::client::Pose at = sinceStart(odometry.pose);
         // A Pioneer counts whole millimetres, and 4096 parts of a turn.
-        const double turn = ArMath::fixAngle(odometry.pose.heading - start_.heading);
-        packet.pose.setPose(std::round(c * x - s * y), std::round(s * x + c * y),
-                            std::round(turn * 4096 / 360) * 360 / 4096);
+        packet.pose.setPose(std::round(1000 * at.x), std::round(1000 * at.y),
+                            std::round(at.heading * 4096 / 360) * 360 / 4096);
         packet.vel = std::round(1000 * odometry.speed);
         packet.rot_vel = std::round(10 * odometry.rotspeed) / 10;
         packet.stalled = robot_->status().stall;
@@ -123,6 +120,24 @@ class Link {
         return ArPose(1000 * at[0], 1000 * at[1], at[3]);
     }
 
+    /// True pose in the room, whole mm and degrees.
+    ArPose truePose() {
+        const ispace::client::Pose at = robot_->status().pose;
+        return ArPose(std::round(1000 * at.x), std::round(1000 * at.y), std::round(at.heading));
+    }
+    /// Moves the robot there: it stands, and odometry does not change. Throws Refused where it
+    /// would overlap a body.
+    void place(const ArPose& to) {
+        ispace::client::World world(server_, options_);
+        const ispace::client::Pose before = sinceStart(robot_->odometry().pose);
+        const std::string x = ispace::client::textOf(to.getX() / 1000),
+                          y = ispace::client::textOf(to.getY() / 1000);
+        world.set(id(), "at", x + "," + y);
+        startSince(before);
+        world.set(id(), "heading", ispace::client::textOf(to.getTh()));
+        startSince(before);
+    }
+
     /// mm/s
     void vel(double value) { robot_->speed(value / 1000); }
     /// degrees/s
@@ -136,6 +151,26 @@ class Link {
 
   private:
     static constexpr int kHeld = 409;
+
+    /// An odometry relative to that at the connection.
+    ispace::client::Pose sinceStart(const ispace::client::Pose& now) const {
+        const double c = ArMath::cos(-start_.heading), s = ArMath::sin(-start_.heading);
+        const double x = now.x - start_.x, y = now.y - start_.y;
+        ispace::client::Pose pose;
+        pose.x = c * x - s * y;
+        pose.y = s * x + c * y;
+        pose.heading = ArMath::fixAngle(now.heading - start_.heading);
+        return pose;
+    }
+
+    /// The server's odometry has begun anew, and this is the one to report.
+    void startSince(const ispace::client::Pose& reported) {
+        start_ = robot_->odometry().pose;
+        start_.heading -= reported.heading;
+        const double c = ArMath::cos(start_.heading), s = ArMath::sin(start_.heading);
+        start_.x -= c * reported.x - s * reported.y;
+        start_.y -= s * reported.x + c * reported.y;
+    }
 
     void findSonars() {
         try {

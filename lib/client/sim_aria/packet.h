@@ -39,7 +39,14 @@ class ArBasePacket {
     }
     ArTypes::UByte2 getReadLength() const { return static_cast<ArTypes::UByte2>(myRead); }
     ArTypes::UByte2 getDataReadLength() const {
-        return static_cast<ArTypes::UByte2>(myRead - myHeader);
+        return static_cast<ArTypes::UByte2>(myRead - std::min(myRead, myHeader));
+    }
+    /// Cuts the packet, or fills it up with zeros.
+    void setLength(ArTypes::UByte2 length) { myBytes.resize(length); }
+    void setReadLength(ArTypes::UByte2 length) { myRead = length; }
+    /// Whether so many bytes are left to read, before the footer.
+    bool bufferContainsBytes(ArTypes::UByte2 count) const {
+        return myRead + count + myFooter <= myBytes.size();
     }
     ArTypes::UByte2 getHeaderLength() const { return static_cast<ArTypes::UByte2>(myHeader); }
     ArTypes::UByte2 getFooterLength() const { return static_cast<ArTypes::UByte2>(myFooter); }

@@ -3,6 +3,8 @@
 #define SIM_ARIA_RANGE_BUFFER_H
 
 #include <cstddef>
+#include <cstdio>
+#include <iterator>
 #include <list>
 #include <vector>
 
@@ -12,29 +14,65 @@
 /// The last points that a range device measured, the newest first.
 class ArRangeBuffer {
   public:
+    using Points = std::list<ArPoseWithTime>;
+
     explicit ArRangeBuffer(std::size_t size) : mySize(size) {}
-    virtual ~ArRangeBuffer() { clear(); }
+    virtual ~ArRangeBuffer() {}
     ArRangeBuffer(const ArRangeBuffer&) = delete;
     ArRangeBuffer& operator=(const ArRangeBuffer&) = delete;
 
+    /// The largest number of points.
     std::size_t getSize() const { return mySize; }
+    std::size_t getCapacity() const { return mySize; }
+    std::size_t getCurrentSize() const { return myPoints.size(); }
     void setSize(std::size_t size) {
         mySize = size;
         shorten();
     }
-    const std::list<ArPoseWithTime*>* getBuffer() const { return &myPoints; }
-    std::list<ArPoseWithTime*>* getBuffer() { return &myPoints; }
+    void setCapacity(std::size_t size) { setSize(size); }
+    /// The points, and, as in older versions of ARIA, pointers to them.
+    const Points& getReadings() const { return myPoints; }
+    Points::const_iterator getBegin() const { return myPoints.begin(); }
+    Points::const_iterator getEnd() const { return myPoints.end(); }
+    const std::list<ArPoseWithTime*>* getBuffer() const { return &myPointers; }
+    std::list<ArPoseWithTime*>* getBuffer() { return &myPointers; }
     std::vector<ArPoseWithTime> getBufferAsVector() const {
-        std::vector<ArPoseWithTime> points;
-        for (const ArPoseWithTime* point : myPoints) points.push_back(*point);
-        return points;
+        return std::vector<ArPoseWithTime>(myPoints.begin(), myPoints.end());
     }
-    void addReading(double x, double y) {
-        myPoints.push_front(new ArPoseWithTime(x, y));
+
+    void addReading(double x, double y) { addReading(ArPoseWithTime(x, y)); }
+    void addReading(const ArPoseWithTime& point) {
+        myPoints.push_front(point);
+        myPointers.push_front(&myPoints.front());
         shorten();
     }
+    /// Adds a point, unless another is nearer than the root of `closeDistSquared`, mm: that one
+    /// becomes the newest, with the present time.
+    void addReadingConditional(double x, double y, double closeDistSquared,
+                               bool* wasAdded = nullptr) {
+        auto pointer = myPointers.begin();
+        for (auto at = myPoints.begin(); at != myPoints.end(); ++at, ++pointer) {
+            if (at->squaredFindDistanceTo(ArPose(x, y)) >= closeDistSquared) continue;
+            at->setTimeToNow();
+            myPoints.splice(myPoints.begin(), myPoints, at);
+            myPointers.splice(myPointers.begin(), myPointers, pointer);
+            if (wasAdded) *wasAdded = false;
+            return;
+        }
+        addReading(x, y);
+        if (wasAdded) *wasAdded = true;
+    }
+    /// Removes points one by one: those named in between go at the end of the sweep.
+    void beginInvalidationSweep() { myInvalid.clear(); }
+    void invalidateReading(Points::const_iterator reading) { myInvalid.push_back(&*reading); }
+    void endInvalidationSweep() {
+        // Named in the order of the list, or in another.
+        for (const ArPoseWithTime* const invalid : myInvalid)
+            removeIf([invalid](const ArPoseWithTime& point) { return &point == invalid; });
+        myInvalid.clear();
+    }
     void clear() {
-        for (ArPoseWithTime* point : myPoints) delete point;
+        myPointers.clear();
         myPoints.clear();
     }
     void clearOlderThan(int milliseconds) {
@@ -49,7 +87,7 @@ class ArRangeBuffer {
     }
 
     void applyTransform(ArTransform change) {
-        for (ArPoseWithTime* point : myPoints) point->setPose(change.doTransform(*point));
+        for (ArPoseWithTime& point : myPoints) point.setPose(change.doTransform(point));
     }
 
     /// Distance from a pose to the nearest point between these directions of it, counter-clockwise;
@@ -57,9 +95,9 @@ class ArRangeBuffer {
     double getClosestPolar(double startAngle, double endAngle, ArPose from, unsigned int maxRange,
                            double* angle = nullptr) const {
         double nearest = maxRange;
-        for (const ArPoseWithTime* point : myPoints) {
-            const double bearing = ArMath::subAngle(from.findAngleTo(*point), from.getTh());
-            const double distance = from.findDistanceTo(*point);
+        for (const ArPoseWithTime& point : myPoints) {
+            const double bearing = ArMath::subAngle(from.findAngleTo(point), from.getTh());
+            const double distance = from.findDistanceTo(point);
             if (distance >= nearest || !ArMath::angleBetween(bearing, startAngle, endAngle))
                 continue;
             nearest = distance;
@@ -71,40 +109,59 @@ class ArRangeBuffer {
     double getClosestBox(double x1, double y1, double x2, double y2, ArPose from,
                          unsigned int maxRange, ArPose* reading = nullptr) const {
         double nearest = maxRange;
-        for (const ArPoseWithTime* point : myPoints) {
-            const double bearing = ArMath::subAngle(from.findAngleTo(*point), from.getTh());
-            const double distance = from.findDistanceTo(*point);
+        for (const ArPoseWithTime& point : myPoints) {
+            const double bearing = ArMath::subAngle(from.findAngleTo(point), from.getTh());
+            const double distance = from.findDistanceTo(point);
             const double x = distance * ArMath::cos(bearing), y = distance * ArMath::sin(bearing);
             const bool inside = x >= ArUtil::findMin(x1, x2) && x <= ArUtil::findMax(x1, x2) &&
                                 y >= ArUtil::findMin(y1, y2) && y <= ArUtil::findMax(y1, y2);
             if (!inside || distance >= nearest) continue;
             nearest = distance;
-            if (reading) *reading = *point;
+            if (reading) *reading = point;
         }
         return nearest;
+    }
+
+    /// Writes the points, or how many there are, to the log or into a file.
+    void logData(ArLog::LogLevel level = ArLog::Normal, const char* linePrefix = "",
+                 const char* sensorName = "", const char* bufferName = "") const {
+        for (const ArPoseWithTime& point : myPoints)
+            ArLog::log(level, "%s%s %s: %.0f, %.0f", linePrefix, sensorName, bufferName,
+                       point.getX(), point.getY());
+    }
+    void logInternal(ArLog::LogLevel level = ArLog::Normal, const char* name = "") const {
+        ArLog::log(level, "%s: %zu of at most %zu points", name, getCurrentSize(), mySize);
+    }
+    void logInternal(std::FILE* file, const char* linePrefix = "", const char* name = "") const {
+        std::fprintf(file, "%s%s: %zu of at most %zu points\n", linePrefix, name, getCurrentSize(),
+                     mySize);
     }
 
   private:
     void shorten() {
         while (myPoints.size() > mySize) {
-            delete myPoints.back();
+            myPointers.pop_back();
             myPoints.pop_back();
         }
     }
     template <class Test>
     void removeIf(const Test& test) {
+        auto pointer = myPointers.begin();
         for (auto at = myPoints.begin(); at != myPoints.end();) {
-            if (test(**at)) {
-                delete *at;
+            if (test(*at)) {
                 at = myPoints.erase(at);
+                pointer = myPointers.erase(pointer);
             } else {
                 ++at;
+                ++pointer;
             }
         }
     }
 
     std::size_t mySize;
-    std::list<ArPoseWithTime*> myPoints;
+    Points myPoints;
+    std::list<ArPoseWithTime*> myPointers;  // to the same, in the same order
+    std::vector<const ArPoseWithTime*> myInvalid;
 };
 
 #endif  // SIM_ARIA_RANGE_BUFFER_H

@@ -156,6 +156,9 @@ class ArRangeDevice {
         return 0;
     }
     int tryLockDevice() { return myMutex.try_lock() ? 0 : 1; }
+    int lock() { return lockDevice(); }
+    int unlock() { return unlockDevice(); }
+    int tryLock() { return tryLockDevice(); }
 
     /// Distance from the robot's centre to the nearest point between the directions `startAngle`
     /// and, counter-clockwise, `endAngle` of the robot, mm; the maximum range if there is none.
@@ -176,6 +179,18 @@ class ArRangeDevice {
                                         ArPose* reading = nullptr) const {
         return myCumulativeBuffer.getClosestBox(x1, y1, x2, y2, myPose, myMaxRange, reading);
     }
+    /// Points in the frame of the robot's odometry, the newest first.
+    const std::list<ArPoseWithTime>& getCurrentReadings() const {
+        return myCurrentBuffer.getReadings();
+    }
+    const std::list<ArPoseWithTime>& getCumulativeReadings() const {
+        return myCumulativeBuffer.getReadings();
+    }
+    const ArRangeBuffer& getCurrentRangeBuffer() const { return myCurrentBuffer; }
+    const ArRangeBuffer& getCumulativeRangeBuffer() const { return myCumulativeBuffer; }
+    ArRangeBuffer* getCurrentRangeBufferPtr() { return &myCurrentBuffer; }
+    ArRangeBuffer* getCumulativeRangeBufferPtr() { return &myCumulativeBuffer; }
+    /// Pointers to the points, as in older versions of ARIA.
     std::list<ArPoseWithTime*>* getCurrentBuffer() { return myCurrentBuffer.getBuffer(); }
     std::list<ArPoseWithTime*>* getCumulativeBuffer() { return myCumulativeBuffer.getBuffer(); }
     std::vector<ArPoseWithTime> getCurrentBufferAsVector() const {
@@ -200,6 +215,19 @@ class ArRangeDevice {
     }
     /// Readings of all beams in the last sweep; null for a device without.
     virtual const std::list<ArSensorReading*>* getRawReadings() const { return nullptr; }
+
+    /// Writes the limits, or the points, to the log.
+    void logConfig(ArLog::LogLevel level = ArLog::Normal, const char* prefix = "") const {
+        ArLog::log(level,
+                   "%s%s: range %u mm; current: %zu points, %d s; cumulative: %zu points, %d s, "
+                   "%.0f mm",
+                   prefix, getName(), myMaxRange, myCurrentBuffer.getSize(), myCurrentSeconds,
+                   myCumulativeBuffer.getSize(), myCumulativeSeconds, myCumulativeDistance);
+    }
+    void logData(ArLog::LogLevel level = ArLog::Normal, const char* prefix = "") const {
+        myCurrentBuffer.logData(level, prefix, getName(), "current");
+        myCumulativeBuffer.logData(level, prefix, getName(), "cumulative");
+    }
 
     void setCurrentDrawingData(ArDrawingData* data, bool takeOwnership) {
         myCurrentDrawing = Drawing(data, takeOwnership ? destroy : keep);

@@ -59,10 +59,15 @@ class ArRobot : public sim_aria::RobotState {
     /// Lets the next cycle connect. \return false if the cycle does not run
     bool asyncConnect();
     bool disconnect();
+    /// Loses the connection, as by a fault of the line: calls the functions for that.
+    void dropConnection();
     bool isConnected() const { return myConnected; }
     void setConnectionTimeoutTime(int ms) { myTimeout = ms; }
     int getConnectionTimeoutTime() const { return myTimeout; }
     void setAsyncConnectSyncPacketRetries(int) {}
+    /// There are no files of parameters: a robot connects without.
+    void setConnectWithNoParams(bool connect) { myNoParams = connect; }
+    bool getConnectWithNoParams() const { return myNoParams; }
     /// Functions to call after a connection, after its failure, its end, its loss, and after run().
     void addConnectCB(ArFunctor* f, ArListPos::Pos at = ArListPos::LAST) { add(Connect, f, at); }
     void addFailedConnectCB(ArFunctor* f, ArListPos::Pos at = ArListPos::LAST) {
@@ -82,14 +87,16 @@ class ArRobot : public sim_aria::RobotState {
     void remRunExitCB(ArFunctor* f) { remove(RunExit, f); }
 
     // The cycle.
-    void runAsync(bool stopRunIfNotConnected, bool runNonThreadedPacketReader = false);
-    void run(bool stopRunIfNotConnected, bool runNonThreadedPacketReader = false);
+    void runAsync(bool stopRunIfNotConnected = true, bool runNonThreadedPacketReader = false);
+    void run(bool stopRunIfNotConnected = true, bool runNonThreadedPacketReader = false);
     /// One cycle, in a loop of the program.
     void loopOnce() { cycle(); }
     void stopRunning(bool doDisconnect = true);
     bool isRunning() const { return myRunning; }
     WaitState waitForRunExit(unsigned int msecs = 0);
     WaitState waitForConnect(unsigned int msecs = 0);
+    /// Also ends, with WAIT_FAILED_CONN, when asyncConnect() has failed.
+    WaitState waitForConnectOrConnFail(unsigned int msecs = 0);
     unsigned int getCycleTime() const { return myCycleTime; }
     void setCycleTime(unsigned int ms) { myCycleTime = ms; }
     int lock() {
@@ -129,8 +136,9 @@ class ArRobot : public sim_aria::RobotState {
     void disableMotors() { comInt(ArCommands::ENABLE, 0); }
     void enableSonar() { comInt(ArCommands::SONAR, 1); }
     void disableSonar() { comInt(ArCommands::SONAR, 0); }
-    void requestEncoderPackets() {}
-    void stopEncoderPackets() {}
+    /// Lets each cycle have a packet of the wheels' travel, too (0x90).
+    void requestEncoderPackets() { comInt(ArCommands::ENCODER, kEachCycle); }
+    void stopEncoderPackets() { comInt(ArCommands::ENCODER, 0); }
 
     // Direct motion: stays in effect until changed, and suspends actions until
     // clearDirectMotion().
@@ -166,6 +174,9 @@ class ArRobot : public sim_aria::RobotState {
         takeOver();
         myReflects = false;
     }
+    /// The server keeps speeds: they are not repeated.
+    void setStateReflectionRefreshTime(int ms) { myRefreshTime = ms; }
+    int getStateReflectionRefreshTime() const { return myRefreshTime; }
     bool isDirectMotion() const { return myDirect; }
     /// Lets actions continue this long after the last direct motion; 0: never.
     void setDirectMotionPrecedenceTime(int ms) { myPrecedence = ms; }
@@ -212,6 +223,15 @@ class ArRobot : public sim_aria::RobotState {
     /// \param doCumulative whether those of the cumulative buffers do
     void moveTo(ArPose pose, bool doCumulative = true);
     void setDeadReconPose(ArPose pose) { moveTo(pose); }
+
+    /// Computes the change of heading (degrees) in each cycle, from the change of the wheels' pose;
+    /// null: that of the wheels.
+    void setEncoderCorrectionCallback(ArRetFunctor1<double, ArPoseWithTime>* functor) {
+        myCorrection = functor;
+    }
+    ArRetFunctor1<double, ArPoseWithTime>* getEncoderCorrectionCallback() const {
+        return myCorrection;
+    }
 
     // Actions: move the robot while it has no direct motion.
     bool addAction(ArAction* action, int priority);
@@ -261,11 +281,17 @@ class ArRobot : public sim_aria::RobotState {
     const char* getName() const { return myName.c_str(); }
     void setName(const char* name) { myName = name; }
 
+    /// True pose in the room, mm and degrees; 0, 0, 0 without a connection.
+    ArPose poseInSimulator();
+    /// Moves the robot there; odometry does not change. \return false without a connection, and
+    /// where it would overlap a body
+    bool placeInSimulator(const ArPose& to);
     /// The connection to simrun, null if not connected. Hold the lock.
     sim_aria::Link* link() { return myLink.get(); }
 
   private:
     static constexpr int kLastAtExit = -100;
+    static constexpr short kEachCycle = 2;  // of commands that ask for packets; 1: the next one
     enum Occasion { Connect, FailedConnect, Disconnect, Loss, RunExit, kOccasions };
     using Tasks = sim_aria::Ordered<ArFunctor*>;
 
@@ -289,6 +315,7 @@ class ArRobot : public sim_aria::RobotState {
     void think();
     void read();
     void handlePackets();
+    void handle(ArRobotPacket packet);
     void resolveActions();
     void send();
     void lose();
@@ -313,6 +340,7 @@ class ArRobot : public sim_aria::RobotState {
     std::recursive_mutex myMutex;
     std::thread myThread;
     std::atomic<bool> myRunning{false}, myConnected{false}, myConnectSoon{false}, myInThread{false};
+    std::atomic<bool> myFailed{false};  // the last asyncConnect()
     unsigned int myCycleTime = 100;
     int myTimeout = 8000;
 
@@ -321,7 +349,10 @@ class ArRobot : public sim_aria::RobotState {
     double mySentVel = 0, mySentRotVel = 0;
     ArTime mySent, myDirectSince;
     bool myDirect = false, myReflects = true;
-    int myPrecedence = 0;
+    int myPrecedence = 0, myRefreshTime = 500;
+    bool myNoParams = true;
+    short myTellsEncoders = 0, myTellsSimulator = 0;
+    ArRetFunctor1<double, ArPoseWithTime>* myCorrection = nullptr;
 
     Tasks mySensorTasks, myUserTasks;
     std::list<ArFunctor*> myCallbacks[kOccasions];

@@ -14,6 +14,7 @@ inline bool ArRobot::blockingConnect(bool /*tryHarder*/) {
 
 inline bool ArRobot::asyncConnect() {
     if (!myRunning) return false;
+    myFailed = false;
     myConnectSoon = true;
     return true;
 }
@@ -28,6 +29,7 @@ inline bool ArRobot::connect() {
         myMotorsEnabled = false;
         mySonarEnabled = true;
         myDirect = false;
+        myTellsEncoders = myTellsSimulator = 0;
         mySentVel = mySentRotVel = 0;
         myMoved = myMovedFrom = ArPose();
         read();
@@ -86,6 +88,15 @@ inline bool ArRobot::disconnect() {
     return true;
 }
 
+inline void ArRobot::dropConnection() {
+    {
+        const std::lock_guard<std::recursive_mutex> hold(myMutex);
+        if (!myLink) return;
+        lose();
+    }
+    call(Loss);
+}
+
 inline void ArRobot::lose() {
     myLink.reset();
     myConnected = false;
@@ -99,8 +110,16 @@ inline void ArRobot::read() {
     const double dx = packet.pose.getX() - myMovedFrom.getX();
     const double dy = packet.pose.getY() - myMovedFrom.getY();
     const double c = ArMath::cos(turn), s = ArMath::sin(turn);
-    adopt(packet, ArPose(myMoved.getX() + c * dx - s * dy, myMoved.getY() + s * dx + c * dy,
-                         packet.pose.getTh() + turn));
+    ArPose pose(myMoved.getX() + c * dx - s * dy, myMoved.getY() + s * dx + c * dy,
+                packet.pose.getTh() + turn);
+    if (myCorrection && myConnected) {
+        const ArPose change = packet.pose - myPacket.pose;
+        pose.setTh(myPose.getTh() + myCorrection->invokeR(ArPoseWithTime(
+                                        change.getX(), change.getY(), change.getTh())));
+        myMoved = pose;
+        myMovedFrom = packet.pose;
+    }
+    adopt(packet, pose);
     for (std::size_t i = 0; i < mySonars.size() && i < packet.sonar.size(); ++i)
         mySonars[i].newData(packet.sonar[i], myPose, myPacket.pose, getToGlobalTransform(),
                             myCounter, ArTime());
@@ -131,7 +150,7 @@ inline void ArRobot::send() {
 
 /// \return false if the connection was lost
 inline bool ArRobot::cycle() {
-    if (!myConnected && myConnectSoon.exchange(false)) blockingConnect();
+    if (!myConnected && myConnectSoon.exchange(false)) myFailed = !blockingConnect();
     // Do not wait for ever if the program stops the robot while it holds the lock, or sleeps.
     const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     while (!myMutex.try_lock()) {
@@ -172,12 +191,44 @@ inline void ArRobot::think() {
 }
 
 inline void ArRobot::handlePackets() {
-    if (myHandlers.empty()) return;
-    ArRobotPacket packet = statusPacket();
+    if (!myHandlers.empty()) {
+        handle(statusPacket());
+        if (myTellsEncoders > 0) handle(encoderPacket());
+        if (myTellsSimulator > 0 && myLink)
+            handle(simulatorPacket(myLink->truePose(), myCycleTime));
+    }
+    if (myTellsEncoders < kEachCycle) myTellsEncoders = 0;
+    if (myTellsSimulator < kEachCycle) myTellsSimulator = 0;
+}
+
+inline void ArRobot::handle(ArRobotPacket packet) {
     for (auto* handler : std::list<ArRetFunctor1<bool, ArRobotPacket*>*>(myHandlers)) {
         packet.resetRead();
         if (handler->invokeR(&packet)) break;
     }
+}
+
+inline ArPose ArRobot::poseInSimulator() {
+    const std::lock_guard<std::recursive_mutex> hold(myMutex);
+    try {
+        if (myLink) return myLink->truePose();
+    } catch (const ispace::client::Error&) {
+        // The next cycle notices.
+    }
+    return ArPose();
+}
+
+inline bool ArRobot::placeInSimulator(const ArPose& to) {
+    const std::lock_guard<std::recursive_mutex> hold(myMutex);
+    if (!myLink) return false;
+    try {
+        myLink->place(to);
+        mySentVel = mySentRotVel = 0;
+    } catch (const ispace::client::Error& error) {
+        ArLog::log(ArLog::Terse, "Could not place the robot: %s", error.what());
+        return false;
+    }
+    return true;
 }
 
 /// Lets the actions move the robot, unless the program does.
@@ -303,6 +354,17 @@ inline ArRobot::WaitState ArRobot::waitForConnect(unsigned int msecs) {
     return WAIT_CONNECTED;
 }
 
+inline ArRobot::WaitState ArRobot::waitForConnectOrConnFail(unsigned int msecs) {
+    const ArTime begun;
+    while (!myConnected) {
+        if (myFailed) return WAIT_FAILED_CONN;
+        if (!myRunning) return WAIT_RUN_EXIT;
+        if (msecs > 0 && begun.mSecSince() >= static_cast<long>(msecs)) return WAIT_TIMEDOUT;
+        ArUtil::sleep(10);
+    }
+    return WAIT_CONNECTED;
+}
+
 inline bool ArRobot::comInt(unsigned char command, short argument) {
     const std::lock_guard<std::recursive_mutex> hold(myMutex);
     if (!myLink) return false;
@@ -332,6 +394,12 @@ inline bool ArRobot::comInt(unsigned char command, short argument) {
         case ArCommands::STOP:
         case ArCommands::ESTOP:
             stop();
+            break;
+        case ArCommands::ENCODER:
+            myTellsEncoders = argument;
+            break;
+        case ArCommands::SIM_STAT:
+            myTellsSimulator = argument;
             break;
         case ArCommands::SETO:
             moveTo(ArPose());

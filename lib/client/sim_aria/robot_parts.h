@@ -163,7 +163,7 @@ inline ArActionDesired* ArPriorityResolver::resolve(ActionMap* actions, ArRobot*
             if (!at->second->isActive()) continue;
             ArActionDesired* const wish = at->second->fire(myDesired);
             if (!wish) continue;
-            wish->accountForRobotHeading(robot->getTh());
+            if (robot) wish->accountForRobotHeading(robot->getTh());
             equal.addAverage(wish);
             if (logActions)
                 ArLog::log(ArLog::Terse, "%s: vel %g (%g), turn %g (%g)", at->second->getName(),

@@ -226,6 +226,28 @@ class RobotState {
         return packet;
     }
 
+    /// The travel of the wheels as a packet of a Pioneer.
+    ArRobotPacket encoderPacket() const {
+        ArRobotPacket packet;
+        packet.setID(0x90);
+        packet.byte4ToBuf(static_cast<ArTypes::Byte4>(getLeftEncoder()));
+        packet.byte4ToBuf(static_cast<ArTypes::Byte4>(getRightEncoder()));
+        packet.finalizePacket();
+        return packet;
+    }
+    /// A true pose as a packet of a Pioneer's simulator. \param interval ms of a cycle
+    static ArRobotPacket simulatorPacket(const ArPose& pose, unsigned int interval) {
+        ArRobotPacket packet;
+        packet.setID(0x62);
+        packet.byte2ToBuf(0);   // the device, and a byte of no use
+        packet.uByte4ToBuf(1);  // has a map, but no place on the earth
+        for (int i = 0; i < 3; ++i) packet.uByte2ToBuf(static_cast<ArTypes::UByte2>(interval));
+        for (const double value : {pose.getX(), pose.getY(), 0.0, pose.getTh()})
+            packet.byte4ToBuf(static_cast<ArTypes::Byte4>(std::lround(value)));
+        packet.finalizePacket();
+        return packet;
+    }
+
   protected:
     RobotState() {}
     ~RobotState() {}

@@ -81,6 +81,18 @@ class ArUtil {
     static bool isOnlyNumeric(const char* text) { return isAll(text, std::isdigit); }
     static bool isOnlyAlphaNumeric(const char* text) { return isAll(text, std::isalnum); }
     static bool findFile(const char* name) { return static_cast<bool>(std::ifstream(name)); }
+    /// Opens a file; children of the process do not inherit it.
+    static std::FILE* fopen(const char* name, const char* mode, bool closeOnExec = true) {
+        return std::fopen(name, (std::string(mode) + (closeOnExec ? "e" : "")).c_str());
+    }
+    /// The name without its folders, cut to the array. \return false without an array or a name
+    static bool getFileName(const char* fileName, char* result, std::size_t resultLen) {
+        if (!fileName || !result || resultLen == 0) return false;
+        const char* const slash = std::strrchr(fileName, '/');
+        const std::string name(slash ? slash + 1 : fileName);
+        result[name.copy(result, resultLen - 1)] = 0;
+        return true;
+    }
     static double atof(const char* text) { return std::atof(text); }
     static int atoi(const char* text) { return std::atoi(text); }
     static const char* convertBool(int value) { return value ? "true" : "false"; }
@@ -165,6 +177,24 @@ class ArLog {
         va_list values;
         va_start(values, text);
         write(level, text, values, "");
+        va_end(values);
+    }
+    static void info(const char* text, ...) __attribute__((format(printf, 1, 2))) {
+        va_list values;
+        va_start(values, text);
+        write(Normal, text, values, "");
+        va_end(values);
+    }
+    static void warning(const char* text, ...) __attribute__((format(printf, 1, 2))) {
+        va_list values;
+        va_start(values, text);
+        write(Terse, ("Warning: " + std::string(text)).c_str(), values, "");
+        va_end(values);
+    }
+    static void error(const char* text, ...) __attribute__((format(printf, 1, 2))) {
+        va_list values;
+        va_start(values, text);
+        write(Terse, ("Error: " + std::string(text)).c_str(), values, "");
         va_end(values);
     }
     /// The same with the message of errno.

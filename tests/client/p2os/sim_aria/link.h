@@ -82,8 +82,26 @@ class Link {
     Packet read(bool /*sonar*/) {
         com(kConfig, 1);
         for (std::string packet = next(); byte(packet, 0) != kConfigured; packet = next())
-            if (byte(packet, 0) == kStatus) adopt(packet);
+            if (byte(packet, 0) == kStatus)
+                adopt(packet);
+            else if (byte(packet, 0) == kSim)
+                true_pose_.setPose(number(packet, 13), number(packet, 17), number(packet, 25));
         return newest_;
+    }
+    /// As the packet says that SIM_STAT asks for.
+    ArPose truePose() {
+        com(kSimStat, 1);
+        return true_pose_;
+    }
+    void place(const ArPose& to) {
+        std::string data(1, 0);
+        for (const double value : {to.getX(), to.getY(), to.getTh()})
+            for (int i = 0; i < 4; ++i)
+                data += static_cast<char>((std::lround(value) >> (8 * i)) & 0xFF);
+        send(kSimSetPose, data);
+        read(true);
+        const ArPose at = truePose();
+        if (at.findDistanceTo(to) > 1) throw ispace::client::Error("the robot does not fit there");
     }
     void vel(double value) { com(kVel, std::lround(value)); }
     void rotVel(double value) { com(kRvel, std::lround(value)); }
@@ -99,8 +117,18 @@ class Link {
     }
 
   private:
-    enum Id { kOpen = 1, kClose = 2, kEnable = 4, kVel = 11, kConfig = 18, kRvel = 21, kStop = 29 };
-    static constexpr unsigned kConfigured = 0x20, kStatus = 0x32;
+    enum Id {
+        kOpen = 1,
+        kClose = 2,
+        kEnable = 4,
+        kVel = 11,
+        kConfig = 18,
+        kRvel = 21,
+        kStop = 29,
+        kSimSetPose = 224,
+        kSimStat = 237
+    };
+    static constexpr unsigned kConfigured = 0x20, kStatus = 0x32, kSim = 0x62;
     static constexpr int kRing[16][3] = {
         {69, 136, 90},     {114, 119, 50},     {148, 78, 30},     {166, 27, 10},
         {166, -27, -10},   {148, -78, -30},    {114, -119, -50},  {69, -136, -90},
@@ -112,6 +140,10 @@ class Link {
     }
     static int word(const std::string& text, std::size_t at) {
         return static_cast<std::int16_t>(byte(text, at) | byte(text, at + 1) << 8);
+    }
+    static std::int32_t number(const std::string& text, std::size_t at) {
+        return static_cast<std::int32_t>(byte(text, at) | byte(text, at + 1) << 8 |
+                                         byte(text, at + 2) << 16 | byte(text, at + 3) << 24);
     }
     static unsigned checksum(const std::string& body) {
         unsigned sum = 0;
@@ -164,6 +196,7 @@ class Link {
 
     int socket_ = -1;
     Packet newest_;
+    ArPose true_pose_;
 };
 
 constexpr int Link::kRing[16][3];
