@@ -4,6 +4,7 @@
 // folder p2os before the headers.
 #include <Aria.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -61,6 +62,27 @@ void loop(ArRobot& robot) {
         robot.loopOnce();
         ArUtil::sleep(20);
     }
+}
+
+/// Moved in the room while it drives: odometry and speeds go on.
+void placed(ArRobot& robot) {
+    ArSimUtil simulator(&robot);
+    robot.setVel(200);
+    robot.setRotVel(20);
+    ArUtil::sleep(2000);
+    robot.stop();
+    ArUtil::sleep(2000);
+    const ArPose before = robot.getPose();
+    if (!simulator.setSimTruePose(ArPose(500, -400, 135))) std::printf("refused ");
+    ArLog::init(ArLog::None, ArLog::Terse);
+    if (simulator.setSimTruePose(ArPose(1990, 0, 0))) std::printf("in the wall ");
+    robot.setVel(150);
+    robot.setRotVel(0);
+    ArUtil::sleep(3000);
+    const ArPose after = robot.getPose();
+    const double way = before.findDistanceTo(after);
+    const bool ahead = std::fabs(ArMath::subAngle(before.findAngleTo(after), before.getTh())) < 1;
+    if (!ahead || way < 350 || way > 450) std::printf("its odometry jumped ");
 }
 
 /// Distances and headings of the firmware.
@@ -126,8 +148,8 @@ void input(ArRobot& robot) {
 
 int main(int argc, char** argv) {
     const std::map<std::string, void (*)(ArRobot&)> programs = {
-        {"speeds", speeds}, {"wheels", wheels}, {"loop", loop},  {"distances", distances},
-        {"goals", goals},   {"wander", wander}, {"input", input}};
+        {"speeds", speeds}, {"wheels", wheels}, {"loop", loop},   {"distances", distances},
+        {"goals", goals},   {"wander", wander}, {"input", input}, {"placed", placed}};
     const auto program = programs.find(argc == 2 ? argv[1] : "");
     if (program == programs.end()) return 2;
     Aria::init(Aria::SIGHANDLE_NONE);

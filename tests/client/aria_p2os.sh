@@ -30,5 +30,5 @@ same() {
         exit !(sqrt(($1 - $5) ^ 2 + ($2 - $6) ^ 2) <= metres && turn <= degrees && $4 == $8)
     }' || fail "$1 ends elsewhere"
 }
-for program in speeds wheels loop input goals wander; do same $program 0 0; done
+for program in speeds wheels loop input goals wander placed; do same $program 0 0; done
 same distances 0.05 2
