@@ -264,6 +264,7 @@ TEST_F(SimAriaFirmware, PacketsOfEncodersAndOfTheSimulatorComeOnRequest) {
 }
 
 struct HalfTurns {
+    // NOLINTNEXTLINE(performance-unnecessary-value-param): ARIA passes it so
     double half(ArPoseWithTime change) { return change.getTh() / 2; }
 };
 
