@@ -354,7 +354,7 @@ TEST(SimAriaStatistics, SectorsAndTheMeanSquare) {
     square.add(-100000);
     EXPECT_NEAR(square.getRootMeanSquare(), 100000, 1e-6);
     char name[4];
-    EXPECT_TRUE(ArUtil::getFileName("/tmp/robots", name, sizeof name));
+    EXPECT_TRUE(ArUtil::getFileName("maps/robots", name, sizeof name));
     EXPECT_STREQ(name, "rob");
 }
 
