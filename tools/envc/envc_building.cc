@@ -139,6 +139,7 @@ void rebaseRooms(const EnvcOptions& options, const std::string& from, StoreyedDo
 /// Writes moves that resolve findings of a storey, by the ids of the building.
 void suggestMoves(const EnvcOptions& options, const BuildingScene& building, std::size_t storey,
                   const FindingFilter& filter, int& left, std::string& text) {
+    if (left == 0) return;
     const auto scene = sceneOfBuilding(building, storey);
     const std::vector<Finding> found = checkScene(*scene, filter);
     const std::size_t count = found.size() + checkCourses(*scene).size();
