@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <type_traits>
+#include <utility>
 
 #include "base/error.h"
 #include "base/json_writer.h"
@@ -135,11 +136,11 @@ class CborOutput {
         } else if constexpr (std::is_floating_point_v<Number>) {
             out_ += sizeof(Number) == sizeof(float) ? kFloat : kDouble;
             appendBig(out_, value);
+        } else if (std::cmp_less(value, 0)) {
+            appendCborHead(out_, CborHead::Negative,
+                           ~static_cast<std::uint64_t>(value));  // -1 - value
         } else {
-            const std::int64_t wide = std::int64_t{0} + value;
-            const bool is_negative = wide < 0;
-            appendCborHead(out_, is_negative ? CborHead::Negative : CborHead::Unsigned,
-                           static_cast<std::uint64_t>(is_negative ? -1 - wide : wide));
+            appendCborHead(out_, CborHead::Unsigned, static_cast<std::uint64_t>(value));
         }
     }
     void numbers(Kind kind, std::string_view bytes, std::size_t /*count*/) {

@@ -55,6 +55,11 @@ TEST(RosText, CborHoldsTheSameValues) {
     EXPECT_EQ(range["min_range"], 0.25);
     const json state = json::from_cbor(rosCbor(RosType::Bool, boolMessage(true)));
     EXPECT_EQ(state, json({{"data", true}}));
+    const json stamp = {{"sec", -7}, {"nanosec", 4'294'967'295U}};
+    const std::string early = rosCbor(
+        RosType::LaserScan, rosMessage(RosType::LaserScan, {{"header", {{"stamp", stamp}}}}));
+    const json negative = json::from_cbor(early, true, true, json::cbor_tag_handler_t::store);
+    EXPECT_EQ(negative["header"]["stamp"], stamp);
 }
 
 TEST(RosText, CborHeadsGrowWithTheirNumbers) {
