@@ -19,6 +19,8 @@ TYPES = {"scan": "sensor_msgs::msg::dds_::LaserScan_", "tf": "tf2_msgs::msg::dds
          "tf_static": "tf2_msgs::msg::dds_::TFMessage_", "clock": "rosgraph_msgs::msg::dds_::Clock_",
          "map": "nav_msgs::msg::dds_::OccupancyGrid_", "odom": "nav_msgs::msg::dds_::Odometry_",
          "Reply": "std_srvs::srv::dds_::Empty_Response_",
+         "feedback": "nav2_msgs::action::dds_::NavigateToPose_FeedbackMessage_",
+         "status": "action_msgs::msg::dds_::GoalStatusArray_",
          "info": "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"}
 _locks = []
 

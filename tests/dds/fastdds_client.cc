@@ -2,7 +2,9 @@
 // fastdds_client DOMAIN [+]TYPE:TOPIC…: reads topics over Fast DDS as a node of ROS 2 does and
 // prints each message as a line of JSON, decoded by Fast CDR. Lines on stdin: `twist TOPIC FORWARD
 // TURN`, `stamped TOPIC FORWARD TURN`, `pose TOPIC X Y HEADING`, `raw TYPE TOPIC HEX` (any bytes),
-// `flood TYPE TOPIC HEX COUNT`. Ends with stdin.
+// `flood TYPE TOPIC HEX COUNT`, `call TYPE SERVICE HEX` (calls a service as rmw_fastrtps does: the
+// request names the caller's reader, and the answer that reader and the request's number; both are
+// printed). Ends with stdin.
 // The address in FASTDDS_PEER is that of a machine to be found.
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
@@ -162,18 +164,27 @@ std::string odometry(Decoder& in) {
     return out + ",\"twist\":" + numbers(in.doubles(6));
 }
 
-/// Prints the bytes of other types.
-std::string json(const std::string& type, std::string& bytes) {
-    if (type == "std_srvs::srv::dds_::Empty_Response_" ||
-        type.find("ParticipantEntitiesInfo") != std::string::npos) {
-        std::string out = "\"bytes\":\"";
-        for (const char c : bytes) {
-            std::array<char, 3> digits{};
-            std::snprintf(digits.data(), digits.size(), "%02x", static_cast<unsigned char>(c));
-            out += digits.data();
-        }
-        return out + "\"";
+void print(const std::string& topic, const std::string& members) {
+    static std::mutex one_at_a_time;
+    const std::lock_guard lock(one_at_a_time);
+    std::cout << "{\"topic\":\"" << topic << "\"," << members << "}" << std::endl;
+}
+
+std::string hexMember(const std::string& bytes) {
+    std::string out = "\"bytes\":\"";
+    for (const char c : bytes) {
+        std::array<char, 3> digits{};
+        std::snprintf(digits.data(), digits.size(), "%02x", static_cast<unsigned char>(c));
+        out += digits.data();
     }
+    return out + "\"";
+}
+
+/// Returns the members of a message; those of services and actions are its bytes.
+std::string json(const std::string& type, std::string& bytes) {
+    for (const char* name :
+         {"std_srvs::srv", "ParticipantEntitiesInfo", "::action::", "action_msgs"})
+        if (type.find(name) != std::string::npos) return hexMember(bytes);
     Decoder in(bytes);
     if (type == "sensor_msgs::msg::dds_::LaserScan_") return scan(in);
     if (type == "tf2_msgs::msg::dds_::TFMessage_") return transforms(in);
@@ -192,15 +203,31 @@ class Printer final : public dds::DataReaderListener {
         dds::SampleInfo info;
         while (reader->take_next_sample(&bytes, &info) == ReturnCode_t::RETCODE_OK) {
             if (!info.valid_data) continue;
-            const std::string text = json(type_, bytes);
-            static std::mutex one_at_a_time;
-            const std::lock_guard lock(one_at_a_time);
-            std::cout << "{\"topic\":\"" << topic_ << "\"," << text << "}" << std::endl;
+            print(topic_, json(type_, bytes));
         }
     }
 
   private:
     std::string topic_, type_;
+};
+
+/// Prints the answers to requests that named its reader, with the numbers of the requests.
+class Answers final : public dds::DataReaderListener {
+  public:
+    explicit Answers(std::string topic) : topic_(std::move(topic)) {}
+    void on_data_available(dds::DataReader* reader) override {
+        std::string bytes;
+        dds::SampleInfo info;
+        while (reader->take_next_sample(&bytes, &info) == ReturnCode_t::RETCODE_OK) {
+            const auto& request = info.related_sample_identity;
+            if (!info.valid_data || request.writer_guid() != reader->guid()) continue;
+            print(topic_, "\"answered\":" + std::to_string(request.sequence_number().to64long()) +
+                              "," + hexMember(bytes));
+        }
+    }
+
+  private:
+    std::string topic_;
 };
 
 /// Encodes a message of doubles after an optional header.
@@ -286,6 +313,35 @@ class Client {
         return *writer;
     }
 
+    /// Sends a request once the service's reader and writer are known.
+    void call(const std::string& type, const std::string& name, std::string request) {
+        dds::DataReader*& answers = answers_[name];
+        if (answers == nullptr) {
+            const std::string topic_name = "rr/" + name + "Reply";
+            printers_.push_back(std::make_unique<Answers>(topic_name));
+            dds::DataReaderQos qos = dds::DATAREADER_QOS_DEFAULT;
+            qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
+            qos.endpoint().history_memory_policy =
+                eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+            answers = subscriber_->create_datareader(topic(type + "_Response_", topic_name), qos,
+                                                     printers_.back().get());
+            if (answers == nullptr) throw std::runtime_error("no reader of " + topic_name);
+            dds::SubscriptionMatchedStatus matched;
+            for (int i = 0; i < 1000 && matched.current_count == 0; ++i) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+                answers->get_subscription_matched_status(matched);
+            }
+            if (matched.current_count == 0) throw std::runtime_error("no answers of " + name);
+        }
+        eprosima::fastrtps::rtps::WriteParams parameters;
+        parameters.related_sample_identity().writer_guid() = answers->guid();
+        const std::string topic_name = "rq/" + name + "Request";
+        writer(type + "_Request_", topic_name).write(&request, parameters);
+        print(topic_name,
+              "\"sent\":" +
+                  std::to_string(parameters.sample_identity().sequence_number().to64long()));
+    }
+
     void obey(const std::string& line) {
         std::istringstream words(line);
         std::string verb, type, name, hex;
@@ -297,6 +353,10 @@ class Client {
             std::string bytes = fromHex(hex);
             for (long i = 0; i < count; ++i) writer(type, name).write(&bytes);
             return;
+        }
+        if (verb == "call") {
+            words >> type >> name >> hex;
+            return call(type, name, fromHex(hex));
         }
         words >> name >> a >> b >> c;
         std::string bytes;
@@ -326,7 +386,8 @@ class Client {
     dds::DomainParticipant* participant_ = nullptr;
     dds::Publisher* publisher_ = nullptr;
     dds::Subscriber* subscriber_ = nullptr;
-    std::vector<std::unique_ptr<Printer>> printers_;
+    std::vector<std::unique_ptr<dds::DataReaderListener>> printers_;
+    std::map<std::string, dds::DataReader*> answers_;  // by service
     std::map<std::string, dds::DataWriter*> writers_;
 };
 

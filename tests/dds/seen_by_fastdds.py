@@ -88,7 +88,7 @@ def check_services(client):
     client.wait(lambda: client.seen["rr/resetReply"], "reset", call("reset"))
     client.wait(lambda: is_at_start(client), "the robot at its start")
     time.sleep(0.5)  # for calls that were repeated
-    # Without the header, as over Fast DDS, the request is carried out.
+    # With neither a header nor an identity the request is carried out.
     client.wait(lambda: not is_at_start(client), "the robot to go", "twist rt/r1/cmd_vel 0.3 0")
     client.wait(lambda: is_at_start(client), "the robot at its start", call("reset", "00010000"))
     time.sleep(0.5)

@@ -27,16 +27,20 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         const std::string type = "geometry_msgs::msg::dds_::";
         constexpr std::array<const char*, 3> kServices{"reset", "pause", "resume"};
         if (letter == 't') {
-            dds.end("rt/cmd_vel", type + "Twist_").arrived.emplace_back(message);
+            dds.end("rt/cmd_vel", type + "Twist_").arrived.push_back({std::string(message)});
         } else if (letter == 's') {
-            dds.end("rt/r1/cmd_vel", type + "TwistStamped_").arrived.emplace_back(message);
+            dds.end("rt/r1/cmd_vel", type + "TwistStamped_")
+                .arrived.push_back({std::string(message)});
         } else if (letter == 'p') {
-            dds.end("rt/r1/initialpose").arrived.emplace_back(message);
+            dds.end("rt/r1/initialpose").arrived.push_back({std::string(message)});
+        } else if (letter == 'm') {
+            dds.end("rq/simrun/set_parametersRequest")
+                .arrived.push_back({std::string(message), DdsRequest{{1}, 1}});
         } else if (letter == 'r') {
             for (auto& [number, end] : dds.ends) end.is_read = !end.is_read;
         } else {
             const std::string name = kServices.at(static_cast<unsigned char>(letter) % 3);
-            dds.end("rq/" + name + "Request").arrived.emplace_back(message);
+            dds.end("rq/" + name + "Request").arrived.push_back({std::string(message)});
             dds.is_changed = true;
             node.serve();
             for (const std::string& answer : dds.end("rr/" + name + "Reply").sent)

@@ -29,14 +29,19 @@ class FakeParticipant final : public DdsParticipant {
     void write(int writer, std::string_view message) override {
         ends.at(writer).sent.emplace_back(message);
     }
-    std::vector<std::string> take(int reader) override {
+    void answer(int writer, const DdsRequest& request, std::string_view message) override {
+        ends.at(writer).answers.emplace_back(request, message);
+    }
+    std::vector<DdsMessage> take(int reader) override {
         return std::exchange(ends.at(reader).arrived, {});
     }
 
     struct Known {
         DdsTopic topic;
         bool is_read = false;
-        std::vector<std::string> sent, arrived;
+        std::vector<std::string> sent;
+        std::vector<std::pair<DdsRequest, std::string>> answers;
+        std::vector<DdsMessage> arrived;
     };
     Known& end(const std::string& name, const std::string& type = "") {
         for (auto& [number, one] : ends)

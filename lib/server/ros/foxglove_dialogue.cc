@@ -385,10 +385,10 @@ void FoxgloveDialogue::setParameters(const Json& request) {
     std::set<std::string> names;
     for (const Json& one : member(request, "parameters")) {
         const std::string name = textOf(member(one, "name"));
-        const auto line =
-            requestToSet(state().simulation(), feed().isOfOneRoom(), name, member(one, "value"));
-        if (!line) {
-            tell(Level::Error, excerpt(name) + " cannot be set to this");
+        const RosSetting setting =
+            settingOf(state().simulation(), feed().isOfOneRoom(), name, member(one, "value"));
+        if (!setting.refusal.empty()) {
+            tell(Level::Error, setting.refusal);
             if (!id.empty()) sendParameters({name}, id);
             continue;
         }
@@ -400,7 +400,7 @@ void FoxgloveDialogue::setParameters(const Json& request) {
         }
         if (!orders().mayRequest()) return tell(Level::Error, "too many parameters at once");
         names.insert(name);
-        orders().request(*line, [this, name, id](bool is_done, std::string_view text) {
+        orders().request(setting.request, [this, name, id](bool is_done, std::string_view text) {
             if (!is_done) tell(Level::Error, std::string(text));
             if (!id.empty()) sendParameters({name}, id);
         });

@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "sense/formats/cdr.h"
-#include "server/ros/ros_node.h"
 
 namespace ispace {
 
@@ -37,22 +36,6 @@ void putTime(CdrWriter& out, SimTime time) {
     out.put(static_cast<std::uint32_t>(nanoseconds % kSecond));
 }
 
-/// A request without its header, which starts its answer.
-struct Request {
-    std::string_view header, content;
-};
-std::optional<Request> requestOf(std::string_view message) {
-    if (message.size() <= kCdrHead.size() + kServiceHeader) return std::nullopt;
-    return Request{message.substr(kCdrHead.size(), kServiceHeader),
-                   message.substr(kCdrHead.size() + kServiceHeader)};
-}
-
-CdrWriter answerTo(std::string_view header) {
-    CdrWriter out;
-    out.array(std::span(reinterpret_cast<const std::uint8_t*>(header.data()), header.size()));
-    return out;
-}
-
 template <typename Id>
 void readId(CdrReader& in, Id& id) {
     const std::string_view bytes = in.values(id.size(), 1);
@@ -61,35 +44,25 @@ void readId(CdrReader& in, Id& id) {
 
 }  // namespace
 
-RosActions::Service RosActions::addService(const std::string& action, const char* service,
-                                           const std::string& type) {
-    const auto topic = [&](const char* prefix, const char* side, const char* end) {
-        return DdsTopic{.name = ddsTopicOf(prefix, action) + "/_action/" + service + side,
-                        .type = type + end,
-                        .depth = kDepth};
-    };
-    return {participant_->addReader(topic("rq", "Request", "_Request_")),
-            participant_->addWriter(topic("rr", "Reply", "_Response_"))};
-}
-
 void RosActions::add(const std::string& name) {
-    const std::string type = "nav2_msgs::action::dds_::NavigateToPose_";
-    Action& action = actions_[name];
-    action.send = addService(name, "send_goal", type + "SendGoal");
-    action.result = addService(name, "get_result", type + "GetResult");
-    action.cancel = addService(name, "cancel_goal", "action_msgs::srv::dds_::CancelGoal");
-    const std::string topic = ddsTopicOf("rt", name) + "/_action/";
+    const std::string type = "nav2_msgs/action/NavigateToPose_", prefix = name + "/_action/";
+    const auto server = [&](const char* service, const std::string& of) {
+        return RosServer(*participant_, prefix + service, of);
+    };
+    Action action{server("send_goal", type + "SendGoal"), server("get_result", type + "GetResult"),
+                  server("cancel_goal", "action_msgs/srv/CancelGoal")};
+    const std::string topic = ddsTopicOf("rt", prefix);
     action.feedback = participant_->addWriter(
-        {.name = topic + "feedback", .type = type + "FeedbackMessage_", .depth = kDepth});
+        {.name = topic + "feedback", .type = ddsTypeOf(type + "FeedbackMessage"), .depth = kDepth});
     action.status = participant_->addWriter({.name = topic + "status",
-                                             .type = "action_msgs::msg::dds_::GoalStatusArray_",
+                                             .type = ddsTypeOf("action_msgs/msg/GoalStatusArray"),
                                              .is_latched = true});
     sendStatus(action);
+    actions_.emplace(name, std::move(action));
 }
 
 void RosActions::remove(const Action& action) {
-    for (const Service& one : {action.send, action.result, action.cancel})
-        for (const int end : {one.reader, one.writer}) participant_->remove(end);
+    for (const RosServer* one : {&action.send, &action.result, &action.cancel}) one->remove();
     participant_->remove(action.feedback);
     participant_->remove(action.status);
 }
@@ -112,10 +85,8 @@ void RosActions::sync() {
 
 void RosActions::addEnds(std::vector<DdsGuid>& readers, std::vector<DdsGuid>& writers) const {
     for (const auto& [name, action] : actions_) {
-        for (const Service& one : {action.send, action.result, action.cancel}) {
-            readers.push_back(participant_->guid(one.reader));
-            writers.push_back(participant_->guid(one.writer));
-        }
+        for (const RosServer* one : {&action.send, &action.result, &action.cancel})
+            one->addEnds(readers, writers);
         writers.push_back(participant_->guid(action.feedback));
         writers.push_back(participant_->guid(action.status));
     }
@@ -125,32 +96,18 @@ void RosActions::serve() {
     for (auto& named : actions_) {
         const std::string& name = named.first;
         Action& action = named.second;
-        const auto take = [&](const Service& service, auto read) {
-            for (const std::string& message : participant_->take(service.reader)) {
-                try {
-                    read(message);
-                } catch (const FormatError&) {
-                    continue;  // too short: no request
-                }
-            }
-        };
-        take(action.send, [&](const std::string& message) { takeGoal(name, action, message); });
-        take(action.result,
-             [&](const std::string& message) { takeResultRequest(action, message); });
-        take(action.cancel, [&](const std::string& message) { takeCancellation(action, message); });
+        action.send.serve([&](const RosCall& call) { takeGoal(name, action, call); });
+        action.result.serve([&](const RosCall& call) { takeResultRequest(action, call); });
+        action.cancel.serve([&](const RosCall& call) { takeCancellation(action, call); });
     }
 }
 
-void RosActions::takeGoal(const std::string& name, Action& action, const std::string& message) {
-    const auto request = requestOf(message);
-    if (!request) return;
-    const std::string content = std::string(kCdrHead) + std::string(request->content);
-    CdrReader in(content);
+void RosActions::takeGoal(const std::string& name, Action& action, const RosCall& call) {
+    CdrReader in(call.content);
     Goal goal;
     readId(in, goal.id);
     // The pose stands at a multiple of eight bytes, as in a PoseStamped alone.
-    const std::string pose =
-        std::string(kCdrHead) + content.substr(kCdrHead.size() + goal.id.size());
+    const std::string pose = std::string(call.content).erase(kCdrHead.size(), goal.id.size());
     feed_->sync();
     const std::string topic =
         name.substr(0, name.size() - kAction.size()) + std::string(kGoalTopic);
@@ -171,7 +128,7 @@ void RosActions::takeGoal(const std::string& name, Action& action, const std::st
                                    })
                           .empty();
     }
-    CdrWriter answer = answerTo(request->header);
+    CdrWriter answer;
     answer.put(is_accepted);
     putTime(answer, goal.accepted);
     if (is_accepted) {
@@ -179,30 +136,24 @@ void RosActions::takeGoal(const std::string& name, Action& action, const std::st
         action.goals.push_back(std::move(goal));
         if (action.goals.size() > kMostGoals) action.goals.pop_front();
     }
-    participant_->write(action.send.writer, answer.take());
+    action.send.answer(call.caller, answer.take());
     if (is_accepted) sendStatus(action);
 }
 
-void RosActions::takeResultRequest(Action& action, const std::string& message) {
-    const auto request = requestOf(message);
-    if (!request) return;
-    CdrReader in(message);
-    in.values(kServiceHeader, 1);
+void RosActions::takeResultRequest(Action& action, const RosCall& call) {
+    CdrReader in(call.content);
     GoalId id{};
     readId(in, id);
     const auto goal = std::find_if(action.goals.begin(), action.goals.end(),
                                    [&](const Goal& one) { return one.id == id; });
-    if (goal == action.goals.end()) return sendResult(action, Goal{}, request->header);
-    if (!isUnderWay(goal->status)) return sendResult(action, *goal, request->header);
-    if (goal->waiting.size() < kMostWaiting) goal->waiting.emplace_back(request->header);
+    if (goal == action.goals.end()) return sendResult(action, Goal{}, call.caller);
+    if (!isUnderWay(goal->status)) return sendResult(action, *goal, call.caller);
+    if (goal->waiting.size() < kMostWaiting) goal->waiting.push_back(call.caller);
 }
 
 /// A goal without an id and a time is all of them, one with a time those up to then.
-void RosActions::takeCancellation(Action& action, const std::string& message) {
-    const auto request = requestOf(message);
-    if (!request) return;
-    CdrReader in(message);
-    in.values(kServiceHeader, 1);
+void RosActions::takeCancellation(Action& action, const RosCall& call) {
+    CdrReader in(call.content);
     GoalId id{};
     readId(in, id);
     const SimTime time = std::chrono::seconds(in.number<std::int32_t>()) +
@@ -227,13 +178,13 @@ void RosActions::takeCancellation(Action& action, const std::string& message) {
         canceled.erase(canceled.begin() + static_cast<std::ptrdiff_t>(i));
         code = kRejected;
     }
-    CdrWriter answer = answerTo(request->header);
+    CdrWriter answer;
     answer.put(code).count(canceled.size());
     for (const auto& [goal, accepted] : canceled) {
         answer.array(std::span<const std::uint8_t>(goal));
         putTime(answer, accepted);
     }
-    participant_->write(action.cancel.writer, answer.take());
+    action.cancel.answer(call.caller, answer.take());
 }
 
 void RosActions::end(const std::string& name, const GoalId& id, RosGoalEnd end,
@@ -249,14 +200,13 @@ void RosActions::end(const std::string& name, const GoalId& id, RosGoalEnd end,
                                                  : kAborted;
     goal->error = why;
     sendStatus(action);
-    for (const std::string& header : std::exchange(goal->waiting, {}))
-        sendResult(action, *goal, header);
+    for (const RosCaller& caller : std::exchange(goal->waiting, {}))
+        sendResult(action, *goal, caller);
 }
 
-void RosActions::sendResult(const Action& action, const Goal& goal, std::string_view header) {
+void RosActions::sendResult(const Action& action, const Goal& goal, const RosCaller& caller) {
     const std::uint16_t error = goal.status == kAborted || goal.status == kUnknown ? 1 : 0;
-    participant_->write(action.result.writer,
-                        answerTo(header).put(goal.status).put(error).put(goal.error).take());
+    action.result.answer(caller, CdrWriter().put(goal.status).put(error).put(goal.error).take());
 }
 
 void RosActions::sendFeedback(const Action& action, Goal& goal) {

@@ -8,18 +8,17 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "server/ros/module/dds_participant.h"
 #include "server/ros/ros_feed.h"
 #include "server/ros/ros_orders.h"
+#include "server/ros/ros_server.h"
 
 namespace ispace {
 
 /// Nav2's action `navigate_to_pose` of each robot over DDS: three services, the topics of feedback
-/// and status. A goal is one of the robot's topic `goal_pose`. Requests have the header of
-/// Cyclone's nodes, see RosNode.
+/// and status. A goal is one of the robot's topic `goal_pose`.
 class RosActions {
   public:
     /// All outlive the actions. \param orders of the node
@@ -48,25 +47,20 @@ class RosActions {
         SimTime accepted{}, told{};
         std::int8_t status = 0;
         std::string error;
-        std::vector<std::string> waiting;  ///< headers of requests for the result
-    };
-    struct Service {
-        int reader = 0, writer = 0;
+        std::vector<RosCaller> waiting;  ///< of requests for the result
     };
     struct Action {
-        Service send, result, cancel;
+        RosServer send, result, cancel;
         int feedback = 0, status = 0;
-        std::deque<Goal> goals;  ///< in the order of their arrival
+        std::deque<Goal> goals = {};  ///< in the order of their arrival
     };
-    [[nodiscard]] Service addService(const std::string& action, const char* service,
-                                     const std::string& type);
     void add(const std::string& name);
     void remove(const Action& action);
-    void takeGoal(const std::string& name, Action& action, const std::string& message);
-    void takeResultRequest(Action& action, const std::string& message);
-    void takeCancellation(Action& action, const std::string& message);
+    void takeGoal(const std::string& name, Action& action, const RosCall& call);
+    void takeResultRequest(Action& action, const RosCall& call);
+    void takeCancellation(Action& action, const RosCall& call);
     void end(const std::string& name, const GoalId& id, RosGoalEnd end, const std::string& why);
-    void sendResult(const Action& action, const Goal& goal, std::string_view header);
+    void sendResult(const Action& action, const Goal& goal, const RosCaller& caller);
     void sendFeedback(const Action& action, Goal& goal);
     void sendStatus(const Action& action);
 

@@ -10,6 +10,7 @@
 #include "base/message.h"
 #include "raster/codec.h"
 #include "sense/formats/cdr.h"
+#include "server/ros/ros_parameters.h"
 #include "server/ros/ros_queries.h"
 #include "server/ros/ros_type_hash.h"
 
@@ -17,7 +18,8 @@ namespace ispace {
 
 namespace {
 
-constexpr std::size_t kServiceDepth = 10;
+/// Parameters that a request may set.
+constexpr std::size_t kMostParameters = 16;
 /// A peer's socket holds some 90 packets by custom, which the scans of a hundred robots exceed at
 /// once.
 constexpr std::size_t kBurst = std::size_t{1} << 15U;
@@ -42,17 +44,6 @@ void putIds(CdrWriter& out, const std::vector<DdsGuid>& ids) {
 
 }  // namespace
 
-std::string ddsTopicOf(std::string_view prefix, std::string_view topic) {
-    return std::string(prefix) + std::string(topic);
-}
-
-std::string ddsTypeOf(std::string_view type) {
-    std::string out;
-    const std::size_t last = type.rfind('/') + 1;
-    for (const char c : type.substr(0, last)) c == '/' ? out += "::" : out += c;
-    return out.append("dds_::").append(type.substr(last)).append("_");
-}
-
 RosNode::RosNode(ServerState& state, RosFeed& feed, const DdsSettings& settings)
     : RosNode(state, feed, openModule(settings)) {}
 
@@ -75,26 +66,30 @@ RosNode::~RosNode() {
         if (end.is_wanted) feed_->unwant(topic);
 }
 
-RosNode::Service RosNode::addService(std::string_view name, std::string_view type) {
-    const auto topic = [&](const char* prefix, const char* side, const char* end) {
-        return DdsTopic{.name = ddsTopicOf(prefix, name) + side,
-                        .type = ddsTypeOf(type) + end,
-                        .depth = kServiceDepth};
-    };
-    return {.request = "",
-            .reader = participant_->addReader(topic("rq", "Request", "Request_")),
-            .writer = participant_->addWriter(topic("rr", "Reply", "Response_"))};
-}
-
 void RosNode::addServices() {
-    for (const RosService& service : rosServices()) {
-        services_.push_back(addService(service.name, kRosEmptyService));
-        services_.back().request = service.request;
-    }
-    for (const RosQuery& query : rosQueries()) {
-        services_.push_back(addService(query.name, query.type));
-        services_.back().query = &query;
-    }
+    const auto add = [this](std::string_view name, std::string_view type, auto serve) {
+        services_.push_back({RosServer(*participant_, name, type), std::move(serve)});
+    };
+    for (const RosService& service : rosServices())
+        add(service.name, kRosEmptyService,
+            [this, request = std::string(service.request)](const RosServer& server,
+                                                           const RosCall& call) {
+                carryOut(request, server, call.caller);
+            });
+    for (const RosQuery& query : rosQueries())
+        add(query.name, query.type, [this, &query](const RosServer& server, const RosCall& call) {
+            CdrReader in(call.content);
+            CdrWriter out;
+            query.answer(in, *simulation_, feed_->isOfOneRoom(), out);
+            server.answer(call.caller, out.take());
+        });
+    for (const bool is_atomic : {false, true})
+        add(is_atomic ? "/simrun/set_parameters_atomically" : "/simrun/set_parameters",
+            is_atomic ? "rcl_interfaces/srv/SetParametersAtomically"
+                      : "rcl_interfaces/srv/SetParameters",
+            [this, is_atomic](const RosServer& server, const RosCall& call) {
+                set(server, call, is_atomic);
+            });
 }
 
 /// Adapts to the topics of a changed world.
@@ -138,10 +133,7 @@ void RosNode::tellGraph() {
     for (const auto& [topic, end] : ends_) {
         (end.is_input ? readers : writers).push_back(participant_->guid(end.number));
     }
-    for (const Service& service : services_) {
-        readers.push_back(participant_->guid(service.reader));
-        writers.push_back(participant_->guid(service.writer));
-    }
+    for (const Service& service : services_) service.server.addEnds(readers, writers);
     actions_->addEnds(readers, writers);
     CdrWriter out;
     const DdsGuid own = participant_->guid();
@@ -209,19 +201,20 @@ void RosNode::serve() {
     lookForReaders();
     send();
     takeOrders();
-    takeRequests();
+    for (const Service& service : services_)
+        service.server.serve([&](const RosCall& call) { service.serve(service.server, call); });
     actions_->serve();
 }
 
 void RosNode::takeOrders() {
     for (const auto& [topic, end] : ends_) {
         if (!end.is_input) continue;
-        for (const std::string& message : participant_->take(end.number)) {
+        for (const DdsMessage& message : participant_->take(end.number)) {
             feed_->sync();  // an earlier order may have changed the world
             const auto found = feed_->entries().find(topic);
             if (found == feed_->entries().end()) break;
             try {
-                orders_.obey(found->second.channel, message);
+                orders_.obey(found->second.channel, message.bytes);
             } catch (const FormatError&) {
                 continue;  // too short: no order
             }
@@ -229,47 +222,63 @@ void RosNode::takeOrders() {
     }
 }
 
-void RosNode::takeRequests() {
-    for (const Service& service : services_) {
-        for (const std::string& message : participant_->take(service.reader)) {
-            if (service.query != nullptr) {
-                answer(service, message);
-                continue;
-            }
-            if (!orders_.mayRequest()) continue;
-            // Nodes over Fast DDS have no such header, and do not find an answer without their own.
-            const bool has_header = message.size() > kCdrHead.size() + kServiceHeader;
-            std::string answer(kCdrHead);
-            answer += std::string_view(message).substr(std::min(message.size(), kCdrHead.size()),
-                                                       has_header ? kServiceHeader : 0);
-            answer += '\0';
-            orders_.request(service.request,
-                            [self = std::weak_ptr(self_), has_header, writer = service.writer,
-                             answer = std::move(answer)](bool is_done, std::string_view /*text*/) {
-                                const auto node = self.lock();
-                                if (!node || !is_done || !has_header || !(*node)->participant_)
-                                    return;
-                                (*node)->participant_->write(writer, answer);
-                            });
-        }
-    }
+/// Makes a request of the protocol, and answers the caller once it is done.
+void RosNode::carryOut(const std::string& request, const RosServer& server,
+                       const RosCaller& caller) {
+    if (!orders_.mayRequest()) return;
+    orders_.request(request, [self = std::weak_ptr(self_), server, caller](
+                                 bool is_done, std::string_view /*text*/) {
+        const auto node = self.lock();
+        if (node && is_done && (*node)->participant_) server.answer(caller, kRosEmpty);
+    });
 }
 
-/// Answers a query of a node over Cyclone.
-void RosNode::answer(const Service& service, const std::string& message) {
-    const std::size_t head = kCdrHead.size() + kServiceHeader;
-    if (message.size() <= head) return;
-    CdrWriter out;
-    try {
-        CdrReader in(message);
-        in.values(kServiceHeader, 1);
-        service.query->answer(in, *simulation_, feed_->isOfOneRoom(), out);
-    } catch (const FormatError&) {
-        return;  // too short: no request
+/// Sets parameters, and answers once each is set or refused.
+void RosNode::set(const RosServer& server, const RosCall& call, bool is_atomic) {
+    CdrReader in(call.content);
+    const auto parameters = readParameters(in);
+    struct Outcome {
+        std::vector<std::string> refusals;  // "" for a parameter that is set
+        std::size_t open = 0;
+    };
+    const auto outcome = std::make_shared<Outcome>();
+    outcome->refusals.resize(parameters.size());
+    outcome->open = parameters.size() + 1;
+    const auto settle = [self = std::weak_ptr(self_), server, caller = call.caller, is_atomic,
+                         outcome] {
+        const auto node = self.lock();
+        if (--outcome->open > 0 || !node || !(*node)->participant_) return;
+        CdrWriter out;
+        if (!is_atomic) out.count(outcome->refusals.size());
+        for (const std::string& refusal : outcome->refusals) {
+            writeSetResult(refusal, out);
+            if (is_atomic) break;
+        }
+        server.answer(caller, out.take());
+    };
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        std::string& refusal = outcome->refusals[i];
+        RosSetting setting;
+        if (is_atomic && parameters.size() > 1)
+            refusal = "several parameters cannot be set at once: set each alone";
+        else if (!orders_.hasToken())
+            refusal = "nodes do not know the token of this run";
+        else if (i >= kMostParameters || !orders_.mayRequest())
+            refusal = "too many parameters at once";
+        else
+            setting = settingOf(*simulation_, feed_->isOfOneRoom(), parameters[i].first,
+                                parameters[i].second);
+        if (refusal.empty()) refusal = setting.refusal;
+        if (!refusal.empty()) {
+            settle();
+            continue;
+        }
+        orders_.request(setting.request, [outcome, settle, i](bool is_done, std::string_view text) {
+            if (!is_done) outcome->refusals[i] = text;
+            settle();
+        });
     }
-    participant_->write(service.writer, std::string(kCdrHead) +
-                                            message.substr(kCdrHead.size(), kServiceHeader) +
-                                            out.take().substr(kCdrHead.size()));
+    settle();
 }
 
 void RosNode::end() {

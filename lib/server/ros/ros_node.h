@@ -15,18 +15,9 @@
 #include "server/ros/ros_actions.h"
 #include "server/ros/ros_feed.h"
 #include "server/ros/ros_orders.h"
+#include "server/ros/ros_server.h"
 
 namespace ispace {
-
-struct RosQuery;
-
-/// The names that nodes of ROS 2 give topics and types in DDS: "/scan" is "rt/scan",
-/// "sensor_msgs/msg/LaserScan" is "sensor_msgs::msg::dds_::LaserScan_".
-std::string ddsTopicOf(std::string_view prefix, std::string_view topic);
-std::string ddsTypeOf(std::string_view type);
-
-/// Before the content of requests and answers, nodes over Cyclone have the client and a number.
-constexpr std::size_t kServiceHeader = 16;
 
 /// The running world as a node of ROS 2, over DDS. Only topics with readers are computed.
 ///
@@ -68,11 +59,9 @@ class RosNode {
         std::int64_t last = 0;  ///< number of the last message
     };
     struct Service {
-        std::string request;              ///< of the protocol, "" for a query
-        const RosQuery* query = nullptr;  ///< null for a request
-        int reader = 0, writer = 0;
+        RosServer server;
+        std::function<void(const RosServer& server, const RosCall& call)> serve;
     };
-    Service addService(std::string_view name, std::string_view type);
     void addServices();
     void sync();
     void add(std::uint32_t topic, const RosChannel& channel);
@@ -80,8 +69,8 @@ class RosNode {
     void lookForReaders();
     void send();
     void takeOrders();
-    void takeRequests();
-    void answer(const Service& service, const std::string& message);
+    void carryOut(const std::string& request, const RosServer& server, const RosCaller& caller);
+    void set(const RosServer& server, const RosCall& call, bool is_atomic);
 
     RosFeed* feed_;
     const Simulation* simulation_;

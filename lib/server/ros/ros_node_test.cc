@@ -39,7 +39,7 @@ struct Noded {
         }
     }
     void send(const std::string& topic, const std::string& message, const std::string& type = "") {
-        dds->end(topic, type).arrived.push_back(message);
+        dds->end(topic, type).arrived.push_back({message});
         dds->is_changed = true;
         node->serve();
     }
@@ -148,6 +148,21 @@ TEST(RosNode, AnswersWithTheHeaderOfTheRequest) {
     EXPECT_FALSE(noded.room.simulation.paused());
     EXPECT_TRUE(noded.dds->end("rr/resumeReply").sent.empty());
     noded.send("rq/resumeRequest", "");
+}
+
+TEST(RosNode, AnswersByTheIdentityOfTheRequest) {
+    Noded noded({}, Clock::Kind::Real);
+    auto& requests = noded.dds->end("rq/pauseRequest");
+    const auto& answers = noded.dds->end("rr/pauseReply");
+    requests.arrived.push_back({std::string("\0\1\0\0\0", 5), DdsRequest{{3}, 12}});
+    noded.dds->is_changed = true;
+    noded.node->serve();
+    EXPECT_TRUE(noded.room.simulation.paused());
+    EXPECT_TRUE(answers.sent.empty());
+    ASSERT_EQ(answers.answers.size(), 1U);
+    EXPECT_EQ(answers.answers[0].first.reader, DdsGuid{3});
+    EXPECT_EQ(answers.answers[0].first.number, 12);
+    EXPECT_EQ(answers.answers[0].second, std::string("\0\1\0\0\0", 5)) << "no header";
 }
 
 TEST(RosNode, LeavesRequestsUnansweredThatNeedAToken) {
@@ -339,6 +354,70 @@ TEST(RosQueries, ListAndDescribeParameters) {
     values.number<std::uint8_t>();
     values.number<std::int64_t>();
     EXPECT_EQ(values.number<double>(), 1.0);
+}
+
+/// Appends a parameter and its value, a field of each type.
+void putParameter(CdrWriter& out, const std::string& name, std::uint8_t type, bool flag,
+                  double number, const std::vector<double>& numbers) {
+    out.put(name).put(type).put(flag).put(std::int64_t{5}).put(number).put("text");
+    out.count(0).count(0).count(1).put(std::int64_t{5});
+    out.sequence<double>(numbers).count(1).put("text");
+}
+
+/// Returns the reasons why parameters are not set, "" for those that are.
+std::vector<std::string> setResults(const std::string& message, bool is_list) {
+    CdrReader in = answerOf(message);
+    std::vector<std::string> reasons;
+    for (std::size_t left = is_list ? in.count() : 1; left > 0; --left) {
+        const bool is_done = in.number<std::uint8_t>() != 0;
+        reasons.emplace_back(in.text());
+        EXPECT_EQ(is_done, reasons.back().empty());
+    }
+    return reasons;
+}
+
+/// Sets some parameters, and others that cannot be set.
+std::vector<std::string> setSome(Noded& noded) {
+    CdrWriter out = request();
+    out.count(4);
+    putParameter(out, "clock.paused", 1, true, 0, {});
+    putParameter(out, "none", 1, true, 0, {});
+    putParameter(out, "r1.at", 2, true, 0, {1, 1});
+    putParameter(out, "r1.at", 8, true, 0, {1, -1});
+    noded.send("rq/simrun/set_parametersRequest", out.take());
+    return setResults(noded.dds->end("rr/simrun/set_parametersReply").sent.back(), true);
+}
+
+TEST(RosQueries, SetParameters) {
+    Noded noded({}, Clock::Kind::Real);
+    const auto reasons = setSome(noded);
+    EXPECT_EQ(reasons[0], "");
+    EXPECT_TRUE(noded.room.simulation.paused());
+    EXPECT_EQ(reasons[1], "there is no parameter `none`");
+    EXPECT_EQ(reasons[2], "`r1.at` is a list of 2 numbers") << "an integer";
+    EXPECT_EQ(reasons[3], "clients may not change the world of this run");
+
+    ServerLimits limits;
+    limits.token = "secret";
+    Noded guarded(limits, Clock::Kind::Real);
+    EXPECT_EQ(setSome(guarded)[0], "nodes do not know the token of this run");
+    EXPECT_FALSE(guarded.room.simulation.paused());
+}
+
+TEST(RosQueries, SetParametersAtomicallyOneByOne) {
+    Noded noded({}, Clock::Kind::Real);
+    const auto set = [&](std::uint32_t count) {
+        CdrWriter out = request();
+        out.count(count);
+        for (std::uint32_t i = 0; i < count; ++i) putParameter(out, "clock.paused", 1, true, 0, {});
+        noded.send("rq/simrun/set_parameters_atomicallyRequest", out.take());
+        return setResults(noded.dds->end("rr/simrun/set_parameters_atomicallyReply").sent.back(),
+                          false)[0];
+    };
+    EXPECT_NE(set(2), "");
+    EXPECT_FALSE(noded.room.simulation.paused());
+    EXPECT_EQ(set(1), "");
+    EXPECT_TRUE(noded.room.simulation.paused());
 }
 
 }  // namespace

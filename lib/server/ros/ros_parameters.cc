@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/message.h"
 #include "base/number.h"
 
 namespace ispace {
@@ -40,32 +41,29 @@ std::string parameterNamed(const std::string& name) {
     return name;
 }
 
-std::optional<std::string> requestToSet(const Simulation& simulation, bool with_things,
-                                        const std::string& name, const nlohmann::json& value) {
+RosSetting settingOf(const Simulation& simulation, bool with_things, const std::string& name,
+                     const nlohmann::json& value) {
     const std::vector<RosParameter> all = rosParameters(simulation, with_things);
     const auto known = std::find_if(all.begin(), all.end(),
                                     [&](const RosParameter& one) { return one.name == name; });
-    if (known == all.end()) return std::nullopt;
-    if (name == kPaused) {
-        if (!value.is_boolean()) return std::nullopt;
-        return value.get<bool>() ? "PAUSE" : "RESUME";
+    if (known == all.end()) return {"", "there is no parameter " + excerpt(name)};
+    if (std::holds_alternative<bool>(known->value)) {
+        if (!value.is_boolean()) return {"", excerpt(name) + " is true or false"};
+        return {value.get<bool>() ? "PAUSE" : "RESUME", ""};
     }
-    if (name == kRate) {
-        if (!value.is_number()) return std::nullopt;
-        return "RATE " + formatDouble(value);
-    }
-    const auto text_of = [](const nlohmann::json& number) { return formatDouble(number); };
     if (std::holds_alternative<double>(known->value)) {
-        if (!value.is_number()) return std::nullopt;
-        return "SET " + name + "=" + text_of(value);
+        if (!value.is_number()) return {"", excerpt(name) + " is a number"};
+        return {(name == kRate ? "RATE " : "SET " + name + "=") + formatDouble(value), ""};
     }
+    const std::size_t size = std::get<std::vector<double>>(known->value).size();
     const bool is_list =
-        value.is_array() && value.size() == std::get<std::vector<double>>(known->value).size() &&
+        value.is_array() && value.size() == size &&
         std::all_of(value.begin(), value.end(), [](const auto& one) { return one.is_number(); });
-    if (!is_list) return std::nullopt;
+    if (!is_list) return {"", excerpt(name) + " is a list of " + std::to_string(size) + " numbers"};
     std::string out = "SET " + name + "=";
-    for (const auto& one : value) out.append(out.ends_with('=') ? "" : ",").append(text_of(one));
-    return out;
+    for (const auto& one : value)
+        out.append(out.ends_with('=') ? "" : ",").append(formatDouble(one));
+    return {out, ""};
 }
 
 }  // namespace ispace

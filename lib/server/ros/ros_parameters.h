@@ -3,7 +3,6 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -26,9 +25,13 @@ std::vector<RosParameter> rosParameters(const Simulation& simulation, bool with_
 /// "/simrun:r1.at".
 std::string parameterNamed(const std::string& name);
 
-/// Returns the request that sets a parameter: "SET r1.at=1,2", "PAUSE". Empty if there is no such
-/// parameter, it cannot be set, or the value has another type.
-std::optional<std::string> requestToSet(const Simulation& simulation, bool with_things,
-                                        const std::string& name, const nlohmann::json& value);
+/// The request that sets a parameter, "SET r1.at=1,2" or "PAUSE", or the reason why it cannot be
+/// set.
+struct RosSetting {
+    std::string request, refusal;
+};
+/// \param with_things as for rosParameters()
+RosSetting settingOf(const Simulation& simulation, bool with_things, const std::string& name,
+                     const nlohmann::json& value);
 
 }  // namespace ispace

@@ -2,6 +2,7 @@
 #include "server/ros/ros_queries.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace ispace {
 namespace {
 
 // Of rcl_interfaces/msg/ParameterType.
-constexpr std::uint8_t kNotSet = 0, kBool = 1, kDouble = 3, kDoubles = 8;
+constexpr std::uint8_t kNotSet = 0, kBool = 1, kInteger = 2, kDouble = 3, kText = 4, kBytes = 5,
+                       kBools = 6, kIntegers = 7, kDoubles = 8;
 
 using Value = decltype(RosParameter::value);
 
@@ -84,7 +86,7 @@ void describe(CdrReader& in, const Simulation& simulation, bool with_things, Cdr
                      out.put(name).put(parameter == nullptr ? kNotSet : typeOf(parameter->value));
                      out.put(parameter == nullptr ? "" : descriptionOf(name));
                      // Constraints; whether it is only read; whether its type may change; ranges.
-                     out.put("").put(true).put(false).count(0).count(0);
+                     out.put("").put(parameter == nullptr).put(false).count(0).count(0);
                  });
 }
 
@@ -111,6 +113,29 @@ void values(CdrReader& in, const Simulation& simulation, bool with_things, CdrWr
                  });
 }
 
+template <typename Number>
+nlohmann::json readNumbers(CdrReader& in) {
+    nlohmann::json numbers = nlohmann::json::array();
+    for (std::size_t left = in.count(); left > 0; --left) numbers.push_back(in.number<Number>());
+    return numbers;
+}
+
+/// Reads a rcl_interfaces/msg/ParameterValue: its type, and a field of each type.
+nlohmann::json readValue(CdrReader& in) {
+    const auto type = in.number<std::uint8_t>();
+    std::array<nlohmann::json, kDoubles + 1> fields;
+    fields[kBool] = in.number<std::uint8_t>() != 0;
+    fields[kInteger] = in.number<std::int64_t>();
+    fields[kDouble] = in.number<double>();
+    fields[kText] = in.text();
+    fields[kBytes] = readNumbers<std::uint8_t>(in);
+    fields[kBools] = readNumbers<std::uint8_t>(in);
+    fields[kIntegers] = readNumbers<std::int64_t>(in);
+    fields[kDoubles] = readNumbers<double>(in);
+    readTexts(in);
+    return type < fields.size() ? fields[type] : nlohmann::json();
+}
+
 constexpr RosQuery kQueries[] = {
     {"/simrun/list_parameters", "rcl_interfaces/srv/ListParameters", list},
     {"/simrun/describe_parameters", "rcl_interfaces/srv/DescribeParameters", describe},
@@ -120,5 +145,18 @@ constexpr RosQuery kQueries[] = {
 }  // namespace
 
 std::span<const RosQuery> rosQueries() { return kQueries; }
+
+std::vector<std::pair<std::string, nlohmann::json>> readParameters(CdrReader& request) {
+    std::vector<std::pair<std::string, nlohmann::json>> parameters;
+    for (std::size_t left = request.count(); left > 0; --left) {
+        std::string name(request.text());
+        parameters.emplace_back(std::move(name), readValue(request));
+    }
+    return parameters;
+}
+
+void writeSetResult(const std::string& refusal, CdrWriter& out) {
+    out.put(refusal.empty()).put(refusal);
+}
 
 }  // namespace ispace

@@ -2,9 +2,12 @@
 // Private to lib/server.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "sense/formats/cdr.h"
 #include "sim/simulation.h"
@@ -20,5 +23,11 @@ struct RosQuery {
                    CdrWriter& out);
 };
 std::span<const RosQuery> rosQueries();
+
+/// Reads the request of a service that sets parameters, see rcl_interfaces/srv/SetParameters: names
+/// and values. \throws FormatError for a request that ends too early
+std::vector<std::pair<std::string, nlohmann::json>> readParameters(CdrReader& request);
+/// Writes a rcl_interfaces/msg/SetParametersResult. \param refusal "" if the parameter is set
+void writeSetResult(const std::string& refusal, CdrWriter& out);
 
 }  // namespace ispace

@@ -418,13 +418,13 @@ void RosbridgeDialogue::setParameter(const Json& arguments, const std::string& i
     };
     const std::string name = parameterNamed(wordOf(arguments, "name"));
     const Json value = Json::parse(wordOf(arguments, "value"), nullptr, false);
-    const auto line = requestToSet(state().simulation(), feed().isOfOneRoom(), name, value);
-    if (!line) return respond(excerpt(name) + " cannot be set to this");
+    const RosSetting setting = settingOf(state().simulation(), feed().isOfOneRoom(), name, value);
+    if (!setting.refusal.empty()) return respond(setting.refusal);
     // PAUSE and RESUME themselves do not need it.
     if (!orders().hasToken())
         return respond(excerpt(name) + " needs the token of this run: ?token=x");
     if (!orders().mayRequest()) return respond("too many calls at once");
-    orders().request(*line, [respond](bool is_done, std::string_view text) {
+    orders().request(setting.request, [respond](bool is_done, std::string_view text) {
         respond(is_done ? "" : std::string(text));
     });
 }

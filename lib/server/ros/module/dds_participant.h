@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,17 @@ struct DdsSettings {
 
 using DdsGuid = std::array<std::uint8_t, 16>;
 
+/// The identity of a request that is not in its content, as nodes over Fast DDS send it.
+struct DdsRequest {
+    DdsGuid reader{};  ///< of the caller, for answers
+    std::int64_t number = 0;
+};
+
+struct DdsMessage {
+    std::string bytes;
+    std::optional<DdsRequest> request = {};  ///< empty for messages other than such requests
+};
+
 /// A participant of DDS with its writers and readers, by numbers. Messages are CDR with its head.
 /// All functions are for one thread, and none waits for peers.
 class DdsParticipant {
@@ -56,8 +68,10 @@ class DdsParticipant {
     [[nodiscard]] virtual bool isRead(int writer) const = 0;
     /// Sends a message, or drops it if slow readers leave no room.
     virtual void write(int writer, std::string_view message) = 0;
+    /// Sends the answer to a request, as write() does. Answers above 13.9 KB are dropped.
+    virtual void answer(int writer, const DdsRequest& request, std::string_view message) = 0;
     /// Returns the messages that have arrived, at most the topic's depth.
-    virtual std::vector<std::string> take(int reader) = 0;
+    virtual std::vector<DdsMessage> take(int reader) = 0;
 };
 
 /// The module's function. \throws std::runtime_error with a message for people

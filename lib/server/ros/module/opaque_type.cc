@@ -12,6 +12,9 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <optional>
+
+#include "server/ros/module/sample_identity.h"
 
 #if DDS_VERSION_MAJOR != 0 || DDS_VERSION_MINOR != 10
 #error "this source was written for Cyclone DDS 0.10"
@@ -25,10 +28,15 @@ namespace {
 struct OpaqueMessage : ddsi_serdata {
     std::string bytes;
     std::uint32_t size = 0;
+    std::optional<DdsRequest> request;
 };
 
 const OpaqueMessage& own(const ddsi_serdata* message) {
     return *static_cast<const OpaqueMessage*>(message);
+}
+
+std::string_view contentOf(const OpaqueMessage& message) {
+    return std::string_view(message.bytes).substr(0, message.size);
 }
 
 constexpr std::size_t padded(std::size_t size) { return (size + 3) / 4 * 4; }
@@ -56,6 +64,7 @@ ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, co
                             std::size_t size) {
     if (size > kMaxDdsMessage) return nullptr;
     OpaqueMessage* const message = newMessage(type, kind, size);
+    if (message != nullptr) message->request = requestOf(*chain);
     std::uint32_t end = 0;
     for (; message != nullptr && chain != nullptr; chain = chain->nextfrag) {
         // Fragments may overlap.
@@ -109,7 +118,7 @@ ddsi_serdata* lendBytes(const ddsi_serdata* message, std::size_t from, std::size
 void endLoan(ddsi_serdata* message, const ddsrt_iovec_t* /*piece*/) { ddsi_serdata_unref(message); }
 
 bool toSample(const ddsi_serdata* message, void* sample, void** /*buffer*/, void* /*end*/) {
-    *static_cast<std::string_view*>(sample) = bytesOf(message);
+    *static_cast<std::string_view*>(sample) = contentOf(own(message));
     return true;
 }
 
@@ -213,8 +222,8 @@ ddsi_serdata* newOpaqueMessage(const ddsi_sertype* type, std::string_view bytes)
     return message;
 }
 
-std::string_view bytesOf(const ddsi_serdata* message) {
-    return std::string_view(own(message).bytes).substr(0, own(message).size);
+DdsMessage messageOf(const ddsi_serdata* message) {
+    return {std::string(contentOf(own(message))), own(message).request};
 }
 
 }  // namespace ispace

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "server/ros/module/dds_participant.h"
+
 struct ddsi_sertype;
 struct ddsi_serdata;
 
@@ -17,7 +19,7 @@ constexpr std::size_t kMaxDdsMessage = std::size_t{1} << 18U;
 ddsi_sertype* newOpaqueType(const std::string& name);
 /// Returns a new message with its head, for dds_writecdr().
 ddsi_serdata* newOpaqueMessage(const ddsi_sertype* type, std::string_view bytes);
-/// Returns the bytes of a message of dds_takecdr().
-std::string_view bytesOf(const ddsi_serdata* message);
+/// Returns a message of dds_takecdr().
+DdsMessage messageOf(const ddsi_serdata* message);
 
 }  // namespace ispace

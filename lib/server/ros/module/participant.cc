@@ -25,6 +25,7 @@
 #include "server/ros/module/dds_participant.h"
 #include "server/ros/module/opaque_type.h"
 #include "server/ros/module/packet_filter.h"
+#include "server/ros/module/sample_identity.h"
 
 /// Of dds/ddsi/ddsi_proxy_participant.h of version 0.10, which is no C++.
 // NOLINTNEXTLINE(readability-identifier-naming): a name of Cyclone's
@@ -64,14 +65,16 @@ class CycloneLog {
 /// Finds participants of this machine by unicast to the ports of the first 32, and announces this
 /// one each second: nodes of ROS that are set to their whole subnet do not listen before they have
 /// heard it. Programs whose ports are any, as those over Cyclone without a configuration, are found
-/// by multicast; with a time to live of 0 it never leaves the machine, see ip(7). At the end,
-/// writers do not wait for readers that are behind: they would do so one after another.
+/// by multicast; with a time to live of 0 it never leaves the machine, see ip(7). Fragments are
+/// nearly as long as packets may be (14720 bytes), so that answers are whole, see withRequest(). At
+/// the end, writers do not wait for readers that are behind: they would do so one after another.
 std::string configuration(bool is_local) {
     return std::string(
                "<CycloneDDS><Domain Id=\"any\"><General><AllowMulticast>spdp"
                "</AllowMulticast>") +
-           (is_local ? "<MulticastTimeToLive>0</MulticastTimeToLive>" : "") +
-           "</General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+           (is_local ? "<MulticastTimeToLive>0</MulticastTimeToLive>" : "") + "<FragmentSize>" +
+           std::to_string(kMaxWithRequest) +
+           "B</FragmentSize></General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
            "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
            "<Peers><Peer address=\"localhost\"/></Peers><SPDPInterval>1s</SPDPInterval>"
            "</Discovery><Internal><WriterLingerDuration>0s</WriterLingerDuration></Internal>"
@@ -149,6 +152,12 @@ void peersChanged(dds_entity_t /*reader*/, void* flag) {
     changes->note();
 }
 
+/// \param type registered
+ddsi_domaingv* domainOf(const ddsi_sertype* type) {
+    return static_cast<ddsi_domaingv*>(
+        ddsrt_atomic_ldvoidp(const_cast<ddsrt_atomic_voidp_t*>(&type->gv)));
+}
+
 using GuidPrefix = std::array<std::uint8_t, 12>;
 
 GuidPrefix prefixOf(const dds_guid_t& guid) {
@@ -194,8 +203,7 @@ class Peers {
         if (!flag_.first.exchange(false)) return;
         update();
         if (known_.size() <= kMost + kSpare || type == nullptr) return;
-        auto* const domain = static_cast<ddsi_domaingv*>(
-            ddsrt_atomic_ldvoidp(const_cast<ddsrt_atomic_voidp_t*>(&type->gv)));
+        ddsi_domaingv* const domain = domainOf(type);
         if (domain == nullptr) return;
         const std::set<GuidPrefix> met = metBy(ends);
         // The first to go last.
@@ -319,9 +327,14 @@ class Participant final : public DdsParticipant {
         dds_writecdr(end.entity, newOpaqueMessage(end.type, message));
     }
 
-    std::vector<std::string> take(int reader) override {
+    void answer(int writer, const DdsRequest& request, std::string_view message) override {
+        const std::string bytes = withRequest(request, message);
+        if (bytes.size() <= kMaxWithRequest) write(writer, bytes);
+    }
+
+    std::vector<DdsMessage> take(int reader) override {
         End& end = ends_.at(reader);
-        std::vector<std::string> out;
+        std::vector<DdsMessage> out;
         if (!end.has_data.exchange(false)) return out;
         std::vector<ddsi_serdata*> taken(end.depth);
         std::vector<dds_sample_info_t> infos(end.depth);
@@ -330,7 +343,7 @@ class Participant final : public DdsParticipant {
                         infos.data(), DDS_ANY_STATE);
         for (int i = 0; i < count; ++i) {
             const auto at = static_cast<std::size_t>(i);
-            if (infos[at].valid_data) out.emplace_back(bytesOf(taken[at]));
+            if (infos[at].valid_data) out.push_back(messageOf(taken[at]));
             ddsi_serdata_unref(taken[at]);
         }
         return out;
@@ -357,6 +370,7 @@ class Participant final : public DdsParticipant {
             if (end.topic < 0) ddsi_sertype_unref(type);
             checked(end.topic, log_, topic.name);
             end.type = type;
+            if (!std::exchange(declares_, true)) declareRequests(domainOf(type));
             const auto qos = qosOf(topic);
             const std::unique_ptr<dds_listener_t, FreeListener> listener(dds_create_listener(&end));
             if (is_writer)
@@ -381,6 +395,7 @@ class Participant final : public DdsParticipant {
     dds_entity_t domain_ = 0, participant_ = 0;
     std::map<int, End> ends_;  // which never move: threads of DDS know their addresses
     int next_ = 1;
+    bool declares_ = false;  // see declareRequests()
 };
 
 }  // namespace
