@@ -115,8 +115,8 @@ class Changing {
   public:
     /// \pre at least one line
     Changing(ServerState& state, std::vector<std::string> lines, const std::string& verb,
-             const std::string& prefix)
-        : state_(&state), lines_(std::move(lines)), verb_(verb), prefix_(prefix) {
+             const std::string& room)
+        : state_(&state), lines_(std::move(lines)), verb_(verb), room_(room) {
         words_ = wordsIn(lines_.front());
     }
     Changing(const Changing&) = delete;
@@ -143,7 +143,7 @@ class Changing {
 
     ServerState* state_;
     std::vector<std::string> lines_;
-    std::string verb_, prefix_;
+    std::string verb_, room_;
     std::vector<std::string_view> words_;  // of the first line
     std::shared_ptr<const ChangeNews> news_;
 };
@@ -212,7 +212,7 @@ std::string Changing::done(const std::string& line, const std::string& added) co
     state_->simulation().tellChange(printable(line), news_->scene_text);
     std::string out = "OK ";
     out += verb_.empty() ? words_[0] : verb_;
-    if (!added.empty()) out.append(" id=").append(prefix_).append(added);
+    if (!added.empty()) out.append(" id=").append(prefixOf(room_)).append(added);
     out.append(" t=").append(formatMilliseconds(world().time()));
     const std::vector<std::string> movers =
         added.empty() ? news_->movers : std::vector<std::string>{added};
@@ -244,7 +244,105 @@ std::string Changing::end(const std::exception_ptr& failure) {
     }
 }
 
+/// Returns the position of a thing's id in a word of a request; npos for other words.
+std::size_t idIn(std::string_view verb, std::size_t index, std::string_view word) {
+    if (verb == "ADD") return word.starts_with("id=") ? 3 : std::string_view::npos;
+    const bool is_id = verb == "DELETE" ? index > 0 : index == 1;
+    return is_id ? 0 : std::string_view::npos;
+}
+
+/// Returns true for an order that a mover carries a sensor, whose trips would leave it behind.
+bool mountsOn(const World& world, std::string_view word) {
+    constexpr std::string_view kOn = "on=";
+    const std::size_t at = word.find(kOn);
+    if (at == std::string_view::npos || (at > 0 && word[at - 1] != '.')) return false;
+    std::string carrier(word.substr(at + kOn.size()));
+    std::erase(carrier, '"');
+    return world.moverNamed(carrier).has_value();
+}
+
+/// True if a word of SET gives a thing an id of another room: "upper/f.id=ground/r1".
+bool namesOtherRoom(std::string_view word) {
+    constexpr std::string_view kNewId = ".id=";
+    const std::size_t at = word.find(kNewId);
+    return at != std::string_view::npos && word.find('/', at) != std::string_view::npos;
+}
+
 }  // namespace
+
+RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_view> words) {
+    if (!worlds.areCoupled())
+        return {.room = 0,
+                .id = words.size() > 1 ? std::string(words[1]) : "",
+                .line = std::string(textOf(words))};
+    RoomRequest out;
+    const auto fail = [&out](int code, std::string fault) {
+        out.code = code;
+        out.fault = std::move(fault);
+        return out;
+    };
+    const std::string_view verb = words[0];
+    if (verb != "SET" && verb != "ADD" && verb != "DELETE" && verb != "ACT")
+        return fail(
+            403,
+            "LOAD replaces one room, and a building has storeys, lifts and records of each: "
+            "RESET begins anew, SET, ADD and DELETE change things, and another building is "
+            "another run");
+    if (verb == "ADD" && (words[1] == "robot" || words[1] == "human"))
+        return fail(403, "robots and people come to a building at its start");
+    const auto rooms = worlds.rooms();
+    std::optional<std::size_t> found;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        std::string word(words[i]);
+        for (const JoinedRoom& room : rooms)
+            if (mountsOn(room.simulation->world(), word))
+                return fail(403, "robots and people of a building keep their sensors");
+        if (const std::size_t at = idIn(verb, i, word); at != std::string::npos) {
+            const std::size_t slash = word.find('/', at);
+            std::size_t room = 0;
+            while (room < rooms.size() &&
+                   (slash == std::string::npos || word.substr(at, slash - at) != rooms[room].id ||
+                    !worlds.frameOf(room).is_storey))
+                ++room;
+            if (room == rooms.size())
+                return fail(404, excerpt(word.substr(at)) + " names no storey, as in " +
+                                     rooms.front().id + "/desk1");
+            if (found && *found != room) return fail(400, "a request is about one storey");
+            const std::string whole = word.substr(at, word.find('.', slash) - at);
+            if (whole.find_first_of("*?[") != std::string::npos)
+                return fail(400, "in a building ids are without globs");
+            const std::string_view in_room = std::string_view(whole).substr(slash + 1 - at);
+            if (in_room.empty() || in_room.find('/') != std::string_view::npos ||
+                namesOtherRoom(word))
+                return fail(400, "an id is that of its storey and one in it, as in " +
+                                     rooms.front().id + "/desk1");
+            for (const JoinedRoom& other : rooms) {
+                const World& world = other.simulation->world();
+                const bool is_mover = world.moverNamed(whole).has_value();
+                if (is_mover && verb == "SET" && words.size() > 2)
+                    return fail(400, "a request sets one key of " + whole + ", at or heading");
+                if (is_mover) {
+                    const bool is_person = world.movers()[*world.moverNamed(whole)].is_person;
+                    return fail(403, verb != "SET" ? whole + " stays in the building"
+                                     : is_person
+                                         ? "of " + whole + " at, heading and states can be set"
+                                         : "of " + whole + " at and heading can be set");
+                }
+                if (verb == "ADD" && world.sensorNamed(whole))
+                    return fail(400, "the id " + whole + " is taken");
+            }
+            found = room;
+            out.id = word.substr(slash + 1);
+            word.erase(at, slash + 1 - at);
+        }
+        out.line += (out.line.empty() ? "" : " ") + word;
+    }
+    if (!found)
+        return fail(
+            400, "the record has no id with its storey, as in id=" + rooms.front().id + "/desk1");
+    out.room = *found;
+    return out;
+}
 
 std::string warningOf(const World& world, const std::vector<std::string>& movers) {
     constexpr std::size_t kMaxWarnings = 3;
@@ -275,16 +373,15 @@ void changeRooms(const ServedRooms& rooms, const std::function<void()>& change) 
 }
 
 std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
-                                                      const std::string& verb,
-                                                      const std::string& prefix) {
-    return changeWorld(state, std::vector<std::string>{line}, verb, prefix);
+                                                      const std::string& verb) {
+    return changeWorld(state, std::vector<std::string>{line}, verb);
 }
 
 std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state,
                                                       std::vector<std::string> lines,
                                                       const std::string& verb,
-                                                      const std::string& prefix) {
-    const auto changing = std::make_shared<Changing>(state, std::move(lines), verb, prefix);
+                                                      const std::string& room) {
+    const auto changing = std::make_shared<Changing>(state, std::move(lines), verb, room);
     const auto asked = std::make_shared<ServerState::Asked>();
     const auto end = [changing, asked](const std::exception_ptr& failure) {
         asked->bytes = std::make_shared<const std::string>(changing->end(failure));

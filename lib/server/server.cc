@@ -105,11 +105,8 @@ std::vector<std::string> Server::serveRoles(std::span<const MakeRoleService> ser
     const bool may_wait = data.simulation.clock().kind != Clock::Kind::Real;
     std::vector<std::string> notes;
     std::vector<RunRoom> rooms;
-    if (data.rooms.worlds == nullptr)
-        rooms.push_back({"", &data.simulation});
-    else
-        for (const JoinedRoom& room : data.rooms.worlds->rooms())
-            rooms.push_back({room.id, room.simulation});
+    for (const JoinedRoom& room : data.state.rooms().worlds->rooms())
+        rooms.push_back({room.id, room.simulation});
     for (const MakeRoleService make : services) {
         auto service = make(rooms, data.simulation.world().options().seed);
         if (!service) continue;
@@ -127,7 +124,7 @@ FrameTaker Server::frameTaker(std::size_t room) {
 }
 
 bool Server::isBusy() const {
-    const auto states = data_->states();
+    const auto& states = data_->states();
     return std::any_of(states.begin(), states.end(),
                        [](const ServerState* each) { return each->isBusy(); });
 }
@@ -141,7 +138,7 @@ void Server::run() {
     while (!simulation.finished()) {
         data.serveClients();
         if (simulation.isDue(std::chrono::steady_clock::now())) data.state.prepareStep();
-        const auto states = data.states();
+        const auto& states = data.states();
         for (ServerState* const each : states) each->changeAsScripted();
         // Last before sleeping: pending requests determine the time to wake.
         std::optional<WallTime> next;

@@ -40,12 +40,6 @@ void Server::Data::join(JoinedWorlds& joined) {
     });
 }
 
-std::vector<ServerState*> Server::Data::states() {
-    std::vector<ServerState*> all = {&state};
-    for (ServerState& other : others) all.push_back(&other);
-    return all;
-}
-
 bool Server::Data::collect() {
     bool has_made = false;
     for (ServerState* const each : states()) has_made = each->collect() || has_made;
@@ -187,14 +181,10 @@ std::chrono::nanoseconds Server::Data::turn() const {
     if (may_hold && limits.waits_for_readers) return std::chrono::nanoseconds(0);
     if (!may_hold || (serving == 0 && webs.empty() && devices.empty() && !node && !log))
         return kTurn;
-    const auto has_heavy_sensor = [](Simulation& one) {
-        const auto sensors = one.world().sensors();
+    const bool has_heavy = std::any_of(states().begin(), states().end(), [](ServerState* each) {
+        const auto sensors = each->simulation().world().sensors();
         return std::any_of(sensors.begin(), sensors.end(), isHeavy);
-    };
-    bool has_heavy = has_heavy_sensor(simulation);
-    if (rooms.worlds != nullptr)
-        for (const JoinedRoom& room : rooms.worlds->rooms())
-            has_heavy = has_heavy || has_heavy_sensor(*room.simulation);
+    });
     return has_heavy ? std::chrono::nanoseconds(0) : kTurn;
 }
 

@@ -48,7 +48,7 @@ struct Server::Data {
 
     void join(JoinedWorlds& joined);
     /// Returns the states of all worlds.
-    [[nodiscard]] std::vector<ServerState*> states();
+    [[nodiscard]] const std::vector<ServerState*>& states() const { return state.rooms().states; }
     bool collect();
     bool hasUpdates();
 
@@ -73,9 +73,9 @@ struct Server::Data {
 
     Simulation& simulation;
     ServerLimits limits;
-    ServerState state;  // of the world, or of the first one
-    std::list<ServerState> others;
-    ServedRooms rooms;
+    ServerState state;                                // of the world, or of the first one
+    std::list<ServerState> others;                    // of further rooms
+    ServedRooms rooms;                                // with them
     std::vector<std::unique_ptr<RoleService>> roles;  // of extensions
     bool has_news = false;                            // between steps, not sent to all clients yet
     WallTime next_news{};

@@ -98,6 +98,7 @@ void StepQueue::drop(const std::shared_ptr<const Ticket>& ticket) {
 
 ServerState::ServerState(Simulation& simulation, const ServerLimits& limits)
     : simulation_(&simulation),
+      sole_(simulation),
       limits_(limits),
       steps_(simulation),
       seen_changes_(simulation.world().changes()),
@@ -193,7 +194,6 @@ bool ServerState::mayHold() const {
 }
 
 std::vector<ServerState::ServedWorld> ServerState::worlds() const {
-    if (rooms_ == nullptr) return {{"", &simulation_->world()}};
     std::vector<ServedWorld> worlds;
     for (const JoinedRoom& room : rooms_->worlds->rooms())
         worlds.push_back({room.id, &room.simulation->world()});
@@ -209,14 +209,12 @@ std::vector<RoomState> ServerState::statesOfAll() const {
         }
     for (const RoleService* const service : role_services_)
         for (RoomState& state : service->states()) states.push_back(std::move(state));
-    if (rooms_ == nullptr) return states;
     for (const LiftState& lift : rooms_->worlds->lifts())
         for (RoomState& state : statesOf(lift)) states.push_back(std::move(state));
     return states;
 }
 
 ServerState::ServedThing ServerState::find(std::string_view name) {
-    if (rooms_ == nullptr) return {this, name};
     const auto has = [](ServerState& each, std::string_view id) {
         const World& world = each.simulation().world();
         return world.moverNamed(id) || world.sensorNamed(id);
@@ -227,20 +225,21 @@ ServerState::ServedThing ServerState::find(std::string_view name) {
         if (is_whole && has(*each, name)) return {each, name};
     const auto all = rooms_->worlds->rooms();
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const std::string prefix = all[i].id + '/';
+        const std::string prefix = prefixOf(all[i].id);
         if (!name.starts_with(prefix)) continue;
         const std::string_view id = name.substr(prefix.size());
-        if (has(*rooms_->states[i], id)) return {rooms_->states[i], id};
+        if (prefix.empty() || has(*rooms_->states[i], id)) return {rooms_->states[i], id};
     }
     return {this, name, false};
 }
 
 std::string nameAcross(const std::string& room, const std::string& id) {
-    return room.empty() || id.find('/') != std::string::npos ? id : room + '/' + id;
+    return id.find('/') != std::string::npos ? id : prefixOf(room) + id;
 }
 
+std::string prefixOf(const std::string& room) { return room.empty() ? "" : room + '/'; }
+
 bool ServerState::areAllAtRest() const {
-    if (rooms_ == nullptr) return isAtRest();
     return std::all_of(rooms_->states.begin(), rooms_->states.end(),
                        [](const ServerState* each) { return each->isAtRest(); });
 }
@@ -340,8 +339,8 @@ void ServerState::change(WorldChange change,
                     end = std::move(end)](const std::exception_ptr& failure) mutable {
         adopt(std::move(change), failure, began, end);
     };
-    if (rooms_ == nullptr) return build({std::move(prepare), std::move(adopted)});
-    // Among several worlds at once: movers that come and go change them between steps.
+    if (!rooms_->worlds->areCoupled()) return build({std::move(prepare), std::move(adopted)});
+    // At once: movers that come and go change coupled worlds between steps.
     std::exception_ptr failure;
     try {
         prepare();

@@ -22,6 +22,7 @@
 #include "server/session_sensors.h"
 #include "sim/joined_worlds.h"
 #include "sim/simulation.h"
+#include "sim/sole_world.h"
 #include "sim/world.h"
 #include "sim/world_editor.h"
 
@@ -47,6 +48,9 @@ inline std::vector<std::string> laserIdsOf(const World& world) {
 /// Returns the name of a thing across the worlds of a run: "ground/d1". \param room "" in the only
 /// one
 std::string nameAcross(const std::string& room, const std::string& id);
+/// Returns the beginning of the names of things in a room: "ground/". \param room "": the only one,
+/// whose names have none
+std::string prefixOf(const std::string& room);
 
 /// Enforces a RateLimit: a counter that refills with time.
 class TokenBucket {
@@ -141,7 +145,7 @@ struct Seek {
 class RoleService;
 class ServerState;
 
-/// The worlds of a run that has several, and the state of each, in the order of their rooms.
+/// The worlds of a run, one or more, and the state of each, in the order of their rooms.
 struct ServedRooms {
     JoinedWorlds* worlds = nullptr;
     std::vector<ServerState*> states;
@@ -152,10 +156,12 @@ struct ServedRooms {
 class ServerState {
   public:
     explicit ServerState(Simulation& simulation, const ServerLimits& limits = {});
+    ServerState(const ServerState&) = delete;
+    ServerState& operator=(const ServerState&) = delete;
     [[nodiscard]] Simulation& simulation() { return *simulation_; }
     [[nodiscard]] const ServerLimits& limits() const { return limits_; }
-    /// Returns the rooms of the run; null if it has a single world.
-    [[nodiscard]] const ServedRooms* rooms() const { return rooms_; }
+    /// Returns the rooms of the run: this one alone until joinRooms().
+    [[nodiscard]] const ServedRooms& rooms() const { return *rooms_; }
     /// \pre `rooms` outlives this object
     void joinRooms(const ServedRooms& rooms) { rooms_ = &rooms; }
 
@@ -163,7 +169,7 @@ class ServerState {
     [[nodiscard]] std::span<RoleService* const> roleServices() const { return role_services_; }
     void addRoleService(RoleService& service) { role_services_.push_back(&service); }
 
-    /// A world of the run, with its id among others.
+    /// A world of the run.
     struct ServedWorld {
         std::string id;  ///< "": the only one
         const World* world = nullptr;
@@ -175,8 +181,8 @@ class ServerState {
         std::string_view id;
         bool is_known = true;
     };
-    /// Finds the world of a thing by its name across the worlds, such as "ground/r1". Without other
-    /// worlds it is this one; a thing that is in none stays here, unknown.
+    /// Finds the world of a thing by its name across the worlds, such as "ground/r1". The only
+    /// room has all names; among several a thing that is in none stays here, unknown.
     [[nodiscard]] ServedThing find(std::string_view name);
     /// Returns the states of all worlds, with the names of things across them, then of lifts.
     [[nodiscard]] std::vector<RoomState> statesOfAll() const;
@@ -308,7 +314,9 @@ class ServerState {
                const std::function<void(const std::exception_ptr& failure)>& end);
 
     Simulation* simulation_;
-    const ServedRooms* rooms_ = nullptr;
+    SoleWorld sole_;
+    ServedRooms alone_{&sole_, {this}};
+    const ServedRooms* rooms_ = &alone_;
     std::vector<RoleService*> role_services_;
     ServerLimits limits_;
     StepQueue steps_;

@@ -43,7 +43,8 @@ struct Session::Request {
     std::optional<Role> role;    // required role; empty: any
     std::size_t least, most;     // number of arguments
     void (Session::*answer)(Words words);
-    bool needs_token = false;  // if the run has a token
+    bool needs_token = false;          // if the run has a token
+    std::optional<bool> coupled = {};  // worlds of which it is, see areCoupled(); empty: any
 };
 
 std::span<const Session::Request> Session::requests() {
@@ -65,8 +66,8 @@ std::span<const Session::Request> Session::requests() {
         {"ROTSPEED", "deg/s", Role::Robot, 0, kAny, &C::command},
         {"SIDESPEED", "m/s", Role::Robot, 0, kAny, &C::command},
         {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Robot, 0, kAny, &C::command},
-        {"GOTO", "[storey/]x,y[,heading] [speed=v]", Role::Robot, 1, 2, &C::goTo},
-        {"RIDE", "lift storey", Role::Robot, 2, 2, &C::ride},
+        {"GOTO", "[storey/]x,y[,heading] [speed=v]", Role::Robot, 1, 2, &C::command},
+        {"RIDE", "lift storey", Role::Robot, 2, 2, &C::ride, false, true},
         {"STOP", "", Role::Robot, 0, kAny, &C::command},
         {"STATUS", "", Role::Robot, 0, 0, &C::status},
         {"ODOMETRY", "", Role::Robot, 0, 0, &C::odometry},
@@ -81,8 +82,8 @@ std::span<const Session::Request> Session::requests() {
         {"ROTSPEED", "deg/s", Role::Person, 0, kAny, &C::command},
         {"SIDESPEED", "m/s", Role::Person, 0, kAny, &C::command},
         {"PATH", "x,y;... [speed=v] [pause=s] [loop=yes]", Role::Person, 0, kAny, &C::command},
-        {"GOTO", "[storey/]x,y[,heading] [speed=v]", Role::Person, 1, 2, &C::goTo},
-        {"RIDE", "lift storey", Role::Person, 2, 2, &C::ride},
+        {"GOTO", "[storey/]x,y[,heading] [speed=v]", Role::Person, 1, 2, &C::command},
+        {"RIDE", "lift storey", Role::Person, 2, 2, &C::ride, false, true},
         {"STOP", "", Role::Person, 0, kAny, &C::command},
         {"STATUS", "", Role::Person, 0, 0, &C::status},
         {"SCAN", "", Role::Laser, 0, 0, &C::scan},
@@ -97,8 +98,8 @@ std::span<const Session::Request> Session::requests() {
         {"LIST", "", Role::World, 0, 0, &C::list},
         {"TIME", "", Role::World, 0, 0, &C::time},
         {"POSES", "", Role::World, 0, 0, &C::poses},
-        {"LIFTS", "", Role::World, 0, 0, &C::lifts},
-        {"CALL", "lift storey", Role::World, 2, 2, &C::call},
+        {"LIFTS", "", Role::World, 0, 0, &C::lifts, false, true},
+        {"CALL", "lift storey", Role::World, 2, 2, &C::call, false, true},
         {"PAUSE", "", Role::World, 0, 0, &C::pause},
         {"RESUME", "", Role::World, 0, 0, &C::resume},
         {"RATE", "x", Role::World, 1, 1, &C::rate},
@@ -107,10 +108,10 @@ std::span<const Session::Request> Session::requests() {
         {"RESET", "", Role::World, 0, 0, &C::change, true},
         {"SET", "id.key=value", Role::World, 1, kAny, &C::change, true},
         {"STATE", "[id]", Role::World, 0, 1, &C::states},
-        {"ACT", "id key=value...", Role::World, 2, kAny, &C::act, true},
+        {"ACT", "id key=value...", Role::World, 2, kAny, &C::change, true},
         {"ADD", "record", Role::World, 1, kAny, &C::change, true},
         {"DELETE", "id...", Role::World, 1, kAny, &C::change, true},
-        {"LOAD", "env [layout]", Role::World, 1, 2, &C::change, true},
+        {"LOAD", "env [layout]", Role::World, 1, 2, &C::change, true, false},
         {"RECORDS", "[room]", Role::World, 0, 1, &C::records},
         {"EVENTS", "[kinds|off]", Role::World, 0, kAny, &C::events},
         {"MARK", "text", Role::World, 1, kAny, &C::mark},
@@ -171,6 +172,8 @@ void Session::request(std::string_view line) {
     if (arguments > found->most)
         return error(400, {"unexpected ", excerpt(words[found->most + 1]), " behind ", found->verb,
                            found->most == 0 ? "" : " ", found->most == 0 ? "" : found->arguments});
+    if (found->coupled == true && !worlds().areCoupled())
+        return error(405, {found->verb, " is for the runs of buildings"});
     const std::size_t before = out_.size();
     try {
         (this->*found->answer)(words);
@@ -179,7 +182,7 @@ void Session::request(std::string_view line) {
         out_ += errorLineOf(std::current_exception());
     }
     // A role that was refused leaves it in no room.
-    if (rooms() != nullptr && role_ == Role::None) state_ = rooms()->states.front();
+    if (role_ == Role::None) state_ = rooms().states.front();
     sendCompletions();
 }
 
@@ -243,7 +246,7 @@ void Session::abandonRequests() {
 void Session::silent() {
     sync();
     if (!drives()) return;
-    if (rooms() != nullptr) rooms()->worlds->abandonTrip(id_);
+    worlds().abandonTrip(id_);
     world().command(subject_, {Verb::Stop, 0});
     sendCompletions();
 }
@@ -392,7 +395,7 @@ void Session::lose() {
 /// Releases the client's robot or person.
 void Session::leave() {
     if (drives()) {
-        if (rooms() != nullptr) rooms()->worlds->abandonTrip(id_);
+        worlds().abandonTrip(id_);
         state_->release(id_, hold_);
     }
     state_->steps().drop(std::exchange(steps_, nullptr));
@@ -424,8 +427,7 @@ void Session::sendCompletions() {
     };
     for (const CommandEnd& end : world().ends())
         if (end.robot == subject_) send(end.id, end.outcome, end.time);
-    if (rooms() == nullptr) return;
-    for (const TripEnd& end : rooms()->worlds->tripEnds())
+    for (const TripEnd& end : worlds().tripEnds())
         if (end.mover == id_) send(end.id, end.outcome, end.time);
 }
 
@@ -447,17 +449,12 @@ void Session::help(Words /*words*/) {
     for (const Request& request : requests()) {
         if (request.role.value_or(role_) != role_) continue;
         if (request.answer == &Session::shutdown && !state_->limits().shutdown) continue;
-        const bool changes = request.answer == &Session::change || request.answer == &Session::act;
-        if (changes && !state_->mayChange()) continue;
+        if (request.answer == &Session::change && !state_->mayChange()) continue;
         if (request.answer == &Session::rate &&
             state_->simulation().clock().kind != Clock::Kind::Real)
             continue;
         if (request.answer == &Session::seek && !state_->simulation().maySeek()) continue;
-        const bool is_of_rooms = request.answer == &Session::ride ||
-                                 request.answer == &Session::call ||
-                                 request.answer == &Session::lifts;
-        if (is_of_rooms && rooms() == nullptr) continue;
-        if (request.verb == "LOAD" && rooms() != nullptr) continue;  // refused in buildings
+        if (request.coupled && *request.coupled != worlds().areCoupled()) continue;
         if (request.answer == &Session::token && state_->limits().token.empty()) continue;
         out_.append(separator).append(request.verb);
         if (!request.arguments.empty()) out_.append(" ").append(request.arguments);

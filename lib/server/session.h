@@ -54,6 +54,8 @@ std::string errorLineOf(const std::exception_ptr& failure);
 std::string unknownThing(std::string_view kind, std::string_view id,
                          const std::vector<std::string>& known, std::string_view where = "");
 
+struct RoomRequest;
+
 /// The server's side of one client's dialogue in the Simulator TCP Protocol, version 1, without
 /// transport: it reads lines and writes bytes. ispace-protocol(7) describes the language.
 class Session {
@@ -128,20 +130,21 @@ class Session {
     static std::span<const Request> requests();
 
     [[nodiscard]] World& world() const { return state_->simulation().world(); }
-    [[nodiscard]] const ServedRooms* rooms() const { return state_->rooms(); }
-    /// Goes to the world of a robot, person or sensor of several worlds. \returns its id there
+    [[nodiscard]] const ServedRooms& rooms() const { return state_->rooms(); }
+    [[nodiscard]] JoinedWorlds& worlds() const { return *rooms().worlds; }
+    /// Goes to the world of a robot, person or sensor. \returns its id there
     std::string_view enter(std::string_view id);
     /// Calls visit(EventLog&) for that of each world.
     template <typename Visit>
     void forEachLog(Visit visit) {
-        if (rooms() == nullptr) return visit(state_->simulation().events());
-        for (ServerState* const each : rooms()->states) visit(each->simulation().events());
+        for (ServerState* const each : rooms().states) visit(each->simulation().events());
     }
     void followRoom();
     [[nodiscard]] bool isTrip(Words words) const;
     void startTrip(Words words);
     void answerTrip(std::string_view verb, const TripAnswer& answer);
     [[nodiscard]] std::vector<std::string> idsOfAll(Role role) const;
+    [[nodiscard]] std::size_t room() const;
     [[nodiscard]] std::string whereText() const;
     [[nodiscard]] std::string_view verbOf(Role role) const;
     [[nodiscard]] std::string roleText() const;
@@ -161,8 +164,8 @@ class Session {
     void hold(Words words, Condition until);
     void goOn();
     [[nodiscard]] bool mayChange() const;
-    [[nodiscard]] std::vector<std::string> withJoined(Words words);
-    void changeRoom(Words words);
+    [[nodiscard]] std::vector<std::string> withJoined(const RoomRequest& first, Words words);
+    void act(ServerState& state, const std::string& id, Words values);
     bool placeMover(Words words);
     bool changeBody(Words words);
     [[nodiscard]] bool maySeek() const { return state_->areAllAtRest(); }
@@ -197,8 +200,6 @@ class Session {
     void list(Words words);
     void time(Words words);
     void poses(Words words);
-    void posesOfAll();
-    void goTo(Words words);
     void ride(Words words);
     void call(Words words);
     void lifts(Words words);
@@ -211,11 +212,9 @@ class Session {
     void step(Words words);
     void shutdown(Words words);
     void change(Words words);
-    void act(Words words);
     void events(Words words);
     void mark(Words words);
     void track(Words words);
-    [[nodiscard]] Simulation* simulationOf(std::string_view room) const;
 
     /// A sensor that the role of an extension reads; without a state: unknown.
     struct GuestSensor {

@@ -49,15 +49,40 @@ void Session::token(Words words) {
 
 /// Changes the world at once, or when other clients' changes leave time for it.
 void Session::change(Words words) {
-    if (rooms() != nullptr) return changeRoom(words);
     if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
+    const bool restarts = worlds().areCoupled() && words[0] == "RESET";
+    if (worlds().areCoupled() && !mayMove()) return;
+    if (placeMover(words) || changeBody(words)) return;
+    const RoomRequest request = restarts ? RoomRequest() : roomRequest(worlds(), words);
+    if (request.code != 0) return error(request.code, {request.fault});
     if (!mayChange()) return hold(words, &Session::mayChange);
-    wanted_ = changeWorld(*state_, withJoined(words));
+    ServerState& state = *rooms().states[request.room];
+    if (restarts) {
+        changeRooms(rooms(), [this] { worlds().restart(); });
+        out_.append("OK RESET t=").append(formatMilliseconds(world().time())).append("\n");
+    } else if (words[0] == "ACT") {
+        act(state, request.id, words.subspan(2));
+    } else {
+        wanted_ =
+            changeWorld(state, withJoined(request, words), "", worlds().rooms()[request.room].id);
+    }
     receiveAsked();
 }
 
+/// Sets the state of an actuator: a change of its record.
+void Session::act(ServerState& state, const std::string& id, Words values) {
+    const Scene& scene = state.simulation().world().scene();
+    if (std::find(scene.ids.begin(), scene.ids.end(), id) == scene.ids.end())
+        return error(404, {unknownThing("record", id, scene.ids)});
+    try {
+        wanted_ = changeWorld(state, stateChange(scene, id, values), "ACT");
+    } catch (const UsageError& bad) {
+        error(400, {bad.what()});
+    }
+}
+
 std::size_t Session::mayJoin(std::string_view line) const {
-    if (!isAlike(line, line) || role_ != Role::World || rooms() != nullptr) return 0;
+    if (!isAlike(line, line) || role_ != Role::World) return 0;
     // Their events come between the answers.
     if (!events_.empty()) return 0;
     // A part of the world at a time: its load is judged between changes.
@@ -70,17 +95,21 @@ bool Session::isAlike(std::string_view line, std::string_view next) {
     });
 }
 
-/// Returns the requests that one change carries out, this one first.
-std::vector<std::string> Session::withJoined(Words words) {
-    std::vector<std::string> lines = {std::string(textOf(words))};
+/// Returns the requests to a room that one change carries out, this one first.
+std::vector<std::string> Session::withJoined(const RoomRequest& first, Words words) {
+    std::vector<std::string> lines = {first.line};
+    joined_ = {std::string(textOf(words))};
     while (!backlog_.empty() && lines.size() < joins_) {
         std::vector<std::string_view> next;
         for (const Piece& piece : wordsOf(backlog_.front())) next.push_back(piece.text);
         if (next.size() < 2) break;
-        lines.emplace_back(textOf(next));
+        RoomRequest other = roomRequest(worlds(), next);
+        if (other.code != 0 || other.room != first.room) break;
+        lines.push_back(std::move(other.line));
+        joined_.push_back(std::move(backlog_.front()));
         backlog_.pop_front();
     }
-    joined_ = lines.size() > 1 ? lines : std::vector<std::string>();
+    if (lines.size() == 1) joined_.clear();
     return lines;
 }
 
@@ -95,28 +124,10 @@ void Session::receiveChange(const ServerState::Asked& change) {
         backlog_.insert(backlog_.begin(), joined.begin(), joined.end());
 }
 
-/// Sets the state of an actuator: a change of its record.
-void Session::act(Words words) {
-    if (rooms() != nullptr) return changeRoom(words);
-    if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
-    if (!mayChange()) return hold(words, &Session::mayChange);
-    const std::vector<std::string>& ids = world().scene().ids;
-    if (std::find(ids.begin(), ids.end(), words[1]) == ids.end())
-        return error(404, {unknownThing("record", words[1], ids)});
-    try {
-        wanted_ =
-            changeWorld(*state_, stateChange(world().scene(), words[1], words.subspan(2)), "ACT");
-    } catch (const UsageError& bad) {
-        return error(400, {bad.what()});
-    }
-    receiveAsked();
-}
-
 bool Session::mayChange() const {
     const WallTime now = std::chrono::steady_clock::now();
-    if (rooms() == nullptr) return state_->mayChangeNow(now);
     // Changes of all rooms together leave the run half of the time.
-    return std::all_of(rooms()->states.begin(), rooms()->states.end(),
+    return std::all_of(rooms().states.begin(), rooms().states.end(),
                        [now](const ServerState* each) { return each->mayChangeNow(now); });
 }
 
@@ -238,9 +249,8 @@ void Session::tellEvents() {
     std::size_t room = 0;
     forEachLog([&](const EventLog& log) {
         std::int64_t& next = next_events_[room];
-        const std::string where =
-            rooms() == nullptr ? "" : " room=" + rooms()->worlds->rooms()[room].id;
-        ++room;
+        const std::string& id = worlds().rooms()[room++].id;
+        const std::string where = id.empty() ? "" : " room=" + id;
         if (next < log.first()) {
             out_.append("EVENT missed t=").append(formatMilliseconds(world().time()));
             out_.append(" n=").append(std::to_string(log.first() - next)).append("\n");

@@ -140,8 +140,7 @@ std::string Session::byGuestClock(const std::string& text) const {
 
 /// Takes a position that a tracker tells: TRACK id [storey/]x,y [t=s] [kind=person|robot].
 void Session::track(Words words) {
-    Simulation* simulation = &state_->simulation();
-    const SimTime now = simulation->world().time();
+    const SimTime now = world().time();
     ToldTrack told{.told = now,
                    .time = guest_ ? guest_->clock(now) : seconds(now),
                    .source = guest_ ? id_ : "",
@@ -150,15 +149,14 @@ void Session::track(Words words) {
         return error(400,
                      {excerpt(words[1]), " is no name of a track: letters, digits and _-./+:@"});
     std::string_view place = words[2];
-    if (rooms() != nullptr) {
-        const std::size_t slash = place.find('/');
-        simulation =
-            slash == std::string_view::npos ? nullptr : simulationOf(place.substr(0, slash));
-        if (simulation == nullptr)
-            return error(400, {"a place in a building has a storey, as in ground/1,2; found ",
-                               excerpt(words[2])});
-        place.remove_prefix(slash + 1);
-    }
+    const auto all = worlds().rooms();
+    const auto room = std::find_if(all.begin(), all.end(), [place](const JoinedRoom& each) {
+        return place.starts_with(prefixOf(each.id));
+    });
+    if (room == all.end())
+        return error(400, {"a place in a building has a storey, as in ground/1,2; found ",
+                           excerpt(words[2])});
+    place.remove_prefix(prefixOf(room->id).size());
     const std::size_t comma = place.find(',');
     const auto x = parseDouble(place.substr(0, comma));
     const auto y =
@@ -178,7 +176,7 @@ void Session::track(Words words) {
                                " behind TRACK id x,y [t=s] [kind=person|robot]"});
         }
     }
-    if (!simulation->tracks().tell(std::move(told)))
+    if (!room->simulation->tracks().tell(std::move(told)))
         return error(429, {"there are ", std::to_string(TrackLog::kMostTracks), " tracks now"});
     out_.append("OK TRACK t=").append(formatMilliseconds(world().time())).append("\n");
 }

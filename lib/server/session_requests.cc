@@ -104,12 +104,9 @@ void Session::command(Words words) {
     if (!mayMove()) return;
     const std::string refusal = world().refusal(subject_, *parsed.command);
     if (!refusal.empty()) return error(416, {refusal});
-    if (rooms() != nullptr) {
-        const bool stops = parsed.command->verb == Verb::Stop;
-        const std::string busy =
-            rooms()->worlds->endTrip(id_, stops ? Outcome::Stopped : Outcome::Replaced);
-        if (!busy.empty()) return error(409, {busy});
-    }
+    const bool stops = parsed.command->verb == Verb::Stop;
+    const std::string busy = worlds().endTrip(id_, stops ? Outcome::Stopped : Outcome::Replaced);
+    if (!busy.empty()) return error(409, {busy});
     if (parsed.command->verb == Verb::Goto)
         if (const std::string none = world().findWay(subject_, *parsed.command); !none.empty())
             return error(409, {none});
@@ -178,11 +175,10 @@ void Session::list(Words /*words*/) {
     out_.append(" lasers=").append(joined(idsOfAll(Role::Laser), ","));
     out_.append(" people=").append(joined(idsOfAll(Role::Person), ","));
     out_.append(" sensors=").append(joined(idsOfAll(Role::Sensor), ","));
-    if (rooms() != nullptr) {
-        std::vector<std::string> ids;
-        for (const JoinedRoom& room : rooms()->worlds->rooms()) ids.push_back(room.id);
-        out_.append(" rooms=").append(joined(ids, ","));
-    }
+    std::vector<std::string> ids;
+    for (const JoinedRoom& room : worlds().rooms()) ids.push_back(room.id);
+    if (const std::string names = joined(ids, ","); !names.empty())
+        out_.append(" rooms=").append(names);
     out_ += '\n';
 }
 
@@ -201,19 +197,15 @@ void Session::states(Words words) {
 }
 
 void Session::records(Words words) {
-    const Scene* scene = &world().scene();
-    if (rooms() != nullptr) {
-        const auto all = rooms()->worlds->rooms();
-        const auto found = std::find_if(all.begin(), all.end(), [&](const JoinedRoom& room) {
-            return words.size() > 1 && room.id == words[1];
-        });
-        if (found == all.end())
-            return error(404,
-                         {"RECORDS wants a room of the building, as in RECORDS ", all.front().id});
-        scene = &found->simulation->world().scene();
-    } else if (words.size() > 1) {
+    const auto all = worlds().rooms();
+    const std::string_view name = words.size() > 1 ? words[1] : std::string_view();
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const JoinedRoom& room) { return room.id == name; });
+    if (found == all.end() && all.front().id.empty())
         return error(400, {"this run is of one room: RECORDS has no argument"});
-    }
+    if (found == all.end())
+        return error(404, {"RECORDS wants a room of the building, as in RECORDS ", all.front().id});
+    const Scene* const scene = &found->simulation->world().scene();
     // The records of the room, then those placed in it.
     std::array<std::string, 2> texts;
     std::array<std::size_t, 2> counts{};
@@ -238,23 +230,6 @@ void Session::time(Words /*words*/) {
     out_.append(" steps=").append(std::to_string(world().steps()));
     if (const auto end = state_->simulation().end())
         out_.append(" end=").append(formatMilliseconds(*end));
-    out_ += '\n';
-}
-
-void Session::poses(Words /*words*/) {
-    if (rooms() != nullptr) return posesOfAll();
-    const auto movers = world().movers();
-    const std::size_t robots = world().robots().size();
-    out_.append("OK POSES t=").append(formatMilliseconds(world().time()));
-    out_.append(" n=").append(std::to_string(robots)).append(" poses=");
-    for (std::size_t i = 0; i < movers.size(); ++i) {
-        const Pose2 pose = world().status(i).pose;
-        if (i == robots) out_ += " people=";
-        if (i != 0 && i != robots) out_ += ';';
-        out_.append(movers[i].id).append(",").append(measured(pose.position.x));
-        out_.append(",").append(measured(pose.position.y));
-        out_.append(",").append(headingText(pose.heading));
-    }
     out_ += '\n';
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests of runs with several worlds: trips, lifts, and the names of things across the worlds.
+// Names of things and positions across the worlds of a run, trips between them, and lifts.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -23,18 +23,18 @@ namespace ispace {
 std::string_view Session::enter(std::string_view id) {
     const auto [state, own_id, is_known] = state_->find(id);
     state_ = state;
-    if (rooms() != nullptr) changes_ = world().changes();
+    changes_ = world().changes();
     return own_id;
 }
 
 /// Goes to the world in which the client's robot, person or carried sensor is now.
 void Session::followRoom() {
-    if (rooms() == nullptr || id_.find('/') == std::string::npos) return;
+    if (id_.find('/') == std::string::npos) return;
     ServerState* next = state_;
     if (role_ == Role::Robot || role_ == Role::Person) {
-        if (const auto room = rooms()->worlds->roomOf(id_)) next = rooms()->states[*room];
+        if (const auto room = worlds().roomOf(id_)) next = rooms().states[*room];
     } else if (role_ == Role::Laser || role_ == Role::Sensor) {
-        for (ServerState* const each : rooms()->states)
+        for (ServerState* const each : rooms().states)
             if (each->simulation().world().sensorNamed(id_)) next = each;
     }
     if (next == state_) return;
@@ -58,23 +58,21 @@ std::vector<std::string> Session::idsOfAll(Role role) const {
 }
 
 std::string Session::whereText() const {
-    if (rooms() == nullptr) return "";
-    const auto& states = rooms()->states;
-    const auto room = std::find(states.begin(), states.end(), state_) - states.begin();
-    return ' ' + rooms()->worlds->whereText(static_cast<std::size_t>(room));
+    const std::string where = worlds().whereText(room());
+    return where.empty() ? "" : ' ' + where;
 }
 
-/// Returns the simulation of a room of several; null for other names.
-Simulation* Session::simulationOf(std::string_view room) const {
-    for (const JoinedRoom& each : rooms()->worlds->rooms())
-        if (each.id == room) return each.simulation;
-    return nullptr;
+/// Returns the index of the room in which the client is.
+std::size_t Session::room() const {
+    const auto& states = rooms().states;
+    return static_cast<std::size_t>(std::find(states.begin(), states.end(), state_) -
+                                    states.begin());
 }
 
-void Session::posesOfAll() {
+void Session::poses(Words /*words*/) {
     std::string robots, people, rooms_of_robots, rooms_of_people;
     std::size_t count = 0;
-    for (const JoinedRoom& room : rooms()->worlds->rooms()) {
+    for (const JoinedRoom& room : worlds().rooms()) {
         const World& one = room.simulation->world();
         for (std::size_t i = 0; i < one.movers().size(); ++i) {
             const bool is_robot = i < one.robots().size();
@@ -83,8 +81,7 @@ void Session::posesOfAll() {
             std::string& where = is_robot ? rooms_of_robots : rooms_of_people;
             const Pose2 pose = one.status(i).pose;
             if (!out.empty()) out += ';';
-            if (!where.empty()) where += ',';
-            where += room.id;
+            where.append(where.empty() ? "" : ",").append(room.id);
             out.append(one.movers()[i].id).append(",").append(measured(pose.position.x));
             out.append(",").append(measured(pose.position.y));
             out.append(",").append(headingText(pose.heading));
@@ -94,116 +91,13 @@ void Session::posesOfAll() {
     out_.append(" n=").append(std::to_string(count)).append(" poses=").append(robots);
     if (!people.empty()) out_.append(" people=").append(people);
     const bool has_both = !robots.empty() && !people.empty();
-    out_.append(" rooms=").append(rooms_of_robots).append(has_both ? "," : "");
-    out_.append(rooms_of_people).append("\n");
+    if (!worlds().rooms().front().id.empty())
+        out_.append(" rooms=")
+            .append(rooms_of_robots)
+            .append(has_both ? "," : "")
+            .append(rooms_of_people);
+    out_ += '\n';
 }
-
-namespace {
-
-/// A request about a thing of one room, with its plain id, or the reason why it is none.
-struct RoomRequest {
-    std::size_t room = 0;
-    std::string id, line;
-    int code = 0;  // 0: none
-    std::string fault = {};
-};
-
-/// Returns the position of a thing's id in a word of a request; npos for other words.
-std::size_t idIn(std::string_view verb, std::size_t index, std::string_view word) {
-    if (verb == "ADD") return word.starts_with("id=") ? 3 : std::string_view::npos;
-    const bool is_id = verb == "DELETE" ? index > 0 : index == 1;
-    return is_id ? 0 : std::string_view::npos;
-}
-
-/// Returns true for an order that a mover carries a sensor, whose trips would leave it behind.
-bool mountsOn(const World& world, std::string_view word) {
-    constexpr std::string_view kOn = "on=";
-    const std::size_t at = word.find(kOn);
-    if (at == std::string_view::npos || (at > 0 && word[at - 1] != '.')) return false;
-    std::string carrier(word.substr(at + kOn.size()));
-    std::erase(carrier, '"');
-    return world.moverNamed(carrier).has_value();
-}
-
-/// True if a word of SET gives a thing an id of another room: "upper/f.id=ground/r1".
-bool namesOtherRoom(std::string_view word) {
-    constexpr std::string_view kNewId = ".id=";
-    const std::size_t at = word.find(kNewId);
-    return at != std::string_view::npos && word.find('/', at) != std::string_view::npos;
-}
-
-/// Finds the room of a request SET, ADD, DELETE or ACT.
-RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_view> words) {
-    RoomRequest out;
-    const auto fail = [&out](int code, std::string fault) {
-        out.code = code;
-        out.fault = std::move(fault);
-        return out;
-    };
-    const std::string_view verb = words[0];
-    if (verb != "SET" && verb != "ADD" && verb != "DELETE" && verb != "ACT")
-        return fail(
-            403,
-            "LOAD replaces one room, and a building has storeys, lifts and records of each: "
-            "RESET begins anew, SET, ADD and DELETE change things, and another building is "
-            "another run");
-    if (verb == "ADD" && (words[1] == "robot" || words[1] == "human"))
-        return fail(403, "robots and people come to a building at its start");
-    const auto rooms = worlds.rooms();
-    std::optional<std::size_t> found;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        std::string word(words[i]);
-        for (const JoinedRoom& room : rooms)
-            if (mountsOn(room.simulation->world(), word))
-                return fail(403, "robots and people of a building keep their sensors");
-        if (const std::size_t at = idIn(verb, i, word); at != std::string::npos) {
-            const std::size_t slash = word.find('/', at);
-            std::size_t room = 0;
-            while (room < rooms.size() &&
-                   (slash == std::string::npos || word.substr(at, slash - at) != rooms[room].id ||
-                    !worlds.frameOf(room).is_storey))
-                ++room;
-            if (room == rooms.size())
-                return fail(404, excerpt(word.substr(at)) + " names no storey, as in " +
-                                     rooms.front().id + "/desk1");
-            if (found && *found != room) return fail(400, "a request is about one storey");
-            const std::string whole = word.substr(at, word.find('.', slash) - at);
-            if (whole.find_first_of("*?[") != std::string::npos)
-                return fail(400, "in a building ids are without globs");
-            const std::string_view in_room = std::string_view(whole).substr(slash + 1 - at);
-            if (in_room.empty() || in_room.find('/') != std::string_view::npos ||
-                namesOtherRoom(word))
-                return fail(400, "an id is that of its storey and one in it, as in " +
-                                     rooms.front().id + "/desk1");
-            for (const JoinedRoom& other : rooms) {
-                const World& world = other.simulation->world();
-                const bool is_mover = world.moverNamed(whole).has_value();
-                if (is_mover && verb == "SET" && words.size() > 2)
-                    return fail(400, "a request sets one key of " + whole + ", at or heading");
-                if (is_mover) {
-                    const bool is_person = world.movers()[*world.moverNamed(whole)].is_person;
-                    return fail(403, verb != "SET" ? whole + " stays in the building"
-                                     : is_person
-                                         ? "of " + whole + " at, heading and states can be set"
-                                         : "of " + whole + " at and heading can be set");
-                }
-                if (verb == "ADD" && world.sensorNamed(whole))
-                    return fail(400, "the id " + whole + " is taken");
-            }
-            found = room;
-            out.id = word.substr(slash + 1);
-            word.erase(at, slash + 1 - at);
-        }
-        out.line += (out.line.empty() ? "" : " ") + word;
-    }
-    if (!found)
-        return fail(
-            400, "the record has no id with its storey, as in id=" + rooms.front().id + "/desk1");
-    out.room = *found;
-    return out;
-}
-
-}  // namespace
 
 namespace {
 
@@ -244,7 +138,7 @@ std::string faultOf(const Scene& scene, const std::string& mover, std::string_vi
 
 /// Puts a robot or a person elsewhere. \returns false for other requests
 bool Session::placeMover(Words words) {
-    JoinedWorlds& worlds = *rooms()->worlds;
+    JoinedWorlds& worlds = this->worlds();
     const auto request = placeRequest(worlds, words);
     if (!request) return false;
     const auto fail = [this](int code, const std::string& text) {
@@ -278,10 +172,10 @@ bool Session::placeMover(Words words) {
         return true;
     }
     std::string refusal;
-    changeRooms(*rooms(), [&] { refusal = worlds.place(request->mover, at, heading); });
+    changeRooms(rooms(), [&] { refusal = worlds.place(request->mover, at, heading); });
     if (!refusal.empty()) return fail(409, refusal);
     const std::size_t room = *worlds.roomOf(request->mover);
-    const World& world = rooms()->states[room]->simulation().world();
+    const World& world = rooms().states[room]->simulation().world();
     out_.append("OK SET t=").append(formatMilliseconds(world.time()));
     if (const std::string warning = warningOf(world, {request->mover}); !warning.empty())
         out_.append(" warning=").append(warning);
@@ -294,7 +188,7 @@ bool Session::placeMover(Words words) {
 bool Session::changeBody(Words words) {
     const bool sets = words[0] == "SET" && words.size() == 2;
     if (!sets && (words[0] != "ACT" || words.size() < 3)) return false;
-    const JoinedWorlds& worlds = *rooms()->worlds;
+    const JoinedWorlds& worlds = this->worlds();
     const std::string_view left = words[1].substr(0, words[1].find('='));
     const std::size_t dot = sets ? left.rfind('.') : left.size();
     if (dot == std::string_view::npos) return false;
@@ -322,7 +216,7 @@ bool Session::changeBody(Words words) {
     try {
         const std::string request =
             sets ? std::string(textOf(words)) : stateChange(scene, id, words.subspan(2));
-        wanted_ = changeWorld(*rooms()->states[*room], request, std::string(words[0]));
+        wanted_ = changeWorld(*rooms().states[*room], request, std::string(words[0]));
     } catch (const UsageError& bad) {
         error(400, {bad.what()});
         return true;
@@ -331,41 +225,11 @@ bool Session::changeBody(Words words) {
     return true;
 }
 
-/// Changes a thing of a building that stands in a room, or its state, the position of a robot or a
-/// person, or restarts the whole.
-void Session::changeRoom(Words words) {
-    if (!state_->mayChange()) return error(403, {"clients may not change the world of this run"});
-    if (!mayMove() || placeMover(words) || changeBody(words)) return;
-    if (words[0] == "RESET") {
-        if (!mayChange()) return hold(words, &Session::mayChange);
-        changeRooms(*rooms(), [this] { rooms()->worlds->restart(); });
-        out_.append("OK RESET t=").append(formatMilliseconds(world().time())).append("\n");
-        return;
-    }
-    const RoomRequest request = roomRequest(*rooms()->worlds, words);
-    if (request.code != 0) return error(request.code, {request.fault});
-    ServerState& state = *rooms()->states[request.room];
-    if (!mayChange()) return hold(words, &Session::mayChange);
-    if (words[0] != "ACT") {
-        wanted_ =
-            changeWorld(state, request.line, "", rooms()->worlds->rooms()[request.room].id + '/');
-        return receiveAsked();
-    }
-    const Scene& scene = state.simulation().world().scene();
-    if (std::find(scene.ids.begin(), scene.ids.end(), request.id) == scene.ids.end())
-        return error(404, {unknownThing("record", request.id, scene.ids)});
-    try {
-        wanted_ = changeWorld(state, stateChange(scene, request.id, words.subspan(2)), "ACT");
-    } catch (const UsageError& bad) {
-        return error(400, {bad.what()});
-    }
-    receiveAsked();
-}
-
-/// True for a PATH with points of storeys.
+/// True for the way of a mover that goes between rooms: GOTO, and PATH with points of storeys.
 bool Session::isTrip(Words words) const {
-    return rooms() != nullptr && words.size() > 1 && words[0] == "PATH" &&
-           words[1].find('/') != std::string_view::npos;
+    const bool is_trip = words[0] == "GOTO" || (words[0] == "PATH" && words.size() > 1 &&
+                                                words[1].find('/') != std::string_view::npos);
+    return is_trip && worlds().roomOf(id_);
 }
 
 /// Answers with an error if movers and lifts follow a record.
@@ -376,23 +240,14 @@ bool Session::mayMove() {
     return false;
 }
 
-void Session::goTo(Words words) {
-    if (rooms() == nullptr) return command(words);
-    startTrip(words);
-}
-
 void Session::startTrip(Words words) {
     if (!mayMove()) return;
-    JoinedWorlds& worlds = *rooms()->worlds;
-    const auto& states = rooms()->states;
-    const auto room = std::find(states.begin(), states.end(), state_) - states.begin();
-    ParsedTrip trip = parseTrip(words, worlds.rooms(), static_cast<std::size_t>(room));
+    ParsedTrip trip = parseTrip(words, worlds().rooms(), room());
     if (!trip.fault.empty()) return error(400, {trip.fault});
     const double most = world().movers()[subject_].model.max_speed;
     if (trip.plan.speed > most)
         return error(416, {id_, " goes at most ", formatDouble(most), " m/s"});
-    const TripAnswer answer = worlds.travel(id_, std::move(trip.plan));
-    answerTrip(words[0], answer);
+    answerTrip(words[0], worlds().travel(id_, std::move(trip.plan)));
 }
 
 void Session::answerTrip(std::string_view verb, const TripAnswer& answer) {
@@ -405,23 +260,20 @@ void Session::answerTrip(std::string_view verb, const TripAnswer& answer) {
 }
 
 void Session::ride(Words words) {
-    if (rooms() == nullptr) return error(405, {"RIDE is for the runs of buildings"});
     if (!mayMove()) return;
-    answerTrip(words[0], rooms()->worlds->ride(id_, words[1], words[2]));
+    answerTrip(words[0], worlds().ride(id_, words[1], words[2]));
 }
 
 void Session::call(Words words) {
-    if (rooms() == nullptr) return error(405, {"CALL is for the runs of buildings"});
     if (!mayMove()) return;
-    const std::string refusal = rooms()->worlds->call(words[1], words[2]);
+    const std::string refusal = worlds().call(words[1], words[2]);
     if (!refusal.empty()) return error(404, {refusal});
     out_.append("OK CALL t=").append(formatMilliseconds(world().time())).append("\n");
 }
 
 /// Position, doors, riders and calls of all lifts.
 void Session::lifts(Words /*words*/) {
-    if (rooms() == nullptr) return error(405, {"LIFTS is for the runs of buildings"});
-    const std::vector<LiftState> all = rooms()->worlds->lifts();
+    const std::vector<LiftState> all = worlds().lifts();
     out_.append("OK LIFTS t=").append(formatMilliseconds(world().time()));
     out_.append(" n=").append(std::to_string(all.size())).append(" lifts=");
     std::string_view separator;

@@ -25,14 +25,12 @@ ReplyForm defaultForm(const Sensor& sensor) {
 }  // namespace
 
 std::string Session::unknownSensor(std::string_view kind, std::string_view id) const {
-    std::vector<std::string> known;
-    if (role_ == Role::None && rooms() != nullptr)
+    if (role_ != Role::Robot)
         return unknownThing(kind, id, idsOfAll(kind == "laser" ? Role::Laser : Role::Sensor));
-    for (const Sensor& sensor : world().sensors()) {
-        if (role_ == Role::Robot && !sensor.isOn(subject_)) continue;
-        if (kind != "laser" || sensor.tryAs<Laser>() != nullptr) known.push_back(sensor.id);
-    }
-    return unknownThing(kind, id, known, role_ == Role::Robot ? " on this robot" : "");
+    std::vector<std::string> known;
+    for (const Sensor& sensor : world().sensors())
+        if (sensor.isOn(subject_)) known.push_back(sensor.id);
+    return unknownThing(kind, id, known, " on this robot");
 }
 
 void Session::takeLaser(Words words) {

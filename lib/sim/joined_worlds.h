@@ -17,9 +17,9 @@
 
 namespace ispace {
 
-/// A world among others.
+/// A world of a run.
 struct JoinedRoom {
-    std::string id;
+    std::string id;                    ///< "": the only one, see SoleWorld
     Simulation* simulation = nullptr;  ///< the first one leads the others
 };
 
@@ -102,16 +102,20 @@ struct PlannedWay {
 std::vector<RoomState> statesOf(const LiftState& lift);
 
 /// Worlds that step together, and between which movers go. The ids of movers, and of the sensors
-/// that they carry, are unique in all of them. The server reads worlds through this interface.
+/// that they carry, are unique in all of them. The server reads the one or the many worlds of a run
+/// through this interface.
 class JoinedWorlds {
   public:
     virtual ~JoinedWorlds() = default;
+    /// Returns true if movers, lifts and records belong to all rooms together: movers come at the
+    /// start, and no room is replaced or restarted by itself. Worlds then change between two steps.
+    [[nodiscard]] virtual bool areCoupled() const { return true; }
     /// Returns the rooms: those with a storey of their own first, the lowest first.
     [[nodiscard]] virtual std::span<const JoinedRoom> rooms() const = 0;
-    /// Returns the room in which a robot or a person is.
+    /// Returns the room in which a robot or a person is that goes between rooms.
     [[nodiscard]] virtual std::optional<std::size_t> roomOf(std::string_view mover) const = 0;
     /// Returns the keys of a reply that tell where a mover of a room is: "storey=upper", or
-    /// "storey=upper in=l1 z=2.100".
+    /// "storey=upper in=l1 z=2.100"; "" in the only room.
     [[nodiscard]] virtual std::string whereText(std::size_t room) const = 0;
     [[nodiscard]] virtual RoomFrame frameOf(std::size_t room) const = 0;
     /// Returns the passages that lead from a room to others.

@@ -197,20 +197,16 @@ std::int64_t DeviceHost::changes() {
 }
 
 bool DeviceHost::mayDrive(std::string_view robot) {
-    if (isReplay()) return false;
-    const ServedRooms* const rooms = state_->rooms();
-    return rooms == nullptr ||
-           rooms->worlds->endTrip(std::string(robot), Outcome::Replaced).empty();
+    return !isReplay() &&
+           state_->rooms().worlds->endTrip(std::string(robot), Outcome::Replaced).empty();
 }
 
-bool DeviceHost::isPaused() const {
-    const ServedRooms* const rooms = state_->rooms();
-    return (rooms == nullptr ? state_ : rooms->states.front())->simulation().paused();
-}
+bool DeviceHost::isPaused() const { return state_->rooms().states.front()->simulation().paused(); }
 
 DeviceHost::Change DeviceHost::change(std::span<const std::string> assignments) {
     // Device protocols cannot carry a token.
-    if (!state_->mayChange() || state_->rooms() != nullptr || !state_->limits().token.empty())
+    if (!state_->mayChange() || state_->rooms().worlds->areCoupled() ||
+        !state_->limits().token.empty())
         return Change::Refused;
     const bool is_asked =
         changing_ && std::equal(assignments.begin(), assignments.end(),
@@ -261,8 +257,8 @@ void DeviceHost::release(std::string_view robot, std::int64_t hold) {
     // The result is no longer awaited.
     changing_.reset();
     state().sync();
-    if (state_->rooms() != nullptr && state_->holds(robot, hold) && !isReplay())
-        state_->rooms()->worlds->abandonTrip(std::string(robot));
+    if (state_->holds(robot, hold) && !isReplay())
+        state_->rooms().worlds->abandonTrip(std::string(robot));
     state_->release(robot, hold);
 }
 

@@ -93,10 +93,9 @@ void MqttMovers::takePictures(SimTime now) {
     });
     if (now < next_picture_) return;
     next_picture_ = now + kPictureEvery;
-    const ServedRooms* const rooms = state_->rooms();
     const auto worlds = state_->worlds();
     for (std::size_t room = 0; room < worlds.size(); ++room) {
-        ServerState& state = rooms == nullptr ? *state_ : *rooms->states[room];
+        ServerState& state = *state_->rooms().states[room];
         const auto sensors = worlds[room].world->sensors();
         for (std::size_t i = 0; i < sensors.size(); ++i) {
             if (!sensors[i].is<Camera>()) continue;

@@ -11,8 +11,7 @@ class LiftTopics final : public RosSource {
   public:
     std::vector<RosSourceTopic> topics(const RosRun& run) override {
         std::vector<RosSourceTopic> out;
-        if (run.joined == nullptr) return out;
-        for (const LiftState& lift : run.joined->lifts())
+        for (const LiftState& lift : run.worlds.lifts())
             for (const RoomState& state : statesOf(lift)) {
                 const std::string topic = '/' + rosName(lift.id) + '/' + state.key;
                 const bool is_flag = state.key == "open";
@@ -30,15 +29,14 @@ class LiftTopics final : public RosSource {
 
     std::string message(const RosSourceTopic& topic, const RosRun& run) override {
         const std::string key = topic.topic.substr(topic.topic.rfind('/') + 1);
-        for (const LiftState& lift : run.joined->lifts())
+        for (const LiftState& lift : run.worlds.lifts())
             if (lift.id == topic.about)
                 for (const RoomState& state : statesOf(lift))
                     if (state.key == key) return stateMessage(topic.type, state.value);
         return "";
     }
 
-    std::string request(const RosSourceTopic& topic, std::string_view message,
-                        const JoinedWorlds* /*joined*/) override {
+    std::string request(const RosSourceTopic& topic, std::string_view message) override {
         return "CALL " + topic.about + ' ' + stateValue(topic.type, message);
     }
 };

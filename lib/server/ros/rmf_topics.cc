@@ -77,10 +77,9 @@ class RmfTopics final : public RosSource {
         return fleetState(run);
     }
 
-    std::string request(const RosSourceTopic& topic, std::string_view message,
-                        const JoinedWorlds* joined) override {
+    std::string request(const RosSourceTopic& topic, std::string_view message) override {
         CdrReader in(message);
-        return topic.type == RosType::LiftRequest ? liftRequest(in, joined) : doorRequest(in);
+        return topic.type == RosType::LiftRequest ? liftRequest(in) : doorRequest(in);
     }
 
   private:
@@ -100,17 +99,16 @@ class RmfTopics final : public RosSource {
                     doors_[nameAcross(room.id, state.id)] = state.value;
             }
         }
-        if (run.joined == nullptr) return;
-        for (const LiftState& lift : run.joined->lifts()) floors_[lift.id];
-        const auto rooms = run.joined->rooms();
+        for (const LiftState& lift : run.worlds.lifts()) floors_[lift.id];
+        const auto rooms = run.worlds.rooms();
         for (std::size_t i = 0; i < rooms.size(); ++i)
-            for (const PassageOutline& outline : run.joined->passageOutlines(i))
+            for (const PassageOutline& outline : run.worlds.passageOutlines(i))
                 if (const auto lift = floors_.find(outline.id); lift != floors_.end())
-                    lift->second[rooms[i].id] = run.joined->frameOf(i).pose.position.z;
+                    lift->second[rooms[i].id] = run.worlds.frameOf(i).pose.position.z;
     }
 
     std::string liftState(const std::string& id, const RosRun& run) {
-        for (const LiftState& lift : run.joined->lifts())
+        for (const LiftState& lift : run.worlds.lifts())
             if (lift.id == id) return liftState(lift, run.now());
         return "";
     }
@@ -140,13 +138,13 @@ class RmfTopics final : public RosSource {
     }
 
     /// A session keeps its lift until it ends; calls of others are left.
-    std::string liftRequest(CdrReader& in, const JoinedWorlds* joined) {
+    std::string liftRequest(CdrReader& in) {
         const std::string lift(in.text());
         skipTime(in);
         const std::string session(in.text());
         const auto type = in.number<std::uint8_t>();
         const std::string floor(in.text());
-        const bool is_known = joined != nullptr && floors_.contains(lift);
+        const bool is_known = floors_.contains(lift);
         std::string& holder = sessions_[is_known ? lift : ""];
         if (is_known && !holder.empty() && holder != session) return "";
         if (type == kEndSession) {
@@ -182,8 +180,8 @@ class RmfTopics final : public RosSource {
     /// Returns the storey of a room: of a cabin, that of the nearest floor.
     static std::string levelOf(std::size_t room, const RosRun& run) {
         constexpr std::string_view kKey = "storey=";
-        if (run.joined == nullptr) return kOnlyLevel;
-        const std::string where = run.joined->whereText(room);
+        if (run.rooms[room].id.empty()) return kOnlyLevel;
+        const std::string where = run.worlds.whereText(room);
         const std::size_t at = where.find(kKey);
         if (at == std::string::npos) return run.rooms[room].id;
         const std::size_t begin = at + kKey.size();

@@ -31,14 +31,9 @@ std::shared_ptr<const std::string> RosMessage::cbor() const {
 RosFeed::RosFeed(ServerState& state, RosScenery scenery)
     : state_(&state), scenery_(std::move(scenery)), sources_(scenery_.sources) {
     sources_.push_back(liftTopics());
-    if (const ServedRooms* const served = state.rooms()) {
-        for (const JoinedRoom& room : served->worlds->rooms())
-            worlds_.push_back({.id = room.id, .simulation = room.simulation});
-        for (ServerState* const each : served->states) rooms_.push_back({.state = each});
-    } else {
-        worlds_.push_back({.id = "", .simulation = &state.simulation()});
-        rooms_.push_back({.state = &state});
-    }
+    for (const JoinedRoom& room : state.rooms().worlds->rooms())
+        worlds_.push_back({.id = room.id, .simulation = room.simulation});
+    for (ServerState* const each : state.rooms().states) rooms_.push_back({.state = each});
     sync();
 }
 
@@ -57,9 +52,8 @@ bool RosFeed::hasChanged() {
 
 /// Updates the positions of rooms.
 void RosFeed::place() {
-    const ServedRooms* const served = state_->rooms();
-    if (served == nullptr) return;
-    for (std::size_t i = 0; i < worlds_.size(); ++i) worlds_[i].frame = served->worlds->frameOf(i);
+    for (std::size_t i = 0; i < worlds_.size(); ++i)
+        worlds_[i].frame = state_->rooms().worlds->frameOf(i);
 }
 
 /// Gives each channel its number: that which it had, else a new one.
@@ -87,10 +81,7 @@ void RosFeed::number(Entries& entries, bool& is_changed) {
     }
 }
 
-RosRun RosFeed::run() const {
-    const ServedRooms* const served = state_->rooms();
-    return {worlds_, served == nullptr ? nullptr : served->worlds};
-}
+RosRun RosFeed::run() const { return {worlds_, *state_->rooms().worlds}; }
 
 void RosFeed::addSources(std::vector<RosChannel>& out) {
     for (const auto& source : sources_)

@@ -37,17 +37,14 @@ RosOrders::~RosOrders() {
     for (const auto& [robot, driven] : driven_) release(robot, driven.hold);
 }
 
-ServerState& RosOrders::stateOf(std::size_t room) {
-    return state_->rooms() == nullptr ? *state_ : *state_->rooms()->states[room];
-}
+ServerState& RosOrders::stateOf(std::size_t room) { return *state_->rooms().states[room]; }
 
 ServerState& RosOrders::stateOf(const std::string& robot) { return *state_->find(robot).state; }
 
 void RosOrders::release(const std::string& robot, std::int64_t hold) {
     ServerState& state = stateOf(robot);
     state.sync();
-    if (state_->rooms() != nullptr && state.holds(robot, hold))
-        state_->rooms()->worlds->abandonTrip(robot);
+    if (state.holds(robot, hold)) state_->rooms().worlds->abandonTrip(robot);
     state.release(robot, hold);
 }
 
@@ -157,10 +154,8 @@ void RosOrders::take(const std::vector<RosTrack>& tracks, ServerState& state) {
 
 /// Makes the request that a message to a source asks for.
 void RosOrders::request(const RosChannel& channel, std::string_view message) {
-    const ServedRooms* const rooms = state_->rooms();
-    const std::string line =
-        channel.source->request({channel.topic, channel.type, channel.about, channel.rate, true},
-                                message, rooms == nullptr ? nullptr : rooms->worlds);
+    const std::string line = channel.source->request(
+        {channel.topic, channel.type, channel.about, channel.rate, true}, message);
     if (line.empty()) return;
     if (state_->simulation().isReplay())
         return tell_("this run is a replay: things are as recorded");
@@ -207,10 +202,9 @@ void RosOrders::drive(const std::string& robot, const RosTwist& twist) {
         driven.hold = *hold;
     }
     driven.last = world.time();
-    if (state_->rooms() != nullptr)
-        if (const std::string busy = state_->rooms()->worlds->endTrip(robot, Outcome::Replaced);
-            !busy.empty())
-            return tell_(robot + ": " + busy);
+    if (const std::string busy = state_->rooms().worlds->endTrip(robot, Outcome::Replaced);
+        !busy.empty())
+        return tell_(robot + ": " + busy);
     const RobotModel& model = world.robots()[*index].model;
     const auto give = [&](Verb verb, double value, double most) {
         const Command command{.verb = verb, .value = std::clamp(value, -most, most)};
@@ -221,6 +215,8 @@ void RosOrders::drive(const std::string& robot, const RosTwist& twist) {
     if (model.drive == Drive::Omni) give(Verb::Sidespeed, twist.left, model.max_sidespeed);
 }
 
+/// Finds the storey with the frame that the pose names or, in the frame map, the one with its floor
+/// nearest to the pose's height; of several there, that which has the point indoors.
 std::optional<RosOrders::Target> RosOrders::targetOf(const std::string& robot,
                                                      const RosPose& pose) {
     const Point2 at = pose.pose.position;
@@ -229,12 +225,39 @@ std::optional<RosOrders::Target> RosOrders::targetOf(const std::string& robot,
         tell_("the pose of " + robot + " must be numbers");
         return {};
     }
-    if (state_->rooms() != nullptr) return targetInRoom(robot, pose);
-    if (!pose.frame.empty() && pose.frame != kRosWorld) {
-        tell_("the pose of " + robot + " is wanted in the frame map");
+    const JoinedWorlds& worlds = *state_->rooms().worlds;
+    const auto rooms = worlds.rooms();
+    const bool is_in_map = pose.frame.empty() || pose.frame == kRosWorld;
+    struct Found {
+        std::string room;
+        Pose2 pose;
+        double off = 0;  // of the floor
+        bool is_indoor = false;
+    };
+    std::optional<Found> best;
+    for (std::size_t i = 0; i < rooms.size(); ++i) {
+        const RoomFrame frame = worlds.frameOf(i);
+        if (!frame.is_storey || (!is_in_map && rosName(rooms[i].id) != pose.frame)) continue;
+        Found found{.room = rooms[i].id, .pose = pose.pose};
+        if (is_in_map) {
+            const Pose2 place{frame.pose.position.onFloor(), frame.pose.heading};
+            found.pose = relativePose(place, pose.pose);
+            found.off = std::fabs(frame.pose.position.z - pose.height);
+        }
+        const Environment& environment = rooms[i].simulation->world().scene().environment;
+        found.is_indoor = environment.indoorIndex().locate(found.pose.position) == Side::Inside;
+        const bool is_better = !best || found.off < best->off ||
+                               (found.off == best->off && found.is_indoor && !best->is_indoor);
+        if (is_better) best = std::move(found);
+    }
+    if (!best) {
+        tell_("the pose of " + robot + " is wanted in the frame map" +
+              (rooms.front().id.empty() ? "" : " or in that of a storey"));
         return {};
     }
-    return Target{formatDouble(at.x) + ',' + formatDouble(at.y), heading};
+    const Point2 to = best->pose.position;
+    return Target{prefixOf(best->room) + formatDouble(to.x) + ',' + formatDouble(to.y),
+                  best->pose.heading.degrees()};
 }
 
 /// Puts a robot to its place and then, if it may be there, to its heading.
@@ -378,44 +401,6 @@ void RosOrders::watchGoals() {
         robot = has_ended ? endGoal(robot, has_come ? RosGoalEnd::Reached : RosGoalEnd::Failed, why)
                           : std::next(robot);
     }
-}
-
-/// Finds the storey with the frame that the pose names or, in the frame map, the one with its floor
-/// nearest to the pose's height; of several there, that which has the point indoors.
-std::optional<RosOrders::Target> RosOrders::targetInRoom(const std::string& robot,
-                                                         const RosPose& pose) {
-    const JoinedWorlds& worlds = *state_->rooms()->worlds;
-    const auto rooms = worlds.rooms();
-    const bool is_in_map = pose.frame.empty() || pose.frame == kRosWorld;
-    struct Found {
-        std::string room;
-        Pose2 pose;
-        double off = 0;  // of the floor
-        bool is_indoor = false;
-    };
-    std::optional<Found> best;
-    for (std::size_t i = 0; i < rooms.size(); ++i) {
-        const RoomFrame frame = worlds.frameOf(i);
-        if (!frame.is_storey || (!is_in_map && rosName(rooms[i].id) != pose.frame)) continue;
-        Found found{.room = rooms[i].id, .pose = pose.pose};
-        if (is_in_map) {
-            const Pose2 place{frame.pose.position.onFloor(), frame.pose.heading};
-            found.pose = relativePose(place, pose.pose);
-            found.off = std::fabs(frame.pose.position.z - pose.height);
-        }
-        const Environment& environment = rooms[i].simulation->world().scene().environment;
-        found.is_indoor = environment.indoorIndex().locate(found.pose.position) == Side::Inside;
-        const bool is_better = !best || found.off < best->off ||
-                               (found.off == best->off && found.is_indoor && !best->is_indoor);
-        if (is_better) best = std::move(found);
-    }
-    if (!best) {
-        tell_("the pose of " + robot + " is wanted in the frame map or in that of a storey");
-        return {};
-    }
-    const Point2 at = best->pose.position;
-    return Target{best->room + '/' + formatDouble(at.x) + ',' + formatDouble(at.y),
-                  best->pose.heading.degrees()};
 }
 
 /// Stops robots that get no more orders.

@@ -116,7 +116,6 @@ class RosOrders {
         double heading = 0;
     };
     [[nodiscard]] std::optional<Target> targetOf(const std::string& robot, const RosPose& pose);
-    [[nodiscard]] std::optional<Target> targetInRoom(const std::string& robot, const RosPose& pose);
     void place(const std::string& robot, const RosPose& pose);
     /// A robot on its way, as a client that holds it.
     struct Going {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Topics of a run with several worlds.
+// Topics of a run with several worlds, and requests to them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <map>
@@ -381,6 +382,36 @@ TEST(RosRooms, InitialPosesFindTheirStorey) {
     orders.proceed();
     EXPECT_TRUE(is_done);
     EXPECT_EQ(served.worlds.restarts, 1);
+}
+
+TEST(ServedRooms, RequestsToOneRoomThatFollowShareAChange) {
+    ServerLimits limits;
+    limits.source = std::make_shared<testing::TextSource>(std::map<std::string, std::string>{});
+    Served served(limits);
+    Session world(served.states.front());
+    world.request("WORLD");
+    ASSERT_TRUE(world.take().starts_with("OK WORLD"));
+    std::vector<std::string> lines;
+    std::string wanted;
+    for (int i = 0; i < 60; ++i) {
+        // Two of the other storey are among them, and one that no storey has.
+        const std::string id = (i == 20 || i == 21 ? "ground/m" : "upper/m") + std::to_string(i);
+        lines.push_back("ADD mote id=" + (i == 40 ? "m" : id) + " at=0,1,1");
+        wanted += i == 40 ? "ERR 404 `m` names no storey, as in ground/desk1\n"
+                          : "OK ADD id=" + id + " t=0.000\n";
+    }
+    std::string answers;
+    while (!lines.empty()) {
+        const std::size_t joined = std::min(world.mayJoin(lines[0]), lines.size() - 1);
+        for (std::size_t i = 1; i <= joined; ++i) world.join(lines[i]);
+        world.request(lines[0]);
+        for (answers += world.take(); world.waiting(); answers += world.take()) world.proceed();
+        lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(joined) + 1);
+    }
+    EXPECT_EQ(answers, wanted);
+    EXPECT_LT(served.worlds.world(1).changes(), 40) << "changes for 57 requests";
+    EXPECT_EQ(served.worlds.world(0).scene().ids.back(), "m21");
+    EXPECT_EQ(served.worlds.world(1).scene().ids.back(), "m59");
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace ispace {
 /// The worlds of a run between two steps.
 struct RosRun {
     std::span<const RosRoom> rooms;
-    const JoinedWorlds* joined = nullptr;  ///< null: there is one world
+    const JoinedWorlds& worlds;
 
     [[nodiscard]] std::uint64_t now() const { return rosTimeOf(rooms.front().world().time()); }
 };
@@ -45,8 +45,7 @@ class RosSource {
     virtual std::string message(const RosSourceTopic& topic, const RosRun& run) = 0;
     /// Reads a message to a topic. \returns the request of the role WORLD that carries it out, ""
     /// without \throws FormatError
-    virtual std::string request(const RosSourceTopic& topic, std::string_view message,
-                                const JoinedWorlds* joined) = 0;
+    virtual std::string request(const RosSourceTopic& topic, std::string_view message) = 0;
 };
 
 /// Returns the states of lifts: /L/storey, which a message to /L/storey/set changes by a call, and

@@ -179,16 +179,13 @@ WebPage::WebPage(ServerState& state, const std::string& title, const WebPageOpti
     WebSceneFacts facts{.title = title, .marks = options.marks, .mesh = options.mesh};
     if (options.edits && state.mayChange())
         facts.additions = additions(state.limits().source->devices());
-    const ServedRooms* const rooms = state.rooms();
-    if (rooms == nullptr) {
-        rooms_.push_back({&state, WebFrames(state.simulation(), state.simulation(), facts)});
-        return;
-    }
-    for (std::size_t i = 0; i < rooms->states.size(); ++i) {
-        ServerState& one = *rooms->states[i];
-        facts.title = title + ", " + rooms->worlds->rooms()[i].id;
-        facts.passages = rooms->worlds->passageOutlines(i);
-        facts.planned = [worlds = rooms->worlds, i] { return worlds->plannedWays(i); };
+    const auto& [worlds, states] = state.rooms();
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        ServerState& one = *states[i];
+        const std::string& id = worlds->rooms()[i].id;
+        facts.title = id.empty() ? title : title + ", " + id;
+        facts.passages = worlds->passageOutlines(i);
+        facts.planned = [of = worlds, i] { return of->plannedWays(i); };
         rooms_.push_back({&one, WebFrames(one.simulation(), state.simulation(), facts)});
     }
 }

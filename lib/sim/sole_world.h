@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/joined_worlds.h"
+
+namespace ispace {
+
+/// The world of a run that has no others: a room with the id "", so that names of things have no
+/// room before them. Nothing leads out of it: its movers take commands and changes of the room
+/// alone.
+class SoleWorld final : public JoinedWorlds {
+  public:
+    /// \pre the simulation outlives this object
+    explicit SoleWorld(Simulation& simulation) : room_{"", &simulation} {}
+
+    [[nodiscard]] bool areCoupled() const override { return false; }
+    [[nodiscard]] std::span<const JoinedRoom> rooms() const override { return {&room_, 1}; }
+    [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view /*mover*/) const override {
+        return std::nullopt;
+    }
+    [[nodiscard]] std::string whereText(std::size_t /*room*/) const override { return ""; }
+    [[nodiscard]] RoomFrame frameOf(std::size_t /*room*/) const override { return {{}, true}; }
+    [[nodiscard]] std::vector<PassageOutline> passageOutlines(std::size_t /*room*/) const override {
+        return {};
+    }
+    [[nodiscard]] std::vector<PlannedWay> plannedWays(std::size_t /*room*/) const override {
+        return {};
+    }
+    TripAnswer travel(const std::string& /*mover*/, TripPlan /*plan*/) override {
+        return {.refusal = kNone};
+    }
+    TripAnswer ride(const std::string& /*mover*/, std::string_view /*lift*/,
+                    std::string_view /*storey*/) override {
+        return {.refusal = kNone};
+    }
+    std::string endTrip(const std::string& /*mover*/, Outcome /*outcome*/) override { return ""; }
+    void abandonTrip(const std::string& /*mover*/) override {}
+    std::string place(const std::string& /*mover*/, const std::optional<RoomPoint>& /*at*/,
+                      std::optional<Angle> /*heading*/) override {
+        return kNone;
+    }
+    void restart() override {}
+    std::string call(std::string_view /*lift*/, std::string_view /*storey*/) override {
+        return kNone;
+    }
+    [[nodiscard]] std::vector<LiftState> lifts() const override { return {}; }
+    [[nodiscard]] std::span<const TripEnd> tripEnds() const override { return {}; }
+    void onMove(Observer /*observer*/) override {}
+
+  private:
+    static constexpr const char* kNone = "this run has one room";
+    JoinedRoom room_;
+};
+
+}  // namespace ispace
