@@ -28,12 +28,22 @@
 
 namespace ispace {
 
+namespace {
+
+/// Returns the storey with this id or name; for "" the only one.
+const Storey& storeyOrSole(const StoreyedDocument& building, const std::string& storey) {
+    return storey.empty() && building.storeys.size() == 1 ? building.storeys.front()
+                                                          : building.storey(storey);
+}
+
+}  // namespace
+
 Document chosenStorey(const StoreyedDocument& building, const std::string& operand,
                       const std::string& storey) {
-    if (storey.empty())
+    if (storey.empty() && building.storeys.size() > 1)
         throw UsageError(displayName(operand) + " is a building of the storeys " +
                          building.storeyList() + ": choose one with --storey ID");
-    Document room = *building.storey(storey).room;
+    Document room = *storeyOrSole(building, storey).room;
     room.sources = building.sources;
     return room;
 }
@@ -60,7 +70,7 @@ Document layoutOfRoom(const Document& layout, const StoreyedDocument& building,
 
 Document layoutOfStorey(const Document& layout, const StoreyedDocument& building,
                         const std::string& storey) {
-    const Storey& chosen = building.storey(storey);
+    const Storey& chosen = storeyOrSole(building, storey);
     const bool is_of_building =
         std::any_of(layout.records.begin(), layout.records.end(), [&](const Record& record) {
             const std::string id = record.writtenId();
@@ -275,6 +285,16 @@ std::optional<Operands> findBuilding(const SceneRequest& request) {
     return found;
 }
 
+/// Returns true for a building of one storey, which is a room. That of a record stays what it was
+/// recorded as, with a folder for its storey.
+bool isRoom(const StoreyedDocument& building, const std::string& operand) {
+    if (building.storeys.size() != 1) return false;
+    const std::filesystem::path file(operand);
+    const std::string folder = (file.parent_path() / building.storeys.front().id).string();
+    return file.filename() != kRecordedBuilding ||
+           !std::filesystem::exists(RecordedFiles(folder).robots);
+}
+
 }  // namespace
 
 std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
@@ -286,7 +306,7 @@ std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
     ImportReport report;
     const std::optional<StoreyedDocument> whole =
         readStoreys(*found->building, found->environment, importOf(request.rules, &report), choice);
-    if (!whole) return std::nullopt;
+    if (!whole || (choice.isEmpty() && isRoom(*whole, found->environment))) return std::nullopt;
     StoreyedDocument document = chosenStoreys(*whole, choice, found->environment);
     BuildingInput input;
     input.choices = std::move(report.choices);

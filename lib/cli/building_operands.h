@@ -18,8 +18,8 @@
 
 namespace ispace {
 
-/// Returns the room of a storey. \throws UsageError for a missing storey; without `storey` one that
-/// names the storeys
+/// Returns the room of a storey, for "" that of the only one. \throws UsageError for a missing
+/// storey; for "" among several one that names them
 Document chosenStorey(const StoreyedDocument& building, const std::string& operand,
                       const std::string& storey);
 
@@ -69,8 +69,9 @@ void addZones(std::span<const std::string> zones, BuildingScene& building);
 void warnOfImport(const CommonOptions& options, const std::string& tool,
                   const BuildingInput& input);
 
-/// Reads ENV and LAYOUT if ENV is a building, or the storeys of it that are chosen; std::nullopt
-/// for others and for one storey that is a room, which readScene() reads. \throws as readScene()
+/// Reads ENV and LAYOUT if ENV is a building, or the storeys of it that are chosen. std::nullopt for
+/// others, for one storey that is chosen and for a building of one: they are rooms, which
+/// readScene() reads. \throws as readScene()
 /// and readBuilding()
 std::optional<BuildingInput> readBuildingInput(const SceneRequest& request);
 

@@ -21,6 +21,7 @@ std::vector<std::string> commonNames() {
     SceneRules rules;
     addCommonOptions(line, common, "product");
     addSceneRules(line, rules);
+    addStoreyOption(line, rules, "");
     return line.names();
 }
 

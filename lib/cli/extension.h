@@ -47,7 +47,7 @@ class OptionGroup {
     /// Returns true if the parsed options ask for the task of the group.
     [[nodiscard]] virtual bool isAsked() const = 0;
     /// Returns the options of the tool, by their long names ("--select"), that have a meaning for
-    /// the task. Those of addCommonOptions() and addSceneRules() always have.
+    /// the task. Those of addCommonOptions() and addSceneRules() always have, and --storey.
     [[nodiscard]] virtual std::span<const std::string_view> honours() const = 0;
     /// Checks the options with each other, and takes what the tool's own say
     /// (CommandLine::valuesOf). \throws UsageError

@@ -173,7 +173,8 @@ class OperandReader {
         }
         const bool is_operand = environment_.has_value();
         if (!is_operand) findEnvironment();
-        if (!request_.rules.storeys.isEmpty() && !building_ && !report_.has_storeys)
+        if (!request_.is_further && !request_.rules.storeys.isEmpty() && !building_ &&
+            !report_.has_storeys)
             throw UsageError("--storey is about buildings, and " +
                              displayName(environment_operand_) + " is one room");
         if (layout_ && namesStoreys(*layout_) && !ifc_.empty())

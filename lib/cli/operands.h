@@ -45,6 +45,9 @@ struct SceneRequest {
     bool layout_from_stdin = true;
     /// An ENV with a placed sensor of such a kind needs no LAYOUT.
     bool (*is_meant)(const SensorKind&) = [](const SensorKind& kind) { return kind.perceives; };
+    /// A room beside that of the operands, of which --storey says something only if it is a
+    /// building.
+    bool is_further = false;
 };
 
 /// Content of the operands.

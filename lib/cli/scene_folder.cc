@@ -131,7 +131,8 @@ Scene SceneFolder::load(const std::string& environment, const std::string& layou
         operands.push_back(path(name));
         names.add(operands.back(), name);
     }
-    const SceneRequest request{std::move(operands), rules_, false};
+    SceneRequest request{std::move(operands), rules_, false};
+    request.is_further = true;
     return names.guarded([&] {
         Scene scene = readScene(request).scene;
         // They are read when a picture is taken.

@@ -130,6 +130,7 @@ void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
     for (const std::string& file : options.robust_rooms) {
         if (isStream(file)) throw UsageError("--robust rooms: stdin is not read: give files");
         SceneRequest request{{file}, options.rules, false};
+        request.is_further = true;
         request.rules.same_environment = false;
         if (!work.input.layout_operand.empty())
             request.operands.push_back(work.input.layout_operand);

@@ -138,7 +138,7 @@ void ArrangeCommand::settleCertificate() {
     const std::vector<std::string> words = line_.resultWords();
     for (std::size_t i = 1; i < words.size() && words[i] != "--"; ++i) {
         const std::string name = words[i].substr(0, words[i].find('='));
-        if (name != "--redundancy" && name != "--zone" && name != "--weight")
+        if (name != "--redundancy" && name != "--zone" && name != "--weight" && name != "--storey")
             throw UsageError(
                 "--verify checks a proof for the sensors of a layout: give FILE, ENV and LAYOUT, "
                 "and --redundancy, --zone and --weight as for the proof");

@@ -38,17 +38,18 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kFormats[] = {"glb", "env", "yaml", "svg", "png", "pdf"};
 
-/// \throws UsageError for an option that is about one room
-void mustBeAboutBuildings(const EnvcOptions& options, const StoreyedDocument& building) {
-    std::string option;
-    if (options.list_rooms) option = "--rooms list";
-    if (options.format != nullptr && options.format->takes_zones)
-        option = "--to " + std::string(options.format->name);
-    if (!option.empty()) refuseSeveralRooms(option, building);
-    if (options.format != nullptr &&
-        (options.slice || std::find(std::begin(kFormats), std::end(kFormats),
-                                    options.format->name) == std::end(kFormats)))
-        mustNameStoreys(options.common.output, options.format->name, options.format->suffix);
+/// Returns the option that needs one room; "" without one.
+std::string optionOfOneRoom(const EnvcOptions& options) {
+    if (options.list_rooms) return "--rooms list";
+    const bool is_map = options.format != nullptr && options.format->takes_zones;
+    return is_map ? "--to " + std::string(options.format->name) : "";
+}
+
+/// Returns true for a product of which a file holds one storey.
+bool holdsOneStorey(const EnvcOptions& options) {
+    return options.format != nullptr &&
+           (options.slice || std::find(std::begin(kFormats), std::end(kFormats),
+                                       options.format->name) == std::end(kFormats));
 }
 
 /// Adds the records of a layout to the rooms of their storeys.
@@ -323,7 +324,16 @@ std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
     const auto whole = readStoreys(found->bytes, found->name, import, choice);
     if (!whole) return std::nullopt;
     StoreyedDocument building = chosenStoreys(*whole, choice, found->name);
-    mustBeAboutBuildings(options, building);
+    const std::string option = optionOfOneRoom(options);
+    const bool is_named = isStoreyPattern(options.common.output);
+    // What a room alone can be made into, the only storey can; the others keep what the building
+    // says of it.
+    if (choice.isEmpty() && building.storeys.size() == 1 &&
+        (!option.empty() || (holdsOneStorey(options) && !is_named)))
+        return std::nullopt;
+    if (!option.empty()) refuseSeveralRooms(option, building);
+    if (holdsOneStorey(options))
+        mustNameStoreys(options.common.output, options.format->name, options.format->suffix);
     for (const RawInput& input : raw) {
         if (&input == &*found) continue;
         const Document layout = parseDocument(input.bytes, input.name, import, sceneSchemas());

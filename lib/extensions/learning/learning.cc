@@ -147,7 +147,8 @@ class Learning : public OptionGroup {
         const auto any_sensor = [](const SensorKind&) { return true; };
         std::vector<Scene> scenes;
         const auto add = [&](const std::vector<std::string>& operands, const Scene* first) {
-            SceneInput read = readScene({operands, input.rules, false, any_sensor});
+            SceneInput read =
+                readScene({operands, input.rules, false, any_sensor, first != nullptr});
             warnOfImport(input.common, "simrun", read);
             Scene scene = std::move(read.scene);
             // Further rooms have the robots of the first one, unless they have some.
