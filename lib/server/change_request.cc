@@ -181,7 +181,7 @@ std::vector<Edit> Changing::edits() const {
 }
 
 /// Rejects joined requests that one change cannot carry out as several would. The record of a
-/// change that names files refers to a scene of its own. \throws Refusal
+/// change that names files refers to a new scene. \throws Refusal
 void Changing::checkShared(const std::vector<Edit>& edits) const {
     if (is("SET")) {
         std::unordered_set<std::string_view> sensors;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Roles of the protocol that extensions add to a run: such a role has requests of its own, may read
+// Roles of the protocol that extensions add to a run: such a role has further requests, may read
 // sensors by its own clock, and may make the world wait for its clients.
 #pragma once
 
@@ -12,15 +12,13 @@
 #include <vector>
 
 #include "scene/room_state.h"
+#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
 
 namespace ispace {
 
 /// A world of the run, with its name among others ("" of the only one).
-struct RunRoom {
-    std::string id;
-    Simulation* simulation = nullptr;
-};
+using RunRoom = JoinedRoom;
 
 /// A request of a role, as a row for HELP.
 struct RoleRequest {

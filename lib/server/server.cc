@@ -104,9 +104,7 @@ std::vector<std::string> Server::serveRoles(std::span<const MakeRoleService> ser
     Data& data = *data_;
     const bool may_wait = data.simulation.clock().kind != Clock::Kind::Real;
     std::vector<std::string> notes;
-    std::vector<RunRoom> rooms;
-    for (const JoinedRoom& room : data.state.rooms().worlds->rooms())
-        rooms.push_back({room.id, room.simulation});
+    const auto rooms = data.state.rooms().worlds->rooms();
     for (const MakeRoleService make : services) {
         auto service = make(rooms, data.simulation.world().options().seed);
         if (!service) continue;

@@ -110,7 +110,7 @@ class JoinedWorlds {
     /// Returns true if movers, lifts and records belong to all rooms together: movers come at the
     /// start, and no room is replaced or restarted by itself. Worlds then change between two steps.
     [[nodiscard]] virtual bool areCoupled() const { return true; }
-    /// Returns the rooms: those with a storey of their own first, the lowest first.
+    /// Returns the rooms: the storeys first, from the lowest on, then cabins and flights of stairs.
     [[nodiscard]] virtual std::span<const JoinedRoom> rooms() const = 0;
     /// Returns the room in which a robot or a person is that goes between rooms.
     [[nodiscard]] virtual std::optional<std::size_t> roomOf(std::string_view mover) const = 0;

@@ -12,8 +12,7 @@
 namespace ispace {
 
 /// The world of a run that has no others: a room with the id "", so that names of things have no
-/// room before them. Nothing leads out of it: its movers take commands and changes of the room
-/// alone.
+/// room before them. Movers stay in it, so that they take commands and changes of the room alone.
 class SoleWorld final : public JoinedWorlds {
   public:
     /// \pre the simulation outlives this object

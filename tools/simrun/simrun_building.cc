@@ -18,13 +18,11 @@
 #include "cli/building_operands.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
-#include "cli/scene_folder.h"
 #include "passage/building_run.h"
 #include "passage/building_script.h"
 #include "record/text.h"
 #include "scene/run/run_reader.h"
 #include "sim/world_state.h"
-#include "simrun/simrun_ports.h"
 #include "simrun/simrun_report.h"
 #include "simrun/simrun_run.h"
 
@@ -61,33 +59,6 @@ void writeBuilding(const BuildingScene& building, const History& history,
         whole.storeys[i].room = known;
     }
     writeAll(folder + '/' + kRecordedBuilding, writeBuildingYaml(whole));
-}
-
-/// Records each room into a folder of its name, as a run by itself, and beside them the building
-/// and its lifts.
-std::vector<std::unique_ptr<RunningRecord>> recordsOf(const SimrunOptions& options,
-                                                      BuildingRun& run,
-                                                      const BuildingScene& building,
-                                                      const History& history, Server& server) {
-    std::vector<std::unique_ptr<RunningRecord>> records;
-    if (options.record.empty()) return records;
-    for (const JoinedRoom& room : run.rooms()) checkRecord(options, room.simulation->world());
-    if (std::filesystem::exists(RecordedFiles(options.record).robots))
-        throw UsageError("--record: " + options.record +
-                         " holds the record of one room: give another folder");
-    std::filesystem::create_directory(options.record);
-    SimrunOptions own = options;
-    for (std::size_t i = 0; i < run.rooms().size(); ++i) {
-        const JoinedRoom& room = run.rooms()[i];
-        const Replay* const replay = run.replay(i);
-        own.record = options.record + '/' + room.id;
-        records.push_back(recordOf(*room.simulation, own, room.simulation->world().scene(), history,
-                                   replay != nullptr ? replay->hasOdometry() : options.noise,
-                                   server.frameTaker(i)));
-    }
-    writeBuilding(building, history, options.record);
-    run.recordLifts(options.record + '/' + BuildingRun::kLiftFile);
-    return records;
 }
 
 std::optional<BuildingInput> readInput(const SimrunOptions& options, const std::string& record) {
@@ -127,124 +98,81 @@ void forward(BuildingRun& run, SimTime from) {
                          formatSimTime(simulation.world().time()));
 }
 
-/// What the worlds tell on stderr after a step.
-class StepLogs {
+/// The run of all storeys, of the cabins of lifts, and of flights of stairs.
+class BuildingRunSite final : public RunSite {
   public:
-    StepLogs(BuildingRun& run, const SimrunOptions& options)
-        : lag_(run.simulation(), options.common) {
-        for (std::size_t i = 0; i < run.rooms().size(); ++i)
-            if (const Replay* const replay = run.replay(i)) {
-                failures_.emplace_back(replay, options.common);
-            } else {
-                collisions_.emplace_back(run.world(i), options.common);
-                unreached_.emplace_back(*run.rooms()[i].simulation, options.common);
-            }
+    BuildingRunSite(const SimrunCommand& command, BuildingInput the_building)
+        : RunSite(runInputOf(command, the_building)),
+          options_(&command.options()),
+          building_(std::move(the_building)),
+          run_(runOf(*options_, building_.building)) {
+        forward(run_, options_->from);
+        claimRecords();
+        if (options_->script.empty()) return;
+        const bool is_stdin = options_->script == "-";
+        script_.emplace(is_stdin ? readStdin() : readAll(options_->script),
+                        is_stdin ? displayName("-") : options_->script, run_);
+        run_.simulation().beforeStep([this] { script_->give(run_); });
     }
-    void tell() {
-        lag_.tell();
-        for (CollisionLog& log : collisions_) log.tell();
-        for (UnreachedLog& log : unreached_) log.tell();
-        for (FailureLog& log : failures_) log.tell();
+
+    JoinedWorlds& worlds() override { return run_; }
+    [[nodiscard]] const Replay* replay(std::size_t room) const override {
+        return run_.replay(room);
+    }
+    void recordWhole() override {
+        writeBuilding(building_.building, input.history, options_->record);
+        run_.recordLifts(options_->record + '/' + BuildingRun::kLiftFile);
+    }
+    [[nodiscard]] std::string report(const RunJudge& judge) const override {
+        completeRecords();
+        return reportFile(*options_, building_, judge, input.history.back());
+    }
+    [[nodiscard]] std::string suggestions() const override {
+        completeRecords();
+        return suggestionsText(*options_, building_);
     }
 
   private:
-    std::vector<CollisionLog> collisions_;
-    std::vector<UnreachedLog> unreached_;
-    std::vector<FailureLog> failures_;
-    LagLog lag_;
+    static RunInput runInputOf(const SimrunCommand& command, const BuildingInput& building) {
+        const std::string& operand = building.environment_operand;
+        History history = building.layout ? building.layout->history : History();
+        history.push_back(command.historyLine(building.named));
+        return {operand, baseName(operand), std::filesystem::path(operand).parent_path().string(),
+                std::move(history)};
+    }
+    [[nodiscard]] std::vector<std::string> recordFiles() const {
+        std::vector<std::string> files;
+        for (const JoinedRoom& room : run_.rooms())
+            for (std::string& file : Recorder::filesIn(folderOf(options_->record, room)))
+                files.push_back(std::move(file));
+        return files;
+    }
+    void claimRecords() const {
+        if (options_->record.empty()) return;
+        if (std::filesystem::exists(RecordedFiles(options_->record).robots))
+            throw UsageError("--record: " + options_->record +
+                             " holds the record of one room: give another folder");
+        for (const std::string& file : recordFiles()) claimOutput(file, "a file of --record");
+    }
+    void completeRecords() const {
+        for (const std::string& file : recordFiles()) completeOutput(file);
+    }
+
+    const SimrunOptions* options_;
+    BuildingInput building_;
+    BuildingRun run_;
+    std::optional<BuildingScript> script_;
 };
-
-/// Reserves the files of all records.
-void claimRecords(const SimrunOptions& options, const BuildingRun& run) {
-    if (options.record.empty()) return;
-    for (const JoinedRoom& room : run.rooms())
-        for (const std::string& file : Recorder::filesIn(options.record + '/' + room.id))
-            claimOutput(file, "a file of --record");
-}
-
-/// Writes --report and --suggest. \pre the records are complete
-void reportRun(const SimrunOptions& options, const BuildingInput& input, const BuildingRun& run,
-               const RunJudge& judge, const std::string& command) {
-    if (options.report.empty() && !options.suggestions) return;
-    for (const JoinedRoom& room : run.rooms())
-        for (const std::string& file : Recorder::filesIn(options.record + '/' + room.id))
-            completeOutput(file);
-    if (!options.report.empty())
-        writeAll(options.report, reportFile(options, input, judge, command));
-    if (options.suggestions) writeAll("-", suggestionsText(options, input));
-}
 
 }  // namespace
 
-bool runBuilding(const SimrunCommand& command, JunitFile& junit) {
+std::unique_ptr<RunSite> openBuilding(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     auto input = readInput(options, recordedBuilding(options.replay));
-    if (!input) return false;
+    if (!input) return nullptr;
     addZones(options.zones, input->building);
     warnOfScenes(options, *input);
-    BuildingRun run = runOf(options, input->building);
-    forward(run, options.from);
-    Simulation& simulation = run.simulation();
-    claimRecords(options, run);
-    std::optional<BuildingScript> script;
-    if (!options.script.empty()) {
-        const bool is_stdin = options.script == "-";
-        script.emplace(is_stdin ? readStdin() : readAll(options.script),
-                       is_stdin ? displayName("-") : options.script, run);
-        simulation.beforeStep([&] { script->give(run); });
-    }
-    StepLogs logs(run, options);
-    simulation.onStep([&logs] { logs.tell(); });
-    std::vector<RunRoom> rooms;
-    rooms.reserve(run.rooms().size());
-    for (const JoinedRoom& room : run.rooms()) rooms.push_back({room.id, room.simulation});
-    const auto judge = options.judges->judge(rooms);
-    judge->observe();
-    simulation.onStep([&judge] { judge->observe(); });
-    if (options.judges->isAsked()) simulation.keepOrder();
-    ServerLimits limits = limitsOf(options);
-    limits.source = std::make_shared<SceneFolder>(
-        options.load_folder.empty()
-            ? std::filesystem::path(input->environment_operand).parent_path().string()
-            : options.load_folder,
-        options.rules);
-    Server server(simulation, options.listen, limits, &run);
-    std::vector<std::string> replayed;
-    if (!options.replay.empty())
-        for (const JoinedRoom& room : run.rooms())
-            replayed.push_back(options.replay + '/' + room.id);
-    const ServedAddresses addresses =
-        servePorts(server, options, baseName(input->environment_operand), replayed);
-    std::optional<TopicLog> log;
-    if (!options.mcap.empty()) log.emplace(server, simulation, options);
-    const StopSignals signals;
-    server.stopOn(signals.descriptor());
-    std::optional<OutputFile> port_file;
-    if (!options.port_file.empty()) {
-        port_file.emplace(options.port_file);
-        port_file->write(std::to_string(server.port()) + '\n');
-    }
-    History history = input->layout ? input->layout->history : History();
-    history.push_back(command.historyLine(input->named));
-    const auto records = recordsOf(options, run, input->building, history, server);
-    const auto progress = progressOf(simulation, options);
-    announce(server, addresses);
-    if (port_file) port_file->commit();
-    server.run();
-    progress->end();
-    for (std::size_t i = 0; i < records.size(); ++i)
-        records[i]->recorder.end(run.rooms()[i].simulation->world());
-    if (log) log->commit();
-    tellLosses(server, options);
-    report(simulation, options);
-    for (std::size_t i = 0; i < run.rooms().size(); ++i)
-        if (run.replay(i) != nullptr && run.replay(i)->isCut())
-            warn(options.common, "simrun",
-                 run.rooms()[i].id + ": the record ends in the midst of a step, which is left out");
-    reportRun(options, *input, run, *judge, history.back());
-    judge->report(options.record);
-    conclude(*judge, options, input->environment_operand, junit);
-    return true;
+    return std::make_unique<BuildingRunSite>(command, std::move(*input));
 }
 
 }  // namespace ispace

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "cli/batch.h"
+#include <memory>
+
 #include "simrun/simrun_options.h"
 
 namespace ispace {
 
-/// Runs a building whole, or replays its record, if ENV is one and no storey of it is chosen;
-/// returns false otherwise. \throws UsageError for options that a building has not, and as
-/// conclude()
-bool runBuilding(const SimrunCommand& command, JunitFile& junit);
+class RunSite;
+
+/// Reads a building, or its record, and warns of it; null if ENV is none, or one storey of it is
+/// chosen. \throws UsageError for options that a building has not, and as the readers do
+std::unique_ptr<RunSite> openBuilding(const SimrunCommand& command);
 
 }  // namespace ispace

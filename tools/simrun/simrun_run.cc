@@ -3,11 +3,18 @@
 
 #include <sys/resource.h>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,16 +30,29 @@
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
+#include "cli/run_tool.h"
 #include "cli/scene_folder.h"
 #include "record/text.h"
 #include "report/view/film.h"
 #include "report/view/run_picture.h"
+#include "scene/findings/findings.h"
 #include "scene/run/run_reader.h"
 #include "scene/scene.h"
 #include "server/network.h"
+#include "server/server.h"
+#include "sim/recorder.h"
+#include "sim/sole_world.h"
+#include "sim/world_state.h"
+#include "simrun/simrun_ports.h"
+#include "simrun/simrun_report.h"
 
 namespace ispace {
 
+namespace {
+
+constexpr const char* kTool = "simrun";
+
+/// Reads the operands; a record holds its own scene.
 SceneInput readInput(const SimrunOptions& options) {
     if (const std::string building = recordedBuilding(options.replay); !building.empty())
         throw UsageError(
@@ -49,14 +69,19 @@ SceneInput readInput(const SimrunOptions& options) {
     }
     SceneInput input = readScene({operands, options.rules, false});
     addZones(options.zones, input);
+    warnOfImport(options.common, kTool, input);
+    warn(options.common, kTool,
+         sceneWarnings(input.scene, {.checks = {"unplaced", "outside", "buried", "paths"}}));
     return input;
 }
 
+/// Returns the title of the room or the record.
 std::string titleOf(const SimrunOptions& options, const SceneInput& input) {
     const std::string& shown = options.replay.empty() ? input.environment_operand : options.replay;
     return shown == "-" ? "" : baseName(shown);
 }
 
+/// Opens the record to be served, and sets the scene to its beginning; nullopt without --replay.
 std::optional<Replay> openReplay(const SimrunOptions& options, Scene& scene) {
     if (options.replay.empty()) return std::nullopt;
     Replay replay(options.replay);
@@ -66,18 +91,18 @@ std::optional<Replay> openReplay(const SimrunOptions& options, Scene& scene) {
     return replay;
 }
 
+/// Moves a replay to the time from which it is served.
 void forward(Replay& replay, World& world, SimTime from) {
     while (world.time() < from)
         if (!replay.step(world))
             throw UsageError("--from: the record ends at t=" + formatSimTime(world.time()));
 }
 
-History historyOf(const SimrunCommand& command, const SceneInput& input) {
-    History history = input.layout ? input.layout->history : History();
-    history.push_back(command.historyLine(input.named));
-    return history;
-}
-
+/// The commands of --script.
+struct Script {
+    std::vector<TimedCommand> commands;
+    DayPlan days;  ///< of people
+};
 Script scriptOf(const SimrunOptions& options, const SceneInput& input, const World& world) {
     if (options.script.empty()) return {};
     const bool is_stdin = options.script == "-";
@@ -88,12 +113,87 @@ Script scriptOf(const SimrunOptions& options, const SceneInput& input, const Wor
     return {readScript(text, file, world), readDayPlan(text, file, world)};
 }
 
+/// Warns of movers with a trip over storeys, in the run of one room.
+void warnOfTrips(const Scene& scene, const CommonOptions& options) {
+    for (const PlacedRecord& placed : scene.placed) {
+        const Record& record = scene.records[placed.record];
+        if (record.schema().find("trip") == nullptr || !record.has("trip")) continue;
+        Diagnostic finding = record.finding(
+            "trip", record.keyword() + ' ' + scene.ids[placed.record] +
+                        " stands: its trip is over storeys, and this run has one; run the "
+                        "building without --storey");
+        finding.severity = Severity::Warning;
+        warn(options, kTool, std::span<const Diagnostic>(&finding, 1));
+    }
+}
+
+RunInput runInputOf(const SimrunCommand& command, const SceneInput& input) {
+    History history = input.layout ? input.layout->history : History();
+    history.push_back(command.historyLine(input.named));
+    return {input.environment_operand, titleOf(command.options(), input), SceneFolder::of(input),
+            std::move(history)};
+}
+
+/// The run of one room.
+class RoomRunSite final : public RunSite {
+  public:
+    RoomRunSite(const SimrunCommand& command, SceneInput scene, std::optional<Replay> replay)
+        : RunSite(runInputOf(command, scene)),
+          options_(&command.options()),
+          scene_(std::move(scene)),
+          replay_(std::move(replay)),
+          world_(scene_.scene, replay_ ? replay_->stepLength() : options_->step,
+                 runOptionsOf(*options_, replay_ ? std::optional(replay_->info()) : std::nullopt)) {
+        warn(options_->common, kTool, startWarnings(world_));
+        if (replay_) forward(*replay_, world_, options_->from);
+        Script script = scriptOf(*options_, scene_, world_);
+        simulation_.emplace(world_, std::move(script.commands), options_->clock, options_->until);
+        simulation_->follow(std::move(script.days));
+        if (replay_) simulation_->replay(*replay_, options_->holds);
+        sole_.emplace(*simulation_);
+    }
+
+    JoinedWorlds& worlds() override { return *sole_; }
+    [[nodiscard]] const Replay* replay(std::size_t /*room*/) const override {
+        return replay_ ? &*replay_ : nullptr;
+    }
+    void recordWhole() override {}
+    [[nodiscard]] std::string report(const RunJudge& judge) const override {
+        return reportFile(*options_, scene_, judge, input.history.back());
+    }
+    [[nodiscard]] std::string suggestions() const override {
+        return suggestionsText(*options_, scene_);
+    }
+
+  private:
+    const SimrunOptions* options_;
+    SceneInput scene_;
+    std::optional<Replay> replay_;
+    World world_;
+    std::optional<Simulation> simulation_;
+    std::optional<SoleWorld> sole_;
+};
+
+}  // namespace
+
+std::unique_ptr<RunSite> openRoom(const SimrunCommand& command) {
+    const SimrunOptions& options = command.options();
+    SceneInput input = readInput(options);
+    std::optional<Replay> replay = openReplay(options, input.scene);
+    if (!replay) warnOfTrips(input.scene, options.common);
+    if (options.noise && !hasNoise(input.scene, !replay)) warnOfNoNoise(options.common);
+    return std::make_unique<RoomRunSite>(command, std::move(input), std::move(replay));
+}
+
 RunOptions runOptionsOf(const SimrunOptions& options, const std::optional<RunInfo>& replay) {
     if (replay && !options.noise) return {.seed = replay->seed, .sensor_noise = replay->noise};
     if (replay) return {.seed = options.common.seed, .sensor_noise = true};
     return {.seed = options.common.seed, .noise = options.noise, .sensor_noise = options.noise};
 }
 
+namespace {
+
+/// Creates the progress bar of a run that ends at a given time.
 std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions& options) {
     if (!options.until) return std::make_unique<SilentProgress>();
     auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
@@ -102,6 +202,7 @@ std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions
     return progress;
 }
 
+/// Reports the length of a run and whether it kept up with the clock.
 void report(const Simulation& simulation, const SimrunOptions& options) {
     const World& world = simulation.world();
     logInfo(options.common, "simrun",
@@ -118,6 +219,9 @@ void report(const Simulation& simulation, const SimrunOptions& options) {
             "the world could not keep up: the clock gave up " + formatMilliseconds(lost) + " s");
 }
 
+/// Reports the verdicts of the judge at the end. Completes the file of --junit.
+/// \throws UnmetError if one is unmet
+/// \param environment operand
 void conclude(const RunJudge& judge, const SimrunOptions& options, const std::string& environment,
               JunitFile& junit) {
     const std::vector<RunVerdict> verdicts = judge.verdicts();
@@ -140,8 +244,6 @@ void conclude(const RunJudge& judge, const SimrunOptions& options, const std::st
              "all " + std::to_string(verdicts.size()) + " expectations are met");
 }
 
-namespace {
-
 /// Returns the scene as one self-contained file for the folder of the record.
 std::string sceneText(const Scene& scene, const History& history, const std::string& folder) {
     Document document;
@@ -151,15 +253,17 @@ std::string sceneText(const Scene& scene, const History& history, const std::str
     return writeRecordText(document);
 }
 
-}  // namespace
-
-RunningRecord::RunningRecord(const SimrunOptions& options, Simulation& simulation,
-                             const RecordOptions& record)
-    : recorder(options.record, simulation.world(), record, &simulation.events(),
-               &simulation.tracks()),
-      guard(Recorder::growingFilesIn(options.record), recorder.lock()) {}
+/// The record of a room that is being written.
+struct RunningRecord {
+    RunningRecord(const std::string& folder, Simulation& simulation, const RecordOptions& record)
+        : recorder(folder, simulation.world(), record, &simulation.events(), &simulation.tracks()),
+          guard(Recorder::growingFilesIn(folder), recorder.lock()) {}
+    Recorder recorder;
+    LineGuard guard;
+};
 
 /// Computes the least size of the record before the run.
+/// \throws UsageError if it is more than --record-limit
 void checkRecord(const SimrunOptions& options, const World& world) {
     if (options.record.empty()) return;
     const auto stride = static_cast<double>(options.record_form.stride(world.stepLength()));
@@ -174,18 +278,18 @@ void checkRecord(const SimrunOptions& options, const World& world) {
                      byteCountText(options.max_recorded) + "; is --until in seconds?");
 }
 
+/// \param odometry it differs from the true poses
 std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOptions& options,
-                                        const Scene& scene, const History& history, bool odometry,
-                                        FrameTaker frame_taker) {
-    if (options.record.empty()) return nullptr;
+                                        const std::string& folder, const History& history,
+                                        bool odometry, FrameTaker frame_taker) {
     RecordOptions record;
     record.history = history;
     record.seed = simulation.world().options().seed;
     record.noise = simulation.world().options().sensor_noise;
     record.odometry = odometry;
-    record.scene = sceneText(scene, history, options.record);
-    record.scene_text = [history, folder = options.record + "/scenes"](const Scene& loaded) {
-        return sceneText(loaded, history, folder);
+    record.scene = sceneText(simulation.world().scene(), history, folder);
+    record.scene_text = [history, scenes = folder + "/scenes"](const Scene& loaded) {
+        return sceneText(loaded, history, scenes);
     };
     record.readings = options.records_readings.value_or(true);
     record.frame_rate = options.recorded_frames;
@@ -193,12 +297,29 @@ std::unique_ptr<RunningRecord> recordOf(Simulation& simulation, const SimrunOpti
     record.form = options.record_form;
     record.max_bytes = options.max_recorded;
     record.frame_taker = std::move(frame_taker);
-    auto running = std::make_unique<RunningRecord>(options, simulation, record);
+    auto running = std::make_unique<RunningRecord>(folder, simulation, record);
     simulation.recordWith(running->recorder);
     return running;
 }
 
-namespace {
+/// Records each room from now on. Replaces the records of an earlier run: call it after all steps
+/// that may fail. Empty without --record.
+std::vector<std::unique_ptr<RunningRecord>> recordsOf(const SimrunOptions& options, RunSite& site,
+                                                      Server& server) {
+    std::vector<std::unique_ptr<RunningRecord>> records;
+    if (options.record.empty()) return records;
+    const auto rooms = site.worlds().rooms();
+    for (std::size_t i = 0; i < rooms.size(); ++i) {
+        const std::string folder = folderOf(options.record, rooms[i]);
+        if (folder != options.record) std::filesystem::create_directory(options.record);
+        const Replay* const replay = site.replay(i);
+        records.push_back(recordOf(*rooms[i].simulation, options, folder, site.input.history,
+                                   replay != nullptr ? replay->hasOdometry() : options.noise,
+                                   server.frameTaker(i)));
+    }
+    site.recordWhole();
+    return records;
+}
 
 /// A client requires a file descriptor: the limit is that of the process, less those in use.
 ServerLimits withinFileLimit(ServerLimits limits, std::size_t others) {
@@ -212,9 +333,9 @@ ServerLimits withinFileLimit(ServerLimits limits, std::size_t others) {
     return limits;
 }
 
-}  // namespace
-
-ServerLimits limitsOf(const SimrunOptions& options) {
+/// Returns the limits of the server, and the files that clients may read. Raises the limit of open
+/// files of this process, as every client takes one.
+ServerLimits limitsOf(const SimrunOptions& options, const RunInput& input) {
     constexpr std::size_t kOfPort = 64;  // connections of a port for topics
     std::size_t others = options.devices.connections();
     for (const auto& port : {options.foxglove, options.rosbridge}) others += port ? kOfPort : 0;
@@ -225,15 +346,266 @@ ServerLimits limitsOf(const SimrunOptions& options) {
             warn(options.common, "simrun",
                  options.token_file + " can be read by other users: chmod 600 makes it yours");
     }
+    limits.source = std::make_shared<SceneFolder>(
+        options.load_folder.empty() ? input.folder : options.load_folder, options.rules);
     return limits;
 }
 
-ServerLimits limitsOf(const SimrunOptions& options, const SceneInput& input) {
-    ServerLimits limits = limitsOf(options);
-    const std::string& folder = options.load_folder;
-    limits.source = std::make_shared<SceneFolder>(folder.empty() ? SceneFolder::of(input) : folder,
-                                                  options.rules);
-    return limits;
+/// Reports collisions of robots on stderr, up to a number of lines: of a mover that runs into the
+/// same thing again where it stands, the first.
+class CollisionLog {
+  public:
+    CollisionLog(const World& world, const CommonOptions& options)
+        : world_(&world), options_(&options) {}
+    /// Reports the collisions of the world's last step.
+    void tell();
+
+  private:
+    struct Bump {
+        std::string into;
+        Point2 at;
+    };
+    const World* world_;
+    const CommonOptions* options_;
+    std::map<std::string, Bump, std::less<>> last_;  // by mover
+    int count_ = 0;
+};
+
+/// Reports on stderr the points, zones and things that movers give up to reach: each once for a
+/// mover, up to a number of lines.
+class UnreachedLog {
+  public:
+    /// Subscribes to the events.
+    UnreachedLog(Simulation& simulation, const CommonOptions& options);
+    /// Reports the events since the last call.
+    void tell();
+
+  private:
+    Simulation* simulation_;
+    const CommonOptions* options_;
+    std::int64_t next_ = 0;       // event
+    std::set<std::string> told_;  // movers and targets
+};
+
+/// Reports on stderr when a run by the clock Real falls behind it, and when it keeps up again.
+class LagLog {
+  public:
+    LagLog(const Simulation& simulation, const CommonOptions& options)
+        : simulation_(&simulation), options_(&options) {}
+    /// Reads the clock after a step.
+    void tell();
+
+  private:
+    const Simulation* simulation_;
+    const CommonOptions* options_;
+    std::chrono::nanoseconds lost_{};             // at the last step
+    std::chrono::steady_clock::time_point last_;  // time of the last loss
+    bool is_behind_ = false;
+    int count_ = 0;  // number of delays
+};
+
+std::string textOf(const World& world, const Collision& collision) {
+    const Point2 place = world.status(collision.robot).pose.position;
+    return "t=" + formatMilliseconds(collision.time) + ' ' + world.movers()[collision.robot].id +
+           " at " + formatFixed(place.x, 3) + ',' + formatFixed(place.y, 3) + " ran into " +
+           std::string(collision.into);
+}
+
+void CollisionLog::tell() {
+    constexpr int kMaxCollisions = 100;
+    constexpr double kSamePlace = 0.05;  // metres
+    for (const Collision& collision : world_->collisions()) {
+        if (count_ == kMaxCollisions) return;
+        const Point2 at = world_->status(collision.robot).pose.position;
+        const auto [last, is_new] = last_.try_emplace(world_->movers()[collision.robot].id);
+        const bool is_known = !is_new && last->second.into == collision.into &&
+                              distance(last->second.at, at) < kSamePlace;
+        if (is_known) continue;
+        last->second = {std::string(collision.into), at};
+        warn(*options_, kTool, textOf(*world_, collision));
+        if (++count_ == kMaxCollisions) warn(*options_, kTool, "no more of these are told");
+    }
+}
+
+UnreachedLog::UnreachedLog(Simulation& simulation, const CommonOptions& options)
+    : simulation_(&simulation), options_(&options) {
+    simulation.events().want({EventKind::Unreached});
+    next_ = simulation.events().next();
+}
+
+void UnreachedLog::tell() {
+    constexpr std::size_t kMaxTold = 100;
+    const EventLog& events = simulation_->events();
+    for (next_ = std::max(next_, events.first()); next_ < events.next(); ++next_) {
+        const Event& event = events.at(next_);
+        if (event.kind != EventKind::Unreached || told_.size() == kMaxTold) continue;
+        const auto text_of = [](Point2 p) {
+            return formatFixed(p.x, 3) + ',' + formatFixed(p.y, 3);
+        };
+        std::string target = event.other;
+        if (event.place) target += (target.empty() ? "" : "/") + text_of(*event.place);
+        if (!told_.insert(event.id + ' ' + target).second) continue;
+        const World& world = simulation_->world();
+        const auto mover = world.moverNamed(event.id);
+        warn(*options_, kTool,
+             "t=" + formatMilliseconds(event.time) + ' ' + event.id +
+                 (mover ? " at " + text_of(world.status(*mover).pose.position) : "") +
+                 " gave up its way to " + target +
+                 (event.text.empty() ? "" : ": " + printable(event.text)));
+        if (told_.size() == kMaxTold) warn(*options_, kTool, "further ones are not reported");
+    }
+}
+
+void LagLog::tell() {
+    using std::chrono::steady_clock;
+    constexpr std::chrono::seconds kCalm(1);  // without a loss, before the run counts as keeping up
+    constexpr int kMaxReported = 10;
+    const auto due = simulation_->due();
+    if (!due) return;
+    const auto now = steady_clock::now();
+    const auto say = [&](const std::string& text) {
+        if (count_ <= kMaxReported)
+            warn(*options_, kTool, "t=" + formatSimTime(simulation_->world().time()) + text);
+    };
+    if (simulation_->lost() > lost_) {
+        lost_ = simulation_->lost();
+        last_ = now;
+        if (std::exchange(is_behind_, true)) return;
+        ++count_;
+        say(" the run falls behind real time, by " + formatMilliseconds(lost_) +
+            " s so far: steps take longer than the clock gives them" +
+            (count_ == kMaxReported ? "; further ones are not reported" : ""));
+    } else if (is_behind_ && now <= *due && now - last_ >= kCalm) {
+        is_behind_ = false;
+        say(" the run keeps up with real time again, " + formatMilliseconds(lost_) +
+            " s behind in all");
+    }
+}
+
+/// Reports once that a change of a recorded run cannot be repeated.
+class FailureLog {
+  public:
+    FailureLog(const Replay& replay, const CommonOptions& options)
+        : replay_(&replay), options_(&options) {}
+    void tell();
+
+  private:
+    const Replay* replay_;
+    const CommonOptions* options_;
+    bool is_told_ = false;
+};
+
+void FailureLog::tell() {
+    if (is_told_) return;
+    const std::string failure = replay_->failure();
+    is_told_ = !failure.empty();
+    if (is_told_) warn(*options_, kTool, failure);
+}
+
+/// Reports on stderr what the worlds of a run tell after each step.
+class StepLogs {
+  public:
+    StepLogs(RunSite& site, const CommonOptions& options);
+    void tell();
+
+  private:
+    LagLog lag_;
+    std::vector<CollisionLog> collisions_;
+    std::vector<UnreachedLog> unreached_;
+    std::vector<FailureLog> failures_;
+};
+
+StepLogs::StepLogs(RunSite& site, const CommonOptions& options)
+    : lag_(*site.worlds().rooms().front().simulation, options) {
+    const auto rooms = site.worlds().rooms();
+    for (std::size_t i = 0; i < rooms.size(); ++i) {
+        Simulation& simulation = *rooms[i].simulation;
+        if (const Replay* const replay = site.replay(i)) {
+            failures_.emplace_back(*replay, options);
+        } else {
+            collisions_.emplace_back(simulation.world(), options);
+            unreached_.emplace_back(simulation, options);
+        }
+    }
+}
+
+void StepLogs::tell() {
+    lag_.tell();
+    for (CollisionLog& log : collisions_) log.tell();
+    for (UnreachedLog& log : unreached_) log.tell();
+    for (FailureLog& log : failures_) log.tell();
+}
+
+/// Runs it. If other threads are still at work at the end, the process exits at once, with the same
+/// status and lines: they use objects that would be destroyed, and a picture or a large room may
+/// take minutes.
+void endingAtOnce(const std::function<bool()>& is_busy, JunitFile& junit,
+                  const SimrunOptions& options, const std::function<void()>& work) {
+    std::exception_ptr failure;
+    try {
+        work();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    const auto end = [&failure] {
+        if (failure) std::rethrow_exception(failure);
+    };
+    if (is_busy()) std::_Exit(runTool("simrun", [&] { junit.during(options.operands, end); }));
+    end();
+}
+
+}  // namespace
+
+void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
+    JoinedWorlds& worlds = site.worlds();
+    const auto rooms = worlds.rooms();
+    Simulation& simulation = *rooms.front().simulation;
+    StepLogs logs(site, options.common);
+    simulation.onStep([&logs] { logs.tell(); });
+    const auto judge = options.judges->judge(rooms);
+    judge->observe();
+    simulation.onStep([&judge] { judge->observe(); });
+    if (options.judges->isAsked()) simulation.keepOrder();
+
+    std::vector<std::string> replayed;
+    for (const JoinedRoom& room : rooms) {
+        checkRecord(options, room.simulation->world());
+        if (!options.replay.empty()) replayed.push_back(folderOf(options.replay, room));
+    }
+    Server server(simulation, options.listen, limitsOf(options, site.input), &worlds);
+    const ServedAddresses addresses = servePorts(server, options, site.input.title, replayed);
+    std::optional<TopicLog> log;
+    if (!options.mcap.empty()) log.emplace(server, simulation, options);
+    const StopSignals signals;
+    server.stopOn(signals.descriptor());
+    std::optional<OutputFile> port_file;
+    if (!options.port_file.empty()) {
+        port_file.emplace(options.port_file);
+        port_file->write(std::to_string(server.port()) + '\n');
+    }
+    const auto records = recordsOf(options, site, server);
+    const auto progress = progressOf(simulation, options);
+    announce(server, addresses);
+    if (port_file) port_file->commit();
+    const auto serve_and_conclude = [&] {
+        server.run();
+        progress->end();
+        for (std::size_t i = 0; i < records.size(); ++i)
+            records[i]->recorder.end(rooms[i].simulation->world());
+        if (log) log->commit();
+        tellLosses(server, options);
+        report(simulation, options);
+        for (std::size_t i = 0; i < rooms.size(); ++i)
+            if (const Replay* const replay = site.replay(i); replay != nullptr && replay->isCut())
+                warn(options.common, "simrun",
+                     (rooms[i].id.empty() ? "" : rooms[i].id + ": ") +
+                         "the record ends in the midst of a step, which is left out");
+        if (!options.report.empty()) writeAll(options.report, site.report(*judge));
+        if (options.suggestions) writeAll("-", site.suggestions());
+        judge->report(options.record);
+        conclude(*judge, options, site.input.environment, junit);
+    };
+    endingAtOnce([&server] { return server.isBusy(); }, junit, options, serve_and_conclude);
 }
 
 namespace {
@@ -326,10 +698,22 @@ std::int64_t writePictures(const SimrunOptions& options, const OutputSet& files,
     return count;
 }
 
+/// Warns that a run changed its world, of which the picture shows the start.
+void warnOfChanges(const Replay& replay, const CommonOptions& options) {
+    if (const auto& time = replay.changedAt())
+        warn(options, kTool,
+             "the world of the run was changed at t=" + formatMilliseconds(*time) +
+                 ": the room is drawn as it was at the start");
+}
+
 }  // namespace
 
-void drawRecord(const SimrunOptions& options, const Scene& scene, const std::string& title) {
-    RunPicture picture(scene, {.width = options.drawing.width, .title = title});
+void drawRecord(const SimrunOptions& options) {
+    SceneInput input = readInput(options);
+    if (const auto replay = openReplay(options, input.scene))
+        warnOfChanges(*replay, options.common);
+    RunPicture picture(input.scene,
+                       {.width = options.drawing.width, .title = titleOf(options, input)});
     std::int64_t count = 1;
     if (const auto files = OutputSet::of(options.common.output)) {
         count = writePictures(options, *files, picture);
@@ -350,64 +734,6 @@ void drawRecord(const SimrunOptions& options, const Scene& scene, const std::str
             std::to_string(count) + (count == 1 ? " picture" : " pictures") + " drawn");
 }
 
-namespace {
-
-constexpr int kMaxCollisions = 100;
-constexpr const char* kTool = "simrun";
-
-std::string textOf(const World& world, const Collision& collision) {
-    const Point2 place = world.status(collision.robot).pose.position;
-    return "t=" + formatMilliseconds(collision.time) + ' ' + world.movers()[collision.robot].id +
-           " at " + formatFixed(place.x, 3) + ',' + formatFixed(place.y, 3) + " ran into " +
-           std::string(collision.into);
-}
-
-}  // namespace
-
-void CollisionLog::tell() {
-    constexpr double kSamePlace = 0.05;  // metres
-    for (const Collision& collision : world_->collisions()) {
-        if (count_ == kMaxCollisions) return;
-        const Point2 at = world_->status(collision.robot).pose.position;
-        const auto [last, is_new] = last_.try_emplace(world_->movers()[collision.robot].id);
-        const bool is_known = !is_new && last->second.into == collision.into &&
-                              distance(last->second.at, at) < kSamePlace;
-        if (is_known) continue;
-        last->second = {std::string(collision.into), at};
-        warn(*options_, kTool, textOf(*world_, collision));
-        if (++count_ == kMaxCollisions) warn(*options_, kTool, "no more of these are told");
-    }
-}
-
-UnreachedLog::UnreachedLog(Simulation& simulation, const CommonOptions& options)
-    : simulation_(&simulation), options_(&options) {
-    simulation.events().want({EventKind::Unreached});
-    next_ = simulation.events().next();
-}
-
-void UnreachedLog::tell() {
-    constexpr std::size_t kMaxTold = 100;
-    const EventLog& events = simulation_->events();
-    for (next_ = std::max(next_, events.first()); next_ < events.next(); ++next_) {
-        const Event& event = events.at(next_);
-        if (event.kind != EventKind::Unreached || told_.size() == kMaxTold) continue;
-        const auto text_of = [](Point2 p) {
-            return formatFixed(p.x, 3) + ',' + formatFixed(p.y, 3);
-        };
-        std::string target = event.other;
-        if (event.place) target += (target.empty() ? "" : "/") + text_of(*event.place);
-        if (!told_.insert(event.id + ' ' + target).second) continue;
-        const World& world = simulation_->world();
-        const auto mover = world.moverNamed(event.id);
-        warn(*options_, kTool,
-             "t=" + formatMilliseconds(event.time) + ' ' + event.id +
-                 (mover ? " at " + text_of(world.status(*mover).pose.position) : "") +
-                 " gave up its way to " + target +
-                 (event.text.empty() ? "" : ": " + printable(event.text)));
-        if (told_.size() == kMaxTold) warn(*options_, kTool, "further ones are not reported");
-    }
-}
-
 bool hasNoise(const Scene& scene, bool moves) {
     const bool strays = moves && std::any_of(scene.robots.begin(), scene.robots.end(),
                                              [](const PlacedRobot& robot) {
@@ -421,59 +747,6 @@ void warnOfNoNoise(const CommonOptions& options) {
     warn(options, kTool,
          "--noise changes nothing: no sensor has noise, and no robot has motion_noise, "
          "odometry_noise or start_noise");
-}
-
-void warnOfTrips(const Scene& scene, const CommonOptions& options) {
-    for (const PlacedRecord& placed : scene.placed) {
-        const Record& record = scene.records[placed.record];
-        if (record.schema().find("trip") == nullptr || !record.has("trip")) continue;
-        Diagnostic finding = record.finding(
-            "trip", record.keyword() + ' ' + scene.ids[placed.record] +
-                        " stands: its trip is over storeys, and this run has one; run the "
-                        "building without --storey");
-        finding.severity = Severity::Warning;
-        warn(options, kTool, std::span<const Diagnostic>(&finding, 1));
-    }
-}
-
-void LagLog::tell() {
-    using std::chrono::steady_clock;
-    constexpr std::chrono::seconds kCalm(1);  // without a loss, before the run counts as keeping up
-    constexpr int kMaxReported = 10;
-    const auto due = simulation_->due();
-    if (!due) return;
-    const auto now = steady_clock::now();
-    const auto say = [&](const std::string& text) {
-        if (count_ <= kMaxReported)
-            warn(*options_, kTool, "t=" + formatSimTime(simulation_->world().time()) + text);
-    };
-    if (simulation_->lost() > lost_) {
-        lost_ = simulation_->lost();
-        last_ = now;
-        if (std::exchange(is_behind_, true)) return;
-        ++count_;
-        say(" the run falls behind real time, by " + formatMilliseconds(lost_) +
-            " s so far: steps take longer than the clock gives them" +
-            (count_ == kMaxReported ? "; further ones are not reported" : ""));
-    } else if (is_behind_ && now <= *due && now - last_ >= kCalm) {
-        is_behind_ = false;
-        say(" the run keeps up with real time again, " + formatMilliseconds(lost_) +
-            " s behind in all");
-    }
-}
-
-void FailureLog::tell() {
-    if (is_told_ || replay_ == nullptr) return;
-    const std::string failure = replay_->failure();
-    is_told_ = !failure.empty();
-    if (is_told_) warn(*options_, kTool, failure);
-}
-
-void warnOfChanges(const Replay& replay, const CommonOptions& options) {
-    if (const auto& time = replay.changedAt())
-        warn(options, kTool,
-             "the world of the run was changed at t=" + formatMilliseconds(*time) +
-                 ": the room is drawn as it was at the start");
 }
 
 }  // namespace ispace

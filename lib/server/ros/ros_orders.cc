@@ -313,7 +313,7 @@ std::string RosOrders::pursue(const RosChannel& channel, std::string_view messag
     const RosGoal goal{poseOf(message)};
     if (state_->simulation().isReplay()) return kRecorded;
     const std::string robot = robotOf(channel);
-    // The reasons answer the request, and are no failures of their own.
+    // The reasons answer the request.
     std::string why;
     struct Heard {
         std::function<void(const std::string&)>& tell;
