@@ -69,8 +69,8 @@ void addZones(std::span<const std::string> zones, BuildingScene& building);
 void warnOfImport(const CommonOptions& options, const std::string& tool,
                   const BuildingInput& input);
 
-/// Reads ENV and LAYOUT if ENV is a building, or the storeys of it that are chosen. std::nullopt for
-/// others, for one storey that is chosen and for a building of one: they are rooms, which
+/// Reads ENV and LAYOUT if ENV is a building, or the storeys of it that are chosen. std::nullopt
+/// for others, for one storey that is chosen and for a building of one: they are rooms, which
 /// readScene() reads. \throws as readScene()
 /// and readBuilding()
 std::optional<BuildingInput> readBuildingInput(const SceneRequest& request);
