@@ -2,6 +2,7 @@
 #include "building/building_coverage.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -63,6 +64,7 @@ void nameWholly(const BuildingScene& building, std::size_t storey,
         coverage.report.sensors[i].id = view.id;
     }
     for (ZoneMetrics& zone : coverage.report.zones) zone.id = wholeId(storeys[storey], zone.id);
+    for (UncoveredSpot& spot : coverage.report.unseen) spot.room = storeys[storey].id;
 }
 
 void addUp(BuildingCoverage& building) {
@@ -90,14 +92,6 @@ void addUp(BuildingCoverage& building) {
                               free_exact.shareOf(building.free_area)};
     if (building.indoor_area > 0)
         for (double& share : building.redundancy) share /= building.indoor_area;
-}
-
-void writeMetric(JsonWriter& json, const char* key, const Metric& metric) {
-    const auto rounded = [](const std::optional<double>& number) {
-        return number ? std::optional(roundSignificant(*number)) : std::nullopt;
-    };
-    json.key(key).beginObject().key("grid").value(rounded(metric.grid));
-    json.key("exact").value(rounded(metric.exact)).endObject();
 }
 
 std::string shareText(const std::optional<double>& share) {
@@ -193,34 +187,147 @@ class DensitySum {
 
 }  // namespace
 
+namespace {
+
+/// Adds up shares of the floor of rooms.
+class ShareSum {
+  public:
+    void add(const Metric& share, double area) {
+        grid_.add(areaOf(share.grid, area));
+        exact_.add(areaOf(share.exact, area));
+    }
+    [[nodiscard]] Metric of(double area) const {
+        return {grid_.shareOf(area), exact_.shareOf(area)};
+    }
+
+  private:
+    AreaSum grid_, exact_;
+};
+
+std::optional<double> added(const std::optional<double>& a, const std::optional<double>& b) {
+    return a && b ? std::optional(*a + *b) : std::nullopt;
+}
+
+Metric added(const Metric& a, const Metric& b) {
+    return {added(a.grid, b.grid), added(a.exact, b.exact)};
+}
+
+/// Returns the mean of two values, by areas.
+std::optional<double> meanOf(const std::optional<double>& a, const std::optional<double>& area_a,
+                             const std::optional<double>& b, const std::optional<double>& area_b) {
+    const double wa = a ? area_a.value_or(0) : 0, wb = b ? area_b.value_or(0) : 0;
+    if (!(wa + wb > 0)) return a ? a : b;
+    return (a.value_or(0) * wa + b.value_or(0) * wb) / (wa + wb);
+}
+
+/// Adds what a sensor sees in a further room to its picture.
+void addPicture(PictureMetrics& picture, const Metric& area, const PictureMetrics& further,
+                const Metric& further_area) {
+    for (std::size_t k = 0; k < picture.areas.size() && k < further.areas.size(); ++k)
+        picture.areas[k] = added(picture.areas[k], further.areas[k]);
+    const auto take = [](std::optional<double>& to, const std::optional<double>& value,
+                         const auto& better) {
+        if (value && (!to || better(*value, *to))) to = value;
+    };
+    take(picture.nearest, further.nearest, std::less<>());
+    take(picture.farthest, further.farthest, std::greater<>());
+    picture.mean_density = {
+        meanOf(picture.mean_density.grid, area.grid, further.mean_density.grid, further_area.grid),
+        meanOf(picture.mean_density.exact, area.exact, further.mean_density.exact,
+               further_area.exact)};
+}
+
+/// Returns the sensors of all storeys, each once, with what they see in all of them.
+std::vector<SensorMetrics> sensorsOfAll(const BuildingCoverage& coverage) {
+    std::vector<SensorMetrics> all;
+    std::map<std::string, std::size_t> known;
+    const auto is_here = [&](std::size_t storey, std::size_t i) {
+        return coverage.storeys[storey].sensors[i].index < coverage.floors[storey]->sensors.size();
+    };
+    for (const bool home : {true, false})
+        for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+            const std::vector<SensorMetrics>& sensors = coverage.storeys[i].report.sensors;
+            for (std::size_t k = 0; k < sensors.size(); ++k) {
+                if (is_here(i, k) != home) continue;
+                const SensorMetrics& seen = sensors[k];
+                const auto [at, is_new] = known.try_emplace(seen.id, all.size());
+                if (is_new) {
+                    all.push_back(seen);
+                    continue;
+                }
+                SensorMetrics& sum = all[at->second];
+                if (sum.picture && seen.picture)
+                    addPicture(*sum.picture, sum.area, *seen.picture, seen.area);
+                sum.area = added(sum.area, seen.area);
+                sum.outside = added(sum.outside, seen.outside);
+                sum.marginal = added(sum.marginal, seen.marginal);
+                sum.overlap = added(sum.overlap, seen.overlap);
+            }
+        }
+    return all;
+}
+
+/// Adds shares of the floor seen by exactly k sensors, as areas.
+void addRedundancy(std::vector<double>& sum, std::span<const double> shares, double area) {
+    sum.resize(std::max(sum.size(), shares.size()));
+    for (std::size_t k = 0; k < shares.size(); ++k) sum[k] += shares[k] * area;
+}
+
+}  // namespace
+
 CoverageReport sumOfStoreys(const BuildingCoverage& coverage) {
+    const CoverageReport& first = coverage.storeys.front().report;
     CoverageReport sum;
+    sum.height = first.height;
+    sum.plane = first.plane;
+    sum.density = first.density;
+    sum.parallax = first.parallax;
     sum.indoor_area = coverage.indoor_area;
     sum.free_area = coverage.free_area;
+    sum.sensors = sensorsOfAll(coverage);
     sum.total_effective_area = coverage.total_effective_area;
     sum.outside = coverage.outside;
     sum.coverage = coverage.coverage;
     sum.free_coverage = coverage.free_coverage;
     sum.redundancy = coverage.redundancy;
+    sum.redundancy_exact.emplace();
     sum.comparison = coverage.comparison;
+    sum.overlap = {0.0, 0.0};
     DensitySum indoor, free;
-    AreaSum seen_grid, seen_exact;
+    ShareSum seen, parallax;
+    double covered = 0, largest = 0;
     for (const Coverage& storey : coverage.storeys) {
         const CoverageReport& report = storey.report;
+        sum.overlap = added(sum.overlap, report.overlap);
+        if (report.redundancy_exact && sum.redundancy_exact)
+            addRedundancy(*sum.redundancy_exact, *report.redundancy_exact, report.indoor_area);
+        else
+            sum.redundancy_exact.reset();
         sum.zones.insert(sum.zones.end(), report.zones.begin(), report.zones.end());
+        const double own =
+            areaOf(report.coverage.exact ? report.coverage.exact : report.coverage.grid,
+                   report.indoor_area)
+                .value_or(0);
+        covered += own;
+        largest = std::max(largest, report.largest_piece * own);
+        sum.pieces += report.pieces;
+        sum.unseen.insert(sum.unseen.end(), report.unseen.begin(), report.unseen.end());
+        if (sum.exact_missing.empty()) sum.exact_missing = report.exact_missing;
+        parallax.add(report.parallax_coverage, report.indoor_area);
         indoor.add(report.densities.indoor, report.indoor_area);
         free.add(report.densities.free, report.free_area);
-        sum.plane = report.plane;
-        sum.density = report.density;
-        if (report.densities.indoor.empty()) continue;
-        seen_grid.add(areaOf(report.densities.seen.grid, report.indoor_area));
-        seen_exact.add(areaOf(report.densities.seen.exact, report.indoor_area));
+        if (!report.densities.indoor.empty()) seen.add(report.densities.seen, report.indoor_area);
     }
+    if (covered > 0) sum.largest_piece = largest / covered;
+    std::stable_sort(sum.unseen.begin(), sum.unseen.end(),
+                     [](const auto& a, const auto& b) { return a.area > b.area; });
+    if (sum.redundancy_exact && sum.indoor_area > 0)
+        for (double& share : *sum.redundancy_exact) share /= sum.indoor_area;
+    if (sum.parallax) sum.parallax_coverage = parallax.of(sum.indoor_area);
     sum.densities.indoor = indoor.shares();
     sum.densities.free = free.shares();
     if (!sum.densities.indoor.empty()) {
-        sum.densities.seen = {seen_grid.shareOf(sum.indoor_area),
-                              seen_exact.shareOf(sum.indoor_area)};
+        sum.densities.seen = seen.of(sum.indoor_area);
         // A zone where no camera is has none of the classes.
         for (ZoneMetrics& zone : sum.zones)
             if (zone.densities.empty())
@@ -274,31 +381,25 @@ BuildingParts partsOf(const BuildingRunCoverage& run) {
 
 std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage,
                                  const BuildingParts& parts) {
+    std::vector<ReportedRoom> rooms;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
+        rooms.push_back({building.document.storeys[i].id, &coverage.storeys[i].report});
     JsonWriter json;
-    beginReport(json, "ispace-building-coverage/1", "coverage");
-    json.key("digest").value(building.document.digest()).key("storeys").beginArray();
+    beginReport(json, "ispace-coverage/1", "coverage");
+    json.key("digest").value(building.document.digest());
+    writeRooms(json, rooms);
+    json.key("storeys").beginArray();
     std::string text;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
-        json.beginObject().key("id").value(building.document.storeys[i].id).key("report");
+        json.beginObject().key("id").value(rooms[i].id).key("report");
         ReportParts own = parts.storeys.empty() ? ReportParts() : parts.storeys[i];
         if (!coverage.rules.empty()) own.rules = &coverage.rules[i];
-        text += json.take() + coverageJson(coverage.storeys[i].report, own);
+        text += json.take() + storeyJson(*rooms[i].report, own);
         text.pop_back();  // its newline
         json.endObject();
     }
     json.endArray();
-    json.key("indoor_area").value(roundSignificant(coverage.indoor_area));
-    json.key("free_area").value(roundSignificant(coverage.free_area));
-    writeMetric(json, "total_effective_area", coverage.total_effective_area);
-    json.key("outside_area")
-        .value(coverage.outside ? std::optional(roundSignificant(*coverage.outside))
-                                : std::nullopt);
-    writeMetric(json, "coverage", coverage.coverage);
-    writeMetric(json, "free_coverage", coverage.free_coverage);
-    json.key("redundancy").beginArray();
-    for (const double share : coverage.redundancy) json.value(roundSignificant(share));
-    json.endArray();
-    if (coverage.comparison) writeComparison(json, *coverage.comparison);
+    writeFloor(json, sumOfStoreys(coverage));
     writeParts(json, parts.sum);
     json.endObject();
     return text + json.take() + '\n';

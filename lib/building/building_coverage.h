@@ -70,8 +70,8 @@ std::vector<TextRow> storeyRows(const BuildingScene& building, const BuildingCov
 /// Returns the scale of redundancy that the maps of all storeys share, see MapOptions.
 std::uint32_t redundancyScale(const BuildingCoverage& coverage);
 
-/// Returns the figures of the building as those of one floor: sums, shares of all floor, and the
-/// zones of all storeys in their order, with whole ids.
+/// Returns the figures of the building as those of one floor: sums, shares of all floor, each
+/// sensor with what it sees in all storeys, and the zones of all in their order, with whole ids.
 CoverageReport sumOfStoreys(const BuildingCoverage& coverage);
 
 /// Returns the coverage that a requirement is about: of a zone `ID/NAME` that of its storey, else
@@ -91,7 +91,8 @@ struct BuildingParts {
 /// Returns the parts of a run, which outlives them.
 BuildingParts partsOf(const BuildingRunCoverage& run);
 
-/// Writes one JSON object and a newline, schema ispace-building-coverage/1.
+/// Writes one JSON object and a newline, schema ispace-coverage/1 with an item of `rooms` for each
+/// storey.
 std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage,
                                  const BuildingParts& parts = {});
 /// Writes the report of each storey, then a table of all, and the parts of the building.

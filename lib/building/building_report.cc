@@ -11,6 +11,7 @@
 #include "building/building_sight.h"
 #include "drawing/plan/plan.h"
 #include "env/environment.h"
+#include "env/room_info.h"
 #include "scene/placement_schemas.h"
 
 namespace ispace {
@@ -20,11 +21,7 @@ namespace {
 /// Measures of the storeys, each room once, and their sums.
 struct BuildingInfo {
     std::vector<EnvironmentInfo> storeys;
-    Box2 limits;        // in the building
-    double height = 0;  // from the lowest floor to the highest wall
-    double indoor_area = 0, free_area = 0, perimeter = 0;
-    std::size_t triangles = 0;
-    std::map<std::string, int> counts;
+    EnvironmentInfo sum;  // limits: in the building; height: from the lowest floor
 };
 
 BuildingInfo describe(const BuildingScene& building) {
@@ -45,22 +42,23 @@ BuildingInfo describe(const BuildingScene& building) {
             }
         }
         info.storeys.push_back(room->second);
-        info.indoor_area += room->second.indoor_area;
-        info.free_area += room->second.free_area;
-        info.perimeter += room->second.perimeter;
+        info.sum.indoor_area += room->second.indoor_area;
+        info.sum.free_area += room->second.free_area;
+        info.sum.perimeter += room->second.perimeter;
         const Storey& storey = building.document.storeys[i];
         const Box2& box = room->second.limits;
         for (const Point2 corner :
              {box.low, Point2{box.high.x, box.low.y}, box.high, Point2{box.low.x, box.high.y}})
-            info.limits.add(storey.building_from_storey * corner);
-        info.height = std::max(info.height, storey.floor - building.document.storeys.front().floor +
-                                                room->second.height);
-        info.triangles += room->second.triangles;
-        for (const auto& [keyword, count] : room->second.counts) info.counts[keyword] += count;
+            info.sum.limits.add(storey.building_from_storey * corner);
+        info.sum.height =
+            std::max(info.sum.height,
+                     storey.floor - building.document.storeys.front().floor + room->second.height);
+        info.sum.triangles += room->second.triangles;
+        for (const auto& [keyword, count] : room->second.counts) info.sum.counts[keyword] += count;
     }
-    info.counts["storey"] = static_cast<int>(building.scenes.size());
+    info.sum.counts["storey"] = static_cast<int>(building.scenes.size());
     for (const StoreyPassage& passage : building.document.passages)
-        ++info.counts[passage.record.keyword()];
+        ++info.sum.counts[passage.record.keyword()];
     return info;
 }
 
@@ -68,17 +66,21 @@ BuildingInfo describe(const BuildingScene& building) {
 
 std::string buildingInfoJson(const BuildingScene& building) {
     const BuildingInfo info = describe(building);
+    std::vector<RoomInfo> rooms;
+    for (std::size_t i = 0; i < info.storeys.size(); ++i) {
+        const Storey& storey = building.document.storeys[i];
+        rooms.push_back({storey.id, storey.floor, building.height(i), &info.storeys[i]});
+    }
     JsonWriter json;
-    beginReport(json, "ispace-building-info/1", "envc");
+    beginReport(json, "ispace-info/1", "envc");
     json.key("digest").value(building.document.digest());
+    writeRooms(json, rooms);
     json.key("storeys").beginArray();
     std::string text;
-    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
-        const Storey& storey = building.document.storeys[i];
-        json.beginObject().key("id").value(storey.id);
-        json.key("z").value(roundSignificant(storey.floor));
-        json.key("height").value(roundSignificant(building.height(i))).key("room");
-        text += json.take() + infoJson(info.storeys[i]);
+    for (const auto& [id, z, height, room] : rooms) {
+        json.beginObject().key("id").value(id).key("z").value(roundSignificant(z));
+        json.key("height").value(roundSignificant(height)).key("room");
+        text += json.take() + storeyInfoJson(*room);
         text.pop_back();  // its newline
         json.endObject();
     }
@@ -89,17 +91,9 @@ std::string buildingInfoJson(const BuildingScene& building) {
         for (const std::size_t i : passage.storeys) json.value(building.document.storeys[i].id);
         json.endArray().endObject();
     }
-    json.endArray().key("limits").beginArray();
-    for (const double limit :
-         {info.limits.low.x, info.limits.low.y, info.limits.high.x, info.limits.high.y})
-        json.value(roundSignificant(limit));
-    json.endArray().key("indoor_area").value(roundSignificant(info.indoor_area));
-    json.key("free_area").value(roundSignificant(info.free_area));
-    json.key("height").value(roundSignificant(info.height));
-    json.key("perimeter").value(roundSignificant(info.perimeter));
-    json.key("counts").beginObject();
-    for (const auto& [keyword, count] : info.counts) json.key(keyword).value(count);
-    json.endObject().key("triangles").value(info.triangles).endObject();
+    json.endArray();
+    writeMeasures(json, info.sum);
+    json.endObject();
     return text + json.take() + '\n';
 }
 
@@ -115,11 +109,11 @@ std::string buildingInfoText(const BuildingScene& building) {
     text += "building of " + std::to_string(building.scenes.size()) +
             (building.scenes.size() == 1 ? " storey\n" : " storeys\n");
     text += "digest       " + building.document.digest() + '\n';
-    text += "indoor area  " + formatFixed(info.indoor_area, 3) + " m2\n";
-    text += "free area    " + formatFixed(info.free_area, 3) + " m2 at " +
+    text += "indoor area  " + formatFixed(info.sum.indoor_area, 3) + " m2\n";
+    text += "free area    " + formatFixed(info.sum.free_area, 3) + " m2 at " +
             formatDouble(kScanHeight) + " m\n";
     text += "records     ";
-    for (const auto& [keyword, count] : info.counts)
+    for (const auto& [keyword, count] : info.sum.counts)
         text += ' ' + keyword + ' ' + std::to_string(count) + ',';
     text.back() = '\n';
     for (const StoreyPassage& passage : building.document.passages) {

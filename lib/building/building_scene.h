@@ -69,7 +69,8 @@ std::vector<Diagnostic> checkBuilding(const BuildingScene& building);
 bool hasWayOn(const BuildingScene& building, std::size_t storey, Point2 end,
               std::optional<Vec2> back);
 
-/// Returns one JSON object and a newline, schema ispace-building-info/1: by storey and in sum.
+/// Returns one JSON object and a newline, schema ispace-info/1 with an item of `rooms` for each
+/// storey.
 std::string buildingInfoJson(const BuildingScene& building);
 std::string buildingInfoText(const BuildingScene& building);
 

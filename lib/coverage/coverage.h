@@ -98,6 +98,7 @@ struct DensityMetrics {
 struct UncoveredSpot {
     Point2 place;  ///< an inner point, away from the boundary if the piece is wide enough
     double area = 0;
+    std::string room = {};  ///< id of the room of a site where it lies; "" in a room alone
 };
 
 /// Smaller pieces, m2, are skipped as rounding errors.

@@ -16,6 +16,7 @@
 #include "env/level.h"
 #include "env/mesh.h"
 #include "env/room_builder.h"
+#include "env/room_info.h"
 #include "env/slice.h"
 #include "env/walls.h"
 #include "geom/arrangement.h"
@@ -233,15 +234,44 @@ EnvironmentInfo describe(const Environment& environment, std::span<const Record>
     return info;
 }
 
-std::string infoJson(const EnvironmentInfo& info) {
-    const Box2& b = info.limits;
-    JsonWriter json;
-    beginReport(json, "ispace-info/1", "envc");
-    json.key("digest").value(info.digest);
+namespace {
+
+void writeLimits(JsonWriter& json, const Box2& b) {
     json.key("limits").beginArray();
     for (const double limit : {b.low.x, b.low.y, b.high.x, b.high.y})
         json.value(roundSignificant(limit));
     json.endArray();
+}
+
+std::string roomJson(const EnvironmentInfo& info, bool is_alone) {
+    JsonWriter json;
+    beginReport(json, "ispace-info/1", "envc");
+    json.key("digest").value(info.digest);
+    if (is_alone) writeRooms(json, std::vector<RoomInfo>{{"", 0, info.height, &info}});
+    writeMeasures(json, info);
+    json.endObject();
+    return json.take() + '\n';
+}
+
+}  // namespace
+
+void writeRooms(JsonWriter& json, std::span<const RoomInfo> rooms) {
+    json.key("rooms").beginArray();
+    for (const auto& [id, z, height, info] : rooms) {
+        json.beginObject().key("id").value(id).key("z").value(roundSignificant(z));
+        json.key("digest").value(info->digest);
+        writeLimits(json, info->limits);
+        json.key("indoor_area").value(roundSignificant(info->indoor_area));
+        json.key("free_area").value(roundSignificant(info->free_area));
+        json.key("height").value(roundSignificant(height));
+        json.key("perimeter").value(roundSignificant(info->perimeter));
+        json.key("triangles").value(info->triangles).endObject();
+    }
+    json.endArray();
+}
+
+void writeMeasures(JsonWriter& json, const EnvironmentInfo& info) {
+    writeLimits(json, info.limits);
     json.key("indoor_area").value(roundSignificant(info.indoor_area));
     json.key("free_area").value(roundSignificant(info.free_area));
     json.key("height").value(roundSignificant(info.height));
@@ -250,9 +280,11 @@ std::string infoJson(const EnvironmentInfo& info) {
     for (const auto& [keyword, count] : info.counts) json.key(keyword).value(count);
     json.endObject();
     json.key("triangles").value(info.triangles);
-    json.endObject();
-    return json.take() + '\n';
 }
+
+std::string infoJson(const EnvironmentInfo& info) { return roomJson(info, true); }
+
+std::string storeyInfoJson(const EnvironmentInfo& info) { return roomJson(info, false); }
 
 std::string infoText(const EnvironmentInfo& info) {
     const Box2& b = info.limits;

@@ -92,6 +92,7 @@ void write(JsonWriter& json, const ZoneMetrics& zone) {
 
 void write(JsonWriter& json, const UncoveredSpot& spot) {
     json.beginObject();
+    if (!spot.room.empty()) json.key("room").value(spot.room);
     write(json, "x", spot.place.x);
     write(json, "y", spot.place.y);
     write(json, "area", spot.area);
@@ -125,13 +126,46 @@ void writeParts(JsonWriter& json, const ReportParts& parts) {
     if (parts.advice != nullptr) writeSuggestions(json, *parts.advice);
 }
 
-std::string coverageJson(const CoverageReport& report, const ReportParts& parts) {
+namespace {
+
+void writeExtent(JsonWriter& json, const CoverageReport& report) {
     const Box2& limits = report.limits;
+    write(json, "limits", {limits.low.x, limits.low.y, limits.high.x, limits.high.y});
+    json.key("grid").value(std::vector<int>{report.grid.columns, report.grid.rows});
+}
+
+/// Writes the report of a room, which is `rooms` if it is alone.
+std::string roomJson(const CoverageReport& report, const ReportParts& parts, bool is_alone) {
     JsonWriter json;
     beginReport(json, "ispace-coverage/1", "coverage");
     json.key("digest").value(report.digest);
-    write(json, "limits", {limits.low.x, limits.low.y, limits.high.x, limits.high.y});
-    json.key("grid").value(std::vector<int>{report.grid.columns, report.grid.rows});
+    if (is_alone) writeRooms(json, std::vector<ReportedRoom>{{"", &report}});
+    writeExtent(json, report);
+    writeFloor(json, report);
+    writeParts(json, parts);
+    json.endObject();
+    return json.take() + "\n";
+}
+
+}  // namespace
+
+void writeRooms(JsonWriter& json, std::span<const ReportedRoom> rooms) {
+    json.key("rooms").beginArray();
+    for (const auto& [id, report] : rooms) {
+        json.beginObject().key("id").value(id).key("digest").value(report->digest);
+        writeExtent(json, *report);
+        write(json, "indoor_area", report->indoor_area);
+        write(json, "free_area", report->free_area);
+        write(json, "total_effective_area", report->total_effective_area);
+        write(json, "outside_area", report->outside);
+        write(json, "coverage", report->coverage);
+        write(json, "free_coverage", report->free_coverage);
+        json.endObject();
+    }
+    json.endArray();
+}
+
+void writeFloor(JsonWriter& json, const CoverageReport& report) {
     json.key("height").value(report.height);
     json.key("plane").value(report.plane);
     if (report.density > 0) write(json, "density", report.density);
@@ -174,9 +208,14 @@ std::string coverageJson(const CoverageReport& report, const ReportParts& parts)
         json.endObject();
     }
     if (report.comparison) writeComparison(json, *report.comparison);
-    writeParts(json, parts);
-    json.endObject();
-    return json.take() + "\n";
+}
+
+std::string coverageJson(const CoverageReport& report, const ReportParts& parts) {
+    return roomJson(report, parts, true);
+}
+
+std::string storeyJson(const CoverageReport& report, const ReportParts& parts) {
+    return roomJson(report, parts, false);
 }
 
 namespace {

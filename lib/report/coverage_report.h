@@ -2,6 +2,7 @@
 // lib/report: coverage and runs as text, tables and JSON, maps, pages and pictures for people.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,22 @@ struct ReportParts {
     const ObjectiveFigures* objectives = nullptr;
 };
 
-/// Writes one JSON object and a newline, schema ispace-coverage/1, with a member for each part.
+/// A room of the site that a report is about.
+struct ReportedRoom {
+    std::string id;  ///< "" of a room alone
+    const CoverageReport* report = nullptr;
+};
+
+/// Writes one JSON object and a newline, schema ispace-coverage/1, with a member for each part: the
+/// report of a room alone, which is a site of one.
 std::string coverageJson(const CoverageReport& report, const ReportParts& parts = {});
+/// Writes a room of several so: without `rooms`, as an item of `storeys`.
+std::string storeyJson(const CoverageReport& report, const ReportParts& parts);
+/// Writes the member `rooms`: what differs from room to room.
+void writeRooms(JsonWriter& json, std::span<const ReportedRoom> rooms);
+/// Writes the members about the floor of a room, or of all rooms together, from `height` to
+/// `comparison`.
+void writeFloor(JsonWriter& json, const CoverageReport& report);
 /// Writes the members of the parts, in the order of coverageJson().
 void writeParts(JsonWriter& json, const ReportParts& parts);
 /// Writes the member `comparison`.
