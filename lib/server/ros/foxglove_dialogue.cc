@@ -360,7 +360,7 @@ void FoxgloveDialogue::sendGraph(bool with_services) {
 void FoxgloveDialogue::sendParameters(const std::set<std::string>& names, const std::string& id) {
     JsonWriter json;
     json.beginObject().key("op").value("parameterValues").key("parameters").beginArray();
-    for (const RosParameter& one : rosParameters(state().simulation(), feed().isOfOneRoom())) {
+    for (const RosParameter& one : rosParameters(state())) {
         if (!names.empty() && !names.contains(one.name)) continue;
         json.beginObject().key("name").value(one.name).key("value");
         std::visit([&json](const auto& value) { json.value(value); }, one.value);
@@ -385,8 +385,7 @@ void FoxgloveDialogue::setParameters(const Json& request) {
     std::set<std::string> names;
     for (const Json& one : member(request, "parameters")) {
         const std::string name = textOf(member(one, "name"));
-        const RosSetting setting =
-            settingOf(state().simulation(), feed().isOfOneRoom(), name, member(one, "value"));
+        const RosSetting setting = settingOf(state(), name, member(one, "value"));
         if (!setting.refusal.empty()) {
             tell(Level::Error, setting.refusal);
             if (!id.empty()) sendParameters({name}, id);
@@ -415,8 +414,7 @@ void FoxgloveDialogue::watchParameters(const Json& request) {
     const Json& names = member(request, "parameterNames");
     for (const Json& one : names) watch(textOf(one));
     if (!names.empty()) return;
-    for (const RosParameter& one : rosParameters(state().simulation(), feed().isOfOneRoom()))
-        watch(one.name);
+    for (const RosParameter& one : rosParameters(state())) watch(one.name);
 }
 
 void FoxgloveDialogue::unwatchParameters(const Json& request) {

@@ -141,7 +141,7 @@ void writeTime(const Question& question, JsonWriter& out) {
 
 void writeParameterNames(const Question& question, JsonWriter& out) {
     out.key("names").beginArray();
-    for (const RosParameter& one : rosParameters(question.simulation, question.feed.isOfOneRoom()))
+    for (const RosParameter& one : rosParameters(question.feed.state()))
         out.value(std::string(kRosNode) + ':' + one.name);
     out.endArray();
 }
@@ -150,7 +150,7 @@ void writeParameterNames(const Question& question, JsonWriter& out) {
 std::string parameterText(const Question& question) {
     const std::string name = parameterNamed(question.argument("name"));
     JsonWriter value;
-    for (const RosParameter& one : rosParameters(question.simulation, question.feed.isOfOneRoom()))
+    for (const RosParameter& one : rosParameters(question.feed.state()))
         if (one.name == name) std::visit([&](const auto& it) { value.value(it); }, one.value);
     return value.take();
 }

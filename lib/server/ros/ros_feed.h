@@ -85,7 +85,7 @@ class RosFeed {
     [[nodiscard]] bool isFull() const;
 
     /// False for the run of a building, in which clients do not place robots.
-    [[nodiscard]] bool isOfOneRoom() const { return !state_->rooms().worlds->areCoupled(); }
+    [[nodiscard]] ServerState& state() const { return *state_; }
     /// Returns the URIs of meshes of rooms.
     [[nodiscard]] std::vector<std::string> meshes() const;
     /// Computes the mesh of a room in the background. `deliver` gets "" on failure.

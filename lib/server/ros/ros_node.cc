@@ -49,7 +49,6 @@ RosNode::RosNode(ServerState& state, RosFeed& feed, const DdsSettings& settings)
 
 RosNode::RosNode(ServerState& state, RosFeed& feed, std::unique_ptr<DdsParticipant> participant)
     : feed_(&feed),
-      simulation_(&state.simulation()),
       orders_(state, [](const std::string& /*error*/) {}),
       participant_(std::move(participant)) {
     graph_ =
@@ -80,7 +79,7 @@ void RosNode::addServices() {
         add(query.name, query.type, [this, &query](const RosServer& server, const RosCall& call) {
             CdrReader in(call.content);
             CdrWriter out;
-            query.answer(in, *simulation_, feed_->isOfOneRoom(), out);
+            query.answer(in, feed_->state(), out);
             server.answer(call.caller, out.take());
         });
     for (const bool is_atomic : {false, true})
@@ -266,8 +265,7 @@ void RosNode::set(const RosServer& server, const RosCall& call, bool is_atomic) 
         else if (i >= kMostParameters || !orders_.mayRequest())
             refusal = "too many parameters at once";
         else
-            setting = settingOf(*simulation_, feed_->isOfOneRoom(), parameters[i].first,
-                                parameters[i].second);
+            setting = settingOf(feed_->state(), parameters[i].first, parameters[i].second);
         if (refusal.empty()) refusal = setting.refusal;
         if (!refusal.empty()) {
             settle();

@@ -73,7 +73,6 @@ class RosNode {
     void set(const RosServer& server, const RosCall& call, bool is_atomic);
 
     RosFeed* feed_;
-    const Simulation* simulation_;
     RosOrders orders_;
     std::unique_ptr<DdsParticipant> participant_;  // null after end()
     std::map<std::uint32_t, End> ends_;            // by number in the feed

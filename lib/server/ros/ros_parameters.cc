@@ -7,6 +7,7 @@
 
 #include "base/message.h"
 #include "base/number.h"
+#include "server/server_state.h"
 
 namespace ispace {
 
@@ -16,21 +17,23 @@ constexpr const char *kPaused = "clock.paused", *kRate = "clock.rate";
 
 }  // namespace
 
-std::vector<RosParameter> rosParameters(const Simulation& simulation, bool with_things) {
-    const World& world = simulation.world();
+std::vector<RosParameter> rosParameters(ServerState& state) {
+    const Simulation& simulation = state.simulation();
     std::vector<RosParameter> out{{kPaused, simulation.paused()}, {kRate, simulation.clock().rate}};
-    if (!with_things) return out;
-    for (std::size_t i = 0; i < world.movers().size(); ++i) {
-        const Pose2 pose = world.status(i).pose;
-        const std::string& id = world.movers()[i].id;
-        out.push_back({id + ".at", std::vector{pose.position.x, pose.position.y}});
-        out.push_back({id + ".heading", pose.heading.degrees()});
-    }
-    for (const Sensor& sensor : world.sensors()) {
-        if (sensor.mount || sensor.person) continue;
-        const Point3 place = sensor.pose.position;
-        out.push_back({sensor.id + ".at", std::vector{place.x, place.y, place.z}});
-        out.push_back({sensor.id + ".heading", sensor.pose.heading.degrees()});
+    for (const auto& [room, world] : state.worlds()) {
+        for (std::size_t i = 0; i < world->movers().size(); ++i) {
+            const Pose2 pose = world->status(i).pose;
+            const std::string id = nameAcross(room, world->movers()[i].id);
+            out.push_back({id + ".at", std::vector{pose.position.x, pose.position.y}});
+            out.push_back({id + ".heading", pose.heading.degrees()});
+        }
+        for (const Sensor& sensor : world->sensors()) {
+            if (sensor.mount || sensor.person) continue;
+            const Point3 place = sensor.pose.position;
+            const std::string id = nameAcross(room, sensor.id);
+            out.push_back({id + ".at", std::vector{place.x, place.y, place.z}});
+            out.push_back({id + ".heading", sensor.pose.heading.degrees()});
+        }
     }
     return out;
 }
@@ -41,9 +44,8 @@ std::string parameterNamed(const std::string& name) {
     return name;
 }
 
-RosSetting settingOf(const Simulation& simulation, bool with_things, const std::string& name,
-                     const nlohmann::json& value) {
-    const std::vector<RosParameter> all = rosParameters(simulation, with_things);
+RosSetting settingOf(ServerState& state, const std::string& name, const nlohmann::json& value) {
+    const std::vector<RosParameter> all = rosParameters(state);
     const auto known = std::find_if(all.begin(), all.end(),
                                     [&](const RosParameter& one) { return one.name == name; });
     if (known == all.end()) return {"", "there is no parameter " + excerpt(name)};

@@ -7,18 +7,18 @@
 #include <variant>
 #include <vector>
 
-#include "sim/simulation.h"
-
 namespace ispace {
 
+class ServerState;
+
 /// A value of the running world by name: `clock.paused`, `clock.rate`, and `ID.at` and
-/// `ID.heading` (metres, degrees) of robots, people, and sensors that nobody carries.
+/// `ID.heading` (metres, degrees) of robots, people, and fixed sensors, with ids across the worlds
+/// of a run.
 struct RosParameter {
     std::string name;
     std::variant<bool, double, std::vector<double>> value;
 };
-/// \param with_things else those of the clock alone
-std::vector<RosParameter> rosParameters(const Simulation& simulation, bool with_things = true);
+std::vector<RosParameter> rosParameters(ServerState& state);
 
 /// Returns the name of a parameter without that of its node, which rosapi puts before it: "r1.at"
 /// of
@@ -30,8 +30,6 @@ std::string parameterNamed(const std::string& name);
 struct RosSetting {
     std::string request, refusal;
 };
-/// \param with_things as for rosParameters()
-RosSetting settingOf(const Simulation& simulation, bool with_things, const std::string& name,
-                     const nlohmann::json& value);
+RosSetting settingOf(ServerState& state, const std::string& name, const nlohmann::json& value);
 
 }  // namespace ispace

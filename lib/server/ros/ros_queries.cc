@@ -38,9 +38,8 @@ std::vector<std::string> readTexts(CdrReader& in) {
 
 /// Calls visit(name, parameter), null for an unknown one, for each name of a request.
 template <typename Visit>
-void forEachNamed(CdrReader& in, const Simulation& simulation, bool with_things, CdrWriter& out,
-                  Visit visit) {
-    const std::vector<RosParameter> all = rosParameters(simulation, with_things);
+void forEachNamed(CdrReader& in, ServerState& state, CdrWriter& out, Visit visit) {
+    const std::vector<RosParameter> all = rosParameters(state);
     const std::vector<std::string> names = readTexts(in);
     out.count(names.size());
     for (const std::string& name : names) {
@@ -51,11 +50,11 @@ void forEachNamed(CdrReader& in, const Simulation& simulation, bool with_things,
 }
 
 /// Levels of names end in dots; a depth of 0 is any.
-void list(CdrReader& in, const Simulation& simulation, bool with_things, CdrWriter& out) {
+void list(CdrReader& in, ServerState& state, CdrWriter& out) {
     const std::vector<std::string> prefixes = readTexts(in);
     const auto depth = in.number<std::uint64_t>();
     std::vector<std::string> names, found_prefixes;
-    for (const RosParameter& one : rosParameters(simulation, with_things)) {
+    for (const RosParameter& one : rosParameters(state)) {
         const auto is_below = [&](const std::string& prefix) {
             if (one.name == prefix) return true;
             if (!one.name.starts_with(prefix + '.')) return false;
@@ -80,37 +79,34 @@ void list(CdrReader& in, const Simulation& simulation, bool with_things, CdrWrit
     }
 }
 
-void describe(CdrReader& in, const Simulation& simulation, bool with_things, CdrWriter& out) {
-    forEachNamed(in, simulation, with_things, out,
-                 [&](const std::string& name, const RosParameter* parameter) {
-                     out.put(name).put(parameter == nullptr ? kNotSet : typeOf(parameter->value));
-                     out.put(parameter == nullptr ? "" : descriptionOf(name));
-                     // Constraints; whether it is only read; whether its type may change; ranges.
-                     out.put("").put(parameter == nullptr).put(false).count(0).count(0);
-                 });
+void describe(CdrReader& in, ServerState& state, CdrWriter& out) {
+    forEachNamed(in, state, out, [&](const std::string& name, const RosParameter* parameter) {
+        out.put(name).put(parameter == nullptr ? kNotSet : typeOf(parameter->value));
+        out.put(parameter == nullptr ? "" : descriptionOf(name));
+        // Constraints; whether it is only read; whether its type may change; ranges.
+        out.put("").put(parameter == nullptr).put(false).count(0).count(0);
+    });
 }
 
-void types(CdrReader& in, const Simulation& simulation, bool with_things, CdrWriter& out) {
-    forEachNamed(in, simulation, with_things, out,
-                 [&](const std::string& /*name*/, const RosParameter* parameter) {
-                     out.put(parameter == nullptr ? kNotSet : typeOf(parameter->value));
-                 });
+void types(CdrReader& in, ServerState& state, CdrWriter& out) {
+    forEachNamed(in, state, out, [&](const std::string& /*name*/, const RosParameter* parameter) {
+        out.put(parameter == nullptr ? kNotSet : typeOf(parameter->value));
+    });
 }
 
-void values(CdrReader& in, const Simulation& simulation, bool with_things, CdrWriter& out) {
-    forEachNamed(in, simulation, with_things, out,
-                 [&](const std::string& /*name*/, const RosParameter* parameter) {
-                     const Value value = parameter == nullptr ? Value(false) : parameter->value;
-                     const auto* const flag = std::get_if<bool>(&value);
-                     const auto* const number = std::get_if<double>(&value);
-                     const auto* const numbers = std::get_if<std::vector<double>>(&value);
-                     out.put(parameter == nullptr ? kNotSet : typeOf(value));
-                     out.put(flag != nullptr && *flag).put(std::int64_t{0});
-                     out.put(number == nullptr ? 0.0 : *number).put("");
-                     out.count(0).count(0).count(0);
-                     out.sequence<double>(numbers == nullptr ? std::vector<double>() : *numbers);
-                     out.count(0);
-                 });
+void values(CdrReader& in, ServerState& state, CdrWriter& out) {
+    forEachNamed(in, state, out, [&](const std::string& /*name*/, const RosParameter* parameter) {
+        const Value value = parameter == nullptr ? Value(false) : parameter->value;
+        const auto* const flag = std::get_if<bool>(&value);
+        const auto* const number = std::get_if<double>(&value);
+        const auto* const numbers = std::get_if<std::vector<double>>(&value);
+        out.put(parameter == nullptr ? kNotSet : typeOf(value));
+        out.put(flag != nullptr && *flag).put(std::int64_t{0});
+        out.put(number == nullptr ? 0.0 : *number).put("");
+        out.count(0).count(0).count(0);
+        out.sequence<double>(numbers == nullptr ? std::vector<double>() : *numbers);
+        out.count(0);
+    });
 }
 
 template <typename Number>

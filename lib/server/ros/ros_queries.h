@@ -10,17 +10,16 @@
 #include <vector>
 
 #include "sense/formats/cdr.h"
-#include "sim/simulation.h"
 
 namespace ispace {
+
+class ServerState;
 
 /// A service of the node that answers at once: those by which nodes list and describe parameters.
 struct RosQuery {
     std::string_view name, type;  ///< "/simrun/list_parameters", "rcl_interfaces/srv/..."
-    /// Writes the answer. \param with_things parameters of things are known, too
-    /// \throws FormatError for a request that ends too early
-    void (*answer)(CdrReader& request, const Simulation& simulation, bool with_things,
-                   CdrWriter& out);
+    /// Writes the answer. \throws FormatError for a request that ends too early
+    void (*answer)(CdrReader& request, ServerState& state, CdrWriter& out);
 };
 std::span<const RosQuery> rosQueries();
 

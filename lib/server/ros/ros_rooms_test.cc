@@ -15,6 +15,7 @@
 
 #include "server/ros/ros_feed.h"
 #include "server/ros/ros_orders.h"
+#include "server/ros/ros_parameters.h"
 #include "server/ros/ros_text.h"
 #include "sim/joined_worlds.h"
 #include "support/test_layout.h"
@@ -382,6 +383,31 @@ TEST(RosRooms, InitialPosesFindTheirStorey) {
     orders.proceed();
     EXPECT_TRUE(is_done);
     EXPECT_EQ(served.worlds.restarts, 1);
+}
+
+TEST(RosRooms, ThingsOfAllRoomsAreParameters) {
+    ServerLimits limits;
+    limits.source = std::make_shared<testing::TextSource>(std::map<std::string, std::string>{});
+    Served served(limits);
+    ServerState& state = served.states.front();
+    std::set<std::string> names;
+    for (const RosParameter& one : rosParameters(state)) names.insert(one.name);
+    EXPECT_EQ(names,
+              (std::set<std::string>{"clock.paused", "clock.rate", "ground/r1.at",
+                                     "ground/r1.heading", "ground/l.at", "ground/l.heading",
+                                     "upper/l.at", "upper/l.heading", "l1/l.at", "l1/l.heading"}));
+    Session world(state);
+    world.request("WORLD");
+    for (const auto& [name, value] :
+         {std::pair("upper/l.at", json({1, 2, 0.5})), {"ground/r1.heading", json(90)}}) {
+        static_cast<void>(world.take());
+        world.request(settingOf(state, name, value).request);
+        while (world.waiting()) world.proceed();
+        EXPECT_EQ(world.take(), "OK SET t=0.000\n") << name;
+    }
+    EXPECT_EQ(served.worlds.world(1).sensors()[0].pose.position.y, 2);
+    EXPECT_TRUE(served.worlds.turned);
+    EXPECT_NE(settingOf(state, "r1.at", json({1, 2})).refusal, "");
 }
 
 TEST(ServedRooms, RequestsToOneRoomThatFollowShareAChange) {

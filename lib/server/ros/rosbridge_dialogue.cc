@@ -418,7 +418,7 @@ void RosbridgeDialogue::setParameter(const Json& arguments, const std::string& i
     };
     const std::string name = parameterNamed(wordOf(arguments, "name"));
     const Json value = Json::parse(wordOf(arguments, "value"), nullptr, false);
-    const RosSetting setting = settingOf(state().simulation(), feed().isOfOneRoom(), name, value);
+    const RosSetting setting = settingOf(state(), name, value);
     if (!setting.refusal.empty()) return respond(setting.refusal);
     // PAUSE and RESUME themselves do not need it.
     if (!orders().hasToken())
