@@ -434,6 +434,14 @@ std::string storeyFile(std::string pattern, const std::string& id) {
     return pattern;
 }
 
+std::string roomFile(const std::string& output, const std::string& storey,
+                     const std::string& operand) {
+    if (storey.empty() && isStoreyPattern(output))
+        throw UsageError(printable(output) + ": %s stands for the id of a storey, and " +
+                         displayName(operand) + " is one room");
+    return storeyFile(output, storey);
+}
+
 void mustNameStoreys(std::string_view output, std::string_view format, std::string_view suffix) {
     if (isStoreyPattern(output)) return;
     throw UsageError(std::string(format) +

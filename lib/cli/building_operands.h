@@ -81,6 +81,11 @@ bool isStoreyPattern(std::string_view output);
 /// Returns the name with the id for each mark.
 std::string storeyFile(std::string pattern, const std::string& id);
 
+/// Returns the name of a room's file: with the id of its storey for each mark. \throws UsageError
+/// for a mark and a room that is no storey \param operand of the room, for messages
+std::string roomFile(const std::string& output, const std::string& storey,
+                     const std::string& operand);
+
 /// \throws UsageError unless the output is a pattern, for a format of which a file holds one storey
 /// \param suffix of the format's files
 void mustNameStoreys(std::string_view output, std::string_view format, std::string_view suffix);

@@ -192,10 +192,16 @@ class OperandReader {
         return {std::move(scene),           std::move(*environment_),
                 std::move(layout_),         std::move(environment_operand_),
                 std::move(layout_operand_), std::move(named_),
-                std::move(report_.choices)};
+                std::move(report_.choices), storeyId()};
     }
 
   private:
+    [[nodiscard]] std::string storeyId() const {
+        const std::string called = request_.rules.storeys.one();
+        if (!building_) return called;
+        return called.empty() ? building_->storeys.front().id : building_->storey(called).id;
+    }
+
     Document readOperand(const std::string& operand) {
         if (const auto kept = keptRoom(operand, request_.rules)) {
             kept_ = kept;

@@ -60,6 +60,7 @@ struct SceneInput {
     /// For history lines: the operands given, and "-" if stdin was read without one.
     std::vector<std::string> named;
     std::vector<Diagnostic> choices;  ///< of importers, see ImportReport
+    std::string storey = {};          ///< id of the storey that it is; "" for a room that is none
 };
 
 /// Prints the warnings and choices of importers on stderr unless -q is given.

@@ -51,7 +51,7 @@ done
 
 # plain FILE: as of the room alone, without lines about the storey above and those that sum up.
 plain() {
-    sed -E 's/ground: |ground\///g; s/ --storey '\*'//g; s/-storey\.3dm/.3dm/g; s/(one|two)\.env/room.env/g; /^[a-z]*: (warning: )?upper: /d' "$1"
+    sed -E 's/ground: |ground\///g; s/ --storey .\*.//g; s/-storey\.3dm/.3dm/g; s/(one|two)\.env/room.env/g; /^[a-z]*: (warning: )?upper: /d' "$1"
 }
 
 # twins NAME STATUS COMMAND…: runs the command with ENV and LAYOUT for each of the three; its messages are those of

@@ -51,11 +51,12 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
 
 std::vector<JunitCase> judgeBuilding(const CoverageToolOptions& options,
                                      const BuildingScene& building,
-                                     const BuildingCoverage& coverage) {
+                                     const BuildingCoverage& coverage,
+                                     const std::string& name = "") {
     std::vector<JunitCase> verdicts;
     for (const Requirement& requirement : options.requirements) {
         std::vector<JunitCase> one =
-            judge({&requirement, 1}, subjectOf(requirement, building, coverage));
+            judge({&requirement, 1}, subjectOf(requirement, building, coverage), name);
         verdicts.push_back(std::move(one.front()));
     }
     return verdicts;
@@ -341,7 +342,35 @@ void writeBuildingMaterial(const CoverageToolOptions& options, const BuildingSce
         warn(options.common, "coverage", text);
 }
 
+void tellLargeCells(const CoverageToolOptions& options, const StoreyedDocument& building,
+                    const BuildingCoverage& coverage) {
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
+        if (const std::string text =
+                largeCellsText(options.measure, coverage.storeys[i].report.grid);
+            !text.empty())
+            tell(options.common, "coverage", building.storeys[i].id + ": " + text);
+}
+
 }  // namespace
+
+bool coverBuildingOf(const BatchJob& job, const CoverageToolOptions& options, JobOutcome& outcome) {
+    auto input = readBuildingInput({job.operands, options.rules, false});
+    if (!input) return false;
+    outcome.files = input->files;
+    addZones(options.zones, input->building);
+    const auto& scenes = input->building.scenes;
+    if (!input->layout && std::all_of(scenes.begin(), scenes.end(),
+                                      [](const auto& scene) { return scene->sensors.empty(); }))
+        throw UsageError(input->environment_operand +
+                         " holds no placed sensor: give a layout after it");
+    warnOfImport(options.common, "coverage", *input);
+    warn(options.common, "coverage", findingsOf(input->building));
+    const BuildingCoverage coverage = measureBuilding(input->building, options.measure);
+    tellLargeCells(options, input->building.document, coverage);
+    outcome.line = buildingCoverageJson(input->building, coverage);
+    outcome.verdicts = judgeBuilding(options, input->building, coverage, job.name + ": ");
+    return true;
+}
 
 bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     std::vector<std::string> operands = options.operands;
@@ -364,11 +393,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
                                               options.facing, options.privacy);
     if (!options.facing.empty() && options.measure.plane == 0)
         tell(options.common, "coverage", std::string(kFacesOnFloor));
-    for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
-        if (const std::string text =
-                largeCellsText(options.measure, coverage.storeys[i].report.grid);
-            !text.empty())
-            tell(options.common, "coverage", input.building.document.storeys[i].id + ": " + text);
+    tellLargeCells(options, input.building.document, coverage);
     std::vector<JunitCase> verdicts = judgeBuilding(options, input.building, coverage);
     for (JunitCase& verdict : judge(judgedInBuilding(input.building, coverage.rules)))
         verdicts.push_back(std::move(verdict));

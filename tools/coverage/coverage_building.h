@@ -12,4 +12,7 @@ namespace ispace {
 /// \throws UsageError for options about one room; UnmetError
 bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit);
 
+/// Reports on the building of a job of --batch. \return false as coverBuilding()
+bool coverBuildingOf(const BatchJob& job, const CoverageToolOptions& options, JobOutcome& outcome);
+
 }  // namespace ispace

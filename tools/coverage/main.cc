@@ -125,6 +125,9 @@ std::string reportFile(const CoverageToolOptions& options, const SceneInput& inp
 
 void coverScene(CoverageToolOptions options, JunitFile& junit) {
     const SceneInput& input = leftToExit(readInput(options));
+    if (options.format != nullptr)
+        options.common.output =
+            roomFile(options.common.output, input.storey, input.environment_operand);
     warnOfImport(options.common, "coverage", input);
     std::vector<std::string> files = filesOf(input);
     std::optional<OtherLayout> other;

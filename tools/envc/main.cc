@@ -13,6 +13,7 @@
 #include "base/number.h"
 #include "base/parallel.h"
 #include "base/run_files.h"
+#include "cli/building_operands.h"
 #include "cli/job_server.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
@@ -219,6 +220,10 @@ void envc(const EnvcOptions& options) {
     if (auto building = readWholeBuilding(options, raw, request))
         return writeBuilding(options, *std::move(building), report);
     Document document = readModel(options, raw, request, report);
+    EnvcOptions own = options;
+    if (format != nullptr)
+        own.common.output =
+            roomFile(options.common.output, options.rules.storeys.one(), raw.front().name);
     std::vector<std::string> files = options.inputs;
     files.insert(files.end(), document.sources.begin(), document.sources.end());
     if (options.list_rooms && !found.any_plan)
@@ -229,10 +234,10 @@ void envc(const EnvcOptions& options) {
     if (options.list_rooms)
         writeAll(options.common.output, options.json ? roomsJson(found) : roomsText(found));
     else if (format != nullptr && format->write_records != nullptr)
-        convert(options, std::move(document));
+        convert(own, std::move(document));
     else
-        compile(options, std::move(document), &found, report);
-    writeDependencies(options.common, files);
+        compile(own, std::move(document), &found, report);
+    writeDependencies(own.common, files);
 }
 
 }  // namespace

@@ -111,6 +111,12 @@ std::int64_t scanScene(const ScanCommand& command, const ScanToolOptions& option
     return done;
 }
 
+/// Reads the sensors of a room or of a building. Returns as scanScene().
+std::int64_t takeReadings(const ScanCommand& command, const ScanToolOptions& options) {
+    const auto of_building = scanBuilding(command, options);
+    return of_building ? *of_building : scanScene(command, options);
+}
+
 /// Returns the suffix of the file that holds all readings of a scene; "/" if they take several.
 std::string suffixOfReadings(const ScanToolOptions& options) {
     const std::string& format = options.format;
@@ -126,7 +132,7 @@ void scanJob(const ScanCommand& command, const BatchJob& job, const CommonOption
     options.operands = job.operands;
     options.batch.shard.reset();
     options.batch.resume = false;
-    const std::int64_t readings = scanScene(command, options);
+    const std::int64_t readings = takeReadings(command, options);
     JsonWriter json = jobLine("scan", job);
     json.key("product").value(common.output).key("readings").value(readings);
     outcome.line = json.endObject().take() + '\n';
@@ -150,7 +156,7 @@ void scan(const ScanCommand& command) {
     if (options.batch.merge) return mergeReadings(command);
     limitThreads(options.common.threads);
     if (!options.view.views.empty()) keepFreedMemory();  // of one storey for the next
-    if (scanBuilding(command)) return;
+    if (scanBuilding(command, options)) return;
     if (!options.view.views.empty()) return takeViews(command);
     if (!options.view.run.empty()) return writeRecorded(command);
     scanScene(command, options);

@@ -107,12 +107,12 @@ void mustHoldStoreys(const ScanToolOptions& options, const ReadingFormat& format
 
 }  // namespace
 
-bool scanBuilding(const ScanCommand& command) {
-    const ScanToolOptions& options = command.options();
+std::optional<std::int64_t> scanBuilding(const ScanCommand& command,
+                                         const ScanToolOptions& options) {
     SceneRequest request = requestOf(options);
     request.layout_from_stdin = request.layout_from_stdin && options.view.views.empty();
     const auto read = readBuildingInput(request);
-    if (!read) return false;
+    if (!read) return std::nullopt;
     const BuildingInput& input = *read;
     mustBeAboutBuildings(options, input.building.document);
     warnOfImport(options.common, "scan", input);
@@ -123,7 +123,7 @@ bool scanBuilding(const ScanCommand& command) {
                             [&](const std::string& id) { return isSelected(id, options.select); }));
     if (!options.view.views.empty()) {
         takeBuildingViews(options, input);
-        return true;
+        return 0;
     }
     const bool is_set = OutputSet::of(options.common.output).has_value();
     std::optional<OutputFile> file;
@@ -162,7 +162,7 @@ bool scanBuilding(const ScanCommand& command) {
     writeDependencies(options.common, input.files);
     logInfo(options.common, "scan",
             std::to_string(done) + (done == 1 ? " reading" : " readings") + " written");
-    return true;
+    return done;
 }
 
 }  // namespace ispace

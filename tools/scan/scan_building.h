@@ -2,15 +2,19 @@
 // scan of all storeys of a building.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "cli/building_operands.h"
 #include "scan/scan_options.h"
 
 namespace ispace {
 
-/// Reads the sensors of all storeys, the lowest first. \return false, without having done anything,
-/// if ENV is a room or a storey is chosen
+/// Reads the sensors of all storeys, the lowest first. Returns the number of readings; nullopt,
+/// without having done anything, if ENV is a room or one storey is chosen.
 /// \throws UsageError for options about one room, and for a format that holds one storey
-bool scanBuilding(const ScanCommand& command);
+std::optional<std::int64_t> scanBuilding(const ScanCommand& command,
+                                         const ScanToolOptions& options);
 
 /// Draws the views of a building: those from above of each storey, orbits of the whole, others on
 /// the storey that they name, with others as seen through shafts and over stairs.
