@@ -552,4 +552,5 @@ def main():
             csv.writer(file, lineterminator="\n").writerows([one.strip() for one in line] for line in lines)
 
 
-main()
+if __name__ == "__main__":
+    main()

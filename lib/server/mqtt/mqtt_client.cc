@@ -3,6 +3,9 @@
 
 #include <dlfcn.h>
 #include <mosquitto.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -48,6 +51,7 @@ struct Library {
     decltype(&mosquitto_reconnect_delay_set) set_delay;
     decltype(&mosquitto_connect) connect;
     decltype(&mosquitto_disconnect) disconnect;
+    decltype(&mosquitto_socket) socket;
     decltype(&mosquitto_loop_start) start;
     decltype(&mosquitto_loop_stop) stop;
     decltype(&mosquitto_publish) publish;
@@ -79,6 +83,7 @@ Library::Library() {
     find(set_delay, "mosquitto_reconnect_delay_set");
     find(connect, "mosquitto_connect");
     find(disconnect, "mosquitto_disconnect");
+    find(socket, "mosquitto_socket");
     find(start, "mosquitto_loop_start");
     find(stop, "mosquitto_loop_stop");
     find(publish, "mosquitto_publish");
@@ -111,6 +116,7 @@ class MosquittoClient final : public MqttClient {
   private:
     static MosquittoClient& self(void* object) { return *static_cast<MosquittoClient*>(object); }
     void connected(int refusal);
+    void acknowledgeAtOnce() const;
     void arrived();
     void received(const mosquitto_message& message);
     void pump();
@@ -148,8 +154,10 @@ MosquittoClient::MosquittoClient(const MqttOptions& options, std::function<void(
         }
         self(object).changed_.notify_all();
     });
-    library_.on_publish(mosquitto_,
-                        [](mosquitto*, void* object, int /*id*/) { self(object).arrived(); });
+    library_.on_publish(mosquitto_, [](mosquitto*, void* object, int /*id*/) {
+        self(object).acknowledgeAtOnce();
+        self(object).arrived();
+    });
     library_.on_message(mosquitto_, [](mosquitto*, void* object, const mosquitto_message* message) {
         self(object).received(*message);
     });
@@ -211,6 +219,13 @@ void MosquittoClient::pump() {
     if (error == MOSQ_ERR_SUCCESS || error == MOSQ_ERR_NO_CONN || error == MOSQ_ERR_CONN_LOST)
         return;
     arrived();
+}
+
+/// Acknowledges the bytes just read. Without an answer to them the system would wait 40 ms, and a
+/// broker with Nagle's algorithm would hold back the next command so long.
+void MosquittoClient::acknowledgeAtOnce() const {
+    const int yes = 1;
+    ::setsockopt(library_.socket(mosquitto_), IPPROTO_TCP, TCP_QUICKACK, &yes, sizeof yes);
 }
 
 void MosquittoClient::arrived() {
