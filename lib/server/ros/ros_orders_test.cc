@@ -181,7 +181,7 @@ TEST(RosOrders, TellsWhyAGoalIsNone) {
     ordered.goTo(0, 1, "base_link");
     ASSERT_EQ(ordered.told.size(), 3U);
     EXPECT_NE(ordered.told[2].find("in the frame map"), std::string::npos);
-    ordered.send("/r2/goal_pose", RosType::PoseStamped,
+    ordered.send("/r2/move_base_simple/goal", RosType::PoseStamped,
                  {{"pose", {{"position", {{"x", nullptr}}}}}});
     EXPECT_EQ(ordered.told.size(), 4U);
 }

@@ -356,6 +356,7 @@ constexpr RosRow kRows[] = {
     {"cmd_vel", RosType::TwistStamped, Of::Robot, 0, kNewest, nullptr, speedsOf},
     {"initialpose", RosType::PoseWithCovarianceStamped, Of::Robot, 0, kNewest, nullptr, placeOf},
     {"goal_pose", RosType::PoseStamped, Of::Robot, 0, kNewest, nullptr, goalOf},
+    {"move_base_simple/goal", RosType::PoseStamped, Of::Robot, 0, kNewest, nullptr, goalOf},
     {"robots", RosType::MarkerArray, Of::Room, 10, kDefault, robotsOf},
     {"battery_state", RosType::BatteryState, Of::Robot, 1, kDefault, batteryOf},
     {"joint_states", RosType::JointState, Of::Robot, 10, kDefault, jointsOf},
