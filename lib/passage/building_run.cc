@@ -369,6 +369,14 @@ std::string BuildingRun::call(std::string_view lift, std::string_view storey) {
     return "";
 }
 
+std::string BuildingRun::hold(std::string_view lift, std::string_view storey) {
+    const auto which = data_->liftNamed(lift);
+    if (!which || !storey.empty())
+        if (std::string refusal = stopRefusal(lift, storey); !refusal.empty()) return refusal;
+    data_->lifts[*which].hold(data_->stopNamed(data_->passages[*which], storey));
+    return "";
+}
+
 LiftState BuildingRun::Data::liftState(std::size_t passage) const {
     const Lift& lift = lifts[passage];
     const StoreyLink& link = passages[passage];

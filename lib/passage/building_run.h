@@ -105,6 +105,7 @@ class BuildingRun final : public JoinedWorlds {
                       std::optional<Angle> heading) override;
     void restart() override;
     std::string call(std::string_view lift, std::string_view storey) override;
+    std::string hold(std::string_view lift, std::string_view storey) override;
     [[nodiscard]] std::vector<LiftState> lifts() const override;
     [[nodiscard]] std::span<const TripEnd> tripEnds() const override;
     void onMove(Observer observer) override;

@@ -40,6 +40,12 @@ void Lift::call(std::size_t stop) {
         state_.calls.push_back(stop);
 }
 
+void Lift::hold(std::optional<std::size_t> stop) {
+    assert(!stop || *stop < model_.floors.size());
+    hold_ = stop;
+    if (stop) call(*stop);
+}
+
 void Lift::begin(Phase phase, SimTime time, SimTime length) {
     state_.phase = phase;
     state_.since = time;
@@ -51,8 +57,8 @@ void Lift::advance(SimTime time, bool held) {
     const auto serve = [this] { std::erase(state_.calls, state_.stop); };
     switch (state_.phase) {
         case Phase::Waiting:
-            if (state_.calls.empty()) break;
-            state_.next = state_.calls.front();
+            if (!hold_ && state_.calls.empty()) break;
+            state_.next = hold_ ? *hold_ : state_.calls.front();
             if (state_.next == state_.stop) {
                 serve();
                 begin(Phase::Opening, time, door);
@@ -67,7 +73,7 @@ void Lift::advance(SimTime time, bool held) {
             break;
         case Phase::Open:
             serve();
-            if (time >= until_ && !held) begin(Phase::Closing, time, door);
+            if (time >= until_ && !held && hold_ != state_.stop) begin(Phase::Closing, time, door);
             break;
         case Phase::Closing:
             if (time >= until_) begin(Phase::Waiting, time, SimTime(0));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,9 @@ class Lift {
     /// Appends a call, unless this stop is among those to be served. A call from where the lift
     /// stands opens its doors. \pre it is a stop
     void call(std::size_t stop);
+    /// Holds the doors open at a stop: it goes there before all calls, and serves none until this
+    /// ends or is at another stop. Empty ends it. \pre it is a stop
+    void hold(std::optional<std::size_t> stop);
     /// Advances to a time. \param held the doors stay open
     void advance(SimTime time, bool held);
 
@@ -74,6 +78,7 @@ class Lift {
     LiftModel model_;
     State state_;
     SimTime until_{};  // end of the phase
+    std::optional<std::size_t> hold_;
 };
 
 /// Returns the seconds of a ride over a distance: with constant acceleration to the speed and back,

@@ -75,6 +75,26 @@ TEST(Lift, ServesCallsInTheirOrderOnce) {
     EXPECT_EQ(lift.phase(), Lift::Phase::Waiting);
 }
 
+TEST(Lift, KeepsItsDoorsOpenAtAStop) {
+    Lift lift({.floors = {0, 3, 6}});
+    SimTime time{};
+    lift.call(2);
+    lift.hold(1);
+    until(lift, Lift::Phase::Open, time);
+    EXPECT_TRUE(lift.isOpenAt(1)) << "before calls";
+    EXPECT_EQ(lift.calls(), std::vector<std::size_t>{2});
+    lift.call(0);
+    EXPECT_EQ(until(lift, Lift::Phase::Closing, time), -1);
+    lift.hold(0);
+    EXPECT_GE(until(lift, Lift::Phase::Riding, time), 0);
+    until(lift, Lift::Phase::Open, time);
+    EXPECT_TRUE(lift.isOpenAt(0));
+    lift.hold(std::nullopt);
+    EXPECT_GE(until(lift, Lift::Phase::Riding, time), 0);
+    until(lift, Lift::Phase::Open, time);
+    EXPECT_TRUE(lift.isOpenAt(2)) << "calls of others follow";
+}
+
 TEST(Lift, OpensWhereItStandsAndIsHeld) {
     Lift lift({.floors = {0, 3}});
     SimTime time{};

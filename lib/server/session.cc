@@ -100,6 +100,7 @@ std::span<const Session::Request> Session::requests() {
         {"POSES", "", Role::World, 0, 0, &C::poses},
         {"LIFTS", "", Role::World, 0, 0, &C::lifts, false, true},
         {"CALL", "lift storey", Role::World, 2, 2, &C::call, false, true},
+        {"HOLD", "lift [storey]", Role::World, 1, 2, &C::call, false, true},
         {"PAUSE", "", Role::World, 0, 0, &C::pause},
         {"RESUME", "", Role::World, 0, 0, &C::resume},
         {"RATE", "x", Role::World, 1, 1, &C::rate},

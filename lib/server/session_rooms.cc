@@ -264,11 +264,15 @@ void Session::ride(Words words) {
     answerTrip(words[0], worlds().ride(id_, words[1], words[2]));
 }
 
+/// CALL and HOLD.
 void Session::call(Words words) {
     if (!mayMove()) return;
-    const std::string refusal = worlds().call(words[1], words[2]);
+    const std::string_view verb = words[0], storey = words.size() > 2 ? words[2] : "";
+    const std::string refusal =
+        verb == "CALL" ? worlds().call(words[1], storey) : worlds().hold(words[1], storey);
     if (!refusal.empty()) return error(404, {refusal});
-    out_.append("OK CALL t=").append(formatMilliseconds(world().time())).append("\n");
+    out_.append("OK ").append(verb).append(" t=").append(formatMilliseconds(world().time()));
+    out_ += '\n';
 }
 
 /// Position, doors, riders and calls of all lifts.

@@ -144,6 +144,9 @@ class JoinedWorlds {
     virtual void restart() = 0;
     /// Calls a lift. \returns the reason why it does not come, or ""
     virtual std::string call(std::string_view lift, std::string_view storey) = 0;
+    /// Holds the doors of a lift open at a storey, to which it goes before all calls; "" ends that.
+    /// \returns the reason why it does not come, or ""
+    virtual std::string hold(std::string_view lift, std::string_view storey) = 0;
     [[nodiscard]] virtual std::vector<LiftState> lifts() const = 0;
     /// Returns the trips that ended before or in the last step, in order.
     [[nodiscard]] virtual std::span<const TripEnd> tripEnds() const = 0;

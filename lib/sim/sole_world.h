@@ -48,6 +48,9 @@ class SoleWorld final : public JoinedWorlds {
     std::string call(std::string_view /*lift*/, std::string_view /*storey*/) override {
         return kNone;
     }
+    std::string hold(std::string_view /*lift*/, std::string_view /*storey*/) override {
+        return kNone;
+    }
     [[nodiscard]] std::vector<LiftState> lifts() const override { return {}; }
     [[nodiscard]] std::span<const TripEnd> tripEnds() const override { return {}; }
     void onMove(Observer /*observer*/) override {}

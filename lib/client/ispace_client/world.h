@@ -99,6 +99,10 @@ class World {
     void call(const std::string& lift, const std::string& storey) {
         ask("CALL " + lift + " " + storey);
     }
+    /// Sends a lift to a storey before all calls, and keeps its doors open there; "" ends that.
+    void hold(const std::string& lift, const std::string& storey = "") {
+        ask("HOLD " + lift + " " + storey);
+    }
 
     /// Stops the clock, for all clients.
     void pause() { ask("PAUSE"); }

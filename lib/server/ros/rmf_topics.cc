@@ -27,7 +27,7 @@ constexpr const char* kOnlyLevel = "L1";
 enum LiftDoor : std::uint8_t { kDoorClosed = 0, kDoorMoving = 1, kDoorOpen = 2 };
 enum LiftMotion : std::uint8_t { kStopped = 0, kUp = 1, kDown = 2 };
 enum LiftMode : std::uint8_t { kHuman = 1, kAgv = 2 };
-enum SessionRequest : std::uint8_t { kEndSession = 0 };
+enum SessionRequest : std::uint8_t { kEndSession = 0, kAgvMode = 1 };
 enum DoorMode : std::uint32_t { kModeClosed = 0, kModeMoving = 1, kModeOpen = 2 };
 enum RobotMode : std::uint32_t { kIdle = 0, kMoving = 2 };
 
@@ -50,8 +50,9 @@ bool isOneWord(std::string_view text) {
 
 /// Topics lift_states, lift_requests, door_states, door_requests, fleet_states.
 ///
-/// A lift serves the session that asked for it first until that ends its session. The name of a
-/// level is the id of its storey, L1 in the run of a room; coordinates are those of the frame map.
+/// A lift serves the session that asked for it first until that ends its session; in AGV mode its
+/// doors stay open meanwhile. The name of a level is the id of its storey, L1 in the run of a room;
+/// coordinates are those of the frame map.
 class RmfTopics final : public RosSource {
   public:
     std::vector<RosSourceTopic> topics(const RosRun& run) override {
@@ -83,6 +84,11 @@ class RmfTopics final : public RosSource {
     }
 
   private:
+    struct Session {
+        std::string name = {};  ///< "" without one
+        bool is_agv = false;
+    };
+
     /// Finds lifts and doors again in a changed world.
     void look(const RosRun& run) {
         std::int64_t changes = 0;
@@ -134,10 +140,13 @@ class RmfTopics final : public RosSource {
                                                : kDoorMoving);
         out.put<std::uint8_t>(!is_riding || way == 0 ? kStopped : way > 0 ? kUp : kDown);
         out.count(2).put<std::uint8_t>(kHuman).put<std::uint8_t>(kAgv);
-        return out.put<std::uint8_t>(kAgv).put(sessions_[lift.id]).take();
+        const Session& session = sessions_[lift.id];
+        const bool is_human = !session.name.empty() && !session.is_agv;
+        return out.put<std::uint8_t>(is_human ? kHuman : kAgv).put(session.name).take();
     }
 
-    /// A session keeps its lift until it ends; calls of others are left.
+    /// A session keeps its lift until it ends; calls of others are left. Supervisors repeat their
+    /// requests: the first one in human mode after AGV mode lets the doors close, the next calls.
     std::string liftRequest(CdrReader& in) {
         const std::string lift(in.text());
         skipTime(in);
@@ -145,15 +154,18 @@ class RmfTopics final : public RosSource {
         const auto type = in.number<std::uint8_t>();
         const std::string floor(in.text());
         const bool is_known = floors_.contains(lift);
-        std::string& holder = sessions_[is_known ? lift : ""];
-        if (is_known && !holder.empty() && holder != session) return "";
-        if (type == kEndSession) {
-            holder.clear();
-            return "";
-        }
-        if (is_known) holder = session;
+        if (!is_known && type == kEndSession) return "";
         // Unknown names are refused by the request.
-        return "CALL " + (isOneWord(lift) ? lift : "?") + ' ' + (isOneWord(floor) ? floor : "?");
+        const std::string place =
+            (isOneWord(lift) ? lift : "?") + ' ' + (isOneWord(floor) ? floor : "?");
+        if (!is_known) return "CALL " + place;
+        Session& holder = sessions_[lift];
+        if (!holder.name.empty() && holder.name != session) return "";
+        const bool was_agv = holder.is_agv;
+        holder = type == kEndSession ? Session{} : Session{session, type == kAgvMode};
+        if (holder.is_agv) return "HOLD " + place;
+        if (was_agv) return "HOLD " + lift;
+        return type == kEndSession ? "" : "CALL " + place;
     }
 
     std::string doorState(const std::string& id, const RosRun& run) {
@@ -173,7 +185,9 @@ class RmfTopics final : public RosSource {
         skipTime(in);
         in.text();
         const std::string door(in.text());
-        const bool opens = in.number<std::uint32_t>() == kModeOpen;
+        const auto mode = in.number<std::uint32_t>();
+        if (mode != kModeOpen && mode != kModeClosed) return "";
+        const bool opens = mode == kModeOpen;
         return "ACT " + (isOneWord(door) ? door : "?") + " open=" + (opens ? "1" : "0");
     }
 
@@ -240,7 +254,7 @@ class RmfTopics final : public RosSource {
     std::int64_t changes_ = -1;
     std::map<std::string, std::string> doors_;                     // values by name
     std::map<std::string, std::map<std::string, double>> floors_;  // heights by storey, of lifts
-    std::map<std::string, std::string> sessions_;                  // of lifts
+    std::map<std::string, Session> sessions_;                      // of lifts
     std::uint64_t messages_ = 0;
 };
 

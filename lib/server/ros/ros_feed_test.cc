@@ -182,9 +182,13 @@ TEST(RosFeed, DoorsAreThoseOfOpenRmf) {
     EXPECT_EQ(door(1)["door_name"], "d2");
     EXPECT_EQ(door(1)["current_mode"]["value"], 0);
     RosOrders orders(fed.state, [](const std::string& why) { FAIL() << why; });
-    orders.obey(fed.entry("/door_requests").channel,
-                rosMessage(RosType::DoorRequest,
-                           {{"door_name", "d2"}, {"requested_mode", {{"value", 2}}}}));
+    const auto ask = [&](const char* name, int mode) {
+        orders.obey(fed.entry("/door_requests").channel,
+                    rosMessage(RosType::DoorRequest,
+                               {{"door_name", name}, {"requested_mode", {{"value", mode}}}}));
+    };
+    for (const int other : {1, 3, 4}) ask("d1", other);
+    ask("d2", 2);
     for (int i = 0; i < 2000 && door(1)["current_mode"]["value"] != 2; ++i) {
         fed.step();
         orders.proceed();
@@ -192,6 +196,7 @@ TEST(RosFeed, DoorsAreThoseOfOpenRmf) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     EXPECT_EQ(door(1)["current_mode"]["value"], 2);
+    EXPECT_EQ(door(0)["current_mode"]["value"], 2) << "no mode to be in";
     fed.feed.want(fed.number("/fleet_states"));
     const json fleet = fed.newest("/fleet_states");
     EXPECT_EQ(fleet["robots"].size(), 2U);

@@ -94,6 +94,10 @@ class ThreeRooms final : public JoinedWorlds {
         calls.push_back(std::string(lift) + ' ' + std::string(storey));
         return lift == "l1" ? "" : "there is no such lift";
     }
+    std::string hold(std::string_view lift, std::string_view storey) override {
+        calls.push_back("hold " + std::string(lift) + ' ' + std::string(storey));
+        return "";
+    }
     [[nodiscard]] std::vector<LiftState> lifts() const override { return {lift}; }
     [[nodiscard]] std::span<const TripEnd> tripEnds() const override { return {}; }
     void onMove(Observer observer) override { observers_.push_back(std::move(observer)); }
@@ -238,7 +242,7 @@ TEST(RosRooms, LiftsAndFleetsAreThoseOfOpenRmf) {
     };
     ask("l1", "adapter/r1", 1, "upper");
     ask("l1", "adapter/r2", 1, "ground");
-    EXPECT_EQ(served.worlds.calls, std::vector<std::string>{"l1 upper"}) << "r1 has the lift";
+    EXPECT_EQ(served.worlds.calls, std::vector<std::string>{"hold l1 upper"}) << "r1 has the lift";
     served.worlds.lift.calls = {"upper"};
     served.worlds.lift.height = 1;
     for (int i = 0; i < 3; ++i) served.step();
@@ -249,7 +253,8 @@ TEST(RosRooms, LiftsAndFleetsAreThoseOfOpenRmf) {
     served.worlds.lift = {
         .id = "l1", .storey = "upper", .height = 3, .door = 1, .riders = {}, .calls = {}};
     ask("l1", "adapter/r1", 0, "");
-    ask("l1", "adapter/r2", 1, "ground");
+    EXPECT_EQ(served.worlds.calls.back(), "hold l1 ") << "its doors may close";
+    ask("l1", "adapter/r2", 2, "ground");
     EXPECT_EQ(served.worlds.calls.back(), "l1 ground");
     for (int i = 0; i < 3; ++i) served.step();
     lift = served.newest("/lift_states");
@@ -257,6 +262,7 @@ TEST(RosRooms, LiftsAndFleetsAreThoseOfOpenRmf) {
     EXPECT_EQ(lift["door_state"], 2);
     EXPECT_EQ(lift["motion_state"], 0);
     EXPECT_EQ(lift["session_id"], "adapter/r2");
+    EXPECT_EQ(lift["current_mode"], 1) << "of people";
     EXPECT_EQ(told, std::vector<std::string>());
     ask("l9", "adapter/r1", 1, "upper");
     EXPECT_EQ(told.size(), 1U);

@@ -101,6 +101,10 @@ class World(Client):
         """Calls a lift to a storey."""
         self._ask(f"CALL {lift} {storey}")
 
+    def hold(self, lift: str, storey: str = "") -> None:
+        """Sends a lift to a storey before all calls, and keeps its doors open there; "" ends that."""
+        self._ask(f"HOLD {lift} {storey}")
+
     def pause(self) -> None:
         """Stops the clock, for all clients."""
         self._ask("PAUSE")
