@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// rosbridge_client.mjs URL SCANS: a client with roslib. Looks around by rosapi, reads topics as JSON and CBOR, throttled
-// and not, drives the robot r1, sends it to goals, calls a service, and appends the scans of /l1/scan to the file SCANS, a line of JSON
-// each. Exits with 1 and the reason if one fails.
+// rosbridge_client.mjs URL SCANS: a client with roslib. Looks around by rosapi, reads topics as JSON, CBOR and PNG,
+// throttled and not, and frames by both TF clients, drives the robot r1, sends it to goals, calls a service, and appends
+// the scans of /l1/scan to the file SCANS, a line of JSON each. Exits with 1 and the reason if one fails.
 import assert from 'assert';
 import fs from 'fs';
 
-const {Action, Ros, Topic, Service} = await import(`${process.env.NODE_PATH}/roslib/dist/RosLib.js`);
+const {Action, Ros, ROS2TFClient, TFClient, Topic, Service} =
+    await import(`${process.env.NODE_PATH}/roslib/dist/RosLib.js`);
 const [url, scansFile] = process.argv.slice(2);
 
 function fail(why) {
@@ -88,6 +89,19 @@ const cancelled = await new Promise((done, failed) => {
     const id = navigate.sendGoal(goal(-1.2, -0.5), failed, () => navigate.cancelGoal(id), done);
 });
 assert.match(cancelled, /cancel/i);
+
+// Frames by both TF clients of roslib, and messages in pictures.
+for (const Client of [ROS2TFClient, TFClient]) {
+    const client = new Client({ros, fixedFrame: 'map', angularThres: 0.001, transThres: 0.001, rate: 20});
+    const pose = await new Promise(done => client.subscribe('/r1', done));
+    assert.ok(Math.hypot(pose.translation.x + 1.2, pose.translation.y + 0.5) < 3, JSON.stringify(pose));
+    assert.ok(Math.abs(Math.hypot(pose.rotation.z, pose.rotation.w) - 1) < 1e-9);
+    client.dispose();
+}
+const picture = new Topic({ros, name: '/tf', messageType: 'tf2_msgs/TFMessage', compression: 'png'});
+const inPicture = await new Promise(done => picture.subscribe(done));
+assert.ok(inPicture.transforms.some(one => one.child_frame_id === 'r1'));
+picture.unsubscribe();
 
 // A service, and one that there is not.
 const reset = name => new Promise((done, failed) => new Service(

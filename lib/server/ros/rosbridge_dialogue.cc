@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
 #include "base/json_writer.h"
 #include "base/message.h"
+#include "raster/codec.h"
 #include "server/ros/ros_api.h"
 #include "server/ros/ros_parameters.h"
 #include "server/ros/ros_text.h"
@@ -17,6 +19,9 @@
 namespace ispace {
 
 namespace {
+
+/// The action that roslib's TF clients use, and the beginning of its topics in ROS 1.
+constexpr std::string_view kRepublisher = "/tf2_web_republisher";
 
 constexpr std::size_t kMaxWishes = 1024, kMaxIds = 64, kMaxAdvertised = 256;
 
@@ -70,6 +75,21 @@ std::string cborPublication(const std::string& topic) {
     return out;
 }
 
+/// Returns a message as a PNG whose samples are its text, with blanks up to a rectangle.
+std::string inPng(std::string text) {
+    constexpr double kSamples = 3;
+    const auto size = static_cast<double>(text.size());
+    const double columns = std::max(1.0, std::floor(std::sqrt(size / kSamples)));
+    const double rows = std::ceil(size / kSamples / columns);
+    text.resize(static_cast<std::size_t>(kSamples * columns * rows), ' ');
+    const std::string png =
+        pngOfRgb(static_cast<int>(columns), static_cast<int>(rows),
+                 std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+    JsonWriter json;
+    json.beginObject().key("op").value("png").key("data").value(base64(png));
+    return json.endObject().take();
+}
+
 }  // namespace
 
 WebMessage RosbridgeDialogue::write(std::uint32_t /*key*/, const RosFeed::Entry& topic,
@@ -79,9 +99,10 @@ WebMessage RosbridgeDialogue::write(std::uint32_t /*key*/, const RosFeed::Entry&
     // Clients find their topic by the name that they asked for.
     const std::string& name = is_known ? wish->second.name : topic.channel.topic;
     const Form form = is_known ? wish->second.form : Form::Json;
-    if (form == Form::Json) {
+    if (form == Form::Json || form == Form::Png) {
         JsonWriter head;
         head.beginObject().key("op").value("publish").key("topic").value(name).key("msg");
+        if (form == Form::Png) return {.head = inPng(head.take() + *message.json() + '}')};
         return {.head = head.take(), .body = message.json(), .tail = "}"};
     }
     std::string head = cborPublication(name);
@@ -146,7 +167,6 @@ void RosbridgeDialogue::subscribeTo(const Json& request) {
     constexpr double kMaxMilliseconds = 1e6, kMaxQueue = 1000;
     const std::string topic = absolute(wordOf(request, "topic")), id = idOf(request),
                       form = wordOf(request, "compression");
-    if (form == "png") return tell(Level::Error, "compression png is not served", id);
     const bool is_new = !wishes_.contains(topic);
     if (is_new && wishes_.size() >= kMaxWishes)
         return tell(Level::Error, "too many subscriptions", id);
@@ -156,7 +176,10 @@ void RosbridgeDialogue::subscribeTo(const Json& request) {
     wish.ids[id] = {std::chrono::milliseconds(std::llround(wait)),
                     static_cast<std::size_t>(figureOf(request, "queue_length", kMaxQueue))};
     wish.name = wordOf(request, "topic");
-    wish.form = form == "cbor" ? Form::Cbor : form == "cbor-raw" ? Form::Raw : Form::Json;
+    wish.form = form == "cbor"       ? Form::Cbor
+                : form == "cbor-raw" ? Form::Raw
+                : form == "png"      ? Form::Png
+                                     : Form::Json;
     apply(topic, wish);
 }
 
@@ -202,6 +225,7 @@ void RosbridgeDialogue::topicsChanged() {
 
 void RosbridgeDialogue::advertise(const Json& request) {
     const std::string topic = absolute(wordOf(request, "topic")), id = idOf(request);
+    if (topic.starts_with(kRepublisher)) return;
     const auto type = rosTypeNamed(wordOf(request, "type"));
     if (!type || input(topic, *type) == nullptr)
         return tell(
@@ -220,6 +244,7 @@ void RosbridgeDialogue::unadvertise(const Json& request) {
 void RosbridgeDialogue::publish(const Json& request) {
     const std::string topic = absolute(wordOf(request, "topic"));
     const Json& message = memberOf(request, "msg");
+    if (publishTransforms(topic, message)) return;
     const auto known = advertised_.find(topic);
     const RosChannel* channel = nullptr;
     if (known != advertised_.end()) {
@@ -260,6 +285,8 @@ void writeTime(JsonWriter& json, const char* name, SimTime time) {
 void RosbridgeDialogue::sendGoal(const Json& request) {
     Goal goal{.id = idOf(request), .action = wordOf(request, "action"), .number = next_goal_++};
     const std::string name = absolute(goal.action), type = wordOf(request, "action_type");
+    if (name == kRepublisher)
+        return beginTransforms(wordOf(request, "id"), goal.action, memberOf(request, "args"));
     const bool is_known =
         name.ends_with(kNavigate) && (type.empty() || type == "nav2_msgs/action/NavigateToPose" ||
                                       type == "nav2_msgs/NavigateToPose");
@@ -295,6 +322,12 @@ void RosbridgeDialogue::sendGoal(const Json& request) {
 
 void RosbridgeDialogue::cancelGoal(const Json& request) {
     const std::string id = idOf(request), action = wordOf(request, "action");
+    if (const auto found = transform_actions_.find(wordOf(request, "id"));
+        transforms_.end(wordOf(request, "id"))) {
+        answerGoal({.id = id, .action = found->second}, kCanceled, "");
+        transform_actions_.erase(found);
+        return;
+    }
     const auto found = std::ranges::find_if(goals_, [&](const auto& one) {
         return one.second.id == id &&
                (action.empty() || absolute(action) == absolute(one.second.action));
@@ -317,6 +350,50 @@ bool RosbridgeDialogue::cancelAll(const std::string& service) {
     for (const std::string& robot : robots)
         if (const std::string why = orders().cancel(robot); !why.empty()) tell(Level::Error, why);
     return true;
+}
+
+/// A goal of tf2_web_republisher lasts until it is cancelled; the poses are its feedback.
+void RosbridgeDialogue::beginTransforms(const std::string& id, const std::string& action,
+                                        const Json& arguments) {
+    const std::string refusal = transforms_.begin(id, arguments);
+    if (refusal.empty())
+        transform_actions_[id] = action;
+    else if (action.empty())
+        tell(Level::Error, "a goal of " + std::string(kRepublisher) + ": " + refusal);
+    else
+        answerGoal({.id = JsonWriter().value(id).take(), .action = action}, kRefused, refusal);
+}
+
+/// Takes goals and their cancellations by topics, as clients of ROS 1 send them. \returns false for
+/// other topics
+bool RosbridgeDialogue::publishTransforms(const std::string& topic, const Json& message) {
+    if (!topic.starts_with(kRepublisher) || !message.is_object()) return false;
+    const std::string what = topic.substr(kRepublisher.size());
+    if (what == "/goal") {
+        const Json& id = memberOf(message, "goal_id");
+        beginTransforms(id.is_object() ? wordOf(id, "id") : "", "", memberOf(message, "goal"));
+        return true;
+    }
+    if (what != "/cancel") return false;
+    const std::string id = wordOf(message, "id");
+    if (transforms_.end(id)) transform_actions_.erase(id);
+    return true;
+}
+
+void RosbridgeDialogue::tellTransforms(const std::string& id, const std::string& feedback) {
+    const std::string text_id = JsonWriter().value(id).take(), &action = transform_actions_[id];
+    JsonWriter json;
+    json.beginObject();
+    if (!action.empty()) {
+        json.key("op").value("action_feedback").key("action").value(action).key("values");
+        return sendText(json.take() + feedback + idMember(text_id) + '}');
+    }
+    const std::string topic = std::string(kRepublisher) + "/feedback";
+    const auto wish = wishes_.find(topic);
+    json.key("op").value("publish").key("topic");
+    json.value(wish == wishes_.end() ? topic : wish->second.name).key("msg");
+    sendText(json.take() + R"({"status":{"status":1,"goal_id":{"id":)" + text_id +
+             R"(}},"feedback":)" + feedback + "}}");
 }
 
 void RosbridgeDialogue::endGoal(const std::string& robot, std::int64_t number, RosGoalEnd end,
@@ -378,7 +455,10 @@ void RosbridgeDialogue::tellProgress(const std::string& robot, Goal& goal) {
 void RosbridgeDialogue::stepped() {
     constexpr SimTime kPeriod = std::chrono::milliseconds(500);
     RosDialogue::stepped();
-    if (goals_.empty() || hasAnswers()) return;
+    if (hasAnswers()) return;
+    transforms_.stepped([this](const std::string& id, const std::string& feedback) {
+        tellTransforms(id, feedback);
+    });
     const SimTime now = state().simulation().world().time();
     for (auto& [robot, goal] : goals_)
         if (goal.is_watched && now - goal.told >= kPeriod) tellProgress(robot, goal);

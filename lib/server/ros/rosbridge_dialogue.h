@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "server/ros/ros_dialogue.h"
+#include "server/ros/transform_goals.h"
 
 namespace ispace {
 
@@ -17,14 +18,14 @@ namespace ispace {
 class RosbridgeDialogue final : public RosDialogue {
   public:
     RosbridgeDialogue(ServerState& state, RosFeed& feed, std::string peer = {})
-        : RosDialogue(state, feed, std::move(peer)) {}
+        : RosDialogue(state, feed, std::move(peer)), transforms_(feed) {}
 
     void receive(std::string_view message, bool is_text) override;
     void stepped() override;
 
   private:
     using Json = nlohmann::json;
-    enum class Form { Json, Cbor, Raw };
+    enum class Form { Json, Cbor, Raw, Png };
     /// The requests of a client for one topic, by their ids; they share its messages.
     struct Wish {
         struct One {
@@ -64,6 +65,9 @@ class RosbridgeDialogue final : public RosDialogue {
                  const std::string& why);
     void answerGoal(const Goal& goal, int status, const std::string& error);
     void tellProgress(const std::string& robot, Goal& goal);
+    void beginTransforms(const std::string& id, const std::string& action, const Json& arguments);
+    bool publishTransforms(const std::string& topic, const Json& message);
+    void tellTransforms(const std::string& id, const std::string& feedback);
     void ignore(const Json& /*request*/) {}
     void apply(const std::string& topic, const Wish& wish);
     void answer(const std::string& id, std::string_view service, bool is_done,
@@ -74,6 +78,9 @@ class RosbridgeDialogue final : public RosDialogue {
     std::map<std::string, RosType> advertised_;  // types by topic
     std::map<std::string, Goal> goals_;          // by robot
     std::int64_t next_goal_ = 1;
+    TransformGoals transforms_;
+    /// Names of the action of goals in transforms_, by id; "" for goals by topics, as of ROS 1.
+    std::map<std::string, std::string> transform_actions_;
 };
 
 }  // namespace ispace

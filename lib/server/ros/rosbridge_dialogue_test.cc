@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/message.h"
 #include "support/ros_talk.h"
 
 namespace ispace {
@@ -192,7 +194,7 @@ TEST(Rosbridge, HostileMessagesAreAnswered) {
          {"", "{", "[]", "7", "null", "{}", R"({"op":5})", R"({"op":"fragment"})",
           R"({"op":"advertise","topic":"/tf","type":"geometry_msgs/Twist"})",
           R"({"op":"publish","topic":"/tf"})", R"({"op":"publish","topic":"/r1/cmd_vel","msg":[]})",
-          R"({"op":"subscribe","topic":"/tf","compression":"png"})"}) {
+          R"({"op":"publish","topic":"/tf2_web_republisher/goal","msg":{}})"}) {
         talk.dialogue->receive(text, true);
         EXPECT_EQ(talk.text().value("op", ""), "status") << text;
     }
@@ -204,6 +206,76 @@ TEST(Rosbridge, HostileMessagesAreAnswered) {
     for (int i = 0; i < 5000; ++i)
         talk.send({{"op", "subscribe"}, {"topic", "/t" + std::to_string(i)}});
     EXPECT_EQ(talk.text().value("msg", ""), "too many subscriptions");
+}
+
+TEST(Rosbridge, SendsMessagesInPictures) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "/l1/scan"}, {"compression", "png"}});
+    const json message = talk.text();
+    EXPECT_EQ(message["op"], "png");
+    const auto data = message["data"].get<std::string>();
+    EXPECT_TRUE(data.starts_with(base64("\x89PNG\r\n"))) << "roslib decodes it: tests/npm";
+}
+
+/// A goal of roslib's TF clients.
+json framesGoal(const char* target, double threshold) {
+    return {{"source_frames", {"r2", "/l1", "none"}},
+            {"target_frame", target},
+            {"trans_thres", threshold},
+            {"angular_thres", 0.01},
+            {"rate", 100}};
+}
+
+TEST(Rosbridge, SendsPosesOfFramesThatMove) {
+    BridgeTalk talk;
+    talk.send({{"op", "send_action_goal"},
+               {"id", "g"},
+               {"action", "/tf2_web_republisher"},
+               {"args", framesGoal("/map", 0.01)}});
+    talk.step();
+    const json feedback = talk.text();
+    EXPECT_EQ(feedback["op"], "action_feedback");
+    EXPECT_EQ(feedback["id"], "g");
+    const json& transforms = feedback["values"]["transforms"];
+    ASSERT_EQ(transforms.size(), 2U);
+    EXPECT_EQ(transforms[0]["child_frame_id"], "l1");
+    EXPECT_EQ(transforms[0]["header"]["frame_id"], "map");
+    const Pose2 robot = talk.room.world.status(1).pose;
+    const json& pose = transforms[1]["transform"];
+    EXPECT_EQ(transforms[1]["child_frame_id"], "r2");
+    EXPECT_NEAR(pose["translation"]["x"], robot.position.x, 1e-9);
+    EXPECT_NEAR(pose["translation"]["y"], robot.position.y, 1e-9);
+    EXPECT_NEAR(
+        2 * std::atan2(pose["rotation"]["z"].get<double>(), pose["rotation"]["w"].get<double>()),
+        robot.heading.radians(), 1e-9);
+    talk.step(3);
+    EXPECT_FALSE(talk.next()) << "at rest";
+    talk.send({{"op", "cancel_action_goal"}, {"id", "g"}, {"action", "/tf2_web_republisher"}});
+    EXPECT_EQ(talk.text()["status"], 5);
+
+    // By topics, as in ROS 1, in the frame of the robot.
+    talk.subscribe({{"topic", "tf2_web_republisher/feedback"}});
+    talk.send({{"op", "publish"},
+               {"topic", "/tf2_web_republisher/goal"},
+               {"msg", {{"goal_id", {{"id", "h"}}}, {"goal", framesGoal("r2", 0)}}}});
+    talk.step();
+    const json message = talk.text();
+    EXPECT_EQ(message["op"], "publish");
+    EXPECT_EQ(message["topic"], "tf2_web_republisher/feedback") << "as it was subscribed to";
+    EXPECT_EQ(message["msg"]["status"]["goal_id"]["id"], "h");
+    const json& own = message["msg"]["feedback"]["transforms"];
+    ASSERT_EQ(own.size(), 2U);
+    EXPECT_NEAR(own[1]["transform"]["translation"]["x"], 0, 1e-9) << "itself";
+    talk.send(
+        {{"op", "publish"}, {"topic", "/tf2_web_republisher/cancel"}, {"msg", {{"id", "h"}}}});
+    talk.step(3);
+    EXPECT_FALSE(talk.next());
+    for (int i = 0; i < 20; ++i)
+        talk.send({{"op", "send_action_goal"},
+                   {"id", std::to_string(i)},
+                   {"action", "/tf2_web_republisher"},
+                   {"args", framesGoal("nowhere", 0)}});
+    EXPECT_EQ(talk.text()["values"], "too many goals");
 }
 
 TEST(Rosbridge, SubscriptionsAwaitTheirTopic) {
