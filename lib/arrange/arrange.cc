@@ -35,9 +35,6 @@ std::string needsOneRoom(const ArrangeOptions& options) {
     if (options.robust.of == Robust::Rooms) return "--robust rooms";
     if (options.robust.of == Robust::Mounting) return "--robust mounting";
     if (options.robust.of == Robust::Crowd) return "--crowd";
-    if (options.strategy == Strategy::List) return "--places";
-    if (options.wants_trace) return "--trace";
-    if (options.wants_gains) return "--heat";
     // Each part of a site has a proof of its own.
     const SearchShare& share = options.search.share;
     if (share.what == Shared::Tree && (share.own || share.joined > 0)) return "--share tree";

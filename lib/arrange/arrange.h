@@ -103,7 +103,7 @@ struct ArrangeOptions {
     double dist = 0.05;                      ///< Wall: from the wall
     int times = 21;                          ///< Wall: sites per wall
     CandidateDensity density;
-    std::vector<Site> list;  ///< List
+    std::vector<Site> list;  ///< List, of a room alone
     MountRules mount;
 
     SearchOptions search;
@@ -183,7 +183,7 @@ struct PosesBound {
 
 /// The gain of the candidates of one sensor of a layout.
 struct GainMap {
-    std::string sensor;                  ///< its id
+    std::string sensor;                  ///< its id, across the site
     std::vector<Placement> before = {};  ///< sensors that are placed already
     /// The candidates of its kind, each with the share of the total weight that it would add to
     /// those, and to the standing sensors.

@@ -654,6 +654,11 @@ void addSliceAreas(Worlds& worlds, const Laser& laser, std::span<TriedPose> pose
 
 }  // namespace
 
+TriedPose CoverageModel::tried(const std::string& sensor, const Choice& choice,
+                               double value) const {
+    return {sensor, poseOf(choice), value, false, {}, site_.rooms[roomOf(choice)].id};
+}
+
 std::vector<TriedPose> CoverageModel::triedPoses(const std::vector<Choice>& chosen) {
     const WeightSums weights(weightsLeft());
     std::vector<TriedPose> all;
@@ -666,13 +671,19 @@ std::vector<TriedPose> CoverageModel::triedPoses(const std::vector<Choice>& chos
         const double part = static_cast<double>(problem_.kinds[k].multiplicity) / problem_.required;
         const std::size_t first = all.size();
         for (std::size_t i = 0; i < set.size(); ++i)
-            all.push_back({kind.id, poseOf({k, i}), part * share(values[i]), false});
+            all.push_back(tried(kind.id, {k, i}, part * share(values[i])));
         for (const Choice& choice : chosen)
             if (choice.kind == k) all[first + choice.candidate].is_chosen = true;
-        if (const auto* laser = std::get_if<Laser>(&kind.model))
-            addSliceAreas(only().worlds(),
+        const auto* laser = std::get_if<Laser>(&kind.model);
+        if (laser == nullptr) continue;
+        // The candidates of a room follow each other.
+        for (std::size_t i = 0; i < set.size();) {
+            const std::size_t room = roomOf({k, i}), begin = i;
+            while (i < set.size() && roomOf({k, i}) == room) ++i;
+            addSliceAreas(rooms_[room].model->worlds(),
                           options_.beam_step ? withBeamStep(*laser, *options_.beam_step) : *laser,
-                          std::span(all).subspan(first));
+                          std::span(all).subspan(first + begin, i - begin));
+        }
     }
     return all;
 }
@@ -698,17 +709,19 @@ std::vector<GainMap> CoverageModel::gainMaps(std::vector<Choice> chosen) const {
         const Pose3 pose = poseOf(*next);
         const auto placed = std::find_if(
             placements.begin(), placements.end(), [&, kind = kind](const Placement& placement) {
-                return placement.kind == kind && placement.pose == pose;
+                return placement.kind == kind && placement.pose == pose &&
+                       placement.room == roomOf(*next);
             });
-        GainMap& map = maps.emplace_back(GainMap{placed->sensor, before});
+        GainMap& map = maps.emplace_back(GainMap{wholeId(site_, *placed), before});
         const CandidateSet& set = *problem_.kinds[kind].candidates;
         std::vector<std::uint32_t> values(set.size());
         set.weighAll(weights, values);
         const double part =
             static_cast<double>(problem_.kinds[kind].multiplicity) / problem_.required;
-        for (std::size_t i = 0; i < set.size(); ++i)
-            map.poses.push_back(
-                {map.sensor, poseOf({kind, i}), part * share(values[i]), i == candidate});
+        for (std::size_t i = 0; i < set.size(); ++i) {
+            map.poses.push_back(tried(map.sensor, {kind, i}, part * share(values[i])));
+            map.poses.back().is_chosen = i == candidate;
+        }
         const auto added = static_cast<std::uint32_t>(problem_.kinds[kind].multiplicity);
         set.cellsOf(candidate).forEach([&](std::size_t cell) { times[cell] += added; });
         before.push_back(*placed);

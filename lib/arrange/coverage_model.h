@@ -157,10 +157,9 @@ class CoverageModel {
     void spreadRedundant(std::vector<Choice>& chosen) const;
     /// Returns every candidate with the share of the total weight that it would add to the standing
     /// coverage and, for a laser, its slice area (eq. 4.4) by the thesis' scan of the pose.
-    /// \pre one room
     [[nodiscard]] std::vector<TriedPose> triedPoses(const std::vector<Choice>& chosen);
     /// Orders chosen sensors, the one that adds most to those before it first, and returns the gain
-    /// of the candidates for each of them. \pre one room
+    /// of the candidates for each of them.
     [[nodiscard]] std::vector<GainMap> gainMaps(std::vector<Choice> chosen) const;
     /// Returns an upper bound of the value of these numbers of sensors at any poses; `most` by
     /// kind.
@@ -200,6 +199,8 @@ class CoverageModel {
     /// Returns true if sensors of a kind may stand in a room.
     [[nodiscard]] bool mayStand(const SensorClass& kind, std::size_t room) const;
     [[nodiscard]] bool sees(std::size_t from, const Sensor& sensor, std::size_t to) const;
+    [[nodiscard]] TriedPose tried(const std::string& sensor, const Choice& choice,
+                                  double value) const;
     /// Adds the cells of other rooms that a sensor sees, with a copy for each of their firsts.
     void addBeyond(std::size_t room, const Sensor& sensor, CellSet& cells) const;
 

@@ -193,8 +193,13 @@ struct LexLess {
 
 class SiteReader {
   public:
-    SiteReader(const std::string& name, const std::vector<Angle>& headings)
-        : file_(displayName(name)), headings_(headings) {}
+    /// \param rooms null: one room, without names
+    SiteReader(const std::string& name, const std::vector<Angle>& headings, const PlaceRooms* rooms)
+        : file_(displayName(name)),
+          headings_(headings),
+          rooms_(rooms),
+          sites_(rooms != nullptr ? rooms->ids.size() : 1),
+          known_(sites_.size()) {}
 
     void readLine(std::string_view line) {
         ++line_;
@@ -204,6 +209,8 @@ class SiteReader {
         if (line_ == 1 && line.starts_with(kMark)) line.remove_prefix(kMark.size());
         line = trimmed(line.substr(0, line.find('#')));
         if (line.empty()) return;
+        const char* const start = line.data();
+        const std::string room = takeRoom(line);
         const std::vector<std::string_view> fields = fieldsOf(line);
         const bool is_first = is_first_;
         is_first_ = false;
@@ -213,10 +220,11 @@ class SiteReader {
         if (is_first && fields.size() >= 2 && is_name(fields[0], 'x') && is_name(fields[1], 'y'))
             return;
         if (fields.size() < 2 || fields.size() > kNames.size())
-            return refuse(fields.size() < 2 ? line.data() - begin : fields[3].data() - begin,
+            return refuse(fields.size() < 2 ? start - begin : fields[3].data() - begin,
                           std::to_string(fields.size()) +
                               (fields.size() == 1 ? " field" : " fields") +
-                              ", a line is x,y or x,y,heading");
+                              (rooms_ == nullptr ? ", a line is x,y or x,y,heading"
+                                                 : ", a line is STOREY/x,y or STOREY/x,y,heading"));
         std::array<double, kNames.size()> values{};
         const bool has_heading = fields.size() > 2 && !fields[2].empty();
         for (std::size_t i = 0; i < (has_heading ? 3U : 2U); ++i) {
@@ -232,13 +240,16 @@ class SiteReader {
                                                             " is too large: a million at most");
             values[i] = *value;
         }
-        if (has_heading)
-            add({values[0], values[1]}, {Angle::degrees(values[2])});
-        else
-            add({values[0], values[1]}, headings_);
+        try {
+            for (const std::size_t of : roomsNamed(room, line))
+                add(of, {values[0], values[1]},
+                    has_heading ? std::vector<Angle>{Angle::degrees(values[2])} : headings_);
+        } catch (const UsageError& error) {
+            refuse(start - begin, error.what());
+        }
     }
     [[nodiscard]] bool full() const { return findings_.full(); }
-    std::vector<Site> finish() {
+    std::vector<std::vector<Site>> finish() {
         findings_.throwIfAny();
         return std::move(sites_);
     }
@@ -248,10 +259,30 @@ class SiteReader {
         findings_.add({file_, line_, static_cast<int>(offset) + 1, std::move(message)});
     }
 
-    void add(Point2 place, const std::vector<Angle>& headings) {
-        const auto [at, is_new] = known_.try_emplace(place, sites_.size());
-        if (is_new) sites_.push_back({place, {}});
-        std::vector<Angle>& own = sites_[at->second].headings;
+    /// Returns the name of the room before x, and leaves the rest of the line.
+    std::string takeRoom(std::string_view& line) const {
+        const std::size_t slash = line.find('/');
+        if (rooms_ == nullptr || slash == std::string_view::npos) return "";
+        std::string room(trimmed(line.substr(0, slash)));
+        line = trimmed(line.substr(slash + 1));
+        return room;
+    }
+
+    /// \throws UsageError for a room that does not exist, or a line without one
+    [[nodiscard]] std::vector<std::size_t> roomsNamed(const std::string& room,
+                                                      std::string_view line) const {
+        if (rooms_ == nullptr) return {0};
+        if (room.empty())
+            throw UsageError(excerpt(line) + " names no storey, as in " + rooms_->ids.front() +
+                             '/' + std::string(line));
+        return rooms_->find(room);
+    }
+
+    void add(std::size_t room, Point2 place, const std::vector<Angle>& headings) {
+        std::vector<Site>& sites = sites_[room];
+        const auto [at, is_new] = known_[room].try_emplace(place, sites.size());
+        if (is_new) sites.push_back({place, {}});
+        std::vector<Angle>& own = sites[at->second].headings;
         for (const Angle heading : headings) {
             const auto is_same = [heading](Angle other) {
                 return wrapped(other) == wrapped(heading);
@@ -262,21 +293,35 @@ class SiteReader {
 
     std::string file_;
     const std::vector<Angle>& headings_;
+    const PlaceRooms* rooms_;
     int line_ = 0;
     bool is_first_ = true;  // no line with fields has come yet
     Diagnostics findings_;
-    std::vector<Site> sites_;
-    std::map<Point2, std::size_t, LexLess> known_;  // indices of the sites
+    std::vector<std::vector<Site>> sites_;                       // by room
+    std::vector<std::map<Point2, std::size_t, LexLess>> known_;  // their indices
 };
+
+}  // namespace
+
+namespace {
+
+std::vector<std::vector<Site>> readLines(const std::string& text, SiteReader reader) {
+    LineReader lines(text);
+    while (const auto line = reader.full() ? std::nullopt : lines.next()) reader.readLine(*line);
+    return reader.finish();
+}
 
 }  // namespace
 
 std::vector<Site> readSites(const std::string& text, const std::string& name,
                             const std::vector<Angle>& headings) {
-    SiteReader reader(name, headings);
-    LineReader lines(text);
-    while (const auto line = reader.full() ? std::nullopt : lines.next()) reader.readLine(*line);
-    return reader.finish();
+    return std::move(readLines(text, SiteReader(name, headings, nullptr)).front());
+}
+
+std::vector<std::vector<Site>> readSites(const std::string& text, const std::string& name,
+                                         const std::vector<Angle>& headings,
+                                         const PlaceRooms& rooms) {
+    return readLines(text, SiteReader(name, headings, &rooms));
 }
 
 namespace {

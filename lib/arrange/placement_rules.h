@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -172,6 +174,18 @@ std::vector<Site> validSites(const SiteValidity& validity, std::vector<Site> sit
 /// \throws FormatError with line and column of all errors
 std::vector<Site> readSites(const std::string& text, const std::string& name,
                             const std::vector<Angle>& headings);
+
+/// The rooms of a site, as a list of places names them.
+struct PlaceRooms {
+    std::vector<std::string> ids;
+    /// Returns the rooms with this name or glob. \throws UsageError without any
+    std::function<std::vector<std::size_t>(const std::string& name)> find;
+};
+
+/// The same for several rooms: `ROOM/` stands before each x. Returns the sites by room.
+std::vector<std::vector<Site>> readSites(const std::string& text, const std::string& name,
+                                         const std::vector<Angle>& headings,
+                                         const PlaceRooms& rooms);
 
 /// Returns `count` of the sites from `first` on, spread over the plan in any order of the list,
 /// ascending: the middle of each of `count` equal stretches of a Morton curve. O(n log n)

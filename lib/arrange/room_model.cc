@@ -15,6 +15,7 @@ ArrangeOptions optionsOf(const RoomGoals& goals, ArrangeOptions options) {
     options.mount.forbidden = goals.forbidden;
     options.privacy = goals.privacy;
     options.facing = goals.facing;
+    options.list = goals.places;
     return options;
 }
 
@@ -26,6 +27,7 @@ RoomGoals goalsOf(const ArrangeOptions& options) {
     goals.forbidden = options.mount.forbidden;
     goals.privacy = options.privacy;
     goals.facing = options.facing;
+    goals.places = options.list;
     return goals;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "arrange/placement_rules.h"
 #include "base/cell_set.h"
 #include "coverage/camera_rules.h"
 #include "coverage/coverage.h"
@@ -33,6 +34,7 @@ struct RoomGoals {
     /// In these zones floor counts only where a camera sees faces. Headings are known.
     std::vector<FacingRule> facing = {};
     std::vector<Pose3> forbidden = {};  ///< candidates that are left out
+    std::vector<Site> places = {};      ///< of Strategy::List
 
     /// Returns true if only its floor is asked for.
     [[nodiscard]] bool isPlain() const;

@@ -255,6 +255,39 @@ TEST(ReadSites, JoinsLinesOfOnePlace) {
     EXPECT_EQ(sites[1].place, (Point2{5, 5}));
 }
 
+std::vector<std::vector<Site>> sitesOfTwoRooms(const std::string& text) {
+    const PlaceRooms rooms{{"ground", "upper"}, [](const std::string& name) {
+                               if (name == "*") return std::vector<std::size_t>{0, 1};
+                               if (name != "ground" && name != "upper")
+                                   throw UsageError("no storey " + name);
+                               return std::vector<std::size_t>{name == "upper" ? 1U : 0U};
+                           }};
+    return readSites(text, "sites.csv", {Angle()}, rooms);
+}
+
+TEST(ReadSites, OfSeveralRoomsNamesThem) {
+    const auto sites = sitesOfTwoRooms(
+        "storey/x,y,heading\nupper/1,2\n*/ 3,4,90 # both\n ground/1,2\nupper/3,4,0\n");
+    ASSERT_EQ(sites.size(), 2U);
+    EXPECT_EQ(sites[0], (std::vector<Site>{{{3, 4}, {Angle::degrees(90)}}, {{1, 2}, {Angle()}}}));
+    EXPECT_EQ(sites[1],
+              (std::vector<Site>{{{1, 2}, {Angle()}}, {{3, 4}, {Angle::degrees(90), Angle()}}}));
+    const auto wrong = [](const std::string& text) {
+        try {
+            static_cast<void>(sitesOfTwoRooms(text));
+        } catch (const FormatError& error) {
+            return error.diagnostics().front().text();
+        }
+        return std::string();
+    };
+    EXPECT_EQ(wrong("ground/0,0\n 1,2,3\n"),
+              "sites.csv:2:2: error: `1,2,3` names no storey, as in ground/1,2,3");
+    EXPECT_EQ(wrong("attic/1,2\n"), "sites.csv:1:1: error: no storey attic");
+    EXPECT_EQ(wrong("upper/1,a\n"), "sites.csv:1:9: error: y `a` is no number");
+    EXPECT_EQ(wrong("upper/1\n"),
+              "sites.csv:1:1: error: 1 field, a line is STOREY/x,y or STOREY/x,y,heading");
+}
+
 TEST(ReadSites, SaysWhereAndWhatIsWrong) {
     EXPECT_EQ(findingsOf("1,2\n 1,a,3\n"), "sites.csv:2:4: error: y `a` is no number\n");
     EXPECT_EQ(findingsOf("7\n"), "sites.csv:1:1: error: 1 field, a line is x,y or x,y,heading\n");

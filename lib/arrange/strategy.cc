@@ -81,11 +81,13 @@ constexpr StrategyOption kDensity = {
     .help = "steps of the lattice and along walls, headings per site (default 0.25,0.25,16)",
     .refusal = "the thesis' strategies have their own numbers"};
 constexpr StrategyOption kDensityOptions[] = {kDensity};
-constexpr StrategyOption kListOptions[] = {kDensity,
-                                           {.name = "--places",
-                                            .field = &ArrangeOptions::list,
-                                            .help = "lines X,Y[,HEADING] (CSV), - is stdin",
-                                            .is_needed = true}};
+constexpr StrategyOption kListOptions[] = {
+    kDensity,
+    {.name = "--places",
+     .field = &ArrangeOptions::list,
+     .help = "lines X,Y[,HEADING] (CSV), of a building STOREY/X,Y[,HEADING]; - is "
+             "stdin",
+     .is_needed = true}};
 constexpr StrategyOption kGridOptions[] = {
     {"-X", &ArrangeOptions::x, 1, kMaxLines,
      "interior lines across x (default: 5 per maximum range)"},

@@ -15,6 +15,7 @@ struct TriedPose {
     double value = 0;  ///< share of the total weight that it would add to the standing coverage
     bool is_chosen = false;
     std::optional<double> slice_area = {};  ///< of a laser, eq. (4.4), m2
+    std::string room = {};                  ///< id of the room; "" of one alone
 };
 
 }  // namespace ispace

@@ -129,6 +129,105 @@ TEST(BuildingSite, ATargetIsThatOfAllRooms) {
     EXPECT_LT(arrangedIn(building, {lasers(count - 1)}, coarse()).found.candidate_value, 0.6);
 }
 
+/// Two sites on the ground, and one in the upper storey.
+std::vector<RoomGoals> threePlaces() {
+    std::vector<RoomGoals> goals(2);
+    goals[0].places = {{{1, 1}, {Angle()}}, {{4, 1}, {Angle::degrees(90)}}};
+    goals[1].places = {{{0, 0}, {Angle::degrees(45), Angle::degrees(225)}}};
+    return goals;
+}
+
+ArrangeOptions listed() {
+    ArrangeOptions options = coarse();
+    options.strategy = Strategy::List;
+    return options;
+}
+
+TEST(BuildingSite, PlacesOfAllStoreysAreOneList) {
+    const BuildingScene building = twoStoreys();
+    const std::vector<RoomGoals> goals = threePlaces();
+    for (int count = 1; count <= 3; ++count) {
+        const ArrangedBuilding result = arrangedIn(building, {lasers(count)}, listed(), goals);
+        EXPECT_EQ(result.found.candidates, 4U);
+        // Every set of candidates, by hand.
+        std::vector<std::vector<double>> values(2);  // by storey, [n] of its best n
+        for (std::size_t storey = 0; storey < 2; ++storey) {
+            values[storey].push_back(0);
+            ArrangeOptions options = listed();
+            options.list = goals[storey].places;
+            const Scene& scene = *building.scenes[storey];
+            for (int n = 1; n <= count; ++n) {
+                const SensorSpec spec = lasers(n);
+                SilentProgress progress;
+                values[storey].push_back(
+                    areaOf(building, storey) *
+                    arrange(scene, groupsToPlace(scene, std::span(&spec, 1), {}, false), options,
+                            progress)
+                        .candidate_value);
+            }
+        }
+        double best = 0;
+        for (std::size_t n = 0; n < values[0].size(); ++n)
+            best = std::max(best, values[0][n] + values[1][static_cast<std::size_t>(count) - n]);
+        EXPECT_NEAR(result.found.candidate_value,
+                    best / (areaOf(building, 0) + areaOf(building, 1)), 1e-6)
+            << count;
+        EXPECT_LE(result.gap(), result.found.rounding + 1e-12) << "proven";
+        for (const Placement& sensor : result.found.sensors) {
+            const std::vector<Site>& places = goals[sensor.room].places;
+            EXPECT_TRUE(std::any_of(places.begin(), places.end(), [&](const Site& site) {
+                return site.place == sensor.pose.position.onFloor();
+            }));
+        }
+    }
+}
+
+TEST(BuildingSite, AStoreyWithoutPlacesTakesNoSensor) {
+    const BuildingScene building = twoStoreys();
+    std::vector<RoomGoals> goals = threePlaces();
+    goals[1].places.clear();
+    goals[1].takes_sensors = false;
+    const ArrangedBuilding result = arrangedIn(building, {lasers(2)}, listed(), goals);
+    EXPECT_EQ(result.counts, (std::vector<int>{2, 0}));
+}
+
+TEST(BuildingSite, TracesAndGainsAreOfAllStoreys) {
+    const BuildingScene building = twoStoreys();
+    ArrangeOptions options = coarse();
+    options.wants_trace = options.wants_gains = true;
+    const ArrangedBuilding result = arrangedIn(building, {lasers(3)}, options);
+    ASSERT_EQ(result.found.tried.size(), result.found.candidates);
+    EXPECT_EQ(std::count_if(result.found.tried.begin(), result.found.tried.end(),
+                            [](const TriedPose& pose) { return pose.is_chosen; }),
+              3);
+    // Each candidate adds what the room alone says, by its share of the floor.
+    for (std::size_t storey = 0; storey < 2; ++storey) {
+        const SensorSpec spec = lasers(1);
+        const Scene& scene = *building.scenes[storey];
+        SilentProgress progress;
+        const Arrangement wanted =
+            arrange(scene, groupsToPlace(scene, std::span(&spec, 1), {}, false), options, progress);
+        const double share = areaOf(building, storey) / (areaOf(building, 0) + areaOf(building, 1));
+        std::vector<TriedPose> own;
+        for (const TriedPose& pose : result.found.tried)
+            if (pose.room == building.document.storeys[storey].id) own.push_back(pose);
+        ASSERT_EQ(own.size(), wanted.tried.size());
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            EXPECT_EQ(own[i].pose, wanted.tried[i].pose);
+            EXPECT_NEAR(own[i].value, share * wanted.tried[i].value, 1e-6);
+            EXPECT_EQ(own[i].slice_area, wanted.tried[i].slice_area);
+        }
+    }
+    ASSERT_EQ(result.found.gains.size(), 3U);
+    double sum = 0;
+    for (const GainMap& map : result.found.gains) {
+        EXPECT_NE(map.sensor.find('/'), std::string::npos) << map.sensor;
+        for (const TriedPose& pose : map.poses)
+            if (pose.is_chosen) sum += pose.value;
+    }
+    EXPECT_NEAR(sum, result.found.candidate_value, 1e-6);
+}
+
 TEST(BuildingSite, OneStoreyIsARoom) {
     const std::string room =
         "- storey: {id: only, records: [{fence: {path: [[0, 0], [5, 0], [5, 3], [0, 3]], closed: "

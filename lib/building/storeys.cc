@@ -392,18 +392,24 @@ StoreyedDocument readBuilding(std::string_view bytes, const std::string& operand
     return building;
 }
 
+std::vector<std::size_t> storeysNamed(const StoreyedDocument& building, const std::string& name) {
+    std::vector<std::size_t> storeys;
+    const Glob named(name);
+    for (std::size_t i = 0; i < building.storeys.size(); ++i)
+        if (named.matches(building.storeys[i].id)) storeys.push_back(i);
+    if (!storeys.empty()) return storeys;
+    const Storey& one = building.storey(name);
+    return {static_cast<std::size_t>(&one - building.storeys.data())};
+}
+
 StoreyText splitStoreys(const StoreyedDocument& building, std::string_view option,
                         const std::string& text) {
     StoreyText split{{}, text};
     const std::size_t slash = text.find('/');
-    const Glob named(slash == std::string::npos ? "*" : text.substr(0, slash));
     if (slash != std::string::npos) split.text = text.substr(slash + 1);
-    for (std::size_t i = 0; i < building.storeys.size(); ++i)
-        if (named.matches(building.storeys[i].id)) split.storeys.push_back(i);
-    if (!split.storeys.empty()) return split;
     try {
-        const Storey& one = building.storey(text.substr(0, slash));
-        split.storeys = {static_cast<std::size_t>(&one - building.storeys.data())};
+        split.storeys =
+            storeysNamed(building, slash == std::string::npos ? "*" : text.substr(0, slash));
     } catch (const UsageError& error) {
         throw UsageError(std::string(option) + ": " + error.what());
     }

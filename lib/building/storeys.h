@@ -61,6 +61,10 @@ struct StoreyedDocument {
     [[nodiscard]] const Storey& storey(const std::string& called) const;
 };
 
+/// Returns the storeys with this id or name, or with ids of this glob, by index. \throws UsageError
+/// if there is none
+std::vector<std::size_t> storeysNamed(const StoreyedDocument& building, const std::string& name);
+
 /// The storeys that a text is about, and the rest of it.
 struct StoreyText {
     std::vector<std::size_t> storeys;

@@ -107,6 +107,7 @@ TriedPose readTried(const json& line) {
     if (!(tried.value >= 0 && tried.value <= 1)) failInLine("a value is a share from 0 to 1");
     if (line.contains("slice_area"))
         tried.slice_area = memberOf<double>(line, "slice_area", "a number");
+    if (line.contains("storey")) tried.room = memberOf<std::string>(line, "storey", "a string");
     if (line.contains("chosen")) tried.is_chosen = memberOf<bool>(line, "chosen", "true or false");
     return tried;
 }
@@ -121,6 +122,7 @@ std::string writeTrace(const TraceFile& trace) {
     for (const TriedPose& tried : trace.poses) {
         JsonWriter json;
         json.beginObject().key("sensor").value(tried.sensor);
+        if (!tried.room.empty()) json.key("storey").value(tried.room);
         addPose(json, tried.pose);
         json.key("value").value(roundSignificant(tried.value));
         if (tried.slice_area) json.key("slice_area").value(roundSignificant(*tried.slice_area));

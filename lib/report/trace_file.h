@@ -11,8 +11,9 @@ namespace ispace {
 
 /// The "assist info" of the thesis' Sensor Arranger as JSONL: a header object
 /// {"schema":"ispace-trace/1","history":[...]}, then a line per pose,
-/// {"sensor","pose":[x,y,z,heading,tilt,roll],"value"}, for lasers with "slice_area", and with
-/// "chosen":true if a sensor was put there. Metres and radians, as in every JSON pose.
+/// {"sensor","pose":[x,y,z,heading,tilt,roll],"value"}, of a building with "storey", in whose frame
+/// the pose is, for lasers with "slice_area", and with "chosen":true if a sensor was put there.
+/// Metres and radians, as in every JSON pose.
 struct TraceFile {
     History history;
     std::vector<TriedPose> poses;

@@ -38,6 +38,16 @@ TEST(TraceFile, IsWhatTheFormatSays) {
         "\"chosen\":true}\n");
 }
 
+TEST(TraceFile, NamesTheStoreysOfABuilding) {
+    TraceFile trace;
+    trace.poses = {{"laser", {{1, 2, 0.15}, {}, {}, {}}, 0.25, true, {}, "upper"}};
+    const std::string text = writeTrace(trace);
+    EXPECT_NE(text.find("{\"sensor\":\"laser\",\"storey\":\"upper\",\"pose\":[1,2,0.15,0,0,0],"),
+              std::string::npos)
+        << text;
+    EXPECT_EQ(readTrace(text, "t").poses.at(0).room, "upper");
+}
+
 TEST(TraceFile, ReadsWhatItWrites) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> any(-100, 100);

@@ -82,28 +82,79 @@ PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
 
 }  // namespace
 
+namespace {
+
+/// Returns the building with sensors that were placed.
+BuildingScene placedBuilding(const ArrangeWork& work,
+                             const std::vector<Placement>& sensors) {
+    BuildingScene placed = *work.input.building;
+    for (std::size_t i = 0; i < placed.scenes.size(); ++i)
+        placed.scenes[i] = std::make_shared<const Scene>(
+            withPlaced(*placed.scenes[i], work.groups, sensors, i));
+    return placed;
+}
+
+/// Draws a map of gains in each storey: a page with panels, or a file for each storey.
+/// \param scale receives that of the colours
+void writeStoreyHeat(const ArrangeWork& work, const GainMap& gains,
+                     const std::vector<std::string>& files, MapOptions map, std::uint32_t& scale) {
+    const BuildingCoverage coverage =
+        measureBuilding(placedBuilding(work, gains.before),
+                        {.plane = work.how.plane, .density = work.how.pixel_density});
+    scale = std::max(scale, redundancyScale(coverage));
+    map.redundancy_scale = scale;
+    const std::string title = map.title;
+    std::vector<Picture> panels;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+        const std::string& id = work.input.ids[i];
+        map.title = id + ": " + title;
+        map.trace.clear();
+        for (const TriedPose& tried : gains.poses)
+            if (tried.room == id) map.trace.push_back(tried);
+        panels.push_back(coverageMap(*coverage.floors[i], coverage.storeys[i], map));
+        if (files.size() > 1) writeAll(files[i], panels.back().write(map.format));
+    }
+    if (files.size() == 1) writeAll(files.front(), panelsOf(panels).write(map.format));
+}
+
+}  // namespace
+
+std::vector<std::string> heatFiles(const ArrangeToolOptions& options, const ArrangeWork& work,
+                                   std::size_t number) {
+    const std::string file =
+        number == 1 ? options.heat_file : numberedFile(options.heat_file, number);
+    if (!work.input.building || !isStoreyPattern(file)) return {file};
+    std::vector<std::string> files;
+    for (const std::string& id : work.input.ids) files.push_back(storeyFile(file, id));
+    return files;
+}
+
 void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
                const Arrangement& arrangement) {
-    const std::string& file = options.heat_file;
-    const std::string suffix = suffixOf(file);
+    const std::string suffix = suffixOf(options.heat_file);
     // The last map, with the most sensors, sets the colours of all.
     std::uint32_t scale = 0;
     for (std::size_t i = arrangement.gains.size(); i-- > 0;) {
         const GainMap& gains = arrangement.gains[i];
-        const Scene scene = withPlaced(work.input.only(), work.groups, gains.before);
-        Worlds worlds(scene.environment);
-        const Coverage coverage = measureCoverage(
-            scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
-        scale = std::max(scale, redundancyScale(coverage.report));
+        const std::vector<std::string> files = heatFiles(options, work, i + 1);
         MapOptions map;
-        map.redundancy_scale = scale;
         map.format = suffix == "svg"   ? PictureFormat::Svg
                      : suffix == "pdf" ? PictureFormat::Pdf
                                        : PictureFormat::Png;
         map.title = "gain of " + printable(gains.sensor) + ", after " +
                     std::to_string(gains.before.size()) + " placed";
+        if (work.input.building) {
+            writeStoreyHeat(work, gains, files, map, scale);
+            continue;
+        }
+        const Scene scene = withPlaced(work.input.only(), work.groups, gains.before);
+        Worlds worlds(scene.environment);
+        const Coverage coverage = measureCoverage(
+            scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
+        scale = std::max(scale, redundancyScale(coverage.report));
+        map.redundancy_scale = scale;
         map.trace = gains.poses;
-        writeAll(i == 0 ? file : numberedFile(file, i + 1), drawCoverageMap(scene, coverage, map));
+        writeAll(files.front(), drawCoverageMap(scene, coverage, map));
     }
 }
 
@@ -111,11 +162,7 @@ namespace {
 
 /// Returns the building with the layout that was found.
 BuildingScene placedBuilding(const ArrangeWork& work, const Arrangement& arrangement) {
-    BuildingScene placed = *work.input.building;
-    for (std::size_t i = 0; i < placed.scenes.size(); ++i)
-        placed.scenes[i] = std::make_shared<const Scene>(
-            withPlaced(*placed.scenes[i], work.groups, arrangement.sensors, i));
-    return placed;
+    return placedBuilding(work, arrangement.sensors);
 }
 
 CoverageOptions measuredAs(const ArrangeOptions& how) {

@@ -2,8 +2,10 @@
 // The page of --report.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "arrange/arrange_run.h"
 #include "report/camera_rules_report.h"
@@ -11,7 +13,12 @@
 
 namespace ispace {
 
-/// Draws Arrangement::gains, a picture for each sensor, to the files of --heat.
+/// Returns the files of --heat with the map of a sensor, counted from 1: one, or of a building one
+/// for each storey if the name has %s for it.
+std::vector<std::string> heatFiles(const ArrangeToolOptions& options, const ArrangeWork& work,
+                                   std::size_t number);
+/// Draws Arrangement::gains, a picture for each sensor, to the files of --heat. That of a building
+/// is a page with its storeys, or a file for each.
 void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
                const Arrangement& arrangement);
 

@@ -122,6 +122,32 @@ void takeGoals(const ArrangeToolOptions& options, ArrangeWork& work) {
 
 namespace {
 
+/// Reads the sites of --places, those of a building each for its storeys.
+void takePlaces(const ArrangeToolOptions& options, ArrangeWork& work) {
+    const std::string& file = options.places_file;
+    if (file.empty()) return;
+    work.places = file == "-" ? readStdin() : readAll(file);
+    work.files.push_back(file);
+    const std::vector<Angle> headings =
+        headingsAround(work.how.headings.value_or(work.how.density.headings));
+    if (!work.input.building) {
+        work.how.list = readSites(work.places, file, headings);
+        return;
+    }
+    const StoreyedDocument& building = work.input.building->document;
+    const PlaceRooms rooms{work.input.ids, [&building](const std::string& name) {
+                               return storeysNamed(building, name);
+                           }};
+    std::vector<std::vector<Site>> sites = readSites(work.places, file, headings, rooms);
+    const bool is_any = std::any_of(sites.begin(), sites.end(),
+                                    [](const std::vector<Site>& own) { return !own.empty(); });
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+        RoomGoals& goals = work.goals[i];
+        goals.places = std::move(sites[i]);
+        goals.takes_sensors = goals.takes_sensors && !(is_any && goals.places.empty());
+    }
+}
+
 /// Reads the rooms of --robust, each with the layout.
 void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
     if (options.robust_rooms.empty()) return;
@@ -178,9 +204,8 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     SiteInput& input = work.input;
     warnOfImport(options.common, "arrange", input);
     mustBeOneRoom(input, options.objective ? "--objective " + std::string(options.objective->word())
-                         : options.presence             ? "--presence"
-                         : !options.places_file.empty() ? "--places"
-                                                        : needsOneRoom(options.how));
+                         : options.presence ? "--presence"
+                                            : needsOneRoom(options.how));
     if (!options.fixed.empty()) {
         if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
         input.setLayout(withoutPlaces(*input.layout, options.fixed));
@@ -204,6 +229,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
         // Devices of --sensor are not among those of the records.
         if (input.building->devices.devices().empty()) input.building->devices = devices;
         takeGoals(options, work);
+        takePlaces(options, work);
         work.rooms = std::make_shared<BuildingSite>(*input.building, work.how, work.goals);
         return work;
     }
@@ -224,13 +250,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
             static_cast<void>(ofOption("--objective", [&] { return readZone(*zone, room); }));
     work.how.facing = facingIn(room, options.how.facing);
     for (const PrivacyRule& rule : options.how.privacy) static_cast<void>(privateZones(rule, room));
-    if (!options.places_file.empty()) {
-        work.places = options.places_file == "-" ? readStdin() : readAll(options.places_file);
-        work.how.list =
-            readSites(work.places, options.places_file,
-                      headingsAround(work.how.headings.value_or(work.how.density.headings)));
-        work.files.push_back(options.places_file);
-    }
+    takePlaces(options, work);
     return work;
 }
 

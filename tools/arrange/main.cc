@@ -138,14 +138,16 @@ Arrangement search(const ArrangeToolOptions& options, const ArrangeWork& work, S
 
 /// Reserves the further files of --heat, if the number of sensors is known.
 void claimHeat(const ArrangeToolOptions& options, const ArrangeWork& work) {
-    if (options.heat_file.empty() || options.how.target || options.how.budget) return;
+    if (options.heat_file.empty()) return;
     int sensors = 0;
     for (const SensorGroup& group : work.groups) sensors += group.most;
-    for (int i = 2; i <= sensors; ++i) {
-        const std::string file = numberedFile(options.heat_file, static_cast<std::size_t>(i));
-        claimOutput(file, "a map of --heat");
-        mustBeWritable(file);
-    }
+    if (options.how.target || options.how.budget) sensors = 1;
+    for (int i = 1; i <= sensors; ++i)
+        for (const std::string& file : heatFiles(options, work, static_cast<std::size_t>(i))) {
+            if (file == options.heat_file) continue;
+            claimOutput(file, "a map of --heat");
+            mustBeWritable(file);
+        }
 }
 
 /// \param parts those of a merge, or null

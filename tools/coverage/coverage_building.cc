@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,7 +44,6 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
     if (options.presence && !options.presence->record.empty() &&
         recordedBuilding(options.presence->record).empty())
         option = "--presence by the record of one room";
-    if (!options.trace.empty()) option = "--trace";
     if (!option.empty()) refuseSeveralRooms(option, building);
     if (options.format != nullptr && !options.format->picture)
         mustNameStoreys(options.common.output, options.format->name, options.format->suffix);
@@ -86,6 +86,7 @@ struct BuildingResults {
     std::vector<ObjectiveFigures> objectives;
     std::optional<ObjectiveFigures> objectives_sum;
     std::optional<Advice> advice;
+    std::vector<TriedPose> tried;  ///< of --trace
 
     [[nodiscard]] BuildingParts parts() const {
         BuildingParts parts;
@@ -225,6 +226,30 @@ const RunCoverage* runOf(const std::optional<BuildingRunCoverage>& run, std::siz
     return run && !run->storeys[storey].members.empty() ? &run->storeys[storey] : nullptr;
 }
 
+/// Reads --trace. \throws UsageError for candidates of a room, and of other buildings
+std::vector<TriedPose> readTriedIn(const CoverageToolOptions& options, BuildingInput& input) {
+    std::vector<TriedPose> tried = readTried(options, input.named);
+    if (!options.trace.empty()) input.files.push_back(options.trace);
+    for (const TriedPose& pose : tried) {
+        if (pose.room.empty())
+            refuseSeveralRooms("--trace of the candidates of one room", input.building.document);
+        const auto& storeys = input.building.document.storeys;
+        if (std::none_of(storeys.begin(), storeys.end(),
+                         [&pose](const Storey& storey) { return storey.id == pose.room; }))
+            throw UsageError("--trace: the building has no storey " + excerpt(pose.room) + " (" +
+                             input.building.document.storeyList() + ')');
+    }
+    return tried;
+}
+
+/// Returns those of a storey.
+std::vector<TriedPose> triedIn(const std::vector<TriedPose>& all, const std::string& storey) {
+    std::vector<TriedPose> tried;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(tried),
+                 [&storey](const TriedPose& pose) { return pose.room == storey; });
+    return tried;
+}
+
 /// Draws all storeys on one page.
 void writePanels(const CoverageToolOptions& options, const BuildingInput& input,
                  const BuildingCoverage& coverage, const BuildingResults& results) {
@@ -236,6 +261,7 @@ void writePanels(const CoverageToolOptions& options, const BuildingInput& input,
         map.title = input.building.document.storeys[i].id;
         map.redundancy_scale = scale;
         map.run = runOf(results.run, i);
+        map.trace = triedIn(results.tried, map.title);
         if (!results.objectives.empty()) map.objectives = &results.objectives[i];
         panels.push_back(coverageMap(*coverage.floors[i], coverage.storeys[i], map));
     }
@@ -256,6 +282,7 @@ void writeFiles(const CoverageToolOptions& options, const BuildingInput& input,
         own.map.title = storey.id;
         own.map.redundancy_scale = redundancyScale(coverage);
         own.map.run = runOf(results.run, i);
+        own.map.trace = triedIn(results.tried, storey.id);
         if (!results.objectives.empty()) own.map.objectives = &results.objectives[i];
         claimOutput(own.common.output, "the map of a storey");
         SceneInput room{*coverage.floors[i], *storey.room, input.layout, {}, {}, {}, {}};
@@ -398,6 +425,7 @@ bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
     for (JunitCase& verdict : judge(judgedInBuilding(input.building, coverage.rules)))
         verdicts.push_back(std::move(verdict));
     BuildingResults results;
+    results.tried = readTriedIn(options, input);
     results.run = measureStoreyRuns(options, input);
     measureObjectives(options, input.building, coverage, results);
     measurePresences(options, input, coverage, results);

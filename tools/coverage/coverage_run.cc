@@ -27,12 +27,37 @@
 #include "report/coverage_formats.h"
 #include "report/coverage_report.h"
 #include "report/map/depth_shades.h"
+#include "report/trace_file.h"
 #include "scene/findings/findings.h"
 #include "scene/scene.h"
 #include "scene/sensor/ultrasound.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
+
+std::vector<TriedPose> readTried(const CoverageToolOptions& options,
+                                 const std::vector<std::string>& named) {
+    if (options.trace.empty()) return {};
+    std::vector<std::string> streams = named;
+    streams.insert(streams.end(), {options.other, options.trace});
+    mustReadStdinOnce(streams);
+    const std::string bytes = options.trace == "-" ? readStdin() : readAll(options.trace);
+    return readTrace(bytes, displayName(options.trace)).poses;
+}
+
+std::vector<TriedPose> triedInRoom(const CoverageToolOptions& options, const std::string& storey,
+                                   std::vector<TriedPose> tried) {
+    const std::size_t all = tried.size();
+    std::erase_if(tried, [&storey](const TriedPose& pose) {
+        return !pose.room.empty() && pose.room != storey;
+    });
+    if (tried.empty() && all > 0)
+        throw UsageError("--trace: the candidates of " + displayName(options.trace) +
+                         (storey.empty() ? " are those of a building: give it, or one of its "
+                                           "storeys with --storey"
+                                         : " are those of other storeys than " + excerpt(storey)));
+    return tried;
+}
 
 namespace {
 

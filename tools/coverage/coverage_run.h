@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "arrange/tried_pose.h"
 #include "cli/batch.h"
 #include "cli/operands.h"
 #include "coverage/coverage.h"
@@ -39,6 +40,15 @@ Measured measure(const CoverageToolOptions& options, const Scene& scene, const S
 /// Computes the coverage of a recorded run; nullopt without --run.
 std::optional<RunCoverage> measureRecordedRun(const CoverageToolOptions& options,
                                               const Scene& scene);
+
+/// Reads the poses of --trace, from stdin only if no other input is.
+/// \param named as SceneInput::named
+std::vector<TriedPose> readTried(const CoverageToolOptions& options,
+                                 const std::vector<std::string>& named);
+/// Returns the poses of a room alone, or of the storey that it is.
+/// \throws UsageError for a trace of a building without them
+std::vector<TriedPose> triedInRoom(const CoverageToolOptions& options, const std::string& storey,
+                                   std::vector<TriedPose> tried);
 
 /// Measures --presence; empty without it.
 std::optional<Presence> presenceOf(const CoverageToolOptions& options, const Scene& scene);

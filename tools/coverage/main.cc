@@ -22,7 +22,6 @@
 #include "report/page/coverage_page.h"
 #include "report/presence_report.h"
 #include "report/run_report.h"
-#include "report/trace_file.h"
 #include "scene/run/run_reader.h"
 #include "scene/scene.h"
 #include "tools.h"
@@ -30,15 +29,6 @@
 namespace {
 
 using namespace ispace;
-
-/// Reads the tried poses of a search, from stdin only if no other input is.
-std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SceneInput& input) {
-    std::vector<std::string> streams = input.named;
-    streams.insert(streams.end(), {options.other, options.trace});
-    mustReadStdinOnce(streams);
-    const std::string bytes = options.trace == "-" ? readStdin() : readAll(options.trace);
-    return readTrace(bytes, displayName(options.trace)).poses;
-}
 
 /// A record holds its own scene.
 SceneInput readInput(const CoverageToolOptions& options) {
@@ -137,7 +127,7 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
         files.insert(files.end(), other->files.begin(), other->files.end());
     }
     if (!options.trace.empty()) {
-        options.map.trace = readTried(options, input);
+        options.map.trace = triedInRoom(options, input.storey, readTried(options, input.named));
         files.push_back(options.trace);
     }
     if (!options.report.empty()) mustBeWritable(options.report);
