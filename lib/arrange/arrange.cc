@@ -30,8 +30,6 @@ std::string needsOneRoom(const ArrangeOptions& options) {
     using Robust = RobustChoice::Of;
     if (options.over_poses) return "--proof poses";
     if (options.objective.of == ObjectiveChoice::Of::Path) return "--objective path";
-    if (options.objective.of == ObjectiveChoice::Of::Localise) return "--objective localise";
-    if (options.demand) return options.demand->option();
     if (options.robust.of == Robust::Rooms) return "--robust rooms";
     if (options.robust.of == Robust::Mounting) return "--robust mounting";
     if (options.robust.of == Robust::Crowd) return "--crowd";

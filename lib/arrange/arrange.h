@@ -119,6 +119,7 @@ struct ArrangeOptions {
     /// In these zones floor counts only where a camera sees faces. Headings are known.
     std::vector<FacingRule> facing;
     /// Counts instead of the floor; the zones, weights and cells above then do not. Null: none.
+    /// Of several rooms: that of any of them, which says what is asked; see RoomGoals.
     std::shared_ptr<const Demand> demand;
     std::optional<double> target;  ///< share to reach at minimum cost
     /// Prove over all poses: the number of sensors with a target, else their coverage.

@@ -154,7 +154,7 @@ void CoverageModel::addRooms() {
         if (room.model != nullptr)
             room.model->standing().forEach(
                 [&](std::size_t cell) { problem_.standing.set(room.firsts.front() + cell); });
-    if (site_.sight != nullptr && site_.sight->joinsRooms()) countStandingBeyond();
+    if (joinsRooms()) countStandingBeyond();
 }
 
 void CoverageModel::setAreas(std::vector<double> areas) {
@@ -207,12 +207,16 @@ std::string CoverageModel::nothingText() const {
                        "smaller cells (--cell)";
 }
 
+bool CoverageModel::joinsRooms() const {
+    return site_.sight != nullptr && site_.sight->joinsRooms() && !options_.demand &&
+           options_.objective.isCoverage();
+}
+
 bool CoverageModel::mayStand(const SensorClass& kind, std::size_t room) const {
     if (rooms_[room].model == nullptr) return false;
     if (kind.room) return *kind.room == room;
     const RoomGoals& goals = site_.rooms[room].goals;
-    const bool is_seen_from = site_.sight != nullptr && site_.sight->joinsRooms();
-    return goals.takes_sensors && (goals.counts || is_seen_from);
+    return goals.takes_sensors && (goals.counts || joinsRooms());
 }
 
 bool CoverageModel::sees(std::size_t from, const Sensor& sensor, std::size_t to) const {
@@ -220,7 +224,7 @@ bool CoverageModel::sees(std::size_t from, const Sensor& sensor, std::size_t to)
 }
 
 void CoverageModel::addBeyond(std::size_t room, const Sensor& sensor, CellSet& cells) const {
-    if (site_.sight == nullptr || !site_.sight->joinsRooms()) return;
+    if (!joinsRooms()) return;
     for (std::size_t to = 0; to < rooms_.size(); ++to) {
         if (!sees(room, sensor, to)) continue;
         CellParts seen;
@@ -251,7 +255,10 @@ class CoverageModel::Joiner {
     /// Adds the candidates of a room.
     void add(std::size_t room, const PosedCandidates& own, PosedCandidates& joined) {
         joined.beginRoom(room);
-        const bool looks = model_.site_.sight != nullptr && model_.site_.sight->joinsRooms();
+        // Privacy counts even if views of other rooms do not.
+        const bool looks = model_.joinsRooms() ||
+                           (!private_.empty() && model_.site_.sight != nullptr &&
+                            model_.site_.sight->joinsRooms());
         constexpr std::size_t kAtOnce = 256;
         if (looks)
             progress_.begin("looking into other rooms", static_cast<std::int64_t>(own.sites()));
@@ -265,7 +272,7 @@ class CoverageModel::Joiner {
                 tbb::parallel_for(first, end, [&](std::size_t site) {
                     // A thread that waits for rows of cells here must not begin with another site.
                     tbb::this_task_arena::isolate([&] {
-                        beyond_[site - first] = look(room, own, site);
+                        if (model_.joinsRooms()) beyond_[site - first] = look(room, own, site);
                         is_seeing_[site - first] = seesPrivate(room, own, site);
                     });
                 });
@@ -517,7 +524,8 @@ double CoverageModel::shareOf(std::span<const CountedView> views) const {
 }
 
 double CoverageModel::shareOf(const std::vector<Choice>& chosen, std::uint64_t value) const {
-    if (areas_.empty() || options_.robust.isAsked()) return share(value);
+    if (areas_.empty() || options_.robust.isAsked() || !options_.objective.isCoverage())
+        return share(value);
     std::vector<CountedView> views;
     for (const Choice& choice : chosen) {
         const SensorType& kind = problem_.kinds[choice.kind];

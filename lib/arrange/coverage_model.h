@@ -196,6 +196,8 @@ class CoverageModel {
     void addKinds(Progress& progress);
     [[nodiscard]] std::unique_ptr<PosedCandidates> candidatesOf(const SensorClass& kind,
                                                                 Progress& progress);
+    /// Returns true if sensors of one room may count in others.
+    [[nodiscard]] bool joinsRooms() const;
     /// Returns true if sensors of a kind may stand in a room.
     [[nodiscard]] bool mayStand(const SensorClass& kind, std::size_t room) const;
     [[nodiscard]] bool sees(std::size_t from, const Sensor& sensor, std::size_t to) const;

@@ -5,7 +5,9 @@
 
 namespace ispace {
 
-std::string Demand::finding(const CellSet& /*served*/, double /*bound*/) const { return ""; }
+std::string Demand::finding(std::span<const ServedDemand> /*rooms*/, double /*bound*/) const {
+    return "";
+}
 
 CellSet Demand::servedBy(const Sensor& sensor, const Worlds& worlds) const {
     const Point3 place = sensor.pose.position;

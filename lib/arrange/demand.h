@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,11 +14,22 @@
 
 namespace ispace {
 
-/// The demand of a covering problem in place of the floor: weighted elements, each with a rule by
-/// which a sensor serves it (demand points, Church and ReVelle 1974).
+class Demand;
+
+/// The demand of a room, and those of its elements that a layout serves.
+struct ServedDemand {
+    const Demand* demand = nullptr;
+    CellSet served;
+};
+
+/// The demand of a covering problem in place of the floor of a room: weighted elements, each with a
+/// rule by which a sensor serves it (demand points, Church and ReVelle 1974).
 ///
 /// arrange() maximises the weight of the elements that as many sensors serve as are required, and
 /// proves its bound over the candidates, whatever the rule: it must depend on one sensor at a time.
+/// Each room of a site has its own, of one class and with one unit of weight; weights of all rooms
+/// add up. Sensors serve elements of their own room.
+///
 /// An objective of an extension implements this class, see cli/objective_extension.h.
 ///
 /// Constant while arrange() runs; const functions are thread-safe.
@@ -38,9 +50,11 @@ class Demand {
     [[nodiscard]] virtual std::string nothingText() const = 0;
     /// Returns all that views depend on besides room and sensors, as text, for stored results.
     [[nodiscard]] virtual std::string content() const = 0;
-    /// Says what a layout that serves these elements achieves, in units of its own, and the best
-    /// that a bound allows; "" if the share of the weight says it. \param bound share
-    [[nodiscard]] virtual std::string finding(const CellSet& served, double bound) const;
+    /// Says what a layout that serves these elements achieves in all rooms, in units of its own,
+    /// and the best that a bound allows; "" if the share of the weight says it. \param rooms their
+    /// demands have the class of this one \param bound share
+    [[nodiscard]] virtual std::string finding(std::span<const ServedDemand> rooms,
+                                              double bound) const;
 
     /// Checks a sensor that is to be placed. \throws UsageError if none of its kind serves any
     virtual void mustServe(const SensorModel& model, const std::string& id) const = 0;

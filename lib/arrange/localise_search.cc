@@ -96,8 +96,13 @@ class LocaliseSearch {
           plane_(model.options().plane),
           standing_(problem_.cells()) {
         std::vector<SiteSensor> sensors;
-        for (const Sensor& sensor : model.only().scene().sensors)
-            if (kindOf(sensor.model).perceives) sensors.push_back({0, sensor});
+        for (std::size_t room = 0; room < model.site().rooms.size(); ++room) {
+            if (!model.hasRoom(room)) continue;
+            const Grid& grid = model.room(room).target().grid;
+            for (std::size_t i = 0; i < grid.size(); ++i) centers_.push_back(grid.center(i));
+            for (const Sensor& sensor : model.room(room).scene().sensors)
+                if (kindOf(sensor.model).perceives) sensors.push_back({room, sensor});
+        }
         const std::vector<CountedView> views = model.viewsOf(std::span<const SiteSensor>(sensors));
         for (std::size_t i = 0; i < sensors.size(); ++i)
             add(sensors[i].sensor, views[i].cells, standing_);
@@ -259,7 +264,7 @@ class LocaliseSearch {
     }
 
     void addAt(const Sensor& sensor, std::size_t cell, SpotInformation& spot) const {
-        const Point3 at = spotFor(sensor, model_.only().target().grid.center(cell), plane_);
+        const Point3 at = spotFor(sensor, centers_[cell], plane_);
         spot.add(sensor, informationOf(sensor.model, sensor.pose.position, at));
     }
 
@@ -362,6 +367,7 @@ class LocaliseSearch {
     const CoverageModel& model_;
     const Problem& problem_;
     double limit_, plane_;
+    std::vector<Point2> centers_;  // of the cells, each in the frame of its room
     Spots standing_;
 };
 

@@ -16,6 +16,7 @@ ArrangeOptions optionsOf(const RoomGoals& goals, ArrangeOptions options) {
     options.privacy = goals.privacy;
     options.facing = goals.facing;
     options.list = goals.places;
+    options.demand = goals.demand;
     return options;
 }
 
@@ -28,6 +29,7 @@ RoomGoals goalsOf(const ArrangeOptions& options) {
     goals.privacy = options.privacy;
     goals.facing = options.facing;
     goals.places = options.list;
+    goals.demand = options.demand;
     return goals;
 }
 
@@ -62,6 +64,7 @@ RoomModel::RoomModel(const SiteRoom& room, const ArrangeOptions& options,
 void RoomModel::makeCases() { cases_ = caseRoomsOf(*scene_, options_); }
 
 double RoomModel::areaOfCell() const {
+    if (options_.demand) return 1;
     const Grid& grid = target_.grid;
     const std::size_t indoor = target_.indoor.count();
     if (!options_.judges_inside || indoor == 0)

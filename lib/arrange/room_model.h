@@ -58,7 +58,7 @@ class RoomModel {
     [[nodiscard]] const std::vector<std::uint16_t>& achieved() const { return achieved_; }
     [[nodiscard]] const CellSet& standing() const { return standing_; }
     /// Returns the floor area that one cell stands for, m2: a room that is seen whole has its
-    /// indoor area.
+    /// indoor area. 1 for a demand, of which weights alone count.
     [[nodiscard]] double areaOfCell() const;
     /// Adds the multiplicities of these views from `first` on.
     void countStanding(const std::vector<SensorView>& views, std::size_t first,

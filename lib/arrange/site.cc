@@ -1,18 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrange/site.h"
 
+#include "arrange/demand.h"
 #include "arrange/sensor_group.h"
 
 namespace ispace {
 
 bool RoomGoals::isPlain() const {
     return weights.isUniform() && counts && takes_sensors && keep_out.empty() && keep_in.empty() &&
-           privacy.empty() && facing.empty() && forbidden.empty() && places.empty();
+           privacy.empty() && facing.empty() && forbidden.empty() && places.empty() &&
+           demand == nullptr;
 }
 
 Point3 SiteRoom::inSite(Point3 point) const {
     const Point2 at = Pose2{origin.onFloor(), turn} * point.onFloor();
     return {at.x, at.y, origin.z + point.z};
+}
+
+std::vector<ServedDemand> servedByRoom(const ArrangeSite& site, const CellSet& served) {
+    std::vector<ServedDemand> rooms;
+    std::size_t first = 0;
+    for (const SiteRoom& room : site.rooms) {
+        if (!room.has_floor) continue;
+        const std::size_t count = room.goals.demand->weights().size();
+        ServedDemand& own = rooms.emplace_back(room.goals.demand.get(), CellSet(count));
+        for (std::size_t i = 0; i < count; ++i)
+            if (served.test(first + i)) own.served.set(i);
+        first += count;
+    }
+    return rooms;
 }
 
 std::string wholeId(const ArrangeSite& site, const Placement& placement) {

@@ -22,6 +22,9 @@
 
 namespace ispace {
 
+class Demand;
+struct ServedDemand;
+
 /// What is asked of one room.
 struct RoomGoals {
     FloorWeights weights;
@@ -35,6 +38,8 @@ struct RoomGoals {
     std::vector<FacingRule> facing = {};
     std::vector<Pose3> forbidden = {};  ///< candidates that are left out
     std::vector<Site> places = {};      ///< of Strategy::List
+    /// Counts instead of its floor, if the options ask for a demand. Every room then has one.
+    std::shared_ptr<const Demand> demand = nullptr;
 
     /// Returns true if only its floor is asked for.
     [[nodiscard]] bool isPlain() const;
@@ -93,6 +98,10 @@ struct ArrangeSite {
 
     [[nodiscard]] bool isOneRoom() const { return rooms.size() == 1 && sight == nullptr; }
 };
+
+/// Returns the served elements of each room that has floor.
+/// \param served of all rooms, one after another
+std::vector<ServedDemand> servedByRoom(const ArrangeSite& site, const CellSet& served);
 
 struct Placement;
 /// Returns the id of a placed sensor across the site: "ground/c1"; its own in a room alone.

@@ -11,7 +11,7 @@
 
 #include "cli/command_line.h"
 #include "cli/common_options.h"
-#include "scene/scene.h"
+#include "cli/site_operands.h"
 
 namespace ispace {
 
@@ -28,10 +28,10 @@ class ObjectiveGroup {
     [[nodiscard]] virtual std::string_view help() const = 0;
     /// Declares the options, bound to members; as OptionGroup::declare().
     virtual void declare(CommandLine& line) = 0;
-    /// Makes the demand in a room. \param files receives those that were read
-    /// \throws UsageError, UnmetError, FormatError
-    [[nodiscard]] virtual std::shared_ptr<const Demand> demandIn(
-        const Scene& scene, const ArrangeOptions& how, const CommonOptions& common,
+    /// Makes the demand in each room of a site, all of one class.
+    /// \param files receives those that were read \throws UsageError, UnmetError, FormatError
+    [[nodiscard]] virtual std::vector<std::shared_ptr<const Demand>> demandsIn(
+        const SiteInput& site, const ArrangeOptions& how, const CommonOptions& common,
         std::vector<std::string>& files) const = 0;
 };
 

@@ -11,6 +11,9 @@
 #include "arrange/presence_demand.h"
 #include "base/error.h"
 #include "base/number.h"
+#include "base/run_files.h"
+#include "building/building_robustness.h"
+#include "cli/building_operands.h"
 #include "cli/common_options.h"
 #include "coverage/crowd.h"
 #include "env/body_shapes.h"
@@ -104,9 +107,48 @@ PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t 
     return cutter.finish();
 }
 
-std::shared_ptr<const Demand> demandOfPresence(const WaysChoice& choice, const Scene& scene,
-                                               std::uint64_t seed, double plane) {
-    return presenceDemand(std::make_shared<PeopleWays>(readWays(choice, scene, seed)), plane);
+std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const BuildingScene& building,
+                                    const BuildingCoverage& coverage, std::uint64_t seed) {
+    const std::vector<std::size_t> people =
+        spreadOverStoreys(coverage, static_cast<std::size_t>(choice.people));
+    std::vector<RoomWays> rooms;
+    for (std::size_t i = 0; i < people.size(); ++i) {
+        RoomWays& own = rooms.emplace_back(choice, seedOfStorey(seed, i));
+        own.choice.people = static_cast<int>(people[i]);
+        if (!choice.record.empty()) own.choice.record += '/' + building.document.storeys[i].id;
+    }
+    return rooms;
+}
+
+std::vector<RoomWays> waysIn(const SiteInput& site, const std::string& option,
+                             const WaysChoice& choice, std::uint64_t seed, double plane) {
+    if (!site.building) return {{choice, seed}};
+    if (!choice.record.empty() && recordedBuilding(choice.record).empty())
+        refuseSeveralRooms(option + " by the record of one room", site.building->document);
+    BuildingCoverage coverage;
+    if (choice.record.empty())
+        coverage = measureBuilding(*site.building, {.plane = plane});
+    else
+        coverage.storeys.resize(site.rooms.size());
+    return waysOfStoreys(choice, *site.building, coverage, seed);
+}
+
+PeopleWays readWays(const RoomWays& ways, const Scene& scene) {
+    return ways.isEmpty() ? PeopleWays() : readWays(ways.choice, scene, ways.seed);
+}
+
+std::vector<std::shared_ptr<const Demand>> demandsOfPresence(const WaysChoice& choice,
+                                                             const SiteInput& site,
+                                                             std::uint64_t seed, double plane,
+                                                             std::vector<std::string>& files) {
+    std::vector<std::shared_ptr<const Demand>> demands;
+    const std::vector<RoomWays> ways = waysIn(site, "--presence", choice, seed, plane);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        if (!choice.record.empty()) files.push_back(RecordedFiles(ways[i].choice.record).robots);
+        demands.push_back(
+            presenceDemand(std::make_shared<PeopleWays>(readWays(ways[i], *site.rooms[i])), plane));
+    }
+    return demands;
 }
 
 }  // namespace ispace

@@ -5,7 +5,11 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "building/building_coverage.h"
+#include "building/building_scene.h"
+#include "cli/site_operands.h"
 #include "scene/run/people_ways.h"
 #include "scene/scene.h"
 #include "sim/sim_time.h"
@@ -32,8 +36,29 @@ void visitWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed,
 
 /// Cuts the ways of visitWays() into pieces.
 PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed);
-/// Returns presenceDemand() of these ways.
-std::shared_ptr<const Demand> demandOfPresence(const WaysChoice& choice, const Scene& scene,
-                                               std::uint64_t seed, double plane);
+
+/// The ways in one room of a site.
+struct RoomWays {
+    WaysChoice choice;       ///< its folder of the record, or its people
+    std::uint64_t seed = 0;  ///< see seedOfStorey()
+    /// Returns true for a room without people.
+    [[nodiscard]] bool isEmpty() const { return choice.record.empty() && choice.people == 0; }
+};
+/// Returns the ways in each storey of a building: those of its record, or wanderers, as many as its
+/// part of the free floor. \throws UsageError for the record of one room
+std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const BuildingScene& building,
+                                    const BuildingCoverage& coverage, std::uint64_t seed);
+/// Returns the ways in each room of a site. \param plane of the free floor
+/// \param option for messages \throws as waysOfStoreys()
+std::vector<RoomWays> waysIn(const SiteInput& site, const std::string& option,
+                             const WaysChoice& choice, std::uint64_t seed, double plane);
+/// Cuts the ways in a room into pieces.
+PeopleWays readWays(const RoomWays& ways, const Scene& scene);
+
+/// Returns presenceDemand() of the ways in each room. \param files receives those that were read
+std::vector<std::shared_ptr<const Demand>> demandsOfPresence(const WaysChoice& choice,
+                                                             const SiteInput& site,
+                                                             std::uint64_t seed, double plane,
+                                                             std::vector<std::string>& files);
 
 }  // namespace ispace

@@ -77,8 +77,7 @@ std::unique_ptr<JobResults> resultsOf(const ArrangeCommand& command, const Arran
                                       std::unique_ptr<JobResults> parts, bool& is_done) {
     const ArrangeToolOptions& options = command.options();
     const BatchOptions& batch = options.batch;
-    const std::string demand = work.how.demand ? work.how.demand->content() : "";
-    JobId job = arrangeJob(command, work.input, work.places + demand);
+    JobId job = arrangeJob(command, work.input, work.places + work.contentOfDemand());
     if (parts) {
         const JobId& made = parts->head().job;
         job.form = made.form;

@@ -201,6 +201,20 @@ std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangem
 
 namespace {
 
+/// Judges --objective localise in each storey, by its own sensors, then over all of them.
+std::vector<ObjectiveFigures> localisedIn(const ArrangeWork& work,
+                                          const BuildingCoverage& coverage) {
+    std::vector<ObjectiveFigures> figures;
+    std::vector<Localisation> storeys;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+        storeys.push_back(
+            localise(*coverage.floors[i], coverage.storeys[i], work.how.objective.within));
+        figures.emplace_back().localisation = storeys.back();
+    }
+    figures.emplace_back().localisation = localisedOver(storeys, coverage.storeys);
+    return figures;
+}
+
 std::optional<ObjectiveFigures> objectivesOf(const ObjectiveChoice& objective, int times,
                                              const Scene& scene, const Coverage& coverage) {
     ObjectiveFigures figures;
@@ -217,6 +231,10 @@ std::optional<ObjectiveFigures> objectivesOf(const ObjectiveChoice& objective, i
 std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
                                              const Arrangement& arrangement) {
     if (work.how.objective.isCoverage()) return std::nullopt;
+    if (work.input.building)
+        return localisedIn(work,
+                           measureBuilding(placedBuilding(work, arrangement), measuredAs(work.how)))
+            .back();
     const Scene scene = withPlaced(work.input.only(), work.groups, arrangement.sensors);
     Worlds worlds(scene.environment);
     // Positions are judged by cells; the regions for ways may take longer than a limit of time
@@ -253,7 +271,18 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
                            const Arrangement& arrangement, const std::string& command) {
     const BuildingScene building = placedBuilding(work, arrangement);
     const BuildingCoverage coverage = measureBuilding(building, measuredAs(work.how));
-    if (suffixOf(options.report_file) == "json") return buildingCoverageJson(building, coverage);
+    std::vector<ObjectiveFigures> objectives;  // of the storeys, then of all
+    if (!work.how.objective.isCoverage()) objectives = localisedIn(work, coverage);
+    if (suffixOf(options.report_file) == "json") {
+        BuildingParts parts;
+        if (!objectives.empty()) {
+            parts.storeys.resize(coverage.storeys.size());
+            for (std::size_t i = 0; i < parts.storeys.size(); ++i)
+                parts.storeys[i].objectives = &objectives[i];
+            parts.sum.objectives = &objectives.back();
+        }
+        return buildingCoverageJson(building, coverage, parts);
+    }
     BuildingPageInput input{building, coverage, nameOf(work.input), command,
                             targetOf(work, arrangement)};
     PageSection result = resultOf(options, work, arrangement);
@@ -261,6 +290,9 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
     for (const JudgedRule& rule : judgedRules(rules))
         result.blocks.push_back(PageText{rule.rule + ": " + rule.finding});
     input.more.push_back(std::move(result));
+    if (!objectives.empty())
+        input.more.push_back(
+            {"objectives", "Positions", {PageCode{objectivesText(objectives.back())}}});
     input.cover = coverOf(options.page);
     input.paper = paperOf(options.page);
     input.prices = pricesOf(options.page);

@@ -148,6 +148,22 @@ void takePlaces(const ArrangeToolOptions& options, ArrangeWork& work) {
     }
 }
 
+/// Makes the demand that counts instead of the floor, those of a building each for its storeys.
+void takeDemand(const ArrangeToolOptions& options, ArrangeWork& work) {
+    std::vector<std::shared_ptr<const Demand>> demands;
+    if (options.presence)
+        demands = demandsOfPresence(*options.presence, work.input, options.common.seed,
+                                    work.how.plane, work.files);
+    if (options.objective)
+        demands = options.objective->demandsIn(work.input, work.how, options.common, work.files);
+    if (demands.empty()) return;
+    work.how.demand = demands.front();
+    for (std::size_t i = 0; i < work.goals.size(); ++i) {
+        work.goals[i].counts = !demands[i]->weights().empty();
+        work.goals[i].demand = std::move(demands[i]);
+    }
+}
+
 /// Reads the rooms of --robust, each with the layout.
 void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
     if (options.robust_rooms.empty()) return;
@@ -203,9 +219,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     work.how = options.how;
     SiteInput& input = work.input;
     warnOfImport(options.common, "arrange", input);
-    mustBeOneRoom(input, options.objective ? "--objective " + std::string(options.objective->word())
-                         : options.presence ? "--presence"
-                                            : needsOneRoom(options.how));
+    mustBeOneRoom(input, needsOneRoom(options.how));
     if (!options.fixed.empty()) {
         if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
         input.setLayout(withoutPlaces(*input.layout, options.fixed));
@@ -230,21 +244,14 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
         if (input.building->devices.devices().empty()) input.building->devices = devices;
         takeGoals(options, work);
         takePlaces(options, work);
+        takeDemand(options, work);
         work.rooms = std::make_shared<BuildingSite>(*input.building, work.how, work.goals);
         return work;
     }
     const Environment& room = input.only().environment;
     takeZones(options, room, work.how);
     takeRooms(options, work);
-    if (options.presence) {
-        work.how.demand =
-            demandOfPresence(*options.presence, input.only(), options.common.seed, work.how.plane);
-        if (!options.presence->record.empty())
-            work.files.push_back(RecordedFiles(options.presence->record).robots);
-    }
-    if (options.objective)
-        work.how.demand =
-            options.objective->demandIn(input.only(), work.how, options.common, work.files);
+    takeDemand(options, work);
     if (work.how.objective.of == ObjectiveChoice::Of::Path)
         for (const std::string* zone : {&work.how.objective.way.from, &work.how.objective.way.to})
             static_cast<void>(ofOption("--objective", [&] { return readZone(*zone, room); }));
@@ -257,6 +264,19 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
 Arrangement ArrangeWork::run(Progress& progress, std::ostream* mps) const {
     return rooms ? arrange(rooms->site(), groups, how, progress, mps)
                  : arrange(input.only(), groups, how, progress, mps);
+}
+
+std::vector<ServedDemand> ArrangeWork::served(const Arrangement& arrangement) const {
+    if (rooms) return servedByRoom(rooms->site(), arrangement.served);
+    return {{how.demand.get(), arrangement.served}};
+}
+
+std::string ArrangeWork::contentOfDemand() const {
+    if (!how.demand) return "";
+    if (!rooms) return how.demand->content();
+    std::string text;
+    for (const RoomGoals& room : goals) text += room.demand->content() + '\n';
+    return text;
 }
 
 namespace {

@@ -26,6 +26,10 @@ struct ArrangeWork {
 
     /// Searches. \throws as arrange()
     [[nodiscard]] Arrangement run(Progress& progress, std::ostream* mps = nullptr) const;
+    /// Returns the elements of the demand that a layout serves, by room. \pre there is a demand
+    [[nodiscard]] std::vector<ServedDemand> served(const Arrangement& arrangement) const;
+    /// Returns Demand::content() of all rooms; "" without a demand.
+    [[nodiscard]] std::string contentOfDemand() const;
 };
 
 /// Reads room, layout, sensors, zones and sites. \throws UsageError without a sensor to place, and

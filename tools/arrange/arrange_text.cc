@@ -213,7 +213,7 @@ std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) 
     if (arrangement.whole) text += objectiveText(how, arrangement);
     if (how.demand)
         if (const std::string finding =
-                how.demand->finding(arrangement.served, arrangement.candidate_bound);
+                how.demand->finding(work.served(arrangement), arrangement.candidate_bound);
             !finding.empty())
             text += "arrange: " + finding + '\n';
     if (how.budget)

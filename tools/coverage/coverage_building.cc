@@ -108,22 +108,14 @@ void measurePresences(const CoverageToolOptions& options, BuildingInput& input,
                       const BuildingCoverage& coverage, BuildingResults& results) {
     if (!options.presence) return;
     const bool wanders = options.presence->record.empty();
-    const std::vector<std::size_t> people =
-        spreadOverStoreys(coverage, static_cast<std::size_t>(options.presence->people));
-    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
-        const Storey& storey = input.building.document.storeys[i];
-        WaysChoice own = *options.presence;
-        own.people = static_cast<int>(people[i]);
-        if (!wanders) {
-            own.record += '/' + storey.id;
-            input.files.push_back(RecordedFiles(own.record).robots);
-        }
-        const Scene& scene = *input.building.scenes[i];
-        const PeopleWays ways = wanders && own.people == 0
-                                    ? PeopleWays()
-                                    : readWays(own, scene, seedOfStorey(options.common.seed, i));
-        Presence presence = measurePresence(*coverage.floors[i], ways, options.measure.plane);
-        nameWholly(storey, wanders, presence);
+    const std::vector<RoomWays> ways =
+        waysOfStoreys(*options.presence, input.building, coverage, options.common.seed);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        if (!wanders) input.files.push_back(RecordedFiles(ways[i].choice.record).robots);
+        Presence presence =
+            measurePresence(*coverage.floors[i], readWays(ways[i], *input.building.scenes[i]),
+                            options.measure.plane);
+        nameWholly(input.building.document.storeys[i], wanders, presence);
         results.presence.push_back(std::move(presence));
     }
     results.presence_sum = sumOverStoreys(results.presence);

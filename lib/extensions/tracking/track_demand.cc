@@ -91,14 +91,21 @@ LossFigures TrackDemand::lossOf(const CellSet& served) const {
     return figures;
 }
 
-std::string TrackDemand::finding(const CellSet& served, double bound) const {
-    const LossFigures lost = lossOf(served);
-    const double least = std::max(0.0, whole_.loss * (1 - bound));
+std::string TrackDemand::finding(std::span<const ServedDemand> rooms, double bound) const {
+    LossFigures lost, whole;
+    bool has_crossings = false;
+    for (const auto& [of, served] : rooms) {
+        const auto& demand = static_cast<const TrackDemand&>(*of);
+        lost += demand.lossOf(served);
+        whole += demand.whole();
+        has_crossings = has_crossings || !demand.crossing_places_.empty();
+    }
+    const double least = std::max(0.0, whole.loss * (1 - bound));
     std::string text = "people are lost for " + formatFixed(lost.time, 1) + " of " +
-                       formatFixed(whole_.time, 1) + " s";
-    if (!crossing_places_.empty())
+                       formatFixed(whole.time, 1) + " s";
+    if (has_crossings)
         text += " and at " + formatFixed(lost.crossings, 1) + " of " +
-                formatFixed(whole_.crossings, 0) + " crossings: a loss of " +
+                formatFixed(whole.crossings, 0) + " crossings: a loss of " +
                 formatFixed(lost.loss, 1) + " s";
     return text + "; no layout of these candidates loses less than " + formatFixed(least, 1) + " s";
 }

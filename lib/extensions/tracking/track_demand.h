@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,13 @@ struct LossFigures {
     double time = 0;       ///< of all people, seconds: present (or not followed)
     double crossings = 0;  ///< number of meetings (or the part of them that is unseen)
     double loss = 0;       ///< seconds
+
+    LossFigures& operator+=(const LossFigures& other) {
+        time += other.time;
+        crossings += other.crossings;
+        loss += other.loss;
+        return *this;
+    }
 };
 
 /// The demand of trackers: people at moments.
@@ -49,7 +57,8 @@ class TrackDemand : public Demand {
     [[nodiscard]] const std::vector<double>& weights() const override { return weights_; }
     [[nodiscard]] std::string nothingText() const override;
     [[nodiscard]] std::string content() const override;
-    [[nodiscard]] std::string finding(const CellSet& served, double bound) const override;
+    [[nodiscard]] std::string finding(std::span<const ServedDemand> rooms,
+                                      double bound) const override;
     void mustServe(const SensorModel& model, const std::string& id) const override;
     [[nodiscard]] bool isServedBy(const Sensor& sensor) const override;
     [[nodiscard]] std::vector<std::uint8_t> sightOf(const Sensor& sensor,

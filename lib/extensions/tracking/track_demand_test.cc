@@ -337,12 +337,19 @@ TEST(ArrangeForTracks, RefusesSensorsOfMotionAndWaysWithoutPeople) {
 TEST(TrackDemand, FindingSaysWhatIsLostAndTheLeastLoss) {
     const Scene scene = roomScene(kTwoRooms);
     const TrackDemand demand(standing({{-3, 0}, {3, 0}}), {.crossing = 5});
-    EXPECT_EQ(demand.finding(servedIn(scene, laserAt({-2, 0}), demand), 0.75),
+    const CellSet served = servedIn(scene, laserAt({-2, 0}), demand);
+    EXPECT_EQ(demand.finding(std::vector<ServedDemand>{{&demand, served}}, 0.75),
               "people are lost for 2.0 of 4.0 s; no layout of these candidates loses less than "
               "1.0 s");
     const TrackDemand near(standing({{-3, 0}, {-3, 0.5}, {3, 0}}), {.crossing = 5});
-    EXPECT_EQ(near.finding(CellSet(near.weights().size()), 1),
+    EXPECT_EQ(near.finding(std::vector<ServedDemand>{{&near, CellSet(near.weights().size())}}, 1),
               "people are lost for 6.0 of 6.0 s and at 1.0 of 1 crossings: a loss of 11.0 s; no "
+              "layout of these candidates loses less than 0.0 s");
+    // Rooms of a site add up.
+    EXPECT_EQ(demand.finding(std::vector<ServedDemand>{{&demand, served},
+                                                       {&near, CellSet(near.weights().size())}},
+                             1),
+              "people are lost for 8.0 of 10.0 s and at 1.0 of 1 crossings: a loss of 13.0 s; no "
               "layout of these candidates loses less than 0.0 s");
 }
 

@@ -33,22 +33,28 @@ class TrackObjective : public ObjectiveGroup {
                       "are within a metre of each other (default 5s)",
                       Enters::History);
     }
-    [[nodiscard]] std::shared_ptr<const Demand> demandIn(
-        const Scene& scene, const ArrangeOptions& how, const CommonOptions& common,
+    [[nodiscard]] std::vector<std::shared_ptr<const Demand>> demandsIn(
+        const SiteInput& site, const ArrangeOptions& how, const CommonOptions& common,
         std::vector<std::string>& files) const override {
-        MomentSampler sampler;
-        visitWays(ways_, scene, common.seed,
-                  [&sampler](const std::string& id, double time, Point2 place) {
-                      sampler.add(id, time, place);
-                  });
-        if (!ways_.record.empty()) {
-            const RecordedFiles record(ways_.record);
-            files.push_back(record.robots);
-            if (!record.people.empty()) files.push_back(record.people);
-        }
         LossRule loss = loss_;
         loss.plane = how.plane;
-        return std::make_shared<TrackDemand>(sampler.finish(), loss);
+        const std::vector<RoomWays> ways = waysIn(site, "--ways", ways_, common.seed, how.plane);
+        std::vector<std::shared_ptr<const Demand>> demands;
+        for (std::size_t i = 0; i < ways.size(); ++i) {
+            MomentSampler sampler;
+            if (!ways[i].isEmpty())
+                visitWays(ways[i].choice, *site.rooms[i], ways[i].seed,
+                          [&sampler](const std::string& id, double time, Point2 place) {
+                              sampler.add(id, time, place);
+                          });
+            if (!ways_.record.empty()) {
+                const RecordedFiles record(ways[i].choice.record);
+                files.push_back(record.robots);
+                if (!record.people.empty()) files.push_back(record.people);
+            }
+            demands.push_back(std::make_shared<TrackDemand>(sampler.finish(), loss));
+        }
+        return demands;
     }
 
   private:
