@@ -31,8 +31,6 @@ std::string needsOneRoom(const ArrangeOptions& options) {
     if (options.over_poses) return "--proof poses";
     if (options.objective.of == ObjectiveChoice::Of::Path) return "--objective path";
     if (options.robust.of == Robust::Rooms) return "--robust rooms";
-    if (options.robust.of == Robust::Mounting) return "--robust mounting";
-    if (options.robust.of == Robust::Crowd) return "--crowd";
     // Each part of a site has a proof of its own.
     const SearchShare& share = options.search.share;
     if (share.what == Shared::Tree && (share.own || share.joined > 0)) return "--share tree";

@@ -28,7 +28,8 @@ CaseRoom::CaseRoom(Scene in, std::string called, const ArrangeOptions& options,
       worlds(scene.environment),
       sight(scene.environment, options.plane, &worlds) {
     if (options.robust.of == RobustChoice::Of::Mounting)
-        errors.emplace(scene.environment, options.robust.tolerance, options.seed, number);
+        errors.emplace(scene.environment, options.robust.tolerance,
+                       options.robust.seed.value_or(options.seed), number);
     for (Sensor& sensor : scene.sensors) {
         limitCovered(sensor.model, options);
         sensor = mounted(std::move(sensor));

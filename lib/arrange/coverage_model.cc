@@ -83,9 +83,17 @@ CoverageModel::CoverageModel(const ArrangeSite& site, const std::vector<SensorGr
     const std::vector<std::uint32_t> left = weightsLeft();
     for (Room& room : rooms_) {
         if (room.model == nullptr || room.model->hasPool()) continue;
-        const std::size_t cells = site.isOneRoom() ? left.size() : room.cells;
-        const auto first = left.begin() + static_cast<std::ptrdiff_t>(room.firsts.front());
-        room.model->makePool({first, first + static_cast<std::ptrdiff_t>(cells)}, progress);
+        if (site.isOneRoom()) {
+            room.model->makePool(left, progress);
+            continue;
+        }
+        std::vector<std::uint32_t> own(room.cells);
+        for (auto copy = room.copies.rbegin(); copy != room.copies.rend();
+             ++copy)  // the first last
+            std::copy_n(left.begin() + static_cast<std::ptrdiff_t>(copy->first),
+                        copy->own.end - copy->own.first,
+                        own.begin() + static_cast<std::ptrdiff_t>(copy->own.first));
+        room.model->makePool(std::move(own), progress);
     }
     addKinds(progress);
 }
@@ -120,7 +128,6 @@ void CoverageModel::addRooms() {
     std::vector<double> weights, areas;  // areas: by room
     for (const SiteRoom& room : site_.rooms) {
         Room& added = rooms_.emplace_back();
-        added.firsts = {weights.size()};
         added.seen.resize(site_.rooms.size());
         areas.push_back(0);
         if (!room.has_floor) continue;
@@ -129,6 +136,7 @@ void CoverageModel::addRooms() {
         if (model == nullptr) model = std::make_shared<RoomModel>(room, options_, kinds_, unit_);
         added.model = model;
         added.cells = model->weights().size();
+        added.copies = {{{0, added.cells}, weights.size()}};
         areas.back() = model->areaOfCell();
         addBlocks(model->target().grid, added.cells, problem_.blocks);
         weights.insert(weights.end(), model->weights().begin(), model->weights().end());
@@ -143,7 +151,7 @@ void CoverageModel::addRooms() {
     } else {
         for (std::size_t i = 0; i < rooms_.size(); ++i)
             for (std::size_t k = 0; k < rooms_[i].cells; ++k)
-                weights[rooms_[i].firsts.front() + k] *= areas[i];
+                weights[rooms_[i].copies.front().first + k] *= areas[i];
         setAreas(std::move(weights));
     }
     total_ = problem_.totalWeight();
@@ -153,7 +161,7 @@ void CoverageModel::addRooms() {
     for (const Room& room : rooms_)
         if (room.model != nullptr)
             room.model->standing().forEach(
-                [&](std::size_t cell) { problem_.standing.set(room.firsts.front() + cell); });
+                [&](std::size_t cell) { problem_.standing.set(room.copies.front().first + cell); });
     if (joinsRooms()) countStandingBeyond();
 }
 
@@ -219,20 +227,36 @@ bool CoverageModel::mayStand(const SensorClass& kind, std::size_t room) const {
     return goals.takes_sensors && (goals.counts || joinsRooms());
 }
 
-bool CoverageModel::sees(std::size_t from, const Sensor& sensor, std::size_t to) const {
-    return to != from && rooms_[to].model != nullptr && site_.sight->maySee(from, sensor, to);
+Sensor CoverageModel::mountedIn(std::size_t number, std::size_t room, Sensor sensor) const {
+    if (options_.robust.of != RobustChoice::Of::Mounting || view_cases_ == 0) return sensor;
+    if (rooms_[room].model != nullptr)
+        return rooms_[room].model->cases()[number]->mounted(std::move(sensor));
+    if (!sensor.mount && !sensor.person)
+        sensor.pose = SiteErrors(site_.rooms[room].scene->environment, options_.robust.tolerance,
+                                 site_.rooms[room].goals.case_seed.value_or(options_.seed), number)
+                          .mounted(sensor);
+    return sensor;
+}
+
+bool CoverageModel::sees(const RoomSight& sight, std::size_t from, const Sensor& sensor,
+                         std::size_t to) const {
+    return to != from && rooms_[to].model != nullptr && sight.maySee(from, sensor, to);
 }
 
 void CoverageModel::addBeyond(std::size_t room, const Sensor& sensor, CellSet& cells) const {
     if (!joinsRooms()) return;
-    for (std::size_t to = 0; to < rooms_.size(); ++to) {
-        if (!sees(room, sensor, to)) continue;
-        CellParts seen;
-        site_.sight->look(room, {&sensor, 1}, to, rooms_[to].model->target().grid, seen);
-        rooms_[to].model->withoutFaces(seen);
-        for (const CellRun& run : seen.runs)
-            for (const std::size_t first : rooms_[to].firsts)
-                for (std::size_t cell = run.first; cell < run.end; ++cell) cells.set(first + cell);
+    for (std::size_t number = 0; number < viewCases(); ++number) {
+        const Sensor mounted = mountedIn(number, room, sensor);
+        for (std::size_t to = 0; to < rooms_.size(); ++to) {
+            if (!sees(sightIn(number), room, mounted, to)) continue;
+            CellParts seen;
+            sightIn(number).look(room, {&mounted, 1}, to, rooms_[to].model->target().grid, seen);
+            rooms_[to].model->withoutFaces(seen);
+            for (const CellRun& run : seen.runs)
+                for (const Copy& copy : copiesIn(number, to))
+                    for (std::size_t cell = run.first; cell < run.end; ++cell)
+                        cells.set(copy.first + cell);
+        }
     }
 }
 
@@ -256,9 +280,9 @@ class CoverageModel::Joiner {
     void add(std::size_t room, const PosedCandidates& own, PosedCandidates& joined) {
         joined.beginRoom(room);
         // Privacy counts even if views of other rooms do not.
-        const bool looks = model_.joinsRooms() ||
-                           (!private_.empty() && model_.site_.sight != nullptr &&
-                            model_.site_.sight->joinsRooms());
+        const bool looks =
+            model_.joinsRooms() || (!private_.empty() && model_.site_.sight != nullptr &&
+                                    model_.site_.sight->joinsRooms());
         constexpr std::size_t kAtOnce = 256;
         if (looks)
             progress_.begin("looking into other rooms", static_cast<std::int64_t>(own.sites()));
@@ -307,7 +331,7 @@ class CoverageModel::Joiner {
             std::vector<Sensor> turned;
             for (std::size_t i = own.firstOf(site); i < own.firstOf(site + 1); ++i)
                 turned.push_back({"", camera, own.pose(i)});
-            if (!model_.sees(from, turned.front(), to)) continue;
+            if (!model_.sees(*model_.site_.sight, from, turned.front(), to)) continue;
             is_seeing.resize(turned.size());
             CellParts seen;
             model_.site_.sight->look(from, turned, to, model_.rooms_[to].model->target().grid,
@@ -326,23 +350,40 @@ class CoverageModel::Joiner {
         for (std::size_t i = own.firstOf(site); i < own.firstOf(site + 1); ++i)
             turned.push_back({"", kind_.model, own.pose(i)});
         std::vector<CellsBeyond> all;
-        for (std::size_t to = 0; to < model_.rooms_.size(); ++to) {
-            if (!model_.sees(from, turned.front(), to)) continue;
-            CellsBeyond seen{to, {}};
-            const RoomModel& room = *model_.rooms_[to].model;
-            model_.site_.sight->look(from, turned, to, room.target().grid, seen.parts);
-            room.withoutFaces(seen.parts);
-            if (!seen.parts.runs.empty()) all.push_back(std::move(seen));
+        for (std::size_t number = 0; number < model_.viewCases(); ++number) {
+            const RoomSight& sight = model_.sightIn(number);
+            std::vector<Sensor> mounted;
+            for (const Sensor& sensor : turned)
+                mounted.push_back(model_.mountedIn(number, from, sensor));
+            for (std::size_t to = 0; to < model_.rooms_.size(); ++to) {
+                if (!model_.sees(sight, from, mounted.front(), to)) continue;
+                CellsBeyond seen{to, number, {}};
+                const RoomModel& room = *model_.rooms_[to].model;
+                sight.look(from, mounted, to, room.target().grid, seen.parts);
+                room.withoutFaces(seen.parts);
+                if (!seen.parts.runs.empty()) all.push_back(std::move(seen));
+            }
         }
         return all;
     }
 
-    void addShifted(std::span<const CellRun> runs, std::size_t room) {
-        for (const std::size_t first : model_.rooms_[room].firsts) {
-            const auto shift = static_cast<std::uint32_t>(first);
-            for (const CellRun& run : runs)
-                parts_.runs.push_back({run.first + shift, run.end + shift});
-        }
+    /// Adds cells of the room of the candidate.
+    void addOwn(std::span<const CellRun> runs, std::size_t room) {
+        for (const Copy& copy : model_.rooms_[room].copies)
+            for (const CellRun& run : runs) {
+                const std::size_t first = std::max<std::size_t>(run.first, copy.own.first);
+                const std::size_t end = std::min<std::size_t>(run.end, copy.own.end);
+                if (first < end) addRun(copy.first + first - copy.own.first, end - first);
+            }
+    }
+    /// Adds cells of another room in a case.
+    void addBeyond(std::span<const CellRun> runs, const CellsBeyond& of) {
+        for (const Copy& copy : model_.copiesIn(of.in, of.room))
+            for (const CellRun& run : runs) addRun(copy.first + run.first, run.end - run.first);
+    }
+    void addRun(std::size_t first, std::size_t count) {
+        parts_.runs.push_back(
+            {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first + count)});
     }
     void endPart() { parts_.first.push_back(static_cast<std::uint32_t>(parts_.runs.size())); }
 
@@ -360,7 +401,7 @@ class CoverageModel::Joiner {
         if (headings_.empty()) return;
         if (beyond.empty()) {
             for (std::size_t k = 0; k <= own.directedParts(site); ++k) {
-                addShifted(own.runsOf(site, k), room);
+                addOwn(own.runsOf(site, k), room);
                 endPart();
             }
             for (std::size_t k = 0; k < count; ++k)
@@ -368,11 +409,12 @@ class CoverageModel::Joiner {
         } else {
             for (std::size_t k = 0; k < count; ++k) {
                 if (is_left_out(k)) continue;
-                addShifted(partOf(own.cellsOf(begin + k)).runs, room);
-                for (const auto& [to, seen] : beyond)
-                    addShifted(std::span(seen.runs).subspan(seen.first[k],
-                                                            seen.first[k + 1] - seen.first[k]),
-                               to);
+                addOwn(partOf(own.cellsOf(begin + k)).runs, room);
+                for (const CellsBeyond& seen : beyond) {
+                    const std::vector<std::uint32_t>& first = seen.parts.first;
+                    addBeyond(std::span(seen.parts.runs).subspan(first[k], first[k + 1] - first[k]),
+                              seen);
+                }
                 ranges_.push_back({static_cast<std::uint32_t>(parts_.size()), 1});
                 endPart();
             }
@@ -453,7 +495,7 @@ void CoverageModel::addKinds(Progress& progress) {
 }
 
 CellBlock CoverageModel::cellsOfRoom(std::size_t room) const {
-    const std::size_t first = rooms_[room].firsts.front();
+    const std::size_t first = rooms_[room].copies.front().first;
     return {first, first + rooms_[room].cells};
 }
 
@@ -575,7 +617,9 @@ std::vector<CountedView> CoverageModel::viewsOf(std::span<const SiteSensor> sens
             if (site_.isOneRoom()) return;
             CellSet cells(problem_.cells());
             views[i].cells.forEach([&](std::size_t cell) {
-                for (const std::size_t first : own.firsts) cells.set(first + cell);
+                for (const Copy& copy : own.copies)
+                    if (cell >= copy.own.first && cell < copy.own.end)
+                        cells.set(copy.first + cell - copy.own.first);
             });
             addBeyond(room, sensor, cells);
             views[i].cells = std::move(cells);

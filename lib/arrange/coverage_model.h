@@ -166,18 +166,23 @@ class CoverageModel {
     [[nodiscard]] std::uint64_t maxFromAnyPlace(const std::vector<int>& most) const;
 
   private:
-    /// A room of the site. Its cells begin at firsts[0] in the problem, and at each further entry
-    /// again.
+    /// Cells of a room's model, which follow each other in the problem, too.
+    struct Copy {
+        CellBlock own;
+        std::size_t first = 0;  ///< in the problem
+    };
+    /// A room of the site. Its cells stand in the problem several times if sensors may fail; those
+    /// of random cases lie apart.
     struct Room {
         std::shared_ptr<RoomModel> model;  ///< null: left out; equal rooms share it
-        std::vector<std::size_t> firsts = {0};
+        std::vector<Copy> copies = {{}};
         std::size_t cells = 0;
         std::vector<bool> seen = {};  ///< other rooms of which its candidates see cells
     };
     /// The cells of another room that the candidates of a site see.
     struct CellsBeyond {
-        std::size_t room = 0;
-        CellParts parts;  ///< by candidate
+        std::size_t room = 0, in = 0;  ///< in: the case
+        CellParts parts;               ///< by candidate
     };
     class Joiner;
 
@@ -190,6 +195,8 @@ class CoverageModel {
     /// Sets the cells of all cases, and their weights.
     void stackCases();
     void stackOneRoom();
+    /// Stacks the random cases of several rooms.
+    void stackRooms();
     void stackFailures();
     /// Sets the ways of an intruder. \throws UnmetError if there is none, or none that can be seen
     void setWays();
@@ -200,10 +207,23 @@ class CoverageModel {
     [[nodiscard]] bool joinsRooms() const;
     /// Returns true if sensors of a kind may stand in a room.
     [[nodiscard]] bool mayStand(const SensorClass& kind, std::size_t room) const;
-    [[nodiscard]] bool sees(std::size_t from, const Sensor& sensor, std::size_t to) const;
+    /// Returns the number of random cases of several rooms, else 1.
+    [[nodiscard]] std::size_t viewCases() const { return std::max<std::size_t>(1, view_cases_); }
+    /// Returns a sensor as it is mounted in a case.
+    [[nodiscard]] Sensor mountedIn(std::size_t number, std::size_t room, Sensor sensor) const;
+    [[nodiscard]] const RoomSight& sightIn(std::size_t number) const {
+        return crowded_.empty() ? *site_.sight : *crowded_[number];
+    }
+    /// Returns where the cells of a room in a case stand.
+    [[nodiscard]] std::span<const Copy> copiesIn(std::size_t number, std::size_t room) const {
+        const std::vector<Copy>& all = rooms_[room].copies;
+        return view_cases_ == 0 ? std::span(all) : std::span(&all[number], 1);
+    }
+    [[nodiscard]] bool sees(const RoomSight& sight, std::size_t from, const Sensor& sensor,
+                            std::size_t to) const;
     [[nodiscard]] TriedPose tried(const std::string& sensor, const Choice& choice,
                                   double value) const;
-    /// Adds the cells of other rooms that a sensor sees, with a copy for each of their firsts.
+    /// Adds the cells of other rooms that a sensor sees, with all copies of them.
     void addBeyond(std::size_t room, const Sensor& sensor, CellSet& cells) const;
 
     const ArrangeSite& site_;
@@ -214,7 +234,9 @@ class CoverageModel {
     std::vector<Room> rooms_;
     CellWays cell_ways_;
     WorstCaseProblem cases_;
-    std::vector<std::string> standing_ids_;  ///< of cases_.standing
+    std::size_t view_cases_ = 0;  ///< random cases of several rooms; 0 without
+    std::vector<std::unique_ptr<const RoomSight>> crowded_;  ///< by case, if rooms see each other
+    std::vector<std::string> standing_ids_;                  ///< of cases_.standing
     Problem problem_;
     std::uint64_t total_ = 0;
     std::vector<double> areas_;  ///< weights of the cells of several rooms, not rounded

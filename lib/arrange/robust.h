@@ -2,7 +2,9 @@
 // Cases in which a robust layout has to hold.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,7 @@ struct RobustChoice {
     std::vector<NamedScene> rooms = {};
     int failures = 0, people = 0;
     MountingTolerance tolerance = {};
+    std::optional<std::uint64_t> seed = {};  ///< of mountings; empty: that of the options
 
     [[nodiscard]] bool isAsked() const { return of != Of::Nothing; }
 };

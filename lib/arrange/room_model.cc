@@ -17,6 +17,7 @@ ArrangeOptions optionsOf(const RoomGoals& goals, ArrangeOptions options) {
     options.facing = goals.facing;
     options.list = goals.places;
     options.demand = goals.demand;
+    options.robust.seed = goals.case_seed;
     return options;
 }
 
@@ -30,6 +31,7 @@ RoomGoals goalsOf(const ArrangeOptions& options) {
     goals.facing = options.facing;
     goals.places = options.list;
     goals.demand = options.demand;
+    goals.case_seed = options.robust.seed;
     return goals;
 }
 
@@ -62,6 +64,11 @@ RoomModel::RoomModel(const SiteRoom& room, const ArrangeOptions& options,
 }
 
 void RoomModel::makeCases() { cases_ = caseRoomsOf(*scene_, options_); }
+
+CaseRoom& RoomModel::addCase(const Scene& scene) {
+    cases_.push_back(std::make_unique<CaseRoom>(scene, "", options_, cases_.size()));
+    return *cases_.back();
+}
 
 double RoomModel::areaOfCell() const {
     if (options_.demand) return 1;

@@ -51,6 +51,8 @@ class RoomModel {
     [[nodiscard]] CaseRooms cases() const { return cases_; }
     /// Builds the rooms of the cases. \throws as caseRoomsOf()
     void makeCases();
+    /// Adds the room of a random case. \param scene the room in it
+    CaseRoom& addCase(const Scene& scene);
 
     /// Returns weights of the cells, by the options.
     [[nodiscard]] const std::vector<double>& weights() const { return weights_; }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include "base/cell_set.h"
 #include "coverage/camera_rules.h"
 #include "coverage/coverage.h"
+#include "coverage/crowd.h"
 #include "coverage/target.h"
 #include "env/zone.h"
 #include "geom/pose.h"
@@ -38,6 +40,9 @@ struct RoomGoals {
     std::vector<FacingRule> facing = {};
     std::vector<Pose3> forbidden = {};  ///< candidates that are left out
     std::vector<Site> places = {};      ///< of Strategy::List
+    /// Of RobustChoice, for a room of several.
+    std::optional<std::uint64_t> case_seed = {};
+    std::vector<Crowd> crowds = {};  ///< by case
     /// Counts instead of its floor, if the options ask for a demand. Every room then has one.
     std::shared_ptr<const Demand> demand = nullptr;
 
@@ -70,12 +75,10 @@ struct SiteFigures {
     std::vector<Metric> rooms;              ///< coverage of each, a share
 };
 
-/// How the rooms of a site see each other. Thread-safe.
-class SiteSight {
+/// Sight from rooms of a site into others. Thread-safe.
+class RoomSight {
   public:
-    virtual ~SiteSight() = default;
-    /// Returns false if no room sees another one.
-    [[nodiscard]] virtual bool joinsRooms() const = 0;
+    virtual ~RoomSight() = default;
     /// False if no sensor of this kind, at its position with any heading, sees cells of another
     /// room.
     [[nodiscard]] virtual bool maySee(std::size_t from, const Sensor& sensor,
@@ -84,6 +87,26 @@ class SiteSight {
     /// \param turned differ in heading alone \pre maySee() of them
     virtual void look(std::size_t from, std::span<const Sensor> turned, std::size_t to,
                       const Grid& grid, CellParts& parts) const = 0;
+
+  protected:
+    RoomSight() = default;
+    RoomSight(const RoomSight&) = default;
+    RoomSight& operator=(const RoomSight&) = default;
+};
+
+/// The rooms of a site with people in them.
+struct CrowdedSite {
+    std::vector<std::shared_ptr<const Scene>> rooms;
+    std::unique_ptr<const RoomSight> sight;
+};
+
+/// How the rooms of a site see each other. Thread-safe.
+class SiteSight : public RoomSight {
+  public:
+    /// Returns false if no room sees another one.
+    [[nodiscard]] virtual bool joinsRooms() const = 0;
+    /// Returns the site with people in the way of sight. \param crowds by room
+    [[nodiscard]] virtual CrowdedSite crowded(std::span<const Crowd> crowds) const = 0;
     /// Measures all rooms, as `coverage` does, with these sensors added to each.
     [[nodiscard]] virtual SiteFigures measure(std::span<const std::vector<Sensor>> added,
                                               const CoverageOptions& options) const = 0;

@@ -24,6 +24,7 @@ std::uint64_t totalOf(const std::vector<std::uint32_t>& weights) {
 
 void CoverageModel::stackCases() {
     if (site_.isOneRoom()) return stackOneRoom();
+    if (options_.robust.of != RobustChoice::Of::Failures) return stackRooms();
     // Failures of sensors in any room: the cells of all rooms are those of the one case.
     cases_.blocks.push_back({0, problem_.cells()});
     for (std::size_t i = 0; i < rooms_.size(); ++i) {
@@ -81,6 +82,69 @@ void CoverageModel::stackOneRoom() {
     total_ = isWorstCase() ? cases_.totalOf(0) : problem_.totalWeight();
 }
 
+/// \pre the site says how its rooms see each other
+void CoverageModel::stackRooms() {
+    view_cases_ = kRobustSamples;
+    std::vector<double> weights, areas;
+    std::vector<std::uint16_t> achieved;
+    for (Room& room : rooms_) {
+        if (room.model == nullptr) continue;
+        room.copies.clear();
+        areas.push_back(room.model->areaOfCell());
+    }
+    const bool is_even =
+        std::all_of(areas.begin(), areas.end(), [&](double area) { return area == areas.front(); });
+    for (std::size_t number = 0; number < view_cases_; ++number) {
+        const std::size_t begin = weights.size();
+        std::vector<std::shared_ptr<const Scene>> scenes;
+        if (options_.robust.of == RobustChoice::Of::Crowd) {
+            std::vector<Crowd> crowds;
+            for (const SiteRoom& room : site_.rooms)
+                crowds.push_back(room.goals.crowds.empty() ? Crowd() : room.goals.crowds[number]);
+            CrowdedSite crowded = site_.sight->crowded(crowds);
+            scenes = std::move(crowded.rooms);
+            crowded_.push_back(std::move(crowded.sight));
+        } else {
+            for (const SiteRoom& room : site_.rooms) scenes.push_back(room.scene);
+        }
+        for (std::size_t i = 0; i < rooms_.size(); ++i) {
+            if (rooms_[i].model == nullptr) continue;
+            RoomModel& model = *rooms_[i].model;
+            // Equal rooms share their cases.
+            CaseRoom& in =
+                number < model.cases().size() ? *model.cases()[number] : model.addCase(*scenes[i]);
+            const Coverage standing = measureCoverage(
+                in.scene, in.worlds,
+                {.cells = searchCells(options_), .plane = options_.plane, .exact = false});
+            in.target = standing.target;
+            std::vector<double> own = cellWeights(in.target, model.options());
+            in.counted = CellSet(own.size());
+            for (std::size_t cell = 0; cell < own.size(); ++cell) {
+                if (!site_.rooms[i].goals.counts) own[cell] = 0;
+                if (own[cell] > 0) in.counted.set(cell);
+                if (!is_even) own[cell] *= model.areaOfCell();
+            }
+            const std::size_t at = number * own.size();
+            in.firsts = {at};
+            rooms_[i].copies.push_back({{at, at + own.size()}, weights.size()});
+            rooms_[i].cells = at + own.size();
+            achieved.resize(weights.size() + own.size());
+            model.countStanding(standing.sensors, weights.size(), achieved);
+            weights.insert(weights.end(), own.begin(), own.end());
+        }
+        cases_.blocks.push_back({begin, weights.size()});
+    }
+    if (is_even)
+        problem_.weights = integerWeights(weights);
+    else
+        setAreas(std::move(weights));
+    problem_.achieved = std::move(achieved);
+    problem_.standing = CellSet(problem_.cells());
+    if (joinsRooms()) countStandingBeyond();
+    cases_.problem = &problem_;
+    total_ = isWorstCase() ? cases_.totalOf(0) : problem_.totalWeight();
+}
+
 void CoverageModel::stackFailures() {
     if (unit_ > 1)
         throw UsageError("--robust failures: receivers hear a tag together; leave them out");
@@ -100,14 +164,19 @@ void CoverageModel::stackFailures() {
     problem_.standing = CellSet(problem_.cells());
     cases_.failures = options_.robust.failures;
     cases_.least_total = made.least_total;
-    const auto copy_at = [&](std::vector<std::size_t>& firsts) {
-        const std::size_t first = firsts.front();
-        for (std::size_t m = 1; m <= failures; ++m) firsts.push_back(m * cells + first);
-    };
-    if (site_.isOneRoom())
-        copy_at(only().cases().front()->firsts);
-    else
-        for (Room& room : rooms_) copy_at(room.firsts);
+    std::vector<std::size_t>* const firsts =
+        site_.isOneRoom() ? &only().cases().front()->firsts : nullptr;
+    for (std::size_t m = 1; m <= failures; ++m) {
+        if (firsts != nullptr) {
+            firsts->push_back(m * cells + firsts->front());
+            continue;
+        }
+        for (Room& room : rooms_) {
+            Copy copy = room.copies.front();
+            copy.first += m * cells;
+            room.copies.push_back(copy);
+        }
+    }
     for (CellSet& view : cases_.standing) {
         CellSet stack(problem_.cells());
         for (std::size_t m = 0; m <= failures; ++m)
@@ -131,7 +200,8 @@ RobustValues CoverageModel::robustValuesOf(std::span<const CountedView> views,
     } else {
         for (const std::uint64_t value : values.ofBlocks())
             robust.shares.push_back(static_cast<double>(value) / unit);
-        for (const auto& room : only().cases()) robust.names.push_back(room->name);
+        if (site_.isOneRoom())
+            for (const auto& room : only().cases()) robust.names.push_back(room->name);
     }
     for (const std::size_t failed : worst.failed)
         robust.failed.push_back(failed < standing_ids_.size()

@@ -24,9 +24,13 @@ double highestSite(const BuildingScene& building, const ArrangeOptions& options)
 
 BuildingSite::BuildingSite(const BuildingScene& building, const ArrangeOptions& options,
                            std::vector<RoomGoals> goals)
-    : building_(building), coupling_(building_), sight_(coupling_, options.plane) {
+    : building_(building),
+      plane_(options.plane),
+      highest_(highestSite(building_, options)),
+      coupling_(building_),
+      sight_(coupling_, options.plane) {
     goals.resize(building_.scenes.size());
-    const auto floors = coupling_.floors(highestSite(building_, options));
+    const auto floors = coupling_.floors(highest_);
     for (std::size_t i = 0; i < floors.size(); ++i) {
         const Storey& storey = building_.document.storeys[i];
         const Point2 at = storey.building_from_storey.position;
@@ -38,6 +42,47 @@ BuildingSite::BuildingSite(const BuildingScene& building, const ArrangeOptions& 
                                hasFloor(*floors[i])});
     }
     site_.sight = this;
+}
+
+namespace {
+
+/// Sight between the storeys of a crowded building.
+class CrowdedSight : public RoomSight {
+  public:
+    CrowdedSight(BuildingScene building, double plane)
+        : building_(std::move(building)), coupling_(building_), sight_(coupling_, plane) {}
+    CrowdedSight(const CrowdedSight&) = delete;
+    CrowdedSight& operator=(const CrowdedSight&) = delete;
+
+    [[nodiscard]] const Coupling& coupling() const { return coupling_; }
+
+    [[nodiscard]] bool maySee(std::size_t from, const Sensor& sensor,
+                              std::size_t to) const override {
+        return sight_.maySee(from, sensor, to);
+    }
+    void look(std::size_t from, std::span<const Sensor> turned, std::size_t to, const Grid& grid,
+              CellParts& parts) const override {
+        sight_.look(from, turned, to, grid, parts);
+    }
+
+  private:
+    BuildingScene building_;
+    Coupling coupling_;
+    StoreySight sight_;
+};
+
+}  // namespace
+
+CrowdedSite BuildingSite::crowded(std::span<const Crowd> crowds) const {
+    BuildingScene changed = building_;
+    for (std::size_t i = 0; i < crowds.size(); ++i)
+        if (!crowds[i].empty())
+            changed.scenes[i] =
+                std::make_shared<const Scene>(withCrowd(*building_.scenes[i], crowds[i]));
+    auto sight = std::make_unique<CrowdedSight>(std::move(changed), plane_);
+    CrowdedSite site{sight->coupling().floors(highest_), nullptr};
+    site.sight = std::move(sight);
+    return site;
 }
 
 SiteFigures BuildingSite::measure(std::span<const std::vector<Sensor>> added,

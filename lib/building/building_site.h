@@ -42,12 +42,14 @@ class BuildingSite final : public SiteSight {
               CellParts& parts) const override {
         sight_.look(from, turned, to, grid, parts);
     }
+    [[nodiscard]] CrowdedSite crowded(std::span<const Crowd> crowds) const override;
     /// As measureBuilding().
     [[nodiscard]] SiteFigures measure(std::span<const std::vector<Sensor>> added,
                                       const CoverageOptions& options) const override;
 
   private:
     BuildingScene building_;
+    double plane_, highest_;
     Coupling coupling_;
     StoreySight sight_;
     ArrangeSite site_;

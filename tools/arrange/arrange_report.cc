@@ -85,12 +85,11 @@ PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
 namespace {
 
 /// Returns the building with sensors that were placed.
-BuildingScene placedBuilding(const ArrangeWork& work,
-                             const std::vector<Placement>& sensors) {
+BuildingScene placedBuilding(const ArrangeWork& work, const std::vector<Placement>& sensors) {
     BuildingScene placed = *work.input.building;
     for (std::size_t i = 0; i < placed.scenes.size(); ++i)
-        placed.scenes[i] = std::make_shared<const Scene>(
-            withPlaced(*placed.scenes[i], work.groups, sensors, i));
+        placed.scenes[i] =
+            std::make_shared<const Scene>(withPlaced(*placed.scenes[i], work.groups, sensors, i));
     return placed;
 }
 

@@ -14,6 +14,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "building/building_robustness.h"
 #include "cli/outputs.h"
 #include "env/zone.h"
 #include "scene/findings/findings.h"
@@ -164,6 +165,29 @@ void takeDemand(const ArrangeToolOptions& options, ArrangeWork& work) {
     }
 }
 
+/// Draws the random cases of a building: mountings by storey, and crowds spread by free floor, as
+/// coverage does.
+void takeCases(const ArrangeToolOptions& options, ArrangeWork& work) {
+    const RobustChoice& robust = work.how.robust;
+    const std::uint64_t seed = options.common.seed;
+    if (robust.of == RobustChoice::Of::Mounting)
+        for (std::size_t i = 0; i < work.goals.size(); ++i)
+            work.goals[i].case_seed = seedOfStorey(seed, i);
+    if (robust.of != RobustChoice::Of::Crowd) return;
+    const BuildingScene& building = *work.input.building;
+    const std::vector<std::size_t> people =
+        spreadOverStoreys(measureBuilding(building, {.plane = work.how.plane}),
+                          static_cast<std::size_t>(robust.people));
+    for (std::size_t i = 0; i < work.goals.size(); ++i) {
+        std::vector<Crowd>& crowds = work.goals[i].crowds;
+        crowds.resize(kRobustSamples);
+        if (people[i] == 0) continue;
+        const CrowdFloor floor(*building.scenes[i]);
+        for (std::size_t k = 0; k < crowds.size(); ++k)
+            crowds[k] = floor.draw(people[i], {.seed = seedOfStorey(seed, i), .frame = k});
+    }
+}
+
 /// Reads the rooms of --robust, each with the layout.
 void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
     if (options.robust_rooms.empty()) return;
@@ -245,6 +269,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
         takeGoals(options, work);
         takePlaces(options, work);
         takeDemand(options, work);
+        takeCases(options, work);
         work.rooms = std::make_shared<BuildingSite>(*input.building, work.how, work.goals);
         return work;
     }

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tests the search for layouts of buildings that hold in random cases: mountings and crowds.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "building/building_coverage.h"
+#include "building/building_robustness.h"
+#include "coverage/crowd.h"
+#include "scene/placement_schemas.h"
+#include "support/test_arrange_building.h"
+
+namespace ispace {
+namespace {
+
+BuildingScene buildingOf(const std::string& text) {
+    return makeBuildingScene(readBuilding(text, "house.yaml", {}), {}, {});
+}
+
+const char* const kApart =
+    "- storey: {id: ground, records: [{ispace: {size: 5 x 4 x 2.5}}]}\n"
+    "- storey: {id: upper, z: 3, records: [{ispace: {size: 3 x 2 x 2.5}}]}\n";
+const char* const kAtrium =
+    "- storey: {id: ground, height: 2.8, records: [{fence: {path: [[0, 0], [8, 0], [8, 6], [0, "
+    "6]], closed: yes, height: 2.8}}]}\n"
+    "- storey: {id: gallery, z: 3, height: 2.8, records: [{fence: {path: [[0, 0], [8, 0], [8, 6], "
+    "[0, 6]], closed: yes, height: 2.8}}]}\n"
+    "- shaft: {storeys: 'ground,gallery', path: [[2, 1.5], [6, 1.5], [6, 4.5], [2, 4.5]]}\n";
+
+ArrangeOptions coarse(RobustChoice::Of of, bool is_worst) {
+    ArrangeOptions options;
+    options.density = {2, 2, 4};
+    options.cells = CellSize{0.25};
+    options.robust = {
+        .of = of, .is_worst = is_worst, .people = 4, .tolerance = parseTolerance("5cm,3deg")};
+    return options;
+}
+
+SensorSpec rangers(int count) {
+    Record record(*sceneSchemas().find("laser"));
+    record.set("range", Tuple{3});
+    record.set("fov", 180.0);
+    return {record, count};
+}
+
+SensorSpec cameras(int count) {
+    Record record(*sceneSchemas().find("camera"));
+    record.set("fov", Tuple{90});
+    record.set("tilt", -50.0);
+    record.set("range", Tuple{8});
+    return {record, count};
+}
+
+/// Goals with crowds as `coverage --crowd` draws them.
+std::vector<RoomGoals> goalsOf(const BuildingScene& building, const ArrangeOptions& options) {
+    std::vector<RoomGoals> goals(building.scenes.size());
+    const std::vector<std::size_t> people = spreadOverStoreys(
+        measureBuilding(building, {}), static_cast<std::size_t>(options.robust.people));
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+        if (options.robust.of == RobustChoice::Of::Mounting) {
+            goals[i].case_seed = seedOfStorey(options.seed, i);
+            continue;
+        }
+        goals[i].crowds.resize(kRobustSamples);
+        if (people[i] == 0) continue;
+        const CrowdFloor floor(*building.scenes[i]);
+        for (std::size_t k = 0; k < kRobustSamples; ++k)
+            goals[i].crowds[k] =
+                floor.draw(people[i], {.seed = seedOfStorey(options.seed, i), .frame = k});
+    }
+    return goals;
+}
+
+/// The mean and the least coverage in the crowds of the search, as coverage measures them.
+std::pair<double, double> inCrowds(const BuildingScene& building, const ArrangedBuilding& arranged,
+                                   const std::vector<RoomGoals>& goals) {
+    const BuildingScene placed = written(building, arranged);
+    double sum = 0, least = 1;
+    for (std::size_t k = 0; k < kRobustSamples; ++k) {
+        BuildingScene crowded = placed;
+        for (std::size_t i = 0; i < goals.size(); ++i)
+            crowded.scenes[i] =
+                std::make_shared<const Scene>(withCrowd(*placed.scenes[i], goals[i].crowds[k]));
+        const double share =
+            *measureBuilding(crowded, {.cells = CellSize{0.25}, .exact = false}).coverage.grid;
+        sum += share / kRobustSamples;
+        least = std::min(least, share);
+    }
+    return {sum, least};
+}
+
+TEST(BuildingCases, ValuesInCrowdsAreThoseOfCoverage) {
+    for (const char* text : {kApart, kAtrium}) {
+        const BuildingScene building = buildingOf(text);
+        const ArrangeOptions options = coarse(RobustChoice::Of::Crowd, false);
+        const std::vector<RoomGoals> goals = goalsOf(building, options);
+        const std::vector<SensorSpec> sensors = {text == kApart ? rangers(3) : cameras(3)};
+        const ArrangedBuilding result = arrangedIn(building, sensors, options, goals);
+        const auto [mean, least] = inCrowds(building, result, goals);
+        ASSERT_TRUE(result.found.robust);
+        EXPECT_NEAR(result.found.robust->mean, mean, 2e-3);
+        EXPECT_NEAR(result.found.robust->worst, least, 2e-3);
+        EXPECT_EQ(result.found.robust->shares.size(), std::size_t{kRobustSamples});
+        EXPECT_GE(result.found.bound, result.found.robust->mean - 1e-9);
+    }
+}
+
+TEST(BuildingCases, AStoreyThatDoesNotMatterChangesNothing) {
+    const BuildingScene both = buildingOf(kApart);
+    const BuildingScene alone =
+        buildingOf("- storey: {id: ground, records: [{ispace: {size: 5 x 4 x 2.5}}]}\n");
+    for (const auto of : {RobustChoice::Of::Crowd, RobustChoice::Of::Mounting})
+        for (const bool is_worst : {false, true}) {
+            ArrangeOptions options = coarse(of, is_worst);
+            SilentProgress progress;
+            std::vector<RoomGoals> goals = goalsOf(alone, options);
+            goals.emplace_back();  // floor above that does not count, and takes no sensor
+            goals[1].crowds.resize(goals[0].crowds.size());
+            goals[1].counts = goals[1].takes_sensors = false;
+            const ArrangedBuilding result = arrangedIn(both, {rangers(2)}, options, goals);
+            const SensorSpec spec = rangers(2);
+            const Scene& room = *alone.scenes[0];
+            const Arrangement wanted = arrange(
+                room, groupsToPlace(room, std::span(&spec, 1), {}, false), options, progress);
+            EXPECT_EQ(result.counts, (std::vector<int>{2, 0}));
+            ASSERT_TRUE(result.found.robust && wanted.robust);
+            EXPECT_NEAR(result.found.robust->mean, wanted.robust->mean, 1e-6);
+            EXPECT_NEAR(result.found.robust->worst, wanted.robust->worst, 1e-6);
+            EXPECT_NEAR(result.found.bound, wanted.bound, 1e-6);
+            for (std::size_t i = 0; i < 2; ++i)
+                EXPECT_EQ(result.found.sensors[i].pose, wanted.sensors[i].pose);
+        }
+}
+
+TEST(BuildingCases, JointLayoutsAreNeverWorseThanApart) {
+    const BuildingScene building = buildingOf(kApart);
+    const ArrangeOptions options = coarse(RobustChoice::Of::Mounting, false);
+    const std::vector<RoomGoals> goals = goalsOf(building, options);
+    const ArrangedBuilding result = arrangedIn(building, {rangers(3)}, options, goals);
+    SilentProgress progress;
+    for (int ground = 1; ground <= 2; ++ground) {
+        double apart = 0;
+        for (std::size_t i = 0; i < 2; ++i) {
+            ArrangeOptions own = options;
+            own.seed = *goals[i].case_seed;
+            const SensorSpec spec = rangers(i == 0 ? ground : 3 - ground);
+            const Scene& room = *building.scenes[i];
+            const Arrangement one =
+                arrange(room, groupsToPlace(room, std::span(&spec, 1), {}, false), own, progress);
+            apart += room.environment.indoor().area() * one.robust->mean / 26;
+        }
+        EXPECT_GE(result.found.robust->mean, apart - 2e-3) << ground;
+        EXPECT_GE(result.found.bound, apart - 1e-6) << ground;
+    }
+    EXPECT_GE(result.found.bound, result.found.robust->mean - 1e-9);
+}
+
+TEST(BuildingCases, CamerasThatMayTurnSeeTheFloorBelowInEachMounting) {
+    const BuildingScene building = buildingOf(kAtrium);
+    ArrangeOptions options = coarse(RobustChoice::Of::Mounting, false);
+    std::vector<RoomGoals> goals = goalsOf(building, options);
+    goals[0].takes_sensors = false;
+    const ArrangedBuilding shaken = arrangedIn(building, {cameras(1)}, options, goals);
+    options.robust.tolerance = {};
+    const ArrangedBuilding still = arrangedIn(building, {cameras(1)}, options, goals);
+    options.robust = {};
+    const ArrangedBuilding plain = arrangedIn(building, {cameras(1)}, options, goals);
+    EXPECT_NEAR(still.found.robust->mean, plain.found.candidate_value, 1e-6)
+        << "without errors all cases are the plain one";
+    EXPECT_NEAR(still.found.robust->worst, still.found.robust->mean, 1e-6);
+    EXPECT_LT(shaken.found.robust->worst, shaken.found.robust->mean);
+    EXPECT_NEAR(shaken.found.robust->mean, plain.found.candidate_value, 0.05);
+}
+
+}  // namespace
+}  // namespace ispace
