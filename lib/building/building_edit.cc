@@ -57,6 +57,17 @@ void leaveOutIds(std::vector<Record>& records, const Storey& storey,
     for (std::size_t i = 0; i < records.size(); ++i) records[i].set("id", ids[i]);
 }
 
+/// Returns true if the edits of an only storey are about its room alone, by plain ids.
+bool arePlain(const Storey& storey, std::span<const Edit> edits) {
+    const std::vector<std::string> ids = assignIds(storey.room->records);
+    return std::all_of(edits.begin(), edits.end(), [&](const Edit& edit) {
+        if (edit.kind == Edit::Kind::Add || edit.kind == Edit::Kind::Fence)
+            return edit.text.find("id=" + storey.id + '/') == std::string::npos;
+        return std::any_of(ids.begin(), ids.end(),
+                           [&](const std::string& id) { return edit.ids.matches(id); });
+    });
+}
+
 }  // namespace
 
 std::shared_ptr<const Scene> sceneOfBuilding(const BuildingScene& building, std::size_t storey) {
@@ -70,6 +81,12 @@ std::shared_ptr<const Scene> sceneOfBuilding(const BuildingScene& building, std:
 
 void editBuilding(StoreyedDocument& building, std::span<const Edit> edits) {
     if (edits.empty()) return;
+    if (building.storeys.size() == 1 && arePlain(building.storeys.front(), edits)) {
+        Document room = *building.storeys.front().room;
+        room.records = edited(std::move(room.records), edits, sceneSchemas());
+        building.storeys.front().room = std::make_shared<const Document>(std::move(room));
+        return;
+    }
     WholeRecords whole = wholeRecords(building);
     std::vector<Record> passages;
     Document rooms;

@@ -78,7 +78,7 @@ Document layoutOfStorey(const Document& layout, const StoreyedDocument& building
                                [&](const Storey& one) { return id.starts_with(one.id + '/'); });
         });
     Document own = layout;
-    if (is_of_building) {
+    if (is_of_building || namesStoreys(layout)) {
         own.records =
             layoutsOf(layout, building)[static_cast<std::size_t>(&chosen - building.storeys.data())]
                 .records;
@@ -98,6 +98,15 @@ std::string recordedBuilding(const std::string& folder) {
     const bool is_one = std::filesystem::exists(folder + '/' + kRecordedBuilding) &&
                         !std::filesystem::exists(RecordedFiles(folder).robots);
     return is_one ? fileOfRecord(folder, kRecordedBuilding) : "";
+}
+
+std::string recordOfStorey(const std::string& folder, const std::string& storey) {
+    if (folder.empty() || storey.empty()) return folder;
+    std::string own = folder;
+    own.append("/").append(storey);
+    const bool is_of_building = !std::filesystem::exists(RecordedFiles(folder).robots) &&
+                                std::filesystem::exists(RecordedFiles(own).robots);
+    return is_of_building ? own : folder;
 }
 
 namespace {
@@ -432,6 +441,11 @@ std::string storeyFile(std::string pattern, const std::string& id) {
          at = pattern.find(kMark, at + id.size()))
         pattern.replace(at, kMark.size(), id);
     return pattern;
+}
+
+void mustBeOneProduct(const CommonOptions& options) {
+    if (options.dependencies.wanted && isStoreyPattern(options.output))
+        throw UsageError("-MD writes a rule for one product, and %s makes a file for each storey");
 }
 
 std::string roomFile(const std::string& output, const std::string& storey,

@@ -54,6 +54,10 @@ constexpr const char* kRecordedBuilding = "building.yaml";
 /// \throws as checkRecordFolder() and fileOfRecord()
 std::string recordedBuilding(const std::string& folder);
 
+/// Returns the folder of a storey in the record of a building; the folder itself for the record of
+/// a room, and for "".
+std::string recordOfStorey(const std::string& folder, const std::string& storey);
+
 /// Measures the record of a building's run, storey by storey and in sum. \param max_work of changes
 /// \param warnings gets what could not be read or repeated \throws as measureRun()
 BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std::string& folder,
@@ -77,6 +81,9 @@ std::optional<BuildingInput> readBuildingInput(const SceneRequest& request);
 
 /// Returns true if the name has a mark for the storey's id, %s.
 bool isStoreyPattern(std::string_view output);
+
+/// \throws UsageError for -MD, whose rule is for one product, and a pattern
+void mustBeOneProduct(const CommonOptions& options);
 
 /// Returns the name with the id for each mark.
 std::string storeyFile(std::string pattern, const std::string& id);

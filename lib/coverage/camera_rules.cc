@@ -50,7 +50,7 @@ bool isAngle(std::string_view text) {
 /// Returns the zones that match. \throws UsageError if none does
 std::vector<Zone> matchingZones(const std::string& pattern, const Environment& environment) {
     std::vector<Zone> zones = zonesOf(environment);
-    const Glob glob(pattern);
+    const Glob glob(withoutAllRooms(pattern));
     std::erase_if(zones, [&glob](const Zone& zone) { return !glob.matches(zone.id); });
     if (zones.empty()) throw UsageError(unknownZoneText(pattern, environment));
     return zones;
@@ -324,8 +324,10 @@ std::vector<FacingRule> facingIn(const Environment& environment,
             all.push_back(rule);
             continue;
         }
-        if (rule.zone.starts_with(kDoorPrefix)) {
-            addDoorRules(environment, rule, all);
+        if (withoutAllRooms(rule.zone).starts_with(kDoorPrefix)) {
+            FacingRule own = rule;
+            own.zone = withoutAllRooms(rule.zone);
+            addDoorRules(environment, own, all);
             continue;
         }
         for (const Zone& zone : matchingZones(rule.zone, environment)) {

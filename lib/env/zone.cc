@@ -300,7 +300,13 @@ std::vector<DoorZone> doorZones(std::string_view text, const Environment& enviro
 
 }  // namespace
 
+std::string_view withoutAllRooms(std::string_view text) {
+    constexpr std::string_view kAll = "*/";
+    return text.starts_with(kAll) ? text.substr(kAll.size()) : text;
+}
+
 std::vector<NamedZone> readZones(std::string_view text, const Environment& environment) {
+    text = withoutAllRooms(text);
     std::vector<NamedZone> zones;
     if (!text.starts_with(kDoorPrefix)) {
         const Glob glob(text);
@@ -328,7 +334,8 @@ std::vector<Record> zoneRecords(std::span<const std::string> texts, const Enviro
             path.push_back({std::round(p.x * 1e6) / 1e6, std::round(p.y * 1e6) / 1e6});
         record.set("path", std::move(path));
     };
-    for (const std::string& text : texts) {
+    for (const std::string& whole : texts) {
+        const std::string_view text = withoutAllRooms(whole);
         if (!text.starts_with(kDoorPrefix)) {
             for (const NamedZone& zone : readZones(text, environment))
                 if (!ids.contains(zone.name)) add(zone.outline, "");

@@ -34,6 +34,10 @@ std::string inLowerCase(std::string_view pattern, std::span<const std::string> n
 /// Returns "the room has no zone `x`, did you mean …; its zones: a, b".
 std::string unknownZoneText(std::string_view text, const Environment& environment);
 
+/// Returns a text about zones without the `*/` that begins it for all rooms of a site, of which a
+/// room alone is the only one.
+std::string_view withoutAllRooms(std::string_view text);
+
 /// Reads all zones of a text: `door:GLOB[,M]` means one zone for each door with a matching id: the
 /// floor within M of its opening, up to walls, see DoorFloor. A glob means the records `zone` that
 /// it matches. Any other text is one zone, as of readZone(). Rounded ends have 16 chords per

@@ -71,6 +71,7 @@ TEST(ReadZones, TakesGlobsOfIds) {
     EXPECT_EQ(names("*"), "entrance desk zone1 ");
     EXPECT_EQ(names("?e*"), "desk ");
     EXPECT_EQ(names("desk"), "desk ");
+    EXPECT_EQ(names("*/?e*"), "desk ") << "a room alone is all rooms";
     EXPECT_THROW(static_cast<void>(readZones("b*", room())), UsageError);
     static const Schemas schemas(environmentSchemas());
     const std::string all = "*";

@@ -45,6 +45,7 @@ void mustBeAboutBuildings(const CoverageToolOptions& options, const StoreyedDocu
         recordedBuilding(options.presence->record).empty())
         option = "--presence by the record of one room";
     if (!option.empty()) refuseSeveralRooms(option, building);
+    if (options.format != nullptr) mustBeOneProduct(options.common);
     if (options.format != nullptr && !options.format->picture)
         mustNameStoreys(options.common.output, options.format->name, options.format->suffix);
 }
@@ -391,12 +392,26 @@ bool coverBuildingOf(const BatchJob& job, const CoverageToolOptions& options, Jo
     return true;
 }
 
+std::vector<std::string> operandsOf(const CoverageToolOptions& options) {
+    if (options.run.empty() || !options.operands.empty()) return options.operands;
+    if (const std::string building = recordedBuilding(options.run); !building.empty())
+        return {building};
+    static_cast<void>(RunReader(options.run));  // fails before a missing layout does
+    const std::string scene = sceneOfRecord(options.run);
+    return scene.empty() ? std::vector<std::string>() : std::vector{scene};
+}
+
+void takeStorey(CoverageToolOptions& options, const SceneInput& input) {
+    options.run = recordOfStorey(options.run, input.storey);
+    if (options.presence)
+        options.presence->record = recordOfStorey(options.presence->record, input.storey);
+    if (options.format != nullptr)
+        options.common.output =
+            roomFile(options.common.output, input.storey, input.environment_operand);
+}
+
 bool coverBuilding(const CoverageToolOptions& options, JunitFile& junit) {
-    std::vector<std::string> operands = options.operands;
-    if (operands.empty())
-        if (const std::string recorded = recordedBuilding(options.run); !recorded.empty())
-            operands.push_back(recorded);
-    auto read = readBuildingInput({operands, options.rules, true});
+    auto read = readBuildingInput({operandsOf(options), options.rules, true});
     if (!read) return false;
     BuildingInput& input = *read;
     mustBeAboutBuildings(options, input.building.document);

@@ -2,10 +2,21 @@
 // coverage of all storeys of a building.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "cli/batch.h"
+#include "cli/operands.h"
 #include "coverage/coverage_options.h"
 
 namespace ispace {
+
+/// Returns the operands, or what a record of --run holds: its scene, or its building.
+std::vector<std::string> operandsOf(const CoverageToolOptions& options);
+
+/// For a room that is a storey of a building: names the product by it, for %s, and takes its part
+/// of the records of the building. \throws UsageError for %s and a room that is no storey
+void takeStorey(CoverageToolOptions& options, const SceneInput& input);
 
 /// Reports on a building, draws its maps and judges its requirements. \return false, without having
 /// done anything, if ENV is a room or a storey is chosen

@@ -20,7 +20,6 @@
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
-#include "coverage/coverage_building.h"
 #include "coverage/crowd.h"
 #include "coverage/presence.h"
 #include "record/text.h"
@@ -323,36 +322,6 @@ Measured measureScene(const CoverageToolOptions& options, const SceneInput& inpu
         !text.empty())
         tell(options.common, "coverage", text);
     return measured;
-}
-
-namespace {
-
-/// Reports on the room of a job of --batch.
-void coverRoomOf(const BatchJob& job, const CoverageToolOptions& options, JobOutcome& outcome) {
-    SceneInput input = readScene({job.operands, options.rules, false});
-    outcome.files = filesOf(input);
-    addZones(options.zones, input);
-    if (!input.layout && input.scene.sensors.empty())
-        throw UsageError(input.environment_operand +
-                         " holds no placed sensor: give a layout after it");
-    warnOfImport(options.common, "coverage", input);
-    const Coverage coverage = measureScene(options, input, nullptr).coverage;
-    outcome.line = coverageJson(coverage.report);
-    outcome.verdicts = judge(options.requirements, coverage, job.name + ": ");
-}
-
-}  // namespace
-
-void measureList(const CoverageToolOptions& options) {
-    runBatch({"coverage", options.common, options.batch,
-              options.command + readingText(options.rules), options.junit},
-             [&](const BatchJob& job, const CommonOptions& common, JobOutcome& outcome) {
-                 CoverageToolOptions own = options;
-                 own.common = common;
-                 if (!coverBuildingOf(job, own, outcome)) coverRoomOf(job, own, outcome);
-                 if (const std::string unmet = unmetText(outcome.verdicts); !unmet.empty())
-                     throw UnmetError(unmet);
-             });
 }
 
 }  // namespace ispace

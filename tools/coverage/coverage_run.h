@@ -109,7 +109,4 @@ std::string unmetText(std::span<const JunitCase> verdicts);
 Measured measureScene(const CoverageToolOptions& options, const SceneInput& input,
                       const Scene* other);
 
-/// --batch: a report for each scene of the list, see runBatch().
-void measureList(const CoverageToolOptions& options);
-
 }  // namespace ispace

@@ -30,14 +30,8 @@ namespace {
 
 using namespace ispace;
 
-/// A record holds its own scene.
 SceneInput readInput(const CoverageToolOptions& options) {
-    std::vector<std::string> operands = options.operands;
-    if (!options.run.empty() && operands.empty()) {
-        static_cast<void>(RunReader(options.run));  // fails before a missing layout does
-        if (const std::string scene = sceneOfRecord(options.run); !scene.empty())
-            operands.push_back(scene);
-    }
+    const std::vector<std::string> operands = operandsOf(options);
     if (!options.report.empty() || options.suggestions)
         keepFreedMemory();  // of one picture or trial for the next
     else
@@ -115,9 +109,7 @@ std::string reportFile(const CoverageToolOptions& options, const SceneInput& inp
 
 void coverScene(CoverageToolOptions options, JunitFile& junit) {
     const SceneInput& input = leftToExit(readInput(options));
-    if (options.format != nullptr)
-        options.common.output =
-            roomFile(options.common.output, input.storey, input.environment_operand);
+    takeStorey(options, input);
     warnOfImport(options.common, "coverage", input);
     std::vector<std::string> files = filesOf(input);
     std::optional<OtherLayout> other;
@@ -177,6 +169,33 @@ void coverScene(CoverageToolOptions options, JunitFile& junit) {
     checkRequired(options, input, verdicts, parts.rules, junit);
 }
 
+/// Reports on the room of a job of --batch.
+void coverRoomOf(const BatchJob& job, const CoverageToolOptions& options, JobOutcome& outcome) {
+    SceneInput input = readScene({job.operands, options.rules, false});
+    outcome.files = filesOf(input);
+    addZones(options.zones, input);
+    if (!input.layout && input.scene.sensors.empty())
+        throw UsageError(input.environment_operand +
+                         " holds no placed sensor: give a layout after it");
+    warnOfImport(options.common, "coverage", input);
+    const Coverage coverage = measureScene(options, input, nullptr).coverage;
+    outcome.line = coverageJson(coverage.report);
+    outcome.verdicts = judge(options.requirements, coverage, job.name + ": ");
+}
+
+/// --batch: a report for each scene of the list, see runBatch().
+void measureList(const CoverageToolOptions& options) {
+    runBatch({"coverage", options.common, options.batch,
+              options.command + readingText(options.rules), options.junit},
+             [&](const BatchJob& job, const CommonOptions& common, JobOutcome& outcome) {
+                 CoverageToolOptions own = options;
+                 own.common = common;
+                 if (!coverBuildingOf(job, own, outcome)) coverRoomOf(job, own, outcome);
+                 if (const std::string unmet = unmetText(outcome.verdicts); !unmet.empty())
+                     throw UnmetError(unmet);
+             });
+}
+
 void coverage(const CoverageToolOptions& options) {
     limitThreads(options.common.threads);
     claimOutputs(options.common);
@@ -203,6 +222,6 @@ int ispace::runCoverage(int argc, char** argv) {
         } else if (options.batch.list.empty())
             coverage(options);
         else
-            ispace::measureList(options);
+            measureList(options);
     });
 }

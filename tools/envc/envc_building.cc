@@ -54,7 +54,14 @@ bool holdsOneStorey(const EnvcOptions& options) {
 
 /// Adds the records of a layout to the rooms of their storeys.
 void addLayout(const Document& layout, StoreyedDocument& building) {
-    const std::vector<Document> layouts = layoutsOf(layout, building);
+    // That of an only storey is the layout of a room, whose ids are plain.
+    std::vector<Document> layouts = building.storeys.size() == 1
+                                        ? std::vector{layoutOfStorey(layout, building, "")}
+                                        : layoutsOf(layout, building);
+    for (Document& one : layouts)
+        std::erase_if(one.records, [](const Record& record) {
+            return record.schema().type == RecordType::Meta;
+        });
     for (std::size_t i = 0; i < layouts.size(); ++i) {
         if (layouts[i].records.empty()) continue;
         Storey& storey = building.storeys[i];
@@ -332,6 +339,7 @@ std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
         (!option.empty() || (holdsOneStorey(options) && !is_named)))
         return std::nullopt;
     if (!option.empty()) refuseSeveralRooms(option, building);
+    mustBeOneProduct(options.common);
     if (holdsOneStorey(options))
         mustNameStoreys(options.common.output, options.format->name, options.format->suffix);
     for (const RawInput& input : raw) {
@@ -349,6 +357,13 @@ std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
     building.history.push_back(options.history_line);
     if (options.format != nullptr) rebaseRooms(options, found->name, building);
     return building;
+}
+
+EnvcOptions optionsOfRoom(EnvcOptions options, const std::string& operand) {
+    if (options.format != nullptr)
+        options.common.output =
+            roomFile(options.common.output, options.rules.storeys.one(), operand);
+    return options;
 }
 
 void writeBuilding(const EnvcOptions& options, StoreyedDocument document,

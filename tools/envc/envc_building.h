@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "building/storeys.h"
@@ -16,6 +17,11 @@ namespace ispace {
 std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
                                                   const std::vector<RawInput>& inputs,
                                                   const InputRequest& request);
+
+/// Returns the options for a room alone: %s in the name of the product is the storey that was
+/// chosen. \throws UsageError for %s and a room that is no storey \param operand of the room, for
+/// messages
+EnvcOptions optionsOfRoom(EnvcOptions options, const std::string& operand);
 
 /// Checks, reports on, draws or writes the building, as the options say.
 void writeBuilding(const EnvcOptions& options, StoreyedDocument document,

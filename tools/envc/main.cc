@@ -13,7 +13,6 @@
 #include "base/number.h"
 #include "base/parallel.h"
 #include "base/run_files.h"
-#include "cli/building_operands.h"
 #include "cli/job_server.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
@@ -220,10 +219,7 @@ void envc(const EnvcOptions& options) {
     if (auto building = readWholeBuilding(options, raw, request))
         return writeBuilding(options, *std::move(building), report);
     Document document = readModel(options, raw, request, report);
-    EnvcOptions own = options;
-    if (format != nullptr)
-        own.common.output =
-            roomFile(options.common.output, options.rules.storeys.one(), raw.front().name);
+    const EnvcOptions own = optionsOfRoom(options, raw.front().name);
     std::vector<std::string> files = options.inputs;
     files.insert(files.end(), document.sources.begin(), document.sources.end());
     if (options.list_rooms && !found.any_plan)

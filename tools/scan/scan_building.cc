@@ -69,7 +69,8 @@ std::vector<std::unique_ptr<StoreySensors>> sensorsIn(const ScanToolOptions& opt
     }
     if (all.empty())
         throw UsageError(options.select.empty()
-                             ? "the building has no placed sensor that is read: give a layout"
+                             ? displayName(input.environment_operand) +
+                                   " has no placed sensor that is read: give a layout"
                              : "--select chooses nothing that is read: ids begin with their "
                                "storey, such as " +
                                    input.building.document.storeys.front().id + "/l1");

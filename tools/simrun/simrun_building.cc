@@ -169,7 +169,13 @@ class BuildingRunSite final : public RunSite {
 std::unique_ptr<RunSite> openBuilding(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     auto input = readInput(options, recordedBuilding(options.replay));
-    if (!input) return nullptr;
+    if (!input) {
+        if (std::filesystem::exists(options.record + '/' + kRecordedBuilding) &&
+            !std::filesystem::exists(RecordedFiles(options.record).robots))
+            throw UsageError("--record: " + options.record +
+                             " holds the record of a building: give another folder");
+        return nullptr;
+    }
     addZones(options.zones, input->building);
     warnOfScenes(options, *input);
     return std::make_unique<BuildingRunSite>(command, std::move(*input));

@@ -96,6 +96,8 @@ void forward(Replay& replay, World& world, SimTime from) {
     while (world.time() < from)
         if (!replay.step(world))
             throw UsageError("--from: the record ends at t=" + formatSimTime(world.time()));
+    // A record of this run begins with the room as these changes left it.
+    static_cast<void>(replay.takeMade());
 }
 
 /// The commands of --script.
@@ -120,8 +122,8 @@ void warnOfTrips(const Scene& scene, const CommonOptions& options) {
         if (record.schema().find("trip") == nullptr || !record.has("trip")) continue;
         Diagnostic finding = record.finding(
             "trip", record.keyword() + ' ' + scene.ids[placed.record] +
-                        " stands: its trip is over storeys, and this run has one; run the "
-                        "building without --storey");
+                        " stands: its trip is over storeys, and this run has one: give it a "
+                        "path, or run all storeys");
         finding.severity = Severity::Warning;
         warn(options, kTool, std::span<const Diagnostic>(&finding, 1));
     }
