@@ -125,6 +125,44 @@ TEST(BuildingRobustness, PeopleAreSpreadByFreeFloor) {
     EXPECT_EQ(spreadOverStoreys(coverage, 0), (std::vector<std::size_t>{0, 0, 0}));
 }
 
+TEST(BuildingCoverage, SumsHaveEachSensorOnce) {
+    const BuildingCoverage coverage = measureBuilding(house(), {});
+    const CoverageReport sum = sumOfStoreys(coverage);
+    ASSERT_EQ(sum.sensors.size(), 4U);
+    const auto camera = std::find_if(sum.sensors.begin(), sum.sensors.end(),
+                                     [](const SensorMetrics& one) { return one.id == "u/c"; });
+    ASSERT_NE(camera, sum.sensors.end());
+    double area = 0, marginal = 0, weighted = 0, farthest = 0;
+    std::size_t rooms = 0;
+    for (const Coverage& storey : coverage.storeys)
+        for (const SensorMetrics& one : storey.report.sensors) {
+            if (one.id != "u/c") continue;
+            ++rooms;
+            area += one.area.exact.value();
+            marginal += one.marginal.exact.value();
+            weighted += one.picture.value().mean_density.exact.value() * one.area.exact.value();
+            farthest = std::max(farthest, one.picture->farthest.value());
+        }
+    EXPECT_EQ(rooms, 2U) << "it sees the floor below";
+    EXPECT_NEAR(camera->area.exact.value(), area, 1e-9);
+    EXPECT_NEAR(camera->marginal.exact.value(), marginal, 1e-9);
+    EXPECT_NEAR(camera->picture.value().mean_density.exact.value(), weighted / area, 1e-9);
+    EXPECT_NEAR(camera->picture->farthest.value(), farthest, 1e-9);
+    ASSERT_TRUE(sum.redundancy_exact);
+    double all = 0, seen = 0;
+    for (std::size_t k = 0; k < sum.redundancy_exact->size(); ++k) {
+        all += (*sum.redundancy_exact)[k];
+        seen += k > 0 ? (*sum.redundancy_exact)[k] : 0;
+    }
+    EXPECT_NEAR(all, 1, 1e-6);
+    EXPECT_NEAR(seen, sum.coverage.exact.value(), 1e-6);
+    for (std::size_t i = 1; i < sum.unseen.size(); ++i)
+        EXPECT_LE(sum.unseen[i].area, sum.unseen[i - 1].area);
+    EXPECT_TRUE(std::all_of(sum.unseen.begin(), sum.unseen.end(), [](const UncoveredSpot& spot) {
+        return spot.room == "g" || spot.room == "u";
+    }));
+}
+
 TEST(BuildingRobustness, SumsAreSharesOfAllFloor) {
     const BuildingScene building = house();
     BuildingCoverage coverage = measureBuilding(building, {});

@@ -49,7 +49,11 @@ TEST(CoverageJson, HasTheKeysInTheirOrder) {
     EXPECT_EQ(
         coverageJson(sampleReport()),
         R"({"schema":"ispace-coverage/1","tool":"coverage","version":")" + std::string(version()) +
-            R"(","digest":"sha256:0a","limits":[-1,0,3,2.5],)"
+            R"(","digest":"sha256:0a","rooms":[{"id":"","digest":"sha256:0a","limits":[-1,0,3,2.5],)"
+            R"("grid":[4,5],"indoor_area":10,"free_area":9.25,)"
+            R"("total_effective_area":{"grid":8,"exact":null},"outside_area":null,)"
+            R"("coverage":{"grid":0.8,"exact":0.8125},"free_coverage":{"grid":0.875,"exact":null}}],)"
+            R"("limits":[-1,0,3,2.5],)"
             R"("grid":[4,5],"height":0.15,"plane":0,"indoor_area":10,"free_area":9.25,"sensors":[)"
             R"({"id":"l1","model":"urg-04lx","slice_area":3.5,"exact_area":3.375,)"
             R"("marginal_area":1.25,"kind":"laser","area":{"grid":3.25,"exact":3.375},)"
