@@ -100,15 +100,6 @@ std::string recordedBuilding(const std::string& folder) {
     return is_one ? fileOfRecord(folder, kRecordedBuilding) : "";
 }
 
-std::string recordOfStorey(const std::string& folder, const std::string& storey) {
-    if (folder.empty() || storey.empty()) return folder;
-    std::string own = folder;
-    own.append("/").append(storey);
-    const bool is_of_building = !std::filesystem::exists(RecordedFiles(folder).robots) &&
-                                std::filesystem::exists(RecordedFiles(own).robots);
-    return is_of_building ? own : folder;
-}
-
 namespace {
 
 /// Fixed sensors of a storey that a run has changed.

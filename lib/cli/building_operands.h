@@ -54,10 +54,6 @@ constexpr const char* kRecordedBuilding = "building.yaml";
 /// \throws as checkRecordFolder() and fileOfRecord()
 std::string recordedBuilding(const std::string& folder);
 
-/// Returns the folder of a storey in the record of a building; the folder itself for the record of
-/// a room, and for "".
-std::string recordOfStorey(const std::string& folder, const std::string& storey);
-
 /// Measures the record of a building's run, storey by storey and in sum. \param max_work of changes
 /// \param warnings gets what could not be read or repeated \throws as measureRun()
 BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std::string& folder,

@@ -402,9 +402,13 @@ std::vector<std::string> operandsOf(const CoverageToolOptions& options) {
 }
 
 void takeStorey(CoverageToolOptions& options, const SceneInput& input) {
-    options.run = recordOfStorey(options.run, input.storey);
-    if (options.presence)
-        options.presence->record = recordOfStorey(options.presence->record, input.storey);
+    const auto must_be_of_room = [](const char* option, const std::string& folder) {
+        if (std::filesystem::is_directory(folder) && !recordedBuilding(folder).empty())
+            throw UsageError(std::string(option) + ": " + folder +
+                             " is the record of a building: leave out --storey and ENV");
+    };
+    must_be_of_room("--run", options.run);
+    if (options.presence) must_be_of_room("--presence", options.presence->record);
     if (options.format != nullptr)
         options.common.output =
             roomFile(options.common.output, input.storey, input.environment_operand);
