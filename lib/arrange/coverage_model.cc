@@ -353,6 +353,7 @@ class CoverageModel::Joiner {
         for (std::size_t number = 0; number < model_.viewCases(); ++number) {
             const RoomSight& sight = model_.sightIn(number);
             std::vector<Sensor> mounted;
+            mounted.reserve(turned.size());
             for (const Sensor& sensor : turned)
                 mounted.push_back(model_.mountedIn(number, from, sensor));
             for (std::size_t to = 0; to < model_.rooms_.size(); ++to) {

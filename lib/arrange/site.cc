@@ -23,7 +23,8 @@ std::vector<ServedDemand> servedByRoom(const ArrangeSite& site, const CellSet& s
     for (const SiteRoom& room : site.rooms) {
         if (!room.has_floor) continue;
         const std::size_t count = room.goals.demand->weights().size();
-        ServedDemand& own = rooms.emplace_back(room.goals.demand.get(), CellSet(count));
+        ServedDemand& own =
+            rooms.emplace_back(ServedDemand{room.goals.demand.get(), CellSet(count)});
         for (std::size_t i = 0; i < count; ++i)
             if (served.test(first + i)) own.served.set(i);
         first += count;

@@ -197,7 +197,7 @@ class OperandReader {
 
   private:
     [[nodiscard]] std::string storeyId() const {
-        const std::string called = request_.rules.storeys.one();
+        std::string called = request_.rules.storeys.one();
         if (!building_) return called;
         return called.empty() ? building_->storeys.front().id : building_->storey(called).id;
     }

@@ -113,7 +113,7 @@ std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const BuildingScen
         spreadOverStoreys(coverage, static_cast<std::size_t>(choice.people));
     std::vector<RoomWays> rooms;
     for (std::size_t i = 0; i < people.size(); ++i) {
-        RoomWays& own = rooms.emplace_back(choice, seedOfStorey(seed, i));
+        RoomWays& own = rooms.emplace_back(RoomWays{choice, seedOfStorey(seed, i)});
         own.choice.people = static_cast<int>(people[i]);
         if (!choice.record.empty()) own.choice.record += '/' + building.document.storeys[i].id;
     }

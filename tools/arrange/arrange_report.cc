@@ -106,7 +106,8 @@ void writeStoreyHeat(const ArrangeWork& work, const GainMap& gains,
     std::vector<Picture> panels;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         const std::string& id = work.input.ids[i];
-        map.title = id + ": " + title;
+        map.title = id;
+        map.title.append(": ").append(title);
         map.trace.clear();
         for (const TriedPose& tried : gains.poses)
             if (tried.room == id) map.trace.push_back(tried);

@@ -183,7 +183,8 @@ WebPage::WebPage(ServerState& state, const std::string& title, const WebPageOpti
     for (std::size_t i = 0; i < states.size(); ++i) {
         ServerState& one = *states[i];
         const std::string& id = worlds->rooms()[i].id;
-        facts.title = id.empty() ? title : title + ", " + id;
+        facts.title = title;
+        if (!id.empty()) facts.title.append(", ").append(id);
         facts.passages = worlds->passageOutlines(i);
         facts.planned = [of = worlds, i] { return of->plannedWays(i); };
         rooms_.push_back({&one, WebFrames(one.simulation(), state.simulation(), facts)});
