@@ -441,10 +441,9 @@ void mustBeOneProduct(const CommonOptions& options) {
 
 std::string roomFile(const std::string& output, const std::string& storey,
                      const std::string& operand) {
-    if (storey.empty() && isStoreyPattern(output))
-        throw UsageError(printable(output) + ": %s stands for the id of a storey, and " +
-                         displayName(operand) + " is one room");
-    return storeyFile(output, storey);
+    if (!storey.empty()) return storeyFile(output, storey);
+    return storeyFile(output,
+                      isStream(operand) ? "room" : std::filesystem::path(operand).stem().string());
 }
 
 void mustNameStoreys(std::string_view output, std::string_view format, std::string_view suffix) {

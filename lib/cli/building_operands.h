@@ -84,8 +84,8 @@ void mustBeOneProduct(const CommonOptions& options);
 /// Returns the name with the id for each mark.
 std::string storeyFile(std::string pattern, const std::string& id);
 
-/// Returns the name of a room's file: with the id of its storey for each mark. \throws UsageError
-/// for a mark and a room that is no storey \param operand of the room, for messages
+/// Returns the name of a room's file: for each mark the id of its storey, of a room that is none
+/// the name of its file without the suffix ("room" of a stream).
 std::string roomFile(const std::string& output, const std::string& storey,
                      const std::string& operand);
 

@@ -14,8 +14,8 @@ namespace ispace {
 /// Returns the operands, or what a record of --run holds: its scene, or its building.
 std::vector<std::string> operandsOf(const CoverageToolOptions& options);
 
-/// For a room that may be a storey of a building: names the product by it, for %s. \throws
-/// UsageError for %s and a room that is no storey, and for records of buildings
+/// For a room that may be a storey of a building: names the product, for %s, as roomFile() does.
+/// \throws UsageError for records of buildings
 void takeStorey(CoverageToolOptions& options, const SceneInput& input);
 
 /// Reports on a building, draws its maps and judges its requirements. \return false, without having

@@ -18,9 +18,8 @@ std::optional<StoreyedDocument> readWholeBuilding(const EnvcOptions& options,
                                                   const std::vector<RawInput>& inputs,
                                                   const InputRequest& request);
 
-/// Returns the options for a room alone: %s in the name of the product is the storey that was
-/// chosen. \throws UsageError for %s and a room that is no storey \param operand of the room, for
-/// messages
+/// Returns the options for a room alone, with the name of the product, for %s, as roomFile() gives
+/// it. \param operand of the room
 EnvcOptions optionsOfRoom(EnvcOptions options, const std::string& operand);
 
 /// Checks, reports on, draws or writes the building, as the options say.
