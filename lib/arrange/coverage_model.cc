@@ -88,8 +88,8 @@ CoverageModel::CoverageModel(const ArrangeSite& site, const std::vector<SensorGr
             continue;
         }
         std::vector<std::uint32_t> own(room.cells);
-        for (auto copy = room.copies.rbegin(); copy != room.copies.rend();
-             ++copy)  // the first last
+        // Backwards: of cells that stand several times the first weight counts.
+        for (auto copy = room.copies.rbegin(); copy != room.copies.rend(); ++copy)
             std::copy_n(left.begin() + static_cast<std::ptrdiff_t>(copy->first),
                         copy->own.end - copy->own.first,
                         own.begin() + static_cast<std::ptrdiff_t>(copy->own.first));

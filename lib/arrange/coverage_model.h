@@ -235,7 +235,7 @@ class CoverageModel {
     CellWays cell_ways_;
     WorstCaseProblem cases_;
     std::size_t view_cases_ = 0;  ///< random cases of several rooms; 0 without
-    std::vector<std::unique_ptr<const RoomSight>> crowded_;  ///< by case, if rooms see each other
+    std::vector<std::shared_ptr<const RoomSight>> crowded_;  ///< by case, if rooms see each other
     std::vector<std::string> standing_ids_;                  ///< of cases_.standing
     Problem problem_;
     std::uint64_t total_ = 0;

@@ -97,7 +97,7 @@ class RoomSight {
 /// The rooms of a site with people in them.
 struct CrowdedSite {
     std::vector<std::shared_ptr<const Scene>> rooms;
-    std::unique_ptr<const RoomSight> sight;
+    std::shared_ptr<const RoomSight> sight;
 };
 
 /// How the rooms of a site see each other. Thread-safe.

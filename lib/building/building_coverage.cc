@@ -185,10 +185,6 @@ class DensitySum {
     double area_ = 0, empty_ = 0;
 };
 
-}  // namespace
-
-namespace {
-
 /// Adds up shares of the floor of rooms.
 class ShareSum {
   public:

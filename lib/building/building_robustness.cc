@@ -7,6 +7,10 @@
 #include <numeric>
 #include <utility>
 
+#include "building/coupling.h"
+#include "env/level.h"
+#include "geom/arrangement.h"
+
 namespace ispace {
 
 namespace {
@@ -52,6 +56,17 @@ std::vector<std::size_t> spreadOverStoreys(const BuildingCoverage& coverage, std
     std::sort(rests.begin(), rests.end());
     for (std::size_t k = 0; placed < people; ++k, ++placed) ++spread[rests[k % count].second];
     return spread;
+}
+
+std::vector<std::size_t> spreadOverStoreys(const BuildingScene& building, double plane,
+                                           std::size_t people) {
+    BuildingCoverage floors;
+    for (const auto& floor : Coupling(building).floors(plane)) {
+        CoverageReport& report = floors.storeys.emplace_back().report;
+        report.free_area = totalArea(floor->environment.level(kScanHeight)->freeFloor());
+        floors.free_area += report.free_area;
+    }
+    return spreadOverStoreys(floors, people);
 }
 
 SampledFigures perturbBuilding(const BuildingScene& building, const BuildingCoverage& planned,

@@ -24,6 +24,9 @@ std::uint64_t seedOfStorey(std::uint64_t seed, std::size_t storey);
 /// Divides a number of people among the storeys by their free floor: largest remainders. Without
 /// free floor all stand on the first storey.
 std::vector<std::size_t> spreadOverStoreys(const BuildingCoverage& coverage, std::size_t people);
+/// The same without measuring coverage. \param plane as in CoverageOptions
+std::vector<std::size_t> spreadOverStoreys(const BuildingScene& building, double plane,
+                                           std::size_t people);
 
 /// As perturbMounting(). \param planned coverage of the building by `measure`
 SampledFigures perturbBuilding(const BuildingScene& building, const BuildingCoverage& planned,

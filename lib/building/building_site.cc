@@ -46,29 +46,16 @@ BuildingSite::BuildingSite(const BuildingScene& building, const ArrangeOptions& 
 
 namespace {
 
-/// Sight between the storeys of a crowded building.
-class CrowdedSight : public RoomSight {
-  public:
-    CrowdedSight(BuildingScene building, double plane)
-        : building_(std::move(building)), coupling_(building_), sight_(coupling_, plane) {}
-    CrowdedSight(const CrowdedSight&) = delete;
-    CrowdedSight& operator=(const CrowdedSight&) = delete;
+/// A building with people in it, and the sight between its storeys.
+struct Crowded {
+    Crowded(BuildingScene scene, double plane)
+        : building(std::move(scene)), coupling(building), sight(coupling, plane) {}
+    Crowded(const Crowded&) = delete;
+    Crowded& operator=(const Crowded&) = delete;
 
-    [[nodiscard]] const Coupling& coupling() const { return coupling_; }
-
-    [[nodiscard]] bool maySee(std::size_t from, const Sensor& sensor,
-                              std::size_t to) const override {
-        return sight_.maySee(from, sensor, to);
-    }
-    void look(std::size_t from, std::span<const Sensor> turned, std::size_t to, const Grid& grid,
-              CellParts& parts) const override {
-        sight_.look(from, turned, to, grid, parts);
-    }
-
-  private:
-    BuildingScene building_;
-    Coupling coupling_;
-    StoreySight sight_;
+    BuildingScene building;
+    Coupling coupling;
+    StoreySight sight;
 };
 
 }  // namespace
@@ -79,10 +66,8 @@ CrowdedSite BuildingSite::crowded(std::span<const Crowd> crowds) const {
         if (!crowds[i].empty())
             changed.scenes[i] =
                 std::make_shared<const Scene>(withCrowd(*building_.scenes[i], crowds[i]));
-    auto sight = std::make_unique<CrowdedSight>(std::move(changed), plane_);
-    CrowdedSite site{sight->coupling().floors(highest_), nullptr};
-    site.sight = std::move(sight);
-    return site;
+    const auto all = std::make_shared<Crowded>(std::move(changed), plane_);
+    return {all->coupling.floors(highest_), std::shared_ptr<const RoomSight>(all, &all->sight)};
 }
 
 SiteFigures BuildingSite::measure(std::span<const std::vector<Sensor>> added,

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "arrange/site.h"
 #include "base/cell_set.h"
 #include "base/parallel.h"
 #include "building/building_sight.h"
@@ -19,17 +20,17 @@ namespace ispace {
 /// BuildingSite asks for. measureBuilding() counts these cells, too. They agree with the regions
 /// of viewsBetweenStoreys(), but for centres within 0.3 mm of a boundary: those on the rim of an
 /// opening are not seen. Stores the coupling's reference. Thread-safe.
-class StoreySight {
+class StoreySight final : public RoomSight {
   public:
     /// \param plane see CoverageOptions
     StoreySight(const Coupling& coupling, double plane);
 
     /// Returns true if there are openings between storeys.
     [[nodiscard]] bool hasOpenings() const { return !coupling_.openings().empty(); }
-    /// See SiteSight.
-    [[nodiscard]] bool maySee(std::size_t from, const Sensor& sensor, std::size_t to) const;
+    [[nodiscard]] bool maySee(std::size_t from, const Sensor& sensor,
+                              std::size_t to) const override;
     void look(std::size_t from, std::span<const Sensor> turned, std::size_t to, const Grid& grid,
-              CellParts& parts) const;
+              CellParts& parts) const override;
     /// Returns the cells that one sensor sees. \param density see CoverageOptions
     [[nodiscard]] CellSet cells(std::size_t from, Sensor sensor, std::size_t to, const Grid& grid,
                                 double density) const;

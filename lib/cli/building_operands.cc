@@ -71,14 +71,8 @@ Document layoutOfRoom(const Document& layout, const StoreyedDocument& building,
 Document layoutOfStorey(const Document& layout, const StoreyedDocument& building,
                         const std::string& storey) {
     const Storey& chosen = storeyOrSole(building, storey);
-    const bool is_of_building =
-        std::any_of(layout.records.begin(), layout.records.end(), [&](const Record& record) {
-            const std::string id = record.writtenId();
-            return std::any_of(building.storeys.begin(), building.storeys.end(),
-                               [&](const Storey& one) { return id.starts_with(one.id + '/'); });
-        });
     Document own = layout;
-    if (is_of_building || namesStoreys(layout)) {
+    if (namesStoreys(layout)) {
         own.records =
             layoutsOf(layout, building)[static_cast<std::size_t>(&chosen - building.storeys.data())]
                 .records;
@@ -92,12 +86,15 @@ Document layoutOfStorey(const Document& layout, const StoreyedDocument& building
     return own;
 }
 
+bool holdsBuilding(const std::string& folder) {
+    return !folder.empty() && std::filesystem::exists(folder + '/' + kRecordedBuilding) &&
+           !std::filesystem::exists(RecordedFiles(folder).robots);
+}
+
 std::string recordedBuilding(const std::string& folder) {
     if (folder.empty()) return "";
     checkRecordFolder(folder);
-    const bool is_one = std::filesystem::exists(folder + '/' + kRecordedBuilding) &&
-                        !std::filesystem::exists(RecordedFiles(folder).robots);
-    return is_one ? fileOfRecord(folder, kRecordedBuilding) : "";
+    return holdsBuilding(folder) ? fileOfRecord(folder, kRecordedBuilding) : "";
 }
 
 namespace {

@@ -50,6 +50,8 @@ struct BuildingInput {
 
 /// Name of the building in the folder of its run's record, with the scenes of the start.
 constexpr const char* kRecordedBuilding = "building.yaml";
+/// Returns true for a folder of such a record; false for that of one room, and for none.
+bool holdsBuilding(const std::string& folder);
 /// Returns the building in a folder of its record; "" for a folder without one, as of one room.
 /// \throws as checkRecordFolder() and fileOfRecord()
 std::string recordedBuilding(const std::string& folder);
@@ -71,8 +73,7 @@ void warnOfImport(const CommonOptions& options, const std::string& tool,
 
 /// Reads ENV and LAYOUT if ENV is a building, or the storeys of it that are chosen. std::nullopt
 /// for others, for one storey that is chosen and for a building of one: they are rooms, which
-/// readScene() reads. \throws as readScene()
-/// and readBuilding()
+/// readScene() reads. \throws as readScene() and readBuilding()
 std::optional<BuildingInput> readBuildingInput(const SceneRequest& request);
 
 /// Returns true if the name has a mark for the storey's id, %s.

@@ -108,9 +108,7 @@ PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t 
 }
 
 std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const BuildingScene& building,
-                                    const BuildingCoverage& coverage, std::uint64_t seed) {
-    const std::vector<std::size_t> people =
-        spreadOverStoreys(coverage, static_cast<std::size_t>(choice.people));
+                                    std::span<const std::size_t> people, std::uint64_t seed) {
     std::vector<RoomWays> rooms;
     for (std::size_t i = 0; i < people.size(); ++i) {
         RoomWays& own = rooms.emplace_back(RoomWays{choice, seedOfStorey(seed, i)});
@@ -125,12 +123,9 @@ std::vector<RoomWays> waysIn(const SiteInput& site, const std::string& option,
     if (!site.building) return {{choice, seed}};
     if (!choice.record.empty() && recordedBuilding(choice.record).empty())
         refuseSeveralRooms(option + " by the record of one room", site.building->document);
-    BuildingCoverage coverage;
-    if (choice.record.empty())
-        coverage = measureBuilding(*site.building, {.plane = plane});
-    else
-        coverage.storeys.resize(site.rooms.size());
-    return waysOfStoreys(choice, *site.building, coverage, seed);
+    return waysOfStoreys(
+        choice, *site.building,
+        spreadOverStoreys(*site.building, plane, static_cast<std::size_t>(choice.people)), seed);
 }
 
 PeopleWays readWays(const RoomWays& ways, const Scene& scene) {

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "building/building_coverage.h"
 #include "building/building_scene.h"
 #include "cli/site_operands.h"
 #include "scene/run/people_ways.h"
@@ -44,12 +45,12 @@ struct RoomWays {
     /// Returns true for a room without people.
     [[nodiscard]] bool isEmpty() const { return choice.record.empty() && choice.people == 0; }
 };
-/// Returns the ways in each storey of a building: those of its record, or wanderers, as many as its
-/// part of the free floor. \throws UsageError for the record of one room
+/// Returns the ways in each storey of a building: those of its record, or of wanderers.
+/// \param people wanderers by storey
 std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const BuildingScene& building,
-                                    const BuildingCoverage& coverage, std::uint64_t seed);
-/// Returns the ways in each room of a site. \param plane of the free floor
-/// \param option for messages \throws as waysOfStoreys()
+                                    std::span<const std::size_t> people, std::uint64_t seed);
+/// Returns the ways in each room of a site; wanderers are spread by free floor. \param plane of the
+/// free floor \param option for messages \throws UsageError for several rooms and the record of one
 std::vector<RoomWays> waysIn(const SiteInput& site, const std::string& option,
                              const WaysChoice& choice, std::uint64_t seed, double plane);
 /// Cuts the ways in a room into pieces.

@@ -70,6 +70,7 @@ SiteInput readSite(const SceneRequest& request) {
     site.layout = std::move(room.layout);
     site.warnings = room.environment.warnings;
     site.choices = std::move(room.choices);
+    site.storey = std::move(room.storey);
     site.environment = std::move(room.environment);
     site.rooms = {std::make_shared<const Scene>(std::move(room.scene))};
     site.ids = {""};

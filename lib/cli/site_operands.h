@@ -32,6 +32,7 @@ struct SiteInput {
     std::optional<Document> environment;                  ///< of a room alone
     std::optional<BuildingScene> building;                ///< of several rooms
     std::vector<Diagnostic> warnings = {}, choices = {};  ///< of importers
+    std::string storey = {};                              ///< as SceneInput::storey
 
     [[nodiscard]] bool isOneRoom() const { return !building; }
     /// Returns the scene of a room alone.

@@ -80,10 +80,6 @@ PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
     return section;
 }
 
-}  // namespace
-
-namespace {
-
 /// Returns the building with sensors that were placed.
 BuildingScene placedBuilding(const ArrangeWork& work, const std::vector<Placement>& sensors) {
     BuildingScene placed = *work.input.building;
@@ -123,7 +119,9 @@ std::vector<std::string> heatFiles(const ArrangeToolOptions& options, const Arra
                                    std::size_t number) {
     const std::string file =
         number == 1 ? options.heat_file : numberedFile(options.heat_file, number);
-    if (!work.input.building || !isStoreyPattern(file)) return {file};
+    if (!work.input.building)
+        return {roomFile(file, work.input.storey, work.input.environment_operand)};
+    if (!isStoreyPattern(file)) return {file};
     std::vector<std::string> files;
     for (const std::string& id : work.input.ids) files.push_back(storeyFile(file, id));
     return files;

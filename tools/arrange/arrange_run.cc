@@ -176,8 +176,7 @@ void takeCases(const ArrangeToolOptions& options, ArrangeWork& work) {
     if (robust.of != RobustChoice::Of::Crowd) return;
     const BuildingScene& building = *work.input.building;
     const std::vector<std::size_t> people =
-        spreadOverStoreys(measureBuilding(building, {.plane = work.how.plane}),
-                          static_cast<std::size_t>(robust.people));
+        spreadOverStoreys(building, work.how.plane, static_cast<std::size_t>(robust.people));
     for (std::size_t i = 0; i < work.goals.size(); ++i) {
         std::vector<Crowd>& crowds = work.goals[i].crowds;
         crowds.resize(kRobustSamples);

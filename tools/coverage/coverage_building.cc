@@ -109,8 +109,10 @@ void measurePresences(const CoverageToolOptions& options, BuildingInput& input,
                       const BuildingCoverage& coverage, BuildingResults& results) {
     if (!options.presence) return;
     const bool wanders = options.presence->record.empty();
+    const auto people =
+        spreadOverStoreys(coverage, static_cast<std::size_t>(options.presence->people));
     const std::vector<RoomWays> ways =
-        waysOfStoreys(*options.presence, input.building, coverage, options.common.seed);
+        waysOfStoreys(*options.presence, input.building, people, options.common.seed);
     for (std::size_t i = 0; i < ways.size(); ++i) {
         if (!wanders) input.files.push_back(RecordedFiles(ways[i].choice.record).robots);
         Presence presence =
@@ -403,7 +405,7 @@ std::vector<std::string> operandsOf(const CoverageToolOptions& options) {
 
 void takeStorey(CoverageToolOptions& options, const SceneInput& input) {
     const auto must_be_of_room = [](const char* option, const std::string& folder) {
-        if (std::filesystem::is_directory(folder) && !recordedBuilding(folder).empty())
+        if (holdsBuilding(folder))
             throw UsageError(std::string(option) + ": " + folder +
                              " is the record of a building: leave out --storey and ENV");
     };

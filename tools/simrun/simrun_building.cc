@@ -170,8 +170,7 @@ std::unique_ptr<RunSite> openBuilding(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     auto input = readInput(options, recordedBuilding(options.replay));
     if (!input) {
-        if (std::filesystem::exists(options.record + '/' + kRecordedBuilding) &&
-            !std::filesystem::exists(RecordedFiles(options.record).robots))
+        if (holdsBuilding(options.record))
             throw UsageError("--record: " + options.record +
                              " holds the record of a building: give another folder");
         return nullptr;
