@@ -125,7 +125,8 @@ TEST(BuildingRobustness, PeopleAreSpreadByFreeFloor) {
     EXPECT_EQ(spreadOverStoreys(coverage, 0), (std::vector<std::size_t>{0, 0, 0}));
     const BuildingScene building =
         sceneOf("- storey: {id: g, height: 3, records: " + kRoom +
-                "}\n- storey: {id: u, z: 3, records: [{ispace: {size: 3 x 2}}]}\n"
+                "}\n- storey: {id: u, z: 3, records: [{ispace: {size: 3 x 2}}, {cube: {at: [0.9, "
+                "0.3], size: 1}}]}\n"
                 "- shaft: {id: s, storeys: 'g,u', path: '-1,-0.5;0.5,-0.5;0.5,0.5;-1,0.5'}\n");
     EXPECT_EQ(spreadOverStoreys(building, 0, 30),
               spreadOverStoreys(measureBuilding(building, {}), 30));
