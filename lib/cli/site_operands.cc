@@ -2,12 +2,14 @@
 #include "cli/site_operands.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "base/error.h"
 #include "base/message.h"
-#include "building/coupling.h"
+#include "building/building_edit.h"
 #include "cli/common_options.h"
+#include "env/point_location.h"
 
 namespace ispace {
 
@@ -25,6 +27,10 @@ std::vector<Record> SiteInput::environmentRecords() const {
     for (const StoreyPassage& passage : building->document.passages)
         records.push_back(passage.record);
     return records;
+}
+
+std::string SiteInput::idOf(std::size_t room, const std::string& id) const {
+    return ids[room].empty() ? id : ids[room] + '/' + id;
 }
 
 std::string SiteInput::prefix(std::size_t room) const {
@@ -77,14 +83,57 @@ SiteInput readSite(const SceneRequest& request) {
     return site;
 }
 
+SeenSite::SeenSite(const SiteInput& input) : input_(&input) {
+    if (input.building) coupling_.emplace(*input.building);
+}
+
+std::shared_ptr<const Scene> SeenSite::scene(std::size_t room) const {
+    if (!coupling_) return input_->rooms[room];
+    Scene scene = *input_->rooms[room];
+    scene.environment = *coupling_->surroundings(room, Coupling::Movers::OfNeighbours);
+    return std::make_shared<const Scene>(std::move(scene));
+}
+
+Scene SeenSite::fromOutside(std::size_t room) const {
+    Scene scene = *sceneOfBuilding(*input_->building, room);
+    if (auto opened = coupling_->opened(room)) scene.environment = *std::move(opened);
+    return scene;
+}
+
+std::optional<Pose3> SeenSite::siteFromRoom(std::size_t room) const {
+    if (!coupling_) return std::nullopt;
+    const Storey& storey = input_->building->document.storeys[room];
+    const Pose2& pose = storey.building_from_storey;
+    return Pose3{{pose.position.x, pose.position.y, storey.floor}, pose.heading, {}, {}};
+}
+
+std::size_t SeenSite::roomAt(Point3 point) const {
+    if (!coupling_) return 0;
+    const std::vector<Storey>& storeys = input_->building->document.storeys;
+    std::vector<std::size_t> from_above(storeys.size());
+    std::iota(from_above.begin(), from_above.end(), std::size_t{0});
+    std::stable_sort(from_above.begin(), from_above.end(), [&](std::size_t a, std::size_t b) {
+        return storeys[a].floor > storeys[b].floor;
+    });
+    std::optional<std::size_t> highest;
+    for (const std::size_t i : from_above) {
+        if (storeys[i].floor > point.z) continue;
+        if (!highest) highest = i;
+        const Point2 local = inStorey(storeys[i], point.onFloor());
+        if (input_->rooms[i]->environment.indoorIndex().locate(local) != Side::Outside) return i;
+    }
+    return highest.value_or(from_above.back());
+}
+
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SiteInput& input) {
     warn(options, tool, input.choices);
     warn(options, tool, input.warnings);
 }
 
 std::vector<Diagnostic> siteWarnings(const SiteInput& input, const FindingFilter& filter) {
-    return input.building ? storeyWarnings(Coupling(*input.building), filter)
-                          : sceneWarnings(input.only(), filter);
+    return input.building
+               ? storeyWarnings(Coupling(*input.building), {.checks = filter.checks}, filter.ids)
+               : sceneWarnings(input.only(), filter);
 }
 
 void mustBeOneRoom(const SiteInput& input, const std::string& option) {

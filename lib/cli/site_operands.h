@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "building/building_scene.h"
+#include "building/coupling.h"
 #include "cli/building_operands.h"
 #include "cli/operands.h"
 #include "env/zone.h"
+#include "geom/pose.h"
 #include "record/record.h"
 #include "scene/findings/findings.h"
 #include "scene/scene.h"
@@ -41,6 +43,8 @@ struct SiteInput {
     [[nodiscard]] std::string digest() const;
     /// Returns all records of the environment, for digests of jobs.
     [[nodiscard]] std::vector<Record> environmentRecords() const;
+    /// Returns the id of a thing across the site: "ground/l1".
+    [[nodiscard]] std::string idOf(std::size_t room, const std::string& id) const;
     /// Returns "ID: ", the beginning of a message about a room; "" for one alone.
     [[nodiscard]] std::string prefix(std::size_t room) const;
 
@@ -52,10 +56,36 @@ struct SiteInput {
 /// readScene() and readBuildingInput()
 SiteInput readSite(const SceneRequest& request);
 
+/// The rooms of a site as sensors and viewers see them.
+class SeenSite {
+  public:
+    /// \pre the input outlives it
+    explicit SeenSite(const SiteInput& input);
+
+    [[nodiscard]] const SiteInput& input() const { return *input_; }
+    /// Returns how the rooms see each other; null of a room alone.
+    [[nodiscard]] const Coupling* coupling() const { return coupling_ ? &*coupling_ : nullptr; }
+    /// Returns the scene of a room with all that stands around it, and the robots and people there.
+    [[nodiscard]] std::shared_ptr<const Scene> scene(std::size_t room) const;
+    /// Returns the scene of a storey as seen from outside of the building, with the ids of the
+    /// site. \pre it is one of a building
+    [[nodiscard]] Scene fromOutside(std::size_t room) const;
+    /// Returns the frame of a room in that of the site; empty of a room alone.
+    [[nodiscard]] std::optional<Pose3> siteFromRoom(std::size_t room) const;
+    /// Returns the room over whose floor a point of the site lies: the highest below the point with
+    /// floor there, else the highest below it, else the lowest.
+    [[nodiscard]] std::size_t roomAt(Point3 point) const;
+
+  private:
+    const SiteInput* input_;
+    std::optional<Coupling> coupling_;
+};
+
 /// Prints the warnings and choices of importers, as warnOfImport() of a room.
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SiteInput& input);
 
 /// Returns checkScene() of each room, and of buildings what stands around it, as warnings.
+/// \param filter takes ids of the site: "ground/l1"
 std::vector<Diagnostic> siteWarnings(const SiteInput& input, const FindingFilter& filter);
 
 /// Reads a text about zones in the rooms of a site: `STOREY/TEXT` for each storey that the glob

@@ -46,12 +46,8 @@ void LimitedSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
 }
 
 std::int64_t StillSource::skip(std::int64_t most) {
-    const auto a_frame = static_cast<std::int64_t>(sensors_->read.size());
-    const std::int64_t at = frame_ * a_frame + static_cast<std::int64_t>(sensor_);
-    const std::int64_t skipped = std::min(most, count() - at);
-    if (a_frame == 0) return 0;
-    frame_ = static_cast<int>((at + skipped) / a_frame);
-    sensor_ = static_cast<std::size_t>((at + skipped) % a_frame);
+    const std::int64_t skipped = std::min(most, count() - next_);
+    next_ += skipped;
     return skipped;
 }
 
@@ -61,18 +57,55 @@ std::int64_t StillSource::count() const {
 
 void StillSource::next(std::size_t most, std::vector<ReadingJob>& batch) {
     batch.clear();
-    while (batch.size() < most && frame_ < frames_ && !sensors_->read.empty()) {
-        const Sensor& sensor = sensors_->read[sensor_];
-        batch.push_back({.sensor = sensor_,
-                         .frame = frame_,
-                         .time = wholeNanoseconds(frame_ / readingRate(sensor.model)),
-                         .pose = sensor.pose,
-                         .way = {}});
-        if (++sensor_ == sensors_->read.size()) {
-            sensor_ = 0;
-            ++frame_;
-        }
+    for (const std::int64_t all = count(); batch.size() < most && next_ < all; ++next_)
+        batch.push_back(jobAt(next_));
+}
+
+ReadingJob StillSource::jobAt(std::int64_t index) const {
+    std::size_t begin = 0, end = sensors_->read.size();
+    for (const SensorRoom& room : rooms_) {
+        const std::int64_t in_room =
+            static_cast<std::int64_t>(frames_) * static_cast<std::int64_t>(room.read_end - begin);
+        end = room.read_end;
+        if (index < in_room) break;
+        index -= in_room;
+        begin = end;
     }
+    const auto a_frame = static_cast<std::int64_t>(end - begin);
+    const auto frame = static_cast<int>(index / a_frame);
+    const std::size_t sensor = begin + static_cast<std::size_t>(index % a_frame);
+    const Sensor& one = sensors_->read[sensor];
+    return {.sensor = sensor,
+            .frame = frame,
+            .time = wholeNanoseconds(frame / readingRate(one.model)),
+            .pose = one.pose,
+            .way = {}};
+}
+
+void RoomParts::fill(std::size_t most) {
+    if (at_ < jobs_.size()) return;
+    if (failure_) std::rethrow_exception(failure_);
+    jobs_.clear();
+    at_ = 0;
+    try {
+        source_->next(most, jobs_);
+    } catch (...) {
+        failure_ = std::current_exception();
+        if (jobs_.empty()) throw;
+    }
+}
+
+std::optional<std::size_t> RoomParts::begin() {
+    fill(1);
+    if (jobs_.empty()) return std::nullopt;
+    return room_ = room_of_(jobs_[at_]);
+}
+
+void RoomParts::next(std::size_t most, std::vector<ReadingJob>& batch) {
+    batch.clear();
+    fill(most);
+    for (; batch.size() < most && at_ < jobs_.size() && room_of_(jobs_[at_]) == room_; ++at_)
+        batch.push_back(std::move(jobs_[at_]));
 }
 
 FormatError PoseLines::error(const std::string& message) const {
@@ -209,11 +242,42 @@ std::size_t batchesOf(const Sensors& sensors) {
     return std::clamp<std::size_t>(kMaxBytes / bytes, 1, 2 * std::max<std::size_t>(1, cores));
 }
 
+ReadingJob toInner(const Pose3& outer_from_inner, const ReadingJob& job) {
+    ReadingJob inner = job;
+    inner.pose = toInner(outer_from_inner, job.pose);
+    for (TimedPose& timed : inner.way) timed.pose = toInner(outer_from_inner, timed.pose);
+    return inner;
+}
+
+/// Takes the reading of a job in the frame of the site.
+Reading takeFrom(const Pose3& site_from_room, ReadingSampler& taker, const ReadingJob& job) {
+    Reading reading = taker.take(toInner(site_from_room, job));
+    const auto move = [&](auto& value) {
+        // A sensor that stands still is where the job says, without errors of rounding.
+        if constexpr (requires { value.pose = job.pose; })
+            value.pose = value.pose == toInner(site_from_room, job.pose)
+                             ? job.pose
+                             : toOuter(site_from_room, value.pose);
+        if constexpr (requires { value.beam_poses; })
+            for (Pose3& pose : value.beam_poses) pose = toOuter(site_from_room, pose);
+    };
+    std::visit(
+        [&](auto& value) {
+            if constexpr (requires { value.begin(); })
+                for (auto& one : value) move(one);
+            else
+                move(value);
+        },
+        reading);
+    return reading;
+}
+
 }  // namespace
 
 void runReadings(ReadingSource& source, ReadingSampler& taker, const Sensors& sensors,
                  const ReadingFormat& format, Packing packing, Coordinates coordinates,
-                 Progress& progress, const std::function<void(Readings&)>& write) {
+                 Progress& progress, const std::function<void(Readings&)>& write,
+                 const Pose3* site_from_room) {
     using Batch = std::shared_ptr<Readings>;
     const std::size_t most = std::max<std::size_t>(1, kBatchRays / mostRays(sensors));
     // Batches are recycled, with their memory.
@@ -240,12 +304,14 @@ void runReadings(ReadingSource& source, ReadingSampler& taker, const Sensors& se
             control.stop();
             return nullptr;
         }
-        for (const ReadingJob& job : batch->jobs) taker.prepare(job);
+        for (const ReadingJob& job : batch->jobs)
+            taker.prepare(site_from_room == nullptr ? job : toInner(*site_from_room, job));
         return batch;
     };
     const auto take = [&](Batch batch) {
         for (const ReadingJob& job : batch->jobs) {
-            const Reading reading = taker.take(job);
+            const Reading reading =
+                site_from_room == nullptr ? taker.take(job) : takeFrom(*site_from_room, taker, job);
             switch (packing) {
                 case Packing::Stream:
                     format.append(batch->text, job.sensor, reading);
@@ -254,7 +320,7 @@ void runReadings(ReadingSource& source, ReadingSampler& taker, const Sensors& se
                     batch->files.push_back(format.files(job.sensor, reading));
                     break;
                 case Packing::Clouds:
-                    batch->clouds.push_back(cloudOf(sensors, job.sensor, reading, coordinates));
+                    batch->clouds.push_back(format.points(job.sensor, reading, coordinates));
                     break;
             }
         }

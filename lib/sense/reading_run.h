@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,10 +29,13 @@ class ReadingSource {
     virtual std::int64_t skip(std::int64_t most);
 };
 
-/// Jobs of placed sensors, each at its rate from time 0 on: frame by frame, the sensors in order.
+/// Jobs of placed sensors, each at its rate from time 0 on: room by room, in each frame by frame,
+/// the sensors in order.
 class StillSource final : public ReadingSource {
   public:
-    StillSource(const Sensors& sensors, int frames) : sensors_(&sensors), frames_(frames) {}
+    /// \param rooms of the sensors; empty: one
+    StillSource(const Sensors& sensors, int frames, std::span<const SensorRoom> rooms = {})
+        : sensors_(&sensors), rooms_(rooms), frames_(frames) {}
     void next(std::size_t most, std::vector<ReadingJob>& batch) override;
     /// Skips in O(1).
     std::int64_t skip(std::int64_t most) override;
@@ -38,10 +43,12 @@ class StillSource final : public ReadingSource {
     [[nodiscard]] std::int64_t count() const;
 
   private:
+    [[nodiscard]] ReadingJob jobAt(std::int64_t index) const;
+
     const Sensors* sensors_;
+    std::span<const SensorRoom> rooms_;
     int frames_;
-    int frame_ = 0;
-    std::size_t sensor_ = 0;
+    std::int64_t next_ = 0;
 };
 
 /// Limits a source to a number of jobs.
@@ -53,6 +60,28 @@ class LimitedSource final : public ReadingSource {
   private:
     ReadingSource* source_;
     std::int64_t left_;
+};
+
+/// Splits the jobs of a source where their room changes.
+class RoomParts final : public ReadingSource {
+  public:
+    using RoomOf = std::function<std::size_t(const ReadingJob&)>;
+    RoomParts(ReadingSource& source, RoomOf room_of)
+        : source_(&source), room_of_(std::move(room_of)) {}
+    /// Begins the next part, which next() supplies, and returns its room; empty at the end of the
+    /// source. \throws as the source
+    std::optional<std::size_t> begin();
+    void next(std::size_t most, std::vector<ReadingJob>& batch) override;
+
+  private:
+    void fill(std::size_t most);
+
+    ReadingSource* source_;
+    RoomOf room_of_;
+    std::vector<ReadingJob> jobs_;  // read ahead
+    std::size_t at_ = 0;
+    std::exception_ptr failure_;  // of the source, after these
+    std::size_t room_ = 0;
 };
 
 /// Appends more bytes to a buffer; returns false at the end of the file.
@@ -130,8 +159,11 @@ enum class Packing { Stream, Files, Clouds };
 /// Takes all readings of a source on all cores and passes them to `write` in order, from one thread
 /// at a time. Memory is bounded by the number of cores, not of jobs. If the source fails, all
 /// readings before the error are still written.
+/// \param site_from_room level, the frame of the jobs and of the readings written; null: that of
+/// the room, in which the taker reads
 void runReadings(ReadingSource& source, ReadingSampler& taker, const Sensors& sensors,
                  const ReadingFormat& format, Packing packing, Coordinates coordinates,
-                 Progress& progress, const std::function<void(Readings&)>& write);
+                 Progress& progress, const std::function<void(Readings&)>& write,
+                 const Pose3* site_from_room = nullptr);
 
 }  // namespace ispace

@@ -150,6 +150,95 @@ PoseLines linesOf(const std::string& text, std::size_t piece = 7) {
             "poses.txt"};
 }
 
+/// Two rooms with a tag, a receiver and a laser each.
+struct TwoRooms {
+    std::vector<std::shared_ptr<const Scene>> scenes;
+    std::vector<std::string> ids = {"a", "b"};
+    TwoRooms() {
+        for (const char* records :
+             {"ultrasound id=u at=1,1,2\ntag id=t at=1,2\nlaser id=l at=2,1\n",
+              "ultrasound id=u at=1,1,1\ntag id=t at=1,2\n"})
+            scenes.push_back(std::make_shared<const Scene>(testing::scene(kRoom, records)));
+    }
+};
+
+TEST(Sensors, OfSeveralRoomsHaveTheRoomBeforeTheirIds) {
+    const TwoRooms site;
+    const auto [sensors, rooms] = sensorsOf(site.scenes, site.ids, {});
+    ASSERT_EQ(sensors.read.size(), 3U);
+    EXPECT_EQ(sensors.read[0].id, "a/t");
+    EXPECT_EQ(sensors.read[2].id, "b/t");
+    EXPECT_EQ(roomOf(rooms, 1), 0U);
+    EXPECT_EQ(roomOf(rooms, 2), 1U);
+    ASSERT_EQ(receiversIn(rooms, 1, sensors).size(), 1U) << "those of its room";
+    EXPECT_EQ(receiversIn(rooms, 1, sensors)[0].id, "b/u");
+    EXPECT_EQ(sensorsOf(site.scenes, site.ids, {"b/*"}).sensors.read.size(), 1U);
+    try {
+        static_cast<void>(sensorsOf(site.scenes, site.ids, {"t"}));
+        FAIL();
+    } catch (const UsageError& error) {
+        EXPECT_STREQ(error.what(), "no sensor matches `t` (there are a/u, a/t, a/l, b/u, b/t)");
+    }
+}
+
+TEST(RoomParts, EndWhereTheRoomChanges) {
+    const TwoRooms site;
+    const SiteSensors all = sensorsOf(site.scenes, site.ids, {});
+    StillSource source(all.sensors, 2, all.rooms);
+    EXPECT_EQ(source.skip(1), 1);
+    RoomParts parts(source, [&](const ReadingJob& job) { return roomOf(all.rooms, job.sensor); });
+    std::vector<ReadingJob> batch;
+    std::string text;
+    while (const auto room = parts.begin()) {
+        text += std::to_string(*room) + ':';
+        for (parts.next(2, batch); !batch.empty(); parts.next(2, batch))
+            for (const ReadingJob& job : batch)
+                text += all.sensors.read[job.sensor].id + std::to_string(job.frame) + ' ';
+    }
+    EXPECT_EQ(text, "0:a/l0 a/t1 a/l1 1:b/t0 b/t1 ") << "frame by frame in each room";
+}
+
+TEST(RoomParts, GiveTheJobsBeforeAFailure) {
+    PoseSource source(linesOf("0 1 1 0 0 0 0 1\n1 1 1 3 0 0 0 1\n2 x\n"));
+    RoomParts parts(source,
+                    [](const ReadingJob& job) { return job.pose.position.z > 2 ? 1U : 0U; });
+    std::vector<ReadingJob> batch;
+    EXPECT_EQ(parts.begin(), 0U);
+    parts.next(10, batch);
+    EXPECT_EQ(batch.size(), 1U);
+    parts.next(10, batch);
+    EXPECT_TRUE(batch.empty());
+    EXPECT_EQ(parts.begin(), 1U);
+    parts.next(10, batch);
+    EXPECT_EQ(batch.size(), 1U);
+    EXPECT_THROW(parts.next(10, batch), FormatError);
+}
+
+TEST(ReadingRun, JobsInTheFrameOfTheSite) {
+    const Scene scene = testing::scene(kRoom, "laser id=l at=1,1 step=30 spin=10\n");
+    const Sensors sensors = sensorsOf(scene, {});
+    const auto run_at = [&](const std::string& pose, const Pose3* site_from_room) {
+        PoseSource source(linesOf("0 " + pose + "\n"));
+        Worlds worlds(scene.environment);
+        const MovingBodies nobody;
+        ReadingSampler taker(sensors, worlds, nobody, {.follows_poses = true});
+        const auto writer = makeFormat("jsonl", sensors, {});
+        SilentProgress progress;
+        std::string text;
+        runReadings(
+            source, taker, sensors, *writer, Packing::Stream, Coordinates::World, progress,
+            [&text](Readings& readings) { text += readings.text; }, site_from_room);
+        return text;
+    };
+    const Pose3 site_from_room{{10, 0, 3}, {}, {}, {}};
+    const std::string own = run_at("1 2 0.2 0 0 0 1", nullptr);
+    const std::string moved = run_at("11 2 3.2 0 0 0 1", &site_from_room);
+    EXPECT_NE(moved.find("\"pose\":[11,2,3.2,0,0,0]"), std::string::npos) << moved;
+    EXPECT_EQ(own.substr(own.find("ranges")), moved.substr(moved.find("ranges")));
+    EXPECT_EQ(toOuter(site_from_room, toInner(site_from_room, {{1, 2, 4}, {}, {}, {}})),
+              (Pose3{{1, 2, 4}, {}, {}, {}}));
+}
+
 TEST(PoseSource, OneJobAPose) {
     PoseSource source(linesOf("# a comment\n0.5 1 2 0.15 0 0 0 1\n\n1.5 2 2 0.15 0 0 1 0"));
     std::vector<ReadingJob> batch, all;

@@ -17,41 +17,6 @@ bool isSelected(const std::string& id, const std::vector<std::string>& globs) {
            });
 }
 
-namespace {
-
-bool isRead(const Record& record) {
-    const SensorKind* kind = sensorKind(record.keyword());
-    return kind != nullptr && kind->is_read;
-}
-
-void checkGlobs(const Scene& scene, const std::vector<std::string>& globs) {
-    for (const std::string& glob : globs) {
-        bool known = false;
-        std::string ids;
-        for (std::size_t i = 0; i < scene.records.size(); ++i) {
-            if (!isRead(scene.records[i])) continue;
-            known = known || isSelected(scene.ids[i], {glob});
-            ids.append(ids.empty() ? "" : ", ").append(scene.ids[i]);
-        }
-        if (!known)
-            throw UsageError("no sensor matches `" + glob + "`" +
-                             (ids.empty() ? "" : " (there are " + ids + ")"));
-    }
-}
-
-}  // namespace
-
-Sensors sensorsOf(const Scene& scene, const std::vector<std::string>& globs) {
-    checkGlobs(scene, globs);
-    Sensors sensors;
-    for (const Sensor& sensor : scene.sensors)
-        if (kindOf(sensor.model).is_read && isSelected(sensor.id, globs))
-            (sensor.is<Receiver>() ? sensors.receivers : sensors.read).push_back(sensor);
-    // Globs that match only tags do not select receivers.
-    if (sensors.receivers.empty()) sensors.receivers = sensorsOf<Receiver>(scene);
-    return sensors;
-}
-
 std::vector<std::size_t> sensorRecords(const Scene& scene, std::span<const std::string_view> kinds,
                                        const std::vector<std::string>& globs) {
     std::vector<std::size_t> found;

@@ -4,22 +4,21 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/zstd_text.h"
-#include "cli/operands.h"
 #include "cli/outputs.h"
 #include "io/import_records.h"
 #include "scene/run/run_reader.h"
 #include "sense/formats/reading_format.h"
-#include "sense/selection.h"
+#include "sense/site_sensors.h"
 
 namespace ispace {
 
@@ -29,9 +28,7 @@ namespace {
 /// sorted by their last beams.
 class RecordedOdometry {
   public:
-    RecordedOdometry(const std::string& folder, const Scene& scene, const Sensors& lasers)
-        : run_(folder) {
-        for (const PlacedRobot& robot : scene.robots) robots_.push_back(robot.id);
+    RecordedOdometry(const std::string& folder, const Sensors& lasers) : run_(folder) {
         if (const auto info = recordedInfo(folder); info && info->every > info->step)
             thinned_ = info->every;
         has_next_ = run_.next();
@@ -41,16 +38,22 @@ class RecordedOdometry {
             if (const double duration = laser.as<Laser>().duration(); duration > 0)
                 kept_ = std::max(kept_, duration + kMaxStep);
     }
+    struct Pose {
+        Pose2 pose;
+        bool is_true = true;  ///< in the room; false: by odometry
+    };
     /// Returns the pose by odometry, or the true one if that was not recorded; nullopt before the
-    /// record begins. \throws FormatError if the record is thinned and lacks this time
-    std::optional<Pose2> poseOf(std::size_t robot, double time) {
+    /// record begins. \param robot its id in the record \throws FormatError if the record is
+    /// thinned and lacks this time
+    std::optional<Pose> poseOf(const std::string& robot, double time) {
         constexpr double kRounding = 1e-9;
         while (has_next_ && run_.time() <= time + kRounding) {
             Moment& moment = latest_.emplace_back();
             moment.time = run_.time();
             for (const RunState& state : run_.states()) {
                 const std::string& id = run_.members()[state.member].id;
-                moment.poses.emplace_back(id, state.odometry ? state.odometry->pose : state.pose);
+                moment.poses.emplace_back(id, state.odometry ? Pose{state.odometry->pose, false}
+                                                             : Pose{state.pose, true});
             }
             while (latest_.size() > 1 && latest_[1].time <= moment.time - kept_)
                 latest_.pop_front();
@@ -65,9 +68,8 @@ class RecordedOdometry {
                                "holds no moment at t=" + formatDouble(time) +
                                    " of a scan, as it was recorded with --record-every " +
                                    formatDouble(*thinned_) + ": choose another format"});
-        const auto found =
-            std::find_if(moment->poses.begin(), moment->poses.end(),
-                         [&](const auto& known) { return known.first == robots_[robot]; });
+        const auto found = std::find_if(moment->poses.begin(), moment->poses.end(),
+                                        [&](const auto& known) { return known.first == robot; });
         if (found == moment->poses.end()) return std::nullopt;
         return found->second;
     }
@@ -75,34 +77,86 @@ class RecordedOdometry {
   private:
     struct Moment {
         double time = 0;
-        std::vector<std::pair<std::string, Pose2>> poses;
+        std::vector<std::pair<std::string, Pose>> poses;
     };
 
     RunReader run_;
-    std::vector<std::string> robots_;
     std::deque<Moment> latest_;
     double kept_ = 0;                // seconds before the newest
     std::optional<double> thinned_;  // seconds between moments, if that is more than a step
     bool has_next_ = false;
 };
 
-/// Returns all movers of a run, including those added later. Robots of the scene have its alphas.
-std::vector<RunMember> membersOf(const std::string& folder, const Scene& scene) {
-    RunReader run(folder);
-    while (run.next()) {
+/// The rooms of a site in a record: a folder each, or the record itself.
+class RecordedSite {
+  public:
+    RecordedSite(const std::string& folder, const SiteInput& input)
+        : folder_(folder), input_(&input), is_whole_(holdsBuilding(folder)) {
+        if (!is_whole_ && !input.isOneRoom())
+            throw UsageError("--run: " + folder +
+                             " is the record of one room: choose its storey with --storey (" +
+                             input.building->document.storeyList() + ')');
     }
-    std::vector<RunMember> members = run.members();
-    for (RunMember& member : members)
-        for (const PlacedRobot& robot : scene.robots)
-            if (robot.id == member.id) member.alphas = alphasOf(robot.model.noise);
+    [[nodiscard]] std::string folder(std::size_t room) const {
+        if (!is_whole_) return folder_;
+        return folder_ + '/' + (input_->isOneRoom() ? input_->storey : input_->ids[room]);
+    }
+    /// Returns the id across the site of a thing in the record of a room. In that of a building
+    /// movers, and sensors on them, have the storey of their start before their ids.
+    [[nodiscard]] std::string siteId(std::size_t room, const std::string& recorded) const {
+        if (!is_whole_) return recorded;
+        if (!input_->isOneRoom())
+            return recorded.find('/') == std::string::npos ? input_->idOf(room, recorded)
+                                                           : recorded;
+        const std::string prefix = input_->storey + '/';
+        return recorded.starts_with(prefix) ? recorded.substr(prefix.size()) : recorded;
+    }
+    /// Returns the id of a mover of a room in the records of all rooms.
+    [[nodiscard]] std::string recordedId(std::size_t room, const std::string& mover) const {
+        if (!is_whole_) return mover;
+        return input_->isOneRoom() ? input_->storey + '/' + mover : input_->idOf(room, mover);
+    }
+
+  private:
+    std::string folder_;
+    const SiteInput* input_;
+    bool is_whole_;  // of a building
+};
+
+/// Returns all movers of a run, including those added later. Robots of the scenes have their
+/// alphas.
+std::vector<RunMember> membersOf(const RecordedSite& record, const SiteInput& input) {
+    std::vector<RunMember> members;
+    for (std::size_t room = 0; room < input.rooms.size(); ++room) {
+        RunReader run(record.folder(room));
+        while (run.next()) {
+        }
+        for (const RunMember& member : run.members())
+            if (std::none_of(members.begin(), members.end(),
+                             [&](const RunMember& known) { return known.id == member.id; }))
+                members.push_back(member);
+    }
+    for (std::size_t room = 0; room < input.rooms.size(); ++room)
+        for (const PlacedRobot& robot : input.rooms[room]->robots)
+            for (RunMember& member : members)
+                if (member.id == record.recordedId(room, robot.id))
+                    member.alphas = alphasOf(robot.model.noise);
     return members;
 }
 
-/// Writes the poses of all movers, up to the times of the readings, to a stream of a format.
+/// Writes the poses of a room's movers, up to the times of the readings, to a stream of a format.
 class RecordedMoments {
   public:
-    RecordedMoments(const std::string& folder, const ReadingFormat& format, ReadingStream& stream)
-        : run_(folder), format_(format), stream_(stream), has_next_(run_.next()) {}
+    /// \param members of the format \param count of moments so far
+    RecordedMoments(const std::string& folder, std::size_t room, std::span<const RunMember> members,
+                    const ReadingFormat& format, ReadingStream& stream, std::uint32_t& count)
+        : run_(folder),
+          room_(room),
+          members_(members),
+          format_(format),
+          stream_(stream),
+          count_(count),
+          has_next_(run_.next()) {}
 
     void writeUntil(double time) {
         for (; has_next_ && run_.time() <= time; has_next_ = run_.next()) {
@@ -110,102 +164,177 @@ class RecordedMoments {
             constexpr double kInterval = 0.02, kRounding = 1e-9;
             if (run_.time() + kRounding < due_) continue;
             due_ = run_.time() + kInterval;
+            std::vector<RunState> states(run_.states().begin(), run_.states().end());
+            for (RunState& state : states) state.member = memberOf(run_.members()[state.member].id);
             std::string text;
-            format_.appendMoment(text, count_++, run_.time(), run_.states());
+            format_.appendMoment(text, count_++, run_.time(), room_, states);
             stream_.write(text);
         }
     }
 
   private:
+    [[nodiscard]] std::size_t memberOf(const std::string& id) const {
+        const auto found = std::find_if(members_.begin(), members_.end(),
+                                        [&id](const RunMember& one) { return one.id == id; });
+        return static_cast<std::size_t>(found - members_.begin());
+    }
+
     RunReader run_;
+    std::size_t room_;
+    std::span<const RunMember> members_;
     const ReadingFormat& format_;
     ReadingStream& stream_;
+    std::uint32_t& count_;
     double due_ = 0;
-    std::uint32_t count_ = 0;
     bool has_next_;
 };
 
-Sensors recordedLasers(const ScanToolOptions& options, const Scene& scene) {
-    Sensors lasers = sensorsOf(scene, options.select);
-    std::erase_if(lasers.read, [](const Sensor& sensor) { return !sensor.is<Laser>(); });
-    if (lasers.read.empty())
+SiteSensors recordedLasers(const ScanToolOptions& options, const SiteInput& input) {
+    SiteSensors lasers = sensorsOf(input.rooms, input.ids, options.select);
+    std::vector<Sensor> kept;
+    std::size_t next = 0;
+    for (SensorRoom& room : lasers.rooms) {
+        for (; next < room.read_end; ++next)
+            if (lasers.sensors.read[next].is<Laser>())
+                kept.push_back(std::move(lasers.sensors.read[next]));
+        room.read_end = kept.size();
+    }
+    lasers.sensors.read = std::move(kept);
+    if (lasers.sensors.read.empty())
         throw UsageError("--run: the record has no scans of " +
                          std::string(options.select.empty() ? "lasers" : "such lasers") +
                          ", and other readings stay as they are recorded");
     return lasers;
 }
 
-/// A record holds its own scene.
-SceneInput sceneOf(const ScanToolOptions& options) {
+/// A record holds its own site.
+SiteInput siteOf(const ScanToolOptions& options) {
     std::vector<std::string> operands = options.operands;
-    if (operands.empty()) operands.push_back(fileOfRecord(options.view.run, "scene.env"));
-    return readScene({operands, options.rules, false, {}});
+    if (operands.empty()) {
+        const std::string building = recordedBuilding(options.view.run);
+        operands.push_back(building.empty() ? fileOfRecord(options.view.run, "scene.env")
+                                            : building);
+    }
+    return readSite({operands, options.rules, false, {}});
 }
+
+/// Reads the recorded scans of a site, and writes them.
+class RecordedReadings {
+  public:
+    RecordedReadings(const ScanToolOptions& options, const SiteInput& input,
+                     const SiteSensors& lasers, const RecordedSite& record,
+                     const ReadingFormat& format, std::span<const RunMember> members,
+                     ReadingStream& stream)
+        : options_(options),
+          input_(input),
+          site_(input),
+          lasers_(lasers.sensors),
+          rooms_(lasers.rooms),
+          record_(record),
+          format_(format),
+          members_(members),
+          stream_(stream) {}
+
+    /// Writes the scans of a room. \return their number
+    std::int64_t write(std::size_t room) {
+        const std::string folder = record_.folder(room), name = RecordedFiles(folder).scans;
+        const auto file = std::make_shared<TextFile>(name, InputKind::Regular);
+        RecordedScans scans([file](std::string& bytes) { return file->read(bytes); }, name);
+        RecordedOdometry odometry(folder, lasers_);
+        std::optional<RecordedMoments> moments;
+        if (!members_.empty())
+            moments.emplace(folder, room, members_, format_, stream_, moment_count_);
+        std::int64_t count = 0;
+        while (const auto found = scans.next()) {
+            const auto laser = std::find_if(lasers_.read.begin(), lasers_.read.end(),
+                                            [id = record_.siteId(room, found->sensor)](
+                                                const Sensor& sensor) { return sensor.id == id; });
+            if (laser == lasers_.read.end()) continue;
+            if (found->ranges.size() != static_cast<std::size_t>(laser->as<Laser>().beams))
+                throw FormatError({name, 0, 0,
+                                   "a scan of " + laser->id + " with " +
+                                       std::to_string(found->ranges.size()) +
+                                       " beams, which it does not have in this scene"});
+            const auto index = static_cast<std::size_t>(laser - lasers_.read.begin());
+            const std::size_t home = roomOf(rooms_, index);
+            Scan scan{.time = found->time,
+                      .frame = found->frame,
+                      .number = found->number,
+                      .pose = inRoom(room, home, found->pose),
+                      .beam_poses = {},
+                      .ranges = found->ranges};
+            if (options_.format == "carmen" && laser->mount) {
+                const std::string& robot = input_.rooms[home]->robots[laser->mount->robot].id;
+                if (const auto at = odometry.poseOf(record_.recordedId(home, robot), scan.time)) {
+                    scan.pose = mountedPose(at->pose, laser->mount->robot_from_sensor);
+                    if (at->is_true) scan.pose = inRoom(room, home, scan.pose);
+                }
+            }
+            if (moments) moments->writeUntil(scan.time);
+            std::string text;
+            format_.append(text, index, std::vector<Scan>{std::move(scan)});
+            stream_.write(text);
+            ++count;
+        }
+        if (moments) moments->writeUntil(std::numeric_limits<double>::infinity());
+        return count;
+    }
+
+  private:
+    /// Converts a pose of a room to the frame of another, where the sensor was at the start.
+    [[nodiscard]] Pose3 inRoom(std::size_t from, std::size_t to, const Pose3& pose) const {
+        if (from == to) return pose;
+        return toInner(*site_.siteFromRoom(to), toOuter(*site_.siteFromRoom(from), pose));
+    }
+
+    const ScanToolOptions& options_;
+    const SiteInput& input_;
+    SeenSite site_;
+    const Sensors& lasers_;
+    std::span<const SensorRoom> rooms_;
+    const RecordedSite& record_;
+    const ReadingFormat& format_;
+    std::span<const RunMember> members_;
+    ReadingStream& stream_;
+    std::uint32_t moment_count_ = 0;
+};
 
 }  // namespace
 
 void writeRecorded(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
     checkRecordFolder(options.view.run);
-    const SceneInput input = sceneOf(options);
+    const SiteInput input = siteOf(options);
     warnOfImport(options.common, "scan", input);
-    const Sensors lasers = recordedLasers(options, input.scene);
-    FormatOptions how = formatOptions(command, command.options(), input);
+    const RecordedSite record(options.view.run, input);
+    SiteSensors lasers = recordedLasers(options, input);
+    shareFrame(options, SeenSite(input), lasers.rooms);
+    FormatOptions how = formatOptions(command, input, lasers.rooms);
     const bool wants_moments = options.format == "mcap";
     if (wants_moments) {
-        how.members = membersOf(options.view.run, input.scene);
-        if (const auto info = recordedInfo(options.view.run)) how.moment_interval = info->every;
+        how.members = membersOf(record, input);
+        if (const auto info = recordedInfo(record.folder(0))) how.moment_interval = info->every;
     }
-    const auto format = makeFormat(options.format, lasers, std::move(how));
+    const std::vector<RunMember> members = how.members;
+    const auto format = makeFormat(options.format, lasers.sensors, std::move(how));
     if (!format->isStream())
         throw UsageError(
             "--run: " + options.format +
             " holds one reading a file; take one of jsonl|csv|raw|carmen|mcap|npz|npy|las");
     format->checkStream();
     if (format->isBinary()) refuseTerminal(options.common.output, options.format);
-    const std::string name = RecordedFiles(options.view.run).scans;
-    const auto file = std::make_shared<TextFile>(name, InputKind::Regular);
-    RecordedScans scans([file](std::string& bytes) { return file->read(bytes); }, name);
-    RecordedOdometry odometry(options.view.run, input.scene, lasers);
-    const bool wants_odometry = options.format == "carmen";
     OutputFile output(options.common.output);
     const auto stream = format->stream([&output](auto bytes) { output.write(bytes); });
-    std::optional<RecordedMoments> moments;
-    if (wants_moments) moments.emplace(options.view.run, *format, *stream);
+    RecordedReadings readings(options, input, lasers, record, *format, members, *stream);
+    std::vector<std::string> files = input.files;
     std::int64_t count = 0;
-    while (const auto found = scans.next()) {
-        const auto laser =
-            std::find_if(lasers.read.begin(), lasers.read.end(),
-                         [&](const Sensor& sensor) { return sensor.id == found->sensor; });
-        if (laser == lasers.read.end()) continue;
-        if (found->ranges.size() != static_cast<std::size_t>(laser->as<Laser>().beams))
-            throw FormatError({name, 0, 0,
-                               "a scan of " + laser->id + " with " +
-                                   std::to_string(found->ranges.size()) +
-                                   " beams, which it does not have in this scene"});
-        Scan scan{.time = found->time,
-                  .frame = found->frame,
-                  .number = found->number,
-                  .pose = found->pose,
-                  .beam_poses = {},
-                  .ranges = found->ranges};
-        if (wants_odometry && laser->mount) {
-            const auto robot = odometry.poseOf(laser->mount->robot, scan.time);
-            if (robot) scan.pose = mountedPose(*robot, laser->mount->robot_from_sensor);
-        }
-        if (moments) moments->writeUntil(scan.time);
-        std::string text;
-        format->append(text, static_cast<std::size_t>(laser - lasers.read.begin()),
-                       std::vector<Scan>{std::move(scan)});
-        stream->write(text);
-        ++count;
+    for (std::size_t room = 0; room < input.rooms.size(); ++room) {
+        count += readings.write(room);
+        files.push_back(RecordedFiles(record.folder(room)).scans);
+        if (wants_moments) files.push_back(RecordedFiles(record.folder(room)).robots);
     }
-    if (moments) moments->writeUntil(std::numeric_limits<double>::infinity());
     stream->finish();
     output.commit();
-    std::vector<std::string> files = filesOf(input);
-    files.push_back(name);
-    if (wants_moments) files.push_back(RecordedFiles(options.view.run).robots);
     writeDependencies(options.common, files);
     logInfo(options.common, "scan", std::to_string(count) + " scans written");
 }

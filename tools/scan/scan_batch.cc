@@ -177,17 +177,18 @@ class StoredReadings final : public Delivery {
 
 bool isBatch(const ScanToolOptions& options) { return options.batch.shard || options.batch.resume; }
 
-JobId readingsJob(const ScanCommand& command, const SceneInput& input, const ReadingFormat& format,
+JobId readingsJob(const ScanCommand& command, const SiteInput& input, const ReadingFormat& format,
                   const std::string& poses, std::int64_t units) {
     const ScanToolOptions& options = command.options();
     JobId job;
     job.tool = "scan";
-    job.history = formatOptions(command, options, input).history;
-    job.room = input.scene.digest();
+    job.history = formatOptions(command, input, {}).history;
+    job.room = input.digest();
+    std::vector<Record> records = input.environmentRecords();
+    if (input.layout)
+        records.insert(records.end(), input.layout->records.begin(), input.layout->records.end());
     std::string all;
-    for (const Document* document : {&input.environment, input.layout ? &*input.layout : nullptr})
-        if (document != nullptr)
-            for (const Record& record : document->records) all += formatRecord(record) + '\n';
+    for (const Record& record : records) all += formatRecord(record) + '\n';
     job.inputs = sha256(all + poses);
     job.seed = options.common.seed;
     job.form = options.format + (format.isBinary() ? " binary" : " text");

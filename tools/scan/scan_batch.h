@@ -16,7 +16,7 @@ bool isBatch(const ScanToolOptions& options);
 
 /// Returns the job of the command. \param format of the readings \param poses the text of --poses,
 /// "" without \param units all readings
-JobId readingsJob(const ScanCommand& command, const SceneInput& input, const ReadingFormat& format,
+JobId readingsJob(const ScanCommand& command, const SiteInput& input, const ReadingFormat& format,
                   const std::string& poses, std::int64_t units);
 
 /// The readings that a run has to take, and their output.

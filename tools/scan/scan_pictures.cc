@@ -33,10 +33,6 @@ std::string jpegOf(const Image& image) {
 
 }  // namespace
 
-std::string labelOf(const ViewSpec& view) {
-    return view.mode == ViewMode::Camera ? view.id : view.name;
-}
-
 PictureSize pictureSizeOf(const ViewSpec& view, const Scene& scene,
                           std::optional<PictureSize> wanted) {
     const PictureSize size = sizeOf(view, scene, wanted);

@@ -25,9 +25,6 @@ struct PictureJob {
     std::function<Image(PictureSize, const std::function<void(double)>& on_progress)> draw;
 };
 
-/// Returns the name of a view on a sheet: a camera's is its id (thesis, fig. 3.15).
-std::string labelOf(const ViewSpec& view);
-
 /// Returns the size of a view's picture. \throws UsageError for more than 64 million pixels
 PictureSize pictureSizeOf(const ViewSpec& view, const Scene& scene,
                           std::optional<PictureSize> wanted);

@@ -3,20 +3,26 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/number.h"
 #include "base/run_files.h"
 #include "cli/outputs.h"
+#include "cli/progress_bar.h"
+#include "cli/run_tool.h"
 #include "io/calibration.h"
 #include "scan/scan_batch.h"
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor_spec.h"
+#include "sense/warnings.h"
 
 namespace ispace {
 
@@ -46,20 +52,17 @@ ByteReader readerOfPoses(const ScanToolOptions& options,
     };
 }
 
-std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const Sensors& sensors,
+std::unique_ptr<ReadingSource> sourceFor(const ScanToolOptions& options, const SiteSensors& site,
                                          const std::shared_ptr<const std::string>& poses_text) {
+    const Sensors& sensors = site.sensors;
     if (options.poses.empty())
-        return std::make_unique<StillSource>(sensors, options.frames.value_or(1));
+        return std::make_unique<StillSource>(sensors, options.frames.value_or(1), site.rooms);
     PoseLines poses(readerOfPoses(options, poses_text), displayName(options.poses));
     if (!options.motion) return std::make_unique<PoseSource>(std::move(poses));
     const SensorModel& model = sensors.read.front().model;
     return std::make_unique<MotionSource>(std::move(poses), readingRate(model), readingTime(model),
                                           options.frames);
 }
-
-}  // namespace
-
-namespace {
 
 /// A receiver alone has no readings.
 bool hasReadings(const SensorKind& kind) { return kind.is_read && kind.together == 1; }
@@ -78,9 +81,11 @@ SceneRequest requestOf(const ScanToolOptions& options) {
     return {options.operands, options.rules, wants_layout, hasReadings};
 }
 
-Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
-    Sensors sensors = sensorsOf(input.scene, options.select);
-    if (!sensors.read.empty()) return sensors;
+namespace {
+
+SiteSensors placedSensors(const ScanToolOptions& options, const SiteInput& input) {
+    SiteSensors found = sensorsOf(input.rooms, input.ids, options.select);
+    if (!found.sensors.read.empty()) return found;
     if (!options.select.empty())
         throw UsageError(
             "--select chooses nothing that is read: receivers hear tags, and sensors "
@@ -91,19 +96,28 @@ Sensors placedSensors(const ScanToolOptions& options, const SceneInput& input) {
          "no placed sensor with readings: give one `at=x,y`, or let arrange place it"});
 }
 
+/// Readings of a run, and their output.
+struct ReadingWork {
+    std::unique_ptr<ReadingSource> source;
+    std::unique_ptr<Delivery> delivery;  ///< null: all readings are complete
+    std::int64_t count = -1;             ///< of readings; -1 if unknown
+};
+
+/// Returns the readings that this run takes: all, or its part less the completed ones.
 ReadingWork workOf(const ScanCommand& command, const ScanToolOptions& options,
-                   const SceneInput& input, const Sensors& sensors, const ReadingFormat& format) {
+                   const SiteInput& input, const SiteSensors& site, const ReadingFormat& format) {
     const bool moves = !options.poses.empty();
+    const Sensors& sensors = site.sensors;
     const auto poses = posesText(options);
     ReadingWork work;
-    work.source = sourceFor(options, sensors, poses);
+    work.source = sourceFor(options, site, poses);
     if (!moves) work.count = static_cast<const StillSource&>(*work.source).count();
     if (!isBatch(options)) {
         work.delivery = makeDelivery(options, sensors, format, work.count);
         return work;
     }
     constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
-    if (moves) work.count = sourceFor(options, sensors, poses)->skip(kAll);
+    if (moves) work.count = sourceFor(options, site, poses)->skip(kAll);
     OwnReadings own = ownReadings(options, readingsJob(command, input, format, *poses, work.count),
                                   sensors, format);
     work.delivery = std::move(own.delivery);
@@ -111,8 +125,6 @@ ReadingWork workOf(const ScanCommand& command, const ScanToolOptions& options,
     work.count = own.block.end - own.block.first;
     return work;
 }
-
-namespace {
 
 /// Keywords of sensors that poses can move.
 std::vector<std::string_view> movable() { return keywordsOf(&SensorKind::follows_poses); }
@@ -139,8 +151,19 @@ Record recordOfModel(const std::string& model, const DeviceCatalogue& devices,
     return record;
 }
 
-std::size_t onlySensor(const Scene& scene, const std::vector<std::string>& globs) {
-    const std::vector<std::size_t> found = sensorRecords(scene, movable(), globs);
+/// A sensor that may take the poses.
+struct KnownSensor {
+    std::size_t room = 0, record = 0;
+    std::string id;  ///< across the site
+};
+
+KnownSensor onlySensor(const SiteInput& site, const std::vector<std::string>& globs) {
+    std::vector<KnownSensor> found;
+    for (std::size_t room = 0; room < site.rooms.size(); ++room)
+        for (const std::size_t record : sensorRecords(*site.rooms[room], movable(), {}))
+            if (KnownSensor one{room, record, site.idOf(room, site.rooms[room]->ids[record])};
+                isSelected(one.id, globs))
+                found.push_back(std::move(one));
     if (found.size() == 1) return found.front();
     throw UsageError("--poses: " + std::to_string(found.size()) +
                      " sensors could take them; say which with --model or --select");
@@ -153,34 +176,44 @@ const Sensor* placedSensor(const Scene& scene, const std::string& id) {
     return found == scene.sensors.end() ? nullptr : &*found;
 }
 
-}  // namespace
+/// The sensor that takes the poses.
+struct MovedSensor {
+    SiteSensors found;             ///< it alone, in the frame of the site
+    std::size_t carrier_room = 0;  ///< of the robot or person that carries it
+};
 
-Sensors sensorForPoses(const ScanToolOptions& options, const Scene& scene,
-                       const DeviceCatalogue& devices, std::vector<std::string>& sources) {
-    std::optional<Record> of_model;
-    std::string id;
+/// Returns the sensor that takes the poses: that of --model, or the only laser, ranger or camera of
+/// the site, placed or not. It does not see the robot or person that carries it. \param sources
+/// the file that --model names is appended \throws UsageError for a bad --model and for an
+/// ambiguous sensor; FormatError as withParameters()
+MovedSensor sensorForPoses(const ScanToolOptions& options, const SiteInput& site,
+                           const DeviceCatalogue& devices, std::vector<std::string>& sources) {
+    MovedSensor moved;
+    std::vector<Sensor>& read = moved.found.sensors.read;
     if (!options.model.empty()) {
-        of_model =
+        const Record record =
             ofOption("--model", [&] { return recordOfModel(options.model, devices, sources); });
-        id = of_model->writtenId().empty() ? of_model->keyword() + "1" : of_model->writtenId();
+        const std::string& written = record.writtenId();
+        read.push_back({written.empty() ? record.keyword() + "1" : written,
+                        sensorModelOf(record, devices),
+                        {}});
+    } else {
+        const KnownSensor only = onlySensor(site, options.select);
+        const Scene& scene = *site.rooms[only.room];
+        read.push_back({only.id, sensorModelOf(scene.records[only.record], devices), {}});
+        if (const Sensor* placed = placedSensor(scene, scene.ids[only.record])) {
+            read.front().mount = placed->mount;
+            read.front().person = placed->person;
+            moved.carrier_room = only.room;
+        }
     }
-    const std::size_t only = of_model ? 0 : onlySensor(scene, options.select);
-    const Record& record = of_model ? *of_model : scene.records[only];
-    if (!of_model) id = scene.ids[only];
-
-    Sensors sensors;
-    sensors.read.push_back({id, sensorModelOf(record, devices), {}});
-    if (const Sensor* placed = of_model ? nullptr : placedSensor(scene, id)) {
-        sensors.read.front().mount = placed->mount;
-        sensors.read.front().person = placed->person;
-    }
-    const Sensor& sensor = sensors.read.front();
+    const Sensor& sensor = read.front();
+    const std::string& id = sensor.id;
     if (options.motion && sensor.is<Laser>() && sensor.as<Laser>().sweep != SweepAxis::None)
         throw UsageError("--motion: a laser either sweeps or drives, and " + id + " sweeps");
-    return sensors;
+    moved.found.rooms = {{"", site.rooms.front().get(), 1, 0}};
+    return moved;
 }
-
-namespace {
 
 class Stream final : public Delivery {
   public:
@@ -318,8 +351,9 @@ void checkPoints(std::size_t points) {
                                "or take fewer"});
 }
 
-FormatOptions formatOptions(const ScanCommand& command, const ScanToolOptions& options,
-                            const SceneInput& input) {
+FormatOptions formatOptions(const ScanCommand& command, const SiteInput& input,
+                            std::vector<SensorRoom> rooms) {
+    const ScanToolOptions& options = command.options();
     History history = input.layout ? input.layout->history : History();
     history.push_back(command.historyLine(input.named));
     return {.history = std::move(history),
@@ -334,7 +368,7 @@ FormatOptions formatOptions(const ScanCommand& command, const ScanToolOptions& o
             .las_minor = options.las_minor,
             .labels = options.photo.labels,
             .depths = options.photo.depths,
-            .scene = &input.scene};
+            .rooms = std::move(rooms)};
 }
 
 std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sensors& sensors,
@@ -357,6 +391,169 @@ std::unique_ptr<Delivery> makeDelivery(const ScanToolOptions& options, const Sen
     throw UsageError(many + " make as many files of " + options.format +
                      ": name a folder (-o DIR/) or a pattern (-o '%s-%04d." + options.format +
                      "')" + (count < 0 ? "" : ", or choose one sensor with --select"));
+}
+
+namespace {
+
+/// Reads sensors in one room.
+class RoomSampler {
+  public:
+    /// \param moved null: placed sensors \pre all arguments outlive it
+    RoomSampler(const ScanToolOptions& options, const SeenSite& site, std::size_t room,
+                const SiteSensors& all, const MovedSensor* moved)
+        : scene_(site.scene(room)),
+          worlds_(scene_->environment),
+          bodies_(bodiesOf(*scene_)),
+          room_(site.input().rooms[room]),
+          burial_(room_->environment),
+          sensors_{all.sensors.read, {}} {
+        TakerOptions taking{.celsius = options.celsius,
+                            .follows_poses = moved != nullptr,
+                            .velocities = startVelocities(*scene_)};
+        if (options.noise) taking.noise_seed = options.common.seed;
+        bool has_camera = false;
+        for (std::size_t i = 0; i < sensors_.read.size(); ++i)
+            has_camera = has_camera || (sensors_.read[i].is<Camera>() &&
+                                        (moved != nullptr || roomOf(all.rooms, i) == room));
+        if (has_camera) taking.photographer = &photographer_.emplace(*scene_, options.photo);
+        if (moved == nullptr) {
+            const auto receivers = receiversIn(all.rooms, room, all.sensors);
+            sensors_.receivers.assign(receivers.begin(), receivers.end());
+        } else if (moved->carrier_room != room) {
+            sensors_.read.front().mount.reset();
+            sensors_.read.front().person.reset();
+        }
+        sampler_.emplace(sensors_, worlds_, bodies_, taking);
+    }
+
+    [[nodiscard]] ReadingSampler& sampler() { return *sampler_; }
+    [[nodiscard]] std::vector<std::string> textures() const {
+        return photographer_ ? textureFiles(*scene_) : std::vector<std::string>();
+    }
+    /// Returns true for a position in a solid of the room. \param point in the room
+    [[nodiscard]] bool isInsideSolid(Point3 point) { return burial_.isInsideSolid(point); }
+
+  private:
+    std::shared_ptr<const Scene> scene_;
+    Worlds worlds_;
+    MovingBodies bodies_;
+    std::shared_ptr<const Scene> room_;  // by itself
+    BurialTest burial_;
+    Sensors sensors_;  // of all rooms, with the receivers of this one
+    std::optional<Photographer> photographer_;
+    std::optional<ReadingSampler> sampler_;
+};
+
+/// Counts the poses that are inside a solid.
+class BuriedPoses {
+  public:
+    explicit BuriedPoses(const SeenSite& site) : site_(&site) {}
+    void count(std::size_t room, RoomSampler& sampler, const std::vector<ReadingJob>& jobs) {
+        const auto site_from_room = site_->siteFromRoom(room);
+        for (const ReadingJob& job : jobs) {
+            const Point3 point =
+                (site_from_room ? toInner(*site_from_room, job.pose) : job.pose).position;
+            const Coupling* const coupling = site_->coupling();
+            const bool is_buried = sampler.isInsideSolid(point) ||
+                                   (coupling != nullptr && coupling->slabAround(room, point));
+            if (is_buried && count_++ == 0) first_ = job;
+        }
+    }
+    [[nodiscard]] std::vector<std::string> phrases() const {
+        if (count_ == 0) return {};
+        const Point3& place = first_.pose.position;
+        return {std::to_string(count_) + (count_ == 1 ? " reading was" : " readings were") +
+                " taken inside something solid, the first at t=" + formatDouble(first_.time) +
+                ", " + formatDouble(place.x) + "," + formatDouble(place.y) + "," +
+                formatDouble(place.z)};
+    }
+
+  private:
+    const SeenSite* site_;
+    std::int64_t count_ = 0;
+    ReadingJob first_;
+};
+
+}  // namespace
+
+void shareFrame(const ScanToolOptions& options, const SeenSite& site,
+                std::vector<SensorRoom>& rooms) {
+    if (OutputSet::of(options.common.output)) return;
+    for (std::size_t i = 0; i < rooms.size(); ++i) rooms[i].site_from_room = site.siteFromRoom(i);
+}
+
+std::int64_t takeReadings(const ScanCommand& command, const ScanToolOptions& options) {
+    const SiteInput input = readSite(requestOf(options));
+    warnOfImport(options.common, "scan", input);
+    const bool moves = !options.poses.empty();
+    if (moves && options.photo.labels) mustBeOneRoom(input, "--layers labels with --poses");
+    std::vector<std::string> files = input.files;
+    std::optional<MovedSensor> moved;
+    if (moves) moved = sensorForPoses(options, input, shippedDevices(), files);
+    const SeenSite site(input);
+    SiteSensors all = moved ? moved->found : placedSensors(options, input);
+    if (!moves) shareFrame(options, site, all.rooms);
+    const Sensors& sensors = all.sensors;
+    command.checkSensors(sensors.read);
+    if (!moves)
+        warn(options.common, "scan",
+             siteWarnings(input, {.checks = {"unplaced", "outside", "buried"},
+                                  .ids = [&options](const std::string& id) {
+                                      return isSelected(id, options.select);
+                                  }}));
+    const auto format =
+        makeFormat(options.format, sensors, formatOptions(command, input, all.rooms));
+    warn(options.common, "scan", format->warnings());
+    if (format->isBinary()) refuseTerminal(options.common.output, options.format);
+
+    const auto room_of = [&](const ReadingJob& job) {
+        return moves ? site.roomAt(job.pose.position) : roomOf(all.rooms, job.sensor);
+    };
+    std::vector<std::string> textures;
+    std::map<std::size_t, RoomSampler> samplers;  // of placed sensors that of one room at a time
+    const auto sampler_in = [&](std::size_t room) -> RoomSampler& {
+        if (!moves && !samplers.contains(room)) samplers.clear();
+        const auto [known, is_new] =
+            samplers.try_emplace(room, options, site, room, all, moved ? &*moved : nullptr);
+        if (is_new)
+            for (std::string& file : known->second.textures()) textures.push_back(std::move(file));
+        return known->second;
+    };
+    // What cannot be read is found before a stream begins.
+    sampler_in(moves ? moved->carrier_room : roomOf(all.rooms, 0));
+    const ReadingWork work = workOf(command, options, input, all, *format);
+    if (!work.delivery) {
+        logInfo(options.common, "scan", options.common.output + " is done already");
+        return 0;
+    }
+    constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+    LimitedSource own_part(*work.source, work.count < 0 ? kAll : work.count);
+    RoomParts parts(own_part, room_of);
+    const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
+    progress->begin("readings", std::max<std::int64_t>(work.count, 0));
+    BuriedPoses buried(site);
+    std::int64_t done = 0;
+    while (const auto room = parts.begin()) {
+        RoomSampler& sampler = sampler_in(*room);
+        const auto site_from_room = moves ? site.siteFromRoom(*room) : std::nullopt;
+        const auto write = [&](Readings& readings) {
+            if (moves) buried.count(*room, sampler, readings.jobs);
+            done += static_cast<std::int64_t>(readings.jobs.size());
+            work.delivery->write(readings);
+        };
+        runReadings(parts, sampler.sampler(), sensors, *format, work.delivery->how(),
+                    options.coordinates, *progress, write,
+                    site_from_room ? &*site_from_room : nullptr);
+    }
+    work.delivery->commit();
+    progress->end();
+    warn(options.common, "scan", buried.phrases());
+    if (moves) files.push_back(options.poses);
+    files.insert(files.end(), textures.begin(), textures.end());
+    writeDependencies(options.common, files);
+    logInfo(options.common, "scan",
+            std::to_string(done) + (done == 1 ? " reading" : " readings") + " written");
+    return done;
 }
 
 }  // namespace ispace

@@ -2,18 +2,23 @@
 #include "scan/scan_views.h"
 
 #include <algorithm>
-#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "cli/command_line.h"
-#include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
 #include "report/view/run_picture.h"
 #include "scan/scan_options.h"
 #include "scan/scan_pictures.h"
+#include "scan/scan_run.h"
 #include "trace/render/render.h"
 
 namespace ispace {
@@ -42,16 +47,6 @@ std::vector<Point3> viewersOf(const std::vector<ViewSpec>& views, const Scene& s
     }
     return viewers;
 }
-
-namespace {
-
-/// Applies the changes that clients made to the world of a run before a time.
-void makeChanges(RunChanges& changes, Scene& scene, double time) {
-    const auto unknown = [](const std::string&) { return std::optional<Pose2>(); };
-    while (auto step = changes.next(time, scene, unknown)) scene = std::move(step->scene);
-}
-
-}  // namespace
 
 void addViewOptions(CommandLine& line, ViewToolOptions& options) {
     std::string forms;
@@ -108,68 +103,343 @@ PictureSize pictureSize(const std::string& text) {
     return {side(text.substr(0, comma)), side(text.substr(comma + 1))};
 }
 
+namespace {
+
+/// A view in one room, or of the whole building.
+struct RoomView {
+    std::optional<std::size_t> room;
+    ViewSpec view;  ///< with plain ids
+};
+
+/// Returns true for a view whose viewer is in the room, and sees other storeys.
+bool isWithinRoom(const ViewSpec& view) {
+    return view.mode != ViewMode::Bird && view.mode != ViewMode::Orbit &&
+           view.mode != ViewMode::Central;
+}
+
+/// What a record tells of a room at a moment.
+struct RecordedMoment {
+    std::vector<Angle> swings = {};
+    std::vector<std::vector<Point2>> ways = {};
+};
+
+/// Draws the views of a site.
+class SiteViews {
+  public:
+    /// \pre both outlive it
+    SiteViews(const ScanToolOptions& options, const SiteInput& input)
+        : options_(options), input_(input), site_(input) {
+        for (const ViewSpec& view : options.view.views) add(view);
+        for (std::size_t i = 0; i < views_.size(); ++i) nameApart(i);
+        for (const RoomView& one : views_)
+            if (one.room) roomFor(*one.room, isWithinRoom(one.view));
+    }
+
+    [[nodiscard]] std::vector<std::string> names() const {
+        std::vector<std::string> names;
+        names.reserve(views_.size());
+        for (const RoomView& one : views_) names.push_back(one.view.name);
+        return names;
+    }
+
+    [[nodiscard]] std::vector<std::string> warnings() const {
+        std::vector<std::string> found;
+        for (const RoomView& one : views_) {
+            if (!one.room) continue;
+            const std::string phrase = standpointWarning(one.view, *input_.rooms[*one.room]);
+            if (!phrase.empty()) found.push_back(input_.prefix(*one.room) + phrase);
+        }
+        return found;
+    }
+
+    /// Returns the pictures at a moment of a run.
+    std::vector<PictureJob> jobs(const RecordedMoment& moment) {
+        std::vector<PictureJob> jobs;
+        jobs.reserve(views_.size());
+        for (const RoomView& one : views_) {
+            const Scene& scene =
+                one.room ? roomFor(*one.room, isWithinRoom(one.view)) : *input_.rooms[0];
+            jobs.push_back({one.view.name, labelFor(one),
+                            pictureSizeOf(one.view, scene, options_.picture_size),
+                            [&, this](PictureSize size, const auto& on_progress) {
+                                if (!one.room) return drawWhole(one.view, size, on_progress);
+                                ViewOptions own = drawingOf(*one.room);
+                                own.swings = moment.swings;
+                                own.ways = moment.ways;
+                                own.on_progress = on_progress;
+                                return viewPicture(scene, one.view, size, own);
+                            }});
+        }
+        return jobs;
+    }
+
+  private:
+    void add(ViewSpec view) {
+        if (!input_.isOneRoom()) return addInBuilding(std::move(view));
+        if (!view.storey.empty())
+            throw UsageError("--view: " + view.storey + "/ is a storey, and this is one room");
+        views_.push_back({0, std::move(view)});
+    }
+
+    void addInBuilding(ViewSpec view) {
+        const std::vector<Storey>& storeys = input_.building->document.storeys;
+        std::string called = view.storey;
+        if (!view.id.empty()) {
+            const std::size_t slash = view.id.find('/');
+            if (slash == std::string::npos)
+                throw UsageError("--view: " + excerpt(view.id) +
+                                 " has no storey before it, as in " + storeys.front().id + '/' +
+                                 view.id);
+            called = view.id.substr(0, slash);
+            view.id = view.id.substr(slash + 1);
+        }
+        if (!called.empty()) {
+            const Storey* const storey =
+                ofOption("--view", [&] { return &input_.building->document.storey(called); });
+            views_.push_back({static_cast<std::size_t>(storey - storeys.data()), std::move(view)});
+        } else if (view.mode == ViewMode::Orbit || (view.mode == ViewMode::Central && !view.at)) {
+            views_.push_back({std::nullopt, std::move(view)});
+        } else if (isWithinRoom(view) || view.at) {
+            throw UsageError("--view " + view.name +
+                             ": the position has no storey before it, as in " + storeys.front().id +
+                             "/1,2");
+        } else {
+            for (std::size_t i = storeys.size(); i-- > 0;) {
+                ViewSpec own = view;
+                own.name += '-' + storeys[i].id;
+                views_.push_back({i, std::move(own)});
+            }
+        }
+    }
+
+    /// Numbers a view whose name an earlier one has.
+    void nameApart(std::size_t i) {
+        const std::string name = views_[i].view.name;
+        const auto end = views_.begin() + static_cast<std::ptrdiff_t>(i);
+        const auto is_taken = [&] {
+            return std::any_of(views_.begin(), end, [&](const RoomView& other) {
+                return other.view.name == views_[i].view.name;
+            });
+        };
+        for (int n = 2; is_taken(); ++n) views_[i].view.name = name + '-' + std::to_string(n);
+    }
+
+    /// Returns the scene of a room; where the viewer is inside, with all that is seen through
+    /// openings.
+    const Scene& roomFor(std::size_t room, bool is_within) {
+        if (!is_within) return *input_.rooms[room];
+        auto& seen = seen_[room];
+        if (seen == nullptr) seen = site_.scene(room);
+        return *seen;
+    }
+
+    /// Returns the name of a view on a sheet: a camera's is its id (thesis, fig. 3.15).
+    [[nodiscard]] std::string labelFor(const RoomView& one) const {
+        return one.view.mode == ViewMode::Camera ? input_.idOf(*one.room, one.view.id)
+                                                 : one.view.name;
+    }
+
+    /// Returns the options of a room's pictures, with the viewers of the others in it.
+    [[nodiscard]] ViewOptions drawingOf(std::size_t room) const {
+        ViewOptions own = options_.view.drawing;
+        own.samples = options_.photo.samples;
+        own.light = options_.photo.light;
+        own.exposure = options_.photo.exposure;
+        const std::string prefix = input_.idOf(room, "");
+        std::erase_if(own.highlight,
+                      [&](const std::string& id) { return !id.starts_with(prefix); });
+        for (std::string& id : own.highlight) id.erase(0, prefix.size());
+        std::vector<ViewSpec> views;
+        for (const RoomView& one : views_)
+            if (one.room == room) views.push_back(one.view);
+        own.viewers = viewersOf(views, *input_.rooms[room]);
+        return own;
+    }
+
+    /// A storey of a picture of the whole building.
+    struct StoreyPicture {
+        Scene scene;
+        ViewSpec view;
+        ViewOptions options;
+    };
+
+    /// Draws storeys over a background. Each is rendered as far as nearer ones leave it visible.
+    /// \param storeys the farthest first
+    static Image layered(Image behind, const std::vector<StoreyPicture>& storeys) {
+        const PictureSize size{behind.width, behind.height};
+        std::vector<bool> hidden(behind.pixels.size());
+        std::vector<ViewLayer> layers;  // the nearest first
+        for (auto storey = storeys.rbegin(); storey != storeys.rend(); ++storey) {
+            layers.push_back(viewLayer(storey->scene, storey->view, size, storey->options, hidden));
+            layers.back().hide(hidden);
+        }
+        for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer)
+            behind = layer->over(behind);
+        return behind;
+    }
+
+    /// Draws all storeys in their positions, each over those that it hides. Rays that descend meet
+    /// the higher storey first, rays that ascend the lower one.
+    [[nodiscard]] Image drawWhole(const ViewSpec& view, PictureSize size,
+                                  const std::function<void(double)>& on_progress) const {
+        const std::vector<Storey>& storeys = input_.building->document.storeys;
+        const std::vector<Point3> contents = contentsOf();
+        std::vector<std::size_t> order;
+        for (std::size_t i = 0; i < storeys.size(); ++i) order.push_back(i);
+        const double eye =
+            eyeHeight(inFrameOf(storeys.front(), view, contents), size) + storeys.front().floor;
+        const auto apart = [&](std::size_t i) {
+            return std::max(
+                {0.0, storeys[i].floor - eye, eye - storeys[i].floor - input_.building->height(i)});
+        };
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t a, std::size_t b) { return apart(a) > apart(b); });
+        Image image{size.columns, size.rows, {}};
+        image.pixels.assign(
+            static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows), 0xFFFFFF);
+        std::vector<StoreyPicture> labels;
+        const bool has_overlay = options_.view.drawing.show != OverlayLayers::None;
+        for (const std::size_t i : order) {
+            ViewOptions own = drawingOf(i);
+            own.on_progress = [&, part = 1.0 / static_cast<double>(storeys.size())](double share) {
+                on_progress(part * share);
+            };
+            for (std::string& id : own.highlight) id = wholeId(storeys[i], id);
+            labels.push_back({site_.fromOutside(i), inFrameOf(storeys[i], view, contents), own});
+            if (!has_overlay) continue;
+            own.behind = &image;
+            own.labels = false;
+            image = viewPicture(labels.back().scene, labels.back().view, size, own);
+        }
+        if (!has_overlay) image = layered(std::move(image), labels);
+        if (!options_.view.drawing.labels) return image;
+        for (const StoreyPicture& of_storey : labels)
+            image = withLabels(image, of_storey.scene, of_storey.view, of_storey.options);
+        return image;
+    }
+
+    /// Returns the corners of all storeys, in the building.
+    [[nodiscard]] std::vector<Point3> contentsOf() const {
+        std::vector<Point3> contents;
+        for (std::size_t i = 0; i < input_.rooms.size(); ++i) {
+            const Storey& storey = input_.building->document.storeys[i];
+            const Environment& room = input_.rooms[i]->environment;
+            for (const Region& part : room.indoor().parts)
+                for (const Point2& corner : part.outline) {
+                    const Point2 p = storey.building_from_storey * corner;
+                    contents.push_back({p.x, p.y, storey.floor});
+                    contents.push_back({p.x, p.y, storey.floor + room.height()});
+                }
+        }
+        return contents;
+    }
+
+    /// Returns a view of the building in the frame of a storey.
+    static ViewSpec inFrameOf(const Storey& storey, ViewSpec view, std::vector<Point3> contents) {
+        constexpr double kAzimuth = -120;  // the default, as of a room
+        view.mode = ViewMode::Orbit;
+        view.heading =
+            view.heading.value_or(Angle::degrees(kAzimuth)) - storey.building_from_storey.heading;
+        for (Point3& p : contents) {
+            const Point2 local = inStorey(storey, p.onFloor());
+            p = {local.x, local.y, p.z - storey.floor};
+        }
+        view.contents = std::move(contents);
+        return view;
+    }
+
+    [[nodiscard]] double eyeHeight(const ViewSpec& view, PictureSize size) const {
+        return standpointOf(view, *input_.rooms.front(), size).place->z;
+    }
+
+    const ScanToolOptions& options_;
+    const SiteInput& input_;
+    SeenSite site_;
+    std::vector<RoomView> views_;
+    std::map<std::size_t, std::shared_ptr<const Scene>> seen_;
+};
+
+/// \throws UsageError for --highlight of an id without a known storey
+void mustHaveHighlighted(const ScanToolOptions& options, const SiteInput& input) {
+    if (input.isOneRoom()) return;
+    for (const std::string& id : options.view.drawing.highlight) {
+        bool is_known = false;
+        for (std::size_t i = 0; i < input.rooms.size(); ++i)
+            for (const std::string& plain : input.rooms[i]->ids)
+                is_known = is_known || id == input.idOf(i, plain);
+        if (!is_known)
+            throw UsageError("--highlight: nothing has the id " + excerpt(id) +
+                             "; ids begin with their storey, as in " + input.ids.front() +
+                             "/desk1");
+    }
+}
+
+/// The record of --run, and its room at a time.
+class RecordedRoom {
+  public:
+    RecordedRoom(const ScanToolOptions& options, const Scene& start)
+        : record_(RunReader(options.view.run)),
+          changes_(changesOfRun(options.view.run, start, options.rules.max_work)),
+          scene_(start) {
+        record_.checkStart(start);
+    }
+
+    /// Moves on to a frame; the only one shows the end.
+    RecordedMoment moveTo(int frame, int frames) {
+        const double share = frames > 1 ? 1.0 * frame / (frames - 1) : 1;
+        const double time = record_.begin() + share * (record_.end() - record_.begin());
+        const auto unknown = [](const std::string&) { return std::optional<Pose2>(); };
+        while (auto step = changes_.next(time, scene_, unknown)) scene_ = std::move(step->scene);
+        record_.apply(scene_, time);
+        return {record_.swingsAt(scene_, time), record_.waysUntil(time)};
+    }
+    [[nodiscard]] const Scene& scene() const { return scene_; }
+    [[nodiscard]] const std::string& failure() const { return changes_.failure(); }
+
+  private:
+    RunRecord record_;
+    RunChanges changes_;
+    Scene scene_;
+};
+
+}  // namespace
+
 void takeViews(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
-    const SceneInput input = readScene({options.operands, options.rules, false, {}});
+    SiteInput input = readSite({options.operands, options.rules, false, {}});
+    if (!options.view.run.empty()) mustBeOneRoom(input, "--run");
     warnOfImport(options.common, "scan", input);
-    Scene scene = input.scene;
-    std::vector<std::string> files = filesOf(input);
-    std::optional<RunRecord> run;
-    std::optional<RunChanges> changes;
+    mustHaveHighlighted(options, input);
+    std::vector<std::string> files = input.files;
+    std::optional<RecordedRoom> run;
     if (!options.view.run.empty()) {
-        run.emplace(RunReader(options.view.run));
-        run->checkStart(scene);
-        changes.emplace(changesOfRun(options.view.run, scene, options.rules.max_work));
+        run.emplace(options, input.only());
         files.push_back(RecordedFiles(options.view.run).robots);
     }
     const int frames = options.frames.value_or(1);
-    const std::vector<ViewSpec>& views = options.view.views;
-    for (const ViewSpec& view : views)
-        if (const std::string phrase = standpointWarning(view, scene); !phrase.empty())
-            warn(options.common, "scan", phrase);
-    for (const ViewSpec& view : views)
-        if (!view.storey.empty())
-            throw UsageError("--view: " + view.storey + "/ is a storey, and this is one room");
-    std::vector<std::string> names;
-    names.reserve(views.size());
-    for (const ViewSpec& view : views) names.push_back(view.name);
+    auto views = std::make_unique<SiteViews>(options, input);
+    warn(options.common, "scan", views->warnings());
+    const std::vector<std::string> names = views->names();
     PictureFiles pictures(options, names, frames);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
-    const std::int64_t count = frames * static_cast<std::int64_t>(views.size());
     for (int frame = 0; frame < frames; ++frame) {
-        ViewOptions drawing = options.view.drawing;
+        RecordedMoment moment;
         if (run) {
-            // A single picture shows the end.
-            const double share = frames > 1 ? 1.0 * frame / (frames - 1) : 1;
-            const double time = run->begin() + share * (run->end() - run->begin());
-            makeChanges(*changes, scene, time);
-            run->apply(scene, time);
-            drawing.swings = run->swingsAt(scene, time);
-            drawing.ways = run->waysUntil(time);
+            moment = run->moveTo(frame, frames);
+            input.rooms.front() = std::make_shared<const Scene>(run->scene());
+            views = std::make_unique<SiteViews>(options, input);
         }
-        drawing.samples = options.photo.samples;
-        drawing.light = options.photo.light;
-        drawing.exposure = options.photo.exposure;
-        drawing.viewers = viewersOf(views, scene);
-        std::vector<PictureJob> jobs;
-        jobs.reserve(views.size());
-        for (const ViewSpec& view : views)
-            jobs.push_back({view.name, labelOf(view),
-                            pictureSizeOf(view, scene, options.picture_size),
-                            [&](PictureSize size, const auto& on_progress) {
-                                ViewOptions own = drawing;
-                                own.on_progress = on_progress;
-                                return viewPicture(scene, view, size, own);
-                            }});
+        const std::vector<PictureJob> jobs = views->jobs(moment);
         if (frame == 0) progress->begin("rows of pictures", frames * rowsOf(jobs));
         pictures.write(jobs, frame, *progress);
     }
     pictures.finish();
     progress->end();
-    if (run && !changes->failure().empty()) warn(options.common, "scan", changes->failure());
-    const std::vector<std::string> textures = textureFiles(scene);
-    files.insert(files.end(), textures.begin(), textures.end());
+    if (run && !run->failure().empty()) warn(options.common, "scan", run->failure());
+    for (const auto& scene : input.rooms)
+        for (const std::string& texture : textureFiles(*scene)) files.push_back(texture);
     writeDependencies(options.common, files);
+    const std::int64_t count = frames * static_cast<std::int64_t>(names.size());
     logInfo(options.common, "scan",
             std::to_string(count) + (count == 1 ? " picture" : " pictures") + " written");
 }

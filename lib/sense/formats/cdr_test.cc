@@ -146,7 +146,7 @@ TEST(RosMessages, TwistsOfARecordAreMeansOverItsInterval) {
         state.speed = 0.5;
         state.odometry = EstimatedPose{};
         std::string bytes;
-        makeFormat("mcap", {}, std::move(options))->appendMoment(bytes, 0, 1, {&state, 1});
+        makeFormat("mcap", {}, std::move(options))->appendMoment(bytes, 0, 1, 0, {&state, 1});
         double number = 0;
         constexpr std::size_t kMatrix = 36 * sizeof number;  // it ends the message
         std::memcpy(&number, bytes.data() + bytes.size() - kMatrix, sizeof number);

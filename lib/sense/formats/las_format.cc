@@ -141,7 +141,7 @@ class Las final : public FormatBase {
                              "; choose sensors with --select");
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        const PointCloud cloud = cloudOf(sensors_, index, reading, Coordinates::World);
+        const PointCloud cloud = points(index, reading, Coordinates::World);
         out.reserve(out.size() + kPointBytes * cloud.size());
         const auto delay = readingKind(sensor(index).model).delay;
         const std::vector<ReadingView> views = viewsOf(sensor(index), reading);

@@ -41,10 +41,13 @@ std::uint64_t rosTime(double seconds, const std::string& who) {
 /// Appends the messages of one reading.
 class Messages {
   public:
-    /// \param first channel of the sensor
-    Messages(std::string& out, const std::string& name, std::uint16_t first, const Sensor& sensor)
+    /// \param first channel of the sensor \param room null: the world's frame is that of the room
+    Messages(std::string& out, const std::string& name, std::uint16_t first, const Sensor& sensor,
+             const SensorRoom* room)
         : out_(out),
           name_(name),
+          room_(room),
+          world_(room == nullptr ? std::string(kRosWorld) : rosName(room->id)),
           optical_(name + kOptical),
           first_(first),
           sensor_(sensor),
@@ -61,7 +64,7 @@ class Messages {
             if (topics_[i]->message != nullptr) continue;
             const std::uint64_t end = nanoseconds(views.back().time);
             send(i, sequenceOf(views.back()), end,
-                 pointCloudMessage({end, kRosWorld},
+                 pointCloudMessage({end, world_},
                                    kind_.points(sensor_, reading, Coordinates::World)));
         }
     }
@@ -88,7 +91,7 @@ class Messages {
     }
 
     [[nodiscard]] std::string_view frameOf(const RosTopic& topic) const {
-        if (topic.frame == RosFrame::World) return kRosWorld;
+        if (topic.frame == RosFrame::World) return world_;
         return topic.frame == RosFrame::Optical ? optical_ : name_;
     }
 
@@ -100,7 +103,9 @@ class Messages {
     }
 
     void addPose(std::uint64_t time, std::uint32_t sequence, const Pose3& pose) {
-        std::vector<RosTransform> transforms{{{time, kRosWorld}, name_, pose}};
+        std::vector<RosTransform> transforms{{{time, world_}, name_, pose}};
+        if (room_ != nullptr)
+            transforms.push_back({{time, kRosWorld}, world_, *room_->site_from_room});
         if (is_optical_) transforms.push_back({{time, name_}, optical_, Pose3(), true});
         appendMcapMessage(out_, 0, sequence, time, transformsMessage(transforms));
     }
@@ -117,7 +122,8 @@ class Messages {
 
     std::string& out_;
     const std::string& name_;
-    std::string optical_;
+    const SensorRoom* room_;
+    std::string world_, optical_;  // frames
     std::uint16_t first_;
     const Sensor& sensor_;
     const ReadingKind& kind_;
@@ -151,6 +157,11 @@ class Mcap final : public FormatBase {
         : FormatBase(sensors, std::move(options), ".mcap") {
         channels_.push_back(
             bagChannel(static_cast<std::uint16_t>(RosType::TFMessage), "/tf", {.depth = 100}));
+        for (const SensorRoom& room : options_.rooms) {
+            if (!room.site_from_room) continue;
+            takeName(rosName(room.id), "the frame of " + room.id);
+            frames_.push_back(&room);
+        }
         for (const Sensor& one : sensors.read) {
             names_.push_back(takeName(rosName(one.id), one.id));
             first_.push_back(static_cast<std::uint16_t>(channels_.size()));
@@ -163,9 +174,11 @@ class Mcap final : public FormatBase {
         for (const RunMember& one : options_.members) addMember(one);
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        Messages(out, names_[index], first_[index], sensor(index)).add(reading);
+        Messages(out, names_[index], first_[index], sensor(index),
+                 frames_.empty() ? nullptr : room(index))
+            .add(reading);
     }
-    void appendMoment(std::string& out, std::uint32_t sequence, double time,
+    void appendMoment(std::string& out, std::uint32_t sequence, double time, std::size_t room,
                       std::span<const RunState> states) const override {
         std::vector<RosTransform> transforms;
         std::string odometries;
@@ -185,6 +198,14 @@ class Mcap final : public FormatBase {
                                 std::max(kOdometryPeriod, options_.moment_interval)));
         }
         if (transforms.empty()) return;
+        const SensorRoom* const own = room < frames_.size() ? frames_[room] : nullptr;
+        const std::string frame = own == nullptr ? "" : rosName(own->id);
+        if (own != nullptr) {
+            for (RosTransform& one : transforms)
+                if (one.header.frame == kRosWorld) one.header.frame = frame;
+            transforms.push_back(
+                {{transforms.front().header.nanoseconds, kRosWorld}, frame, *own->site_from_room});
+        }
         const std::uint64_t now = transforms.front().header.nanoseconds;
         appendMcapMessage(out, 0, sequence, now, transformsMessage(transforms));
         out += odometries;
@@ -221,6 +242,7 @@ class Mcap final : public FormatBase {
 
     std::map<std::string, std::string> taken_{{std::string(kRosWorld), "the world's frame"},
                                               {"tf", "the topic of poses"}};
+    std::vector<const SensorRoom*> frames_;  ///< of the rooms; empty: the world's
     std::vector<McapChannel> channels_;
     std::vector<Member> members_;
     std::vector<std::string> names_;  ///< of each sensor, in topics and frames

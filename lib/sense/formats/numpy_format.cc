@@ -34,8 +34,8 @@ struct GrowingArray {
 };
 
 /// Returns the arrays of a sensor's readings, the measured values first.
-std::vector<GrowingArray> arraysOf(const Sensor& sensor, const Sensors& sensors) {
-    const ReadingView view{.sensor = sensor, .receivers = sensors.receivers};
+std::vector<GrowingArray> arraysOf(const Sensor& sensor, std::span<const Sensor> receivers) {
+    const ReadingView view{.sensor = sensor, .receivers = receivers};
     constexpr std::uint64_t kPoseParts = 6;
     std::vector<GrowingArray> arrays;
     for (const ReadingField& field : readingKind(sensor.model).fields)
@@ -117,8 +117,8 @@ std::string fixedArray(const ReadingField& field, const ReadingView& view) {
     return npyHeader(type, shape) + bytes;
 }
 
-std::vector<FixedArray> fixedArraysOf(const Sensor& sensor, const Sensors& sensors) {
-    const ReadingView view{.sensor = sensor, .receivers = sensors.receivers};
+std::vector<FixedArray> fixedArraysOf(const Sensor& sensor, std::span<const Sensor> receivers) {
+    const ReadingView view{.sensor = sensor, .receivers = receivers};
     std::vector<FixedArray> arrays;
     for (const ReadingField& field : readingKind(sensor.model).fields)
         if ((field.uses & kInFixed) != 0 &&
@@ -145,10 +145,10 @@ void appendRow(std::string& out, std::uint32_t array, std::string_view bytes) {
 }
 
 /// Returns the rows of a reading, in the order of arraysOf().
-std::vector<std::string> rowsOf(const Sensor& sensor, const Sensors& sensors,
+std::vector<std::string> rowsOf(const Sensor& sensor, std::span<const Sensor> receivers,
                                 const Reading& reading) {
     std::vector<std::string> rows;
-    for (const ReadingView& view : viewsOf(sensor, reading, sensors.receivers)) {
+    for (const ReadingView& view : viewsOf(sensor, reading, receivers)) {
         std::size_t row = 0;
         const auto append = [&](std::string_view bytes) {
             if (row == rows.size()) rows.emplace_back();
@@ -241,17 +241,18 @@ class Npz final : public FormatBase {
     Npz(const Sensors& sensors, FormatOptions options)
         : FormatBase(sensors, std::move(options), ".npz") {
         std::set<std::string> folders;
-        for (const Sensor& one : sensors.read) {
+        for (std::size_t i = 0; i < sensors.read.size(); ++i) {
+            const Sensor& one = sensors.read[i];
             const std::string folder = folderOf(one.id);
             if (!folders.insert(folder).second)
                 throw UsageError("npz: two sensors would have the arrays " + folder +
                                  "/…; choose sensors with --select, or give them other ids");
             arrays_.first.push_back(static_cast<std::uint32_t>(arrays_.growing.size()));
-            for (GrowingArray& array : arraysOf(one, sensors)) {
+            for (GrowingArray& array : arraysOf(one, receivers(i))) {
                 array.name.insert(0, folder + "/");
                 arrays_.growing.push_back(std::move(array));
             }
-            for (FixedArray& array : fixedArraysOf(one, sensors)) {
+            for (FixedArray& array : fixedArraysOf(one, receivers(i))) {
                 array.name.insert(0, folder + "/");
                 arrays_.fixed.push_back(std::move(array));
             }
@@ -259,7 +260,7 @@ class Npz final : public FormatBase {
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
         std::uint32_t array = arrays_.first[index];
-        for (const std::string& row : rowsOf(sensor(index), sensors_, reading))
+        for (const std::string& row : rowsOf(sensor(index), receivers(index), reading))
             appendRow(out, array++, row);
     }
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
@@ -278,7 +279,8 @@ class Npy final : public FormatBase {
         : FormatBase(sensors, std::move(options), ".npy") {
         accept("npy", "ranges, depths or pictures",
                [](const Sensor& one) { return hasRanges(one) || isCamera(one); });
-        for (const Sensor& one : sensors.read) arrays_.push_back(arraysOf(one, sensors).front());
+        for (std::size_t i = 0; i < sensors.read.size(); ++i)
+            arrays_.push_back(arraysOf(sensors.read[i], receivers(i)).front());
     }
     void checkStream() const override {
         if (sensors_.read.size() == 1) return;
@@ -288,10 +290,10 @@ class Npy final : public FormatBase {
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
         appendRow(out, static_cast<std::uint32_t>(index),
-                  rowsOf(sensor(index), sensors_, reading).front());
+                  rowsOf(sensor(index), receivers(index), reading).front());
     }
     [[nodiscard]] std::string whole(std::size_t index, const Reading& reading) const override {
-        return arrays_[index].header(1) + rowsOf(sensor(index), sensors_, reading).front();
+        return arrays_[index].header(1) + rowsOf(sensor(index), receivers(index), reading).front();
     }
     [[nodiscard]] std::unique_ptr<ReadingStream> stream(ByteSink write) const override {
         return std::make_unique<NpyStream>(std::move(write), arrays_.front());

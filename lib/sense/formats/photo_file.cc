@@ -92,12 +92,12 @@ constexpr const char *kLabels = "-labels.png", *kLabelTable = "-labels.csv", *kD
 
 }  // namespace
 
-void addFilesBeside(const Sensor& sensor, const Photo& photo, const FormatOptions& options,
-                    std::vector<ReadingFile>& files) {
+void addFilesBeside(const Sensor& sensor, const SensorRoom* room, const Photo& photo,
+                    const FormatOptions& options, std::vector<ReadingFile>& files) {
     const Camera& camera = sensor.as<Camera>();
     if (options.labels) {
         files.push_back({kLabels, labelPng(camera, photo)});
-        files.push_back({kLabelTable, labelTable(*options.scene, photo)});
+        files.push_back({kLabelTable, labelTable(*room->scene, photo)});
     }
     if (options.depths)
         files.push_back(

@@ -66,7 +66,7 @@ class Jsonl final : public FormatBase {
         return scanHeaderLine(options_.history, options_.seed);
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        for (const ReadingView& view : viewsOf(sensor(index), reading, sensors_.receivers))
+        for (const ReadingView& view : viewsOf(sensor(index), reading, receivers(index)))
             appendLine(out, view);
     }
 };
@@ -89,7 +89,7 @@ class Csv final : public FormatBase {
         return bytes;
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        appendRows(out, sensor(index), reading, options_.coordinates, sensors_.receivers);
+        appendRows(out, sensor(index), reading, options_.coordinates, receivers(index));
     }
 };
 
@@ -122,7 +122,7 @@ class Cloud : public FormatBase {
         accept(name, "points", hasRanges);
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
-        out += write_(cloudOf(sensors_, index, reading, options_.coordinates), options_.encoding);
+        out += write_(points(index, reading, options_.coordinates), options_.encoding);
     }
     [[nodiscard]] bool isStream() const override { return false; }
     [[nodiscard]] bool isBinary() const override { return options_.encoding == Encoding::Binary; }
@@ -223,7 +223,7 @@ class Png final : public FormatBase {
                                                  const Reading& reading) const override {
         std::vector<ReadingFile> files = FormatBase::files(index, reading);
         if (const auto* photo = std::get_if<Photo>(&reading))
-            addFilesBeside(sensor(index), *photo, options_, files);
+            addFilesBeside(sensor(index), room(index), *photo, options_, files);
         if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
             const Sensor& placed = sensor(index);
             if (options_.color)
@@ -281,7 +281,7 @@ class Jpeg final : public FormatBase {
     [[nodiscard]] std::vector<ReadingFile> files(std::size_t index,
                                                  const Reading& reading) const override {
         std::vector<ReadingFile> files = FormatBase::files(index, reading);
-        addFilesBeside(sensor(index), std::get<Photo>(reading), options_, files);
+        addFilesBeside(sensor(index), room(index), std::get<Photo>(reading), options_, files);
         return files;
     }
     [[nodiscard]] std::vector<std::string> endings() const override {
@@ -374,11 +374,28 @@ std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& 
     return found->second(sensors, std::move(options));
 }
 
-PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
+namespace {
+
+void move(PointCloud& cloud, const Frame3& frame) {
+    for (std::size_t i = 0; i + 2 < cloud.xyz.size(); i += 3) {
+        float* const point = &cloud.xyz[i];
+        const Point3 moved = frame.origin + frame * Vec3{point[0], point[1], point[2]};
+        point[0] = static_cast<float>(moved.x);
+        point[1] = static_cast<float>(moved.y);
+        point[2] = static_cast<float>(moved.z);
+    }
+}
+
+}  // namespace
+
+PointCloud cloudOf(const Sensor& sensor, const SensorRoom* room, const Reading& reading,
                    Coordinates in) {
-    const Sensor& one = sensors.read[sensor];
-    const ReadingKind& kind = readingKind(one.model);
-    return kind.points == nullptr ? PointCloud() : kind.points(one, reading, in);
+    const ReadingKind& kind = readingKind(sensor.model);
+    if (kind.points == nullptr) return {};
+    PointCloud cloud = kind.points(sensor, reading, in);
+    if (in == Coordinates::World && room != nullptr && room->site_from_room)
+        move(cloud, Frame3(*room->site_from_room));
+    return cloud;
 }
 
 }  // namespace ispace

@@ -21,6 +21,7 @@
 #include "sense/formats/reading_fields.h"
 #include "sense/formats/reading_picture.h"
 #include "sense/reading.h"
+#include "sense/site_sensors.h"
 
 namespace ispace {
 
@@ -49,9 +50,10 @@ class ReadingFormat {
     /// Appends a reading of a sensor (index in Sensors::read): its bytes, or the input of stream().
     virtual void append(std::string& out, std::size_t sensor, const Reading& reading) const = 0;
     /// Appends the poses of all members of a recorded run at a moment, and robots' odometry, in
-    /// formats that can store them. \param states of FormatOptions::members
+    /// formats that can store them. \param room of these states \param states of
+    /// FormatOptions::members
     virtual void appendMoment(std::string& /*out*/, std::uint32_t /*sequence*/, double /*time*/,
-                              std::span<const RunState> /*states*/) const {}
+                              std::size_t /*room*/, std::span<const RunState> /*states*/) const {}
     /// Creates a stream to one file of many readings: by default header(), then the output of
     /// append(). The format outlives the stream.
     [[nodiscard]] virtual std::unique_ptr<ReadingStream> stream(ByteSink write) const;
@@ -68,6 +70,9 @@ class ReadingFormat {
     virtual void checkStream() const {}
     /// Returns warnings about lost data, a phrase each.
     [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+    /// Returns the points of a reading, see cloudOf().
+    [[nodiscard]] virtual PointCloud points(std::size_t sensor, const Reading& reading,
+                                            Coordinates in) const = 0;
     /// True for bytes that are not text.
     [[nodiscard]] virtual bool isBinary() const { return false; }
 };
@@ -83,9 +88,9 @@ struct FormatOptions {
     int map_pixels = 800;                   ///< of png: side of an obstacle map
     McapCompression compression = McapCompression::None;  ///< of mcap
     int las_minor = 4;                                    ///< of las: version 1.3 or 1.4
-    /// Of png and jpeg: writes these files beside pictures; the table of labels requires the scene.
+    /// Of png and jpeg: writes these files beside pictures; the table of labels requires the rooms.
     bool labels = false, depths = false;
-    const Scene* scene = nullptr;
+    std::vector<SensorRoom> rooms = {};   ///< of the sensors; empty: one without a name
     std::vector<RunMember> members = {};  ///< all movers of a recorded run
     double moment_interval = 0;           ///< seconds between its moments; 0: not known
 };
@@ -100,12 +105,13 @@ std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& 
 
 /// Adds the files beside the picture of a camera (labels and their table, depths, camera_info), and
 /// their endings unless they are listed.
-void addFilesBeside(const Sensor& sensor, const Photo& photo, const FormatOptions& options,
-                    std::vector<ReadingFile>& files);
+void addFilesBeside(const Sensor& sensor, const SensorRoom* room, const Photo& photo,
+                    const FormatOptions& options, std::vector<ReadingFile>& files);
 void addEndingsBeside(const FormatOptions& options, std::vector<std::string>& endings);
 
-/// Returns the points of a reading; empty for a burst.
-PointCloud cloudOf(const Sensors& sensors, std::size_t sensor, const Reading& reading,
+/// Returns the points of a reading; empty for a burst. \param room null: world coordinates are
+/// those of its poses; else of the site if the room has a frame in that
+PointCloud cloudOf(const Sensor& sensor, const SensorRoom* room, const Reading& reading,
                    Coordinates in);
 
 /// Base of formats: stores the sensors, and writes one file a reading.
@@ -121,8 +127,20 @@ class FormatBase : public ReadingFormat {
 
     [[nodiscard]] std::vector<std::string> endings() const override { return {ending_}; }
 
+    [[nodiscard]] PointCloud points(std::size_t index, const Reading& reading,
+                                    Coordinates in) const override {
+        return cloudOf(sensor(index), room(index), reading, in);
+    }
+
   protected:
     [[nodiscard]] const Sensor& sensor(std::size_t index) const { return sensors_.read[index]; }
+    [[nodiscard]] std::span<const Sensor> receivers(std::size_t index) const {
+        return receiversIn(options_.rooms, roomOf(options_.rooms, index), sensors_);
+    }
+    /// Returns the room of a sensor; null without FormatOptions::rooms.
+    [[nodiscard]] const SensorRoom* room(std::size_t index) const {
+        return options_.rooms.empty() ? nullptr : &options_.rooms[roomOf(options_.rooms, index)];
+    }
     /// Checks the sensors' kinds. \throws UsageError for the first sensor of another kind
     void accept(std::string_view format, std::string_view what,
                 bool (*is_held)(const Sensor&)) const;
