@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace ispace {
 
@@ -33,11 +34,12 @@ void turnIntoShares(std::vector<double>& amounts, double all) {
 
 }  // namespace
 
-RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys) {
+RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys, std::span<const std::string> ids) {
     RunCoverage sum;
     std::map<std::string, std::size_t> known;  // members by id
     bool is_first = true;
-    for (const RunCoverage& storey : storeys) {
+    for (std::size_t i = 0; i < storeys.size(); ++i) {
+        const RunCoverage& storey = storeys[i];
         sum.unreached.insert(sum.unreached.end(), storey.unreached.begin(), storey.unreached.end());
         sum.contacts.insert(sum.contacts.end(), storey.contacts.begin(), storey.contacts.end());
         if (storey.members.empty()) continue;
@@ -50,6 +52,11 @@ RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys) {
             addMetrics(sum.members[at->second], member);
         }
         addMetrics(sum.all, storey.all);
+        for (TrackLoss loss : storey.losses) {
+            loss.member = known.at(storey.members[loss.member].id);
+            loss.room = ids[i];
+            sum.losses.push_back(std::move(loss));
+        }
     }
     for (RunCoverageMetrics& member : sum.members) {
         turnIntoShares(member.time_shares, member.duration);
@@ -59,6 +66,9 @@ RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys) {
     turnIntoShares(sum.all.way_shares, sum.all.length);
     const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
     std::stable_sort(sum.unreached.begin(), sum.unreached.end(), earlier);
+    std::stable_sort(
+        sum.losses.begin(), sum.losses.end(),
+        [](const TrackLoss& a, const TrackLoss& b) { return a.duration > b.duration; });
     std::stable_sort(sum.contacts.begin(), sum.contacts.end(), earlier);
     return sum;
 }

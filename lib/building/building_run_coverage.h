@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "coverage/run_coverage.h"
@@ -16,7 +17,7 @@ struct BuildingRunCoverage {
 
 /// Adds up the metrics of each mover over the storeys on which it was; the time in lifts and on
 /// stairs, where no sensors stand, is left out. The longest unseen interval is one on a storey.
-/// Ways and losses stay with the storeys.
-RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys);
+/// Ways stay with the storeys. \param ids of the storeys
+RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys, std::span<const std::string> ids);
 
 }  // namespace ispace

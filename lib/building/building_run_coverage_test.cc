@@ -28,12 +28,15 @@ RunCoverage storey(double begin, double end, const RunCoverageMetrics& one, cons
 }
 
 TEST(BuildingRunCoverage, AddsUpMoversOverStoreys) {
-    const std::vector<RunCoverage> storeys = {
+    std::vector<RunCoverage> storeys = {
         storey(0, 20, metrics(20, 10, {0.5, 0.5}, 1, 4), "ground/r"),
         RunCoverage(),  // no mover came
         storey(30, 60, metrics(30, 0, {0, 0, 1}, 2, 9), "ground/r"),
         storey(5, 50, metrics(10, 10, {1}, 0, 2), "ground/s")};
-    const RunCoverage sum = sumOverStoreys(storeys);
+    storeys[0].losses = {{.member = 0, .begin = 1, .duration = 4, .place = {1, 2}}};
+    storeys[2].losses = {{.member = 0, .begin = 31, .duration = 9, .place = {3, 4}}};
+    const std::vector<std::string> ids = {"ground", "first", "second", "third"};
+    const RunCoverage sum = sumOverStoreys(storeys, ids);
     EXPECT_EQ(sum.begin, 0);
     EXPECT_EQ(sum.end, 60);
     ASSERT_EQ(sum.members.size(), 2U);
@@ -51,10 +54,15 @@ TEST(BuildingRunCoverage, AddsUpMoversOverStoreys) {
     EXPECT_DOUBLE_EQ(sum.all.duration, 60);
     EXPECT_DOUBLE_EQ(sum.all.time_shares[0], 20.0 / 60);
     EXPECT_EQ(sum.all.losses, 3U);
+    ASSERT_EQ(sum.losses.size(), 2U);
+    EXPECT_EQ(sum.losses[0].room, "second") << "the longest first";
+    EXPECT_EQ(sum.losses[1].member, 0U);
+    EXPECT_EQ(sum.losses[1].room, "ground");
 }
 
 TEST(BuildingRunCoverage, OfNobodyIsEmpty) {
-    EXPECT_TRUE(sumOverStoreys(std::vector<RunCoverage>(2)).members.empty());
+    EXPECT_TRUE(sumOverStoreys(std::vector<RunCoverage>(2), std::vector<std::string>{"a", "b"})
+                    .members.empty());
 }
 
 }  // namespace

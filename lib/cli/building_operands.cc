@@ -137,6 +137,8 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
     const std::vector<SensorChange> sensor_changes = sensorChanges(building, folder, max_work);
     std::optional<RoomsAround> rooms(std::in_place, building, watch.plane);
     WatchOptions own_watch = watch;
+    std::vector<std::string> ids;
+    for (const Storey& storey : building.document.storeys) ids.push_back(storey.id);
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         if (!sensor_changes.empty()) rooms.emplace(building, watch.plane);
         own_watch.outside = [&rooms, i](const Scene& scene) { return rooms->outside(i, scene); };
@@ -148,7 +150,7 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
             }
             return is_new;
         };
-        const std::string& id = building.document.storeys[i].id;
+        const std::string& id = ids[i];
         std::string own = folder;
         own.append("/").append(id);
         RunCoverage& storey = run.storeys.emplace_back();
@@ -164,7 +166,7 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
         }
         storey.name = baseName(folder) + '/' + id;
     }
-    run.sum = sumOverStoreys(run.storeys);
+    run.sum = sumOverStoreys(run.storeys, ids);
     run.sum.name = baseName(folder);
     return run;
 }

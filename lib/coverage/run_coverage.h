@@ -47,6 +47,7 @@ struct TrackLoss {
     /// Seconds; until the end of the run if sight was not restored.
     double begin = 0, duration = 0;
     Point2 place;
+    std::string room = {};  ///< of the place, in the sum of several; else ""
 };
 
 /// A target that a mover gave up to reach.

@@ -152,6 +152,7 @@ void writeRun(JsonWriter& json, const RunCoverage& run) {
     for (const TrackLoss& loss : run.losses) {
         json.beginObject();
         json.key("id").value(run.members[loss.member].id);
+        if (!loss.room.empty()) json.key("room").value(loss.room);
         writeMember(json, "begin", loss.begin);
         writeMember(json, "duration", loss.duration);
         writeMember(json, "place", {loss.place.x, loss.place.y});
@@ -192,7 +193,8 @@ std::string runText(const RunCoverage& run) {
     std::vector<TextRow> rows;
     for (std::size_t i = 0; i < std::min(kLossesListed, run.losses.size()); ++i) {
         const TrackLoss& loss = run.losses[i];
-        rows.push_back({" ", printable(run.members[loss.member].id), "at " + pointText(loss.place),
+        rows.push_back({" ", printable(run.members[loss.member].id),
+                        "at " + (loss.room.empty() ? "" : loss.room + '/') + pointText(loss.place),
                         "t=" + formatFixed(loss.begin, 2), "for " + seconds(loss.duration)});
     }
     text += aligned(rows, "lllrr");
