@@ -108,10 +108,10 @@ SceneFolder::SceneFolder(const std::string& folder, const SceneRules& rules)
       rules_(rules),
       devices_(shippedDevices()) {}
 
-std::string SceneFolder::of(const SceneInput& input) {
-    const bool through_layout = std::find(input.named.begin(), input.named.end(),
-                                          input.environment_operand) == input.named.end();
-    const std::string& operand = through_layout ? input.layout_operand : input.environment_operand;
+std::string SceneFolder::of(const std::vector<std::string>& named, const std::string& environment,
+                            const std::string& layout) {
+    const bool through_layout = std::find(named.begin(), named.end(), environment) == named.end();
+    const std::string& operand = through_layout ? layout : environment;
     return operand == "-" ? "" : fs::path(operand).parent_path().string();
 }
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/operands.h"
 #include "scene/devices.h"
@@ -20,7 +21,9 @@ class SceneFolder : public SceneSource {
     /// "" is the current folder. \throws std::system_error if there is none
     SceneFolder(const std::string& folder, const SceneRules& rules);
     /// Returns the folder of a run's operands: that of ENV, or of LAYOUT if that names ENV.
-    static std::string of(const SceneInput& input);
+    /// \param named the operands given
+    static std::string of(const std::vector<std::string>& named, const std::string& environment,
+                          const std::string& layout);
 
     [[nodiscard]] const DeviceCatalogue& devices() const override { return devices_; }
     [[nodiscard]] Scene load(const std::string& environment,

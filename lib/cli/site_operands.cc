@@ -125,6 +125,19 @@ std::size_t SeenSite::roomAt(Point3 point) const {
     return highest.value_or(from_above.back());
 }
 
+void addZones(std::span<const std::string> zones, SiteInput& input) {
+    if (zones.empty()) return;
+    if (input.building) {
+        addZones(zones, *input.building);
+        input.rooms = input.building->scenes;
+        return;
+    }
+    SceneInput room{
+        input.only(), *input.environment, input.layout, input.environment_operand, "", {}, {}};
+    addZones(zones, room);
+    input.rooms = {std::make_shared<const Scene>(std::move(room.scene))};
+}
+
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SiteInput& input) {
     warn(options, tool, input.choices);
     warn(options, tool, input.warnings);

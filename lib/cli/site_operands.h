@@ -81,6 +81,10 @@ class SeenSite {
     std::optional<Coupling> coupling_;
 };
 
+/// Adds the zones of --zone to the scenes of their rooms, as records. \throws UsageError as
+/// addZones() of a room and of a building
+void addZones(std::span<const std::string> zones, SiteInput& input);
+
 /// Prints the warnings and choices of importers, as warnOfImport() of a room.
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SiteInput& input);
 

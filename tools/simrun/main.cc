@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // simrun: simulates the robots and sensors of a scene and serves them over TCP.
-#include <memory>
 #include <string>
 
 #include "base/file.h"
@@ -9,7 +8,6 @@
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "sim/recorder.h"
-#include "simrun/simrun_building.h"
 #include "simrun/simrun_options.h"
 #include "simrun/simrun_ports.h"
 #include "simrun/simrun_run.h"
@@ -41,9 +39,7 @@ void simrun(const SimrunCommand& command) {
     JunitFile junit("simrun", options.junit);
     junit.during(options.operands, [&] {
         if (!options.drawing.format.empty()) return drawRecord(options);
-        std::unique_ptr<RunSite> site = openBuilding(command);
-        if (site == nullptr) site = openRoom(command);
-        serve(*site, options, junit);
+        serve(*openSite(command), options, junit);
     });
 }
 

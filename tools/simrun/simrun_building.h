@@ -8,9 +8,9 @@
 namespace ispace {
 
 class RunSite;
+struct SiteInput;
 
-/// Reads a building, or its record, and warns of it; null if ENV is none, or one storey of it is
-/// chosen. \throws UsageError for options that a building has not, and as the readers do
-std::unique_ptr<RunSite> openBuilding(const SimrunCommand& command);
+/// Returns the run of a building. \throws as the readers of its record and its script
+std::unique_ptr<RunSite> openBuilding(const SimrunCommand& command, SiteInput building);
 
 }  // namespace ispace

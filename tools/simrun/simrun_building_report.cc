@@ -32,13 +32,14 @@ std::optional<double> shareSeen(const SimrunOptions& options, const BuildingScen
 
 }  // namespace
 
-std::string reportFile(const SimrunOptions& options, const BuildingInput& input,
-                       const RunJudge& judge, const std::string& command) {
-    const BuildingCoverage coverage = measureBuilding(input.building, {});
-    const BuildingRunCoverage run = measuredRun(options, input.building);
+std::string buildingReportFile(const SimrunOptions& options, const SiteInput& input,
+                               const RunJudge& judge, const std::string& command) {
+    const BuildingScene& building = *input.building;
+    const BuildingCoverage coverage = measureBuilding(building, {});
+    const BuildingRunCoverage run = measuredRun(options, building);
     const std::string suffix = suffixOf(options.report);
-    if (suffix == "json") return buildingCoverageJson(input.building, coverage, partsOf(run));
-    BuildingPageInput page{input.building, coverage, "", command, {}, &run};
+    if (suffix == "json") return buildingCoverageJson(building, coverage, partsOf(run));
+    BuildingPageInput page{building, coverage, "", command, {}, &run};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     for (const RunVerdict& verdict : judge.verdicts())
         page.requirements.push_back({verdict.expectation, verdict.is_met, verdict.reason});
@@ -46,9 +47,9 @@ std::string reportFile(const SimrunOptions& options, const BuildingInput& input,
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }
 
-std::string suggestionsText(const SimrunOptions& options, const BuildingInput& input) {
+std::string buildingSuggestionsText(const SimrunOptions& options, const SiteInput& input) {
     std::vector<RunSuggestion> found;
-    const BuildingScene& building = input.building;
+    const BuildingScene& building = *input.building;
     const std::optional<double> before = shareSeen(options, building);
     const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
     const auto whole = wholeScenes(building);

@@ -414,6 +414,10 @@ void SimrunCommand::takeServer() {
             "--wait-for-readers requires --clock fast or step: real time does not wait");
     if (o.mcap == "-")
         throw UsageError("--mcap writes to a file: standard output has the addresses of the run");
+    for (const auto& [option, file] : {std::pair("--report", &o.report), {"--mcap", &o.mcap}})
+        if (file->find("%s") != std::string::npos)
+            throw UsageError(std::string(option) +
+                             " writes one file of all storeys: leave %s out of its name");
     o.devices.take(line_, o.ros_domain.has_value(), o.limits);
     for (const auto& [option, endpoint] :
          {std::pair("--foxglove", o.foxglove), {"--rosbridge", o.rosbridge}})

@@ -18,7 +18,6 @@
 #include "report/page/coverage_page.h"
 #include "report/suggestion_report.h"
 #include "scene/placement_schemas.h"
-#include "sim/recorder.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -35,10 +34,10 @@ std::optional<RunCoverage> recordedRun(const SimrunOptions& options, const Scene
 
 }  // namespace
 
-std::string reportFile(const SimrunOptions& options, const SceneInput& input, const RunJudge& judge,
+std::string reportFile(const SimrunOptions& options, const SiteInput& input, const RunJudge& judge,
                        const std::string& command) {
-    for (const std::string& file : Recorder::filesIn(options.record)) completeOutput(file);
-    const Scene& scene = input.scene;
+    if (!input.isOneRoom()) return buildingReportFile(options, input, judge, command);
+    const Scene& scene = input.only();
     Worlds worlds(scene.environment);
     const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
     const Coverage coverage = measureCoverage(scene, worlds, {}, progress.get());
@@ -90,11 +89,11 @@ std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options, const Sce
 
 }  // namespace
 
-std::string suggestionsText(const SimrunOptions& options, const SceneInput& input) {
-    for (const std::string& file : Recorder::filesIn(options.record)) completeOutput(file);
-    const std::optional<double> before = seenShare(options, input.scene);
+std::string suggestionsText(const SimrunOptions& options, const SiteInput& input) {
+    if (!input.isOneRoom()) return buildingSuggestionsText(options, input);
+    const std::optional<double> before = seenShare(options, input.only());
     if (!before) return "the run has no robots or people to see\n";
-    return suggestionsText(options, input.named, suggestForRun(options, input.scene, *before),
+    return suggestionsText(options, input.named, suggestForRun(options, input.only(), *before),
                            *before);
 }
 

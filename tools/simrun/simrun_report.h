@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "arrange/suggestion.h"
-#include "cli/building_operands.h"
-#include "cli/operands.h"
+#include "cli/site_operands.h"
 #include "simrun/simrun_options.h"
 
 namespace ispace {
@@ -15,12 +14,11 @@ namespace ispace {
 /// Returns the bytes of --report: the coverage of the scene and of the run, as coverage --run
 /// --report writes them, and the expectations. \pre the record is complete
 /// \param command as in histories
-std::string reportFile(const SimrunOptions& options, const SceneInput& input, const RunJudge& judge,
+std::string reportFile(const SimrunOptions& options, const SiteInput& input, const RunJudge& judge,
                        const std::string& command);
-
-/// Likewise of a building, as coverage --run --report writes it.
-std::string reportFile(const SimrunOptions& options, const BuildingInput& input,
-                       const RunJudge& judge, const std::string& command);
+/// That of a building.
+std::string buildingReportFile(const SimrunOptions& options, const SiteInput& input,
+                               const RunJudge& judge, const std::string& command);
 
 /// A change of a sensor, and the share of the time of all movers for which a sensor sees them after
 /// it.
@@ -34,8 +32,8 @@ std::string suggestionsText(const SimrunOptions& options, const std::vector<std:
                             std::vector<RunSuggestion> found, double before);
 
 /// Returns the lines of --suggest, in the form of coverage --suggest. \pre the record is complete
-std::string suggestionsText(const SimrunOptions& options, const SceneInput& input);
-/// Likewise of a building, with changes of any storey.
-std::string suggestionsText(const SimrunOptions& options, const BuildingInput& input);
+std::string suggestionsText(const SimrunOptions& options, const SiteInput& input);
+/// Those of a building, with changes of any storey.
+std::string buildingSuggestionsText(const SimrunOptions& options, const SiteInput& input);
 
 }  // namespace ispace

@@ -26,8 +26,6 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
-#include "cli/building_operands.h"
-#include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
@@ -35,7 +33,6 @@
 #include "record/text.h"
 #include "report/view/film.h"
 #include "report/view/run_picture.h"
-#include "scene/findings/findings.h"
 #include "scene/run/run_reader.h"
 #include "scene/scene.h"
 #include "server/network.h"
@@ -43,6 +40,7 @@
 #include "sim/recorder.h"
 #include "sim/sole_world.h"
 #include "sim/world_state.h"
+#include "simrun/simrun_building.h"
 #include "simrun/simrun_ports.h"
 #include "simrun/simrun_report.h"
 
@@ -52,31 +50,38 @@ namespace {
 
 constexpr const char* kTool = "simrun";
 
-/// Reads the operands; a record holds its own scene.
-SceneInput readInput(const SimrunOptions& options) {
-    if (const std::string building = recordedBuilding(options.replay); !building.empty())
-        throw UsageError(
-            "--replay: " + options.replay +
-            " is the record of a building: give it whole, or that of a room, such as " +
-            options.replay + "/STOREY");
+[[noreturn]] void refuseWholeRecord(const std::string& record) {
+    throw UsageError("--replay: " + record +
+                     " is the record of a building: give it whole, or that of a room, such as " +
+                     record + "/STOREY");
+}
+
+/// Reads the operands; a record holds its own site.
+SiteInput readInput(const SimrunOptions& options) {
+    const std::string building = recordedBuilding(options.replay);
     std::vector<std::string> operands = options.operands;
     if (!options.replay.empty() && operands.empty()) {
-        const std::string scene = sceneOfRecord(options.replay);
+        const std::string scene = building.empty() ? sceneOfRecord(options.replay) : building;
         if (scene.empty())
             throw UsageError(options.replay +
                              " holds no scene.env: give ENV and LAYOUT of the run");
         operands.push_back(scene);
     }
-    SceneInput input = readScene({operands, options.rules, false});
+    SiteInput input = readSite({operands, options.rules, false});
+    if (!building.empty() && input.isOneRoom()) refuseWholeRecord(options.replay);
+    if (!options.replay.empty() && building.empty() && !input.isOneRoom())
+        throw UsageError("--replay: " + options.replay +
+                         " is the record of one room: choose its storey with --storey (" +
+                         input.building->document.storeyList() + ')');
     addZones(options.zones, input);
     warnOfImport(options.common, kTool, input);
     warn(options.common, kTool,
-         sceneWarnings(input.scene, {.checks = {"unplaced", "outside", "buried", "paths"}}));
+         siteWarnings(input, {.checks = {"unplaced", "outside", "buried", "paths"}}));
     return input;
 }
 
-/// Returns the title of the room or the record.
-std::string titleOf(const SimrunOptions& options, const SceneInput& input) {
+/// Returns the title of the site or the record.
+std::string titleOf(const SimrunOptions& options, const SiteInput& input) {
     const std::string& shown = options.replay.empty() ? input.environment_operand : options.replay;
     return shown == "-" ? "" : baseName(shown);
 }
@@ -105,7 +110,7 @@ struct Script {
     std::vector<TimedCommand> commands;
     DayPlan days;  ///< of people
 };
-Script scriptOf(const SimrunOptions& options, const SceneInput& input, const World& world) {
+Script scriptOf(const SimrunOptions& options, const SiteInput& input, const World& world) {
     if (options.script.empty()) return {};
     const bool is_stdin = options.script == "-";
     if (is_stdin && (input.environment_operand == "-" || input.layout_operand == "-"))
@@ -129,29 +134,29 @@ void warnOfTrips(const Scene& scene, const CommonOptions& options) {
     }
 }
 
-RunInput runInputOf(const SimrunCommand& command, const SceneInput& input) {
-    History history = input.layout ? input.layout->history : History();
-    history.push_back(command.historyLine(input.named));
-    return {input.environment_operand, titleOf(command.options(), input), SceneFolder::of(input),
-            std::move(history)};
+/// Returns true if --noise changes readings or, in a run that moves them, robots.
+bool hasNoise(const Scene& scene, bool moves) {
+    const bool strays = moves && std::any_of(scene.robots.begin(), scene.robots.end(),
+                                             [](const PlacedRobot& robot) {
+                                                 return robot.model.noise != MotionNoise();
+                                             });
+    return strays || std::any_of(scene.sensors.begin(), scene.sensors.end(),
+                                 [](const Sensor& sensor) { return isNoisy(sensor.model); });
 }
 
 /// The run of one room.
 class RoomRunSite final : public RunSite {
   public:
-    RoomRunSite(const SimrunCommand& command, SceneInput scene, std::optional<Replay> replay)
-        : RunSite(runInputOf(command, scene)),
-          options_(&command.options()),
-          scene_(std::move(scene)),
+    RoomRunSite(const SimrunCommand& command, SiteInput room, std::optional<Replay> replay)
+        : RunSite(command, std::move(room)),
           replay_(std::move(replay)),
-          world_(scene_.scene, replay_ ? replay_->stepLength() : options_->step,
-                 runOptionsOf(*options_, replay_ ? std::optional(replay_->info()) : std::nullopt)) {
-        warn(options_->common, kTool, startWarnings(world_));
-        if (replay_) forward(*replay_, world_, options_->from);
-        Script script = scriptOf(*options_, scene_, world_);
-        simulation_.emplace(world_, std::move(script.commands), options_->clock, options_->until);
+          world_(input.only(), replay_ ? replay_->stepLength() : options.step,
+                 runOptionsOf(options, replay_ ? std::optional(replay_->info()) : std::nullopt)) {
+        if (replay_) forward(*replay_, world_, options.from);
+        Script script = scriptOf(options, input, world_);
+        simulation_.emplace(world_, std::move(script.commands), options.clock, options.until);
         simulation_->follow(std::move(script.days));
-        if (replay_) simulation_->replay(*replay_, options_->holds);
+        if (replay_) simulation_->replay(*replay_, options.holds);
         sole_.emplace(*simulation_);
     }
 
@@ -160,16 +165,8 @@ class RoomRunSite final : public RunSite {
         return replay_ ? &*replay_ : nullptr;
     }
     void recordWhole() override {}
-    [[nodiscard]] std::string report(const RunJudge& judge) const override {
-        return reportFile(*options_, scene_, judge, input.history.back());
-    }
-    [[nodiscard]] std::string suggestions() const override {
-        return suggestionsText(*options_, scene_);
-    }
 
   private:
-    const SimrunOptions* options_;
-    SceneInput scene_;
     std::optional<Replay> replay_;
     World world_;
     std::optional<Simulation> simulation_;
@@ -178,12 +175,29 @@ class RoomRunSite final : public RunSite {
 
 }  // namespace
 
-std::unique_ptr<RunSite> openRoom(const SimrunCommand& command) {
+RunSite::RunSite(const SimrunCommand& command, SiteInput the_input)
+    : options(command.options()), title(titleOf(options, the_input)), input(std::move(the_input)) {
+    if (input.layout) history = input.layout->history;
+    history.push_back(command.historyLine(input.named));
+}
+
+std::unique_ptr<RunSite> openSite(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
-    SceneInput input = readInput(options);
-    std::optional<Replay> replay = openReplay(options, input.scene);
-    if (!replay) warnOfTrips(input.scene, options.common);
-    if (options.noise && !hasNoise(input.scene, !replay)) warnOfNoNoise(options.common);
+    SiteInput input = readInput(options);
+    if (options.noise &&
+        std::none_of(input.rooms.begin(), input.rooms.end(),
+                     [&](const auto& scene) { return hasNoise(*scene, options.replay.empty()); }))
+        warn(options.common, kTool,
+             "--noise changes nothing: no sensor has noise, and no robot has motion_noise, "
+             "odometry_noise or start_noise");
+    if (!input.isOneRoom()) return openBuilding(command, std::move(input));
+    if (holdsBuilding(options.record))
+        throw UsageError("--record: " + options.record +
+                         " holds the record of a building: give another folder");
+    Scene scene = input.only();
+    std::optional<Replay> replay = openReplay(options, scene);
+    if (!replay) warnOfTrips(scene, options.common);
+    input.rooms = {std::make_shared<const Scene>(std::move(scene))};
     return std::make_unique<RoomRunSite>(command, std::move(input), std::move(replay));
 }
 
@@ -315,7 +329,7 @@ std::vector<std::unique_ptr<RunningRecord>> recordsOf(const SimrunOptions& optio
         const std::string folder = folderOf(options.record, rooms[i]);
         if (folder != options.record) std::filesystem::create_directory(options.record);
         const Replay* const replay = site.replay(i);
-        records.push_back(recordOf(*rooms[i].simulation, options, folder, site.input.history,
+        records.push_back(recordOf(*rooms[i].simulation, options, folder, site.history,
                                    replay != nullptr ? replay->hasOdometry() : options.noise,
                                    server.frameTaker(i)));
     }
@@ -337,7 +351,7 @@ ServerLimits withinFileLimit(ServerLimits limits, std::size_t others) {
 
 /// Returns the limits of the server, and the files that clients may read. Raises the limit of open
 /// files of this process, as every client takes one.
-ServerLimits limitsOf(const SimrunOptions& options, const RunInput& input) {
+ServerLimits limitsOf(const SimrunOptions& options, const SiteInput& input) {
     constexpr std::size_t kOfPort = 64;  // connections of a port for topics
     std::size_t others = options.devices.connections();
     for (const auto& port : {options.foxglove, options.rosbridge}) others += port ? kOfPort : 0;
@@ -349,7 +363,10 @@ ServerLimits limitsOf(const SimrunOptions& options, const RunInput& input) {
                  options.token_file + " can be read by other users: chmod 600 makes it yours");
     }
     limits.source = std::make_shared<SceneFolder>(
-        options.load_folder.empty() ? input.folder : options.load_folder, options.rules);
+        options.load_folder.empty()
+            ? SceneFolder::of(input.named, input.environment_operand, input.layout_operand)
+            : options.load_folder,
+        options.rules);
     return limits;
 }
 
@@ -556,11 +573,21 @@ void endingAtOnce(const std::function<bool()>& is_busy, JunitFile& junit,
     end();
 }
 
+/// Waits for the files of the record, if they are read.
+void completeRecords(const SimrunOptions& options, std::span<const JoinedRoom> rooms) {
+    if (options.report.empty() && !options.suggestions) return;
+    for (const JoinedRoom& room : rooms)
+        for (const std::string& file : Recorder::filesIn(folderOf(options.record, room)))
+            completeOutput(file);
+}
+
 }  // namespace
 
 void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
     JoinedWorlds& worlds = site.worlds();
     const auto rooms = worlds.rooms();
+    for (const JoinedRoom& room : rooms)
+        warn(options.common, kTool, startWarnings(room.simulation->world()));
     Simulation& simulation = *rooms.front().simulation;
     StepLogs logs(site, options.common);
     simulation.onStep([&logs] { logs.tell(); });
@@ -575,7 +602,7 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
         if (!options.replay.empty()) replayed.push_back(folderOf(options.replay, room));
     }
     Server server(simulation, options.listen, limitsOf(options, site.input), &worlds);
-    const ServedAddresses addresses = servePorts(server, options, site.input.title, replayed);
+    const ServedAddresses addresses = servePorts(server, options, site.title, replayed);
     std::optional<TopicLog> log;
     if (!options.mcap.empty()) log.emplace(server, simulation, options);
     const StopSignals signals;
@@ -602,10 +629,12 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
                 warn(options.common, "simrun",
                      (rooms[i].id.empty() ? "" : rooms[i].id + ": ") +
                          "the record ends in the midst of a step, which is left out");
-        if (!options.report.empty()) writeAll(options.report, site.report(*judge));
-        if (options.suggestions) writeAll("-", site.suggestions());
+        completeRecords(options, rooms);
+        if (!options.report.empty())
+            writeAll(options.report, reportFile(options, site.input, *judge, site.history.back()));
+        if (options.suggestions) writeAll("-", suggestionsText(options, site.input));
         judge->report(options.record);
-        conclude(*judge, options, site.input.environment, junit);
+        conclude(*judge, options, site.input.environment_operand, junit);
     };
     endingAtOnce([&server] { return server.isBusy(); }, junit, options, serve_and_conclude);
 }
@@ -711,11 +740,11 @@ void warnOfChanges(const Replay& replay, const CommonOptions& options) {
 }  // namespace
 
 void drawRecord(const SimrunOptions& options) {
-    SceneInput input = readInput(options);
-    if (const auto replay = openReplay(options, input.scene))
-        warnOfChanges(*replay, options.common);
-    RunPicture picture(input.scene,
-                       {.width = options.drawing.width, .title = titleOf(options, input)});
+    const SiteInput input = readInput(options);
+    if (!input.isOneRoom()) refuseWholeRecord(options.replay);
+    Scene scene = input.only();
+    if (const auto replay = openReplay(options, scene)) warnOfChanges(*replay, options.common);
+    RunPicture picture(scene, {.width = options.drawing.width, .title = titleOf(options, input)});
     std::int64_t count = 1;
     if (const auto files = OutputSet::of(options.common.output)) {
         count = writePictures(options, *files, picture);
@@ -734,21 +763,6 @@ void drawRecord(const SimrunOptions& options) {
                       std::vector<std::string>{RecordedFiles(options.replay).robots});
     logInfo(options.common, "simrun",
             std::to_string(count) + (count == 1 ? " picture" : " pictures") + " drawn");
-}
-
-bool hasNoise(const Scene& scene, bool moves) {
-    const bool strays = moves && std::any_of(scene.robots.begin(), scene.robots.end(),
-                                             [](const PlacedRobot& robot) {
-                                                 return robot.model.noise != MotionNoise();
-                                             });
-    return strays || std::any_of(scene.sensors.begin(), scene.sensors.end(),
-                                 [](const Sensor& sensor) { return isNoisy(sensor.model); });
-}
-
-void warnOfNoNoise(const CommonOptions& options) {
-    warn(options, kTool,
-         "--noise changes nothing: no sensor has noise, and no robot has motion_noise, "
-         "odometry_noise or start_noise");
 }
 
 }  // namespace ispace

@@ -8,7 +8,7 @@
 
 #include "cli/batch.h"
 #include "cli/common_options.h"
-#include "cli/operands.h"
+#include "cli/site_operands.h"
 #include "scene/scene.h"
 #include "sim/activity.h"
 #include "sim/joined_worlds.h"
@@ -18,18 +18,10 @@
 
 namespace ispace {
 
-/// The operands of a run, a room or a building.
-struct RunInput {
-    std::string environment;  ///< operand
-    std::string title;        ///< of the environment or the record
-    std::string folder;       ///< of files that clients may read
-    History history;          ///< of the run, its command last
-};
-
 /// A run that is about to begin: its worlds, and what only a room or a building knows of itself.
 class RunSite {
   public:
-    explicit RunSite(RunInput the_input) : input(std::move(the_input)) {}
+    RunSite(const SimrunCommand& command, SiteInput the_input);
     RunSite(const RunSite&) = delete;
     RunSite& operator=(const RunSite&) = delete;
     virtual ~RunSite() = default;
@@ -40,12 +32,11 @@ class RunSite {
     [[nodiscard]] virtual const Replay* replay(std::size_t room) const = 0;
     /// Records in the folder of --record what belongs to no room, once the rooms are recorded.
     virtual void recordWhole() = 0;
-    /// Returns the bytes of --report. \pre the record is complete
-    [[nodiscard]] virtual std::string report(const RunJudge& judge) const = 0;
-    /// Returns the lines of --suggest. \pre the record is complete
-    [[nodiscard]] virtual std::string suggestions() const = 0;
 
-    const RunInput input;
+    const SimrunOptions& options;
+    const std::string title;  ///< of the environment or the record
+    History history;          ///< of the run, its command last
+    const SiteInput input;
 };
 
 /// Returns the folder of a room in that of a record: of the only room, the folder itself.
@@ -53,8 +44,8 @@ inline std::string folderOf(const std::string& record, const JoinedRoom& room) {
     return room.id.empty() ? record : record + '/' + room.id;
 }
 
-/// Reads a room, or its record, and warns of it. \throws as the readers do
-std::unique_ptr<RunSite> openRoom(const SimrunCommand& command);
+/// Reads a site, or its record, and warns of it. \throws as the readers do
+std::unique_ptr<RunSite> openSite(const SimrunCommand& command);
 
 /// Returns options of a run or a replay; a replay keeps the noise of its record unless an option
 /// sets another.
@@ -66,10 +57,5 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit);
 
 /// Draws the record of --replay to -o, as a picture or a film.
 void drawRecord(const SimrunOptions& options);
-
-/// Returns true if --noise changes readings or, in a run that moves them, robots.
-bool hasNoise(const Scene& scene, bool moves);
-/// Warns that no scene of a run has noise.
-void warnOfNoNoise(const CommonOptions& options);
 
 }  // namespace ispace
