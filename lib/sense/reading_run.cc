@@ -95,8 +95,8 @@ void RoomParts::fill(std::size_t most) {
     }
 }
 
-std::optional<std::size_t> RoomParts::begin() {
-    fill(1);
+std::optional<std::size_t> RoomParts::begin(std::size_t most) {
+    fill(most);
     if (jobs_.empty()) return std::nullopt;
     return room_ = room_of_(jobs_[at_]);
 }
@@ -274,12 +274,16 @@ Reading takeFrom(const Pose3& site_from_room, ReadingSampler& taker, const Readi
 
 }  // namespace
 
+std::size_t batchSize(const Sensors& sensors) {
+    return std::max<std::size_t>(1, kBatchRays / mostRays(sensors));
+}
+
 void runReadings(ReadingSource& source, ReadingSampler& taker, const Sensors& sensors,
                  const ReadingFormat& format, Packing packing, Coordinates coordinates,
                  Progress& progress, const std::function<void(Readings&)>& write,
                  const Pose3* site_from_room) {
     using Batch = std::shared_ptr<Readings>;
-    const std::size_t most = std::max<std::size_t>(1, kBatchRays / mostRays(sensors));
+    const std::size_t most = batchSize(sensors);
     // Batches are recycled, with their memory.
     tbb::concurrent_queue<Batch> spare;
     // Jobs before a bad pose are written, for any number of threads.

@@ -69,8 +69,8 @@ class RoomParts final : public ReadingSource {
     RoomParts(ReadingSource& source, RoomOf room_of)
         : source_(&source), room_of_(std::move(room_of)) {}
     /// Begins the next part, which next() supplies, and returns its room; empty at the end of the
-    /// source. \throws as the source
-    std::optional<std::size_t> begin();
+    /// source. \param most jobs to read ahead, as of next() \throws as the source
+    std::optional<std::size_t> begin(std::size_t most);
     void next(std::size_t most, std::vector<ReadingJob>& batch) override;
 
   private:
@@ -155,6 +155,9 @@ struct Readings {
 
 /// The output form of readings.
 enum class Packing { Stream, Files, Clouds };
+
+/// Returns the number of jobs that runReadings() asks for at once.
+std::size_t batchSize(const Sensors& sensors);
 
 /// Takes all readings of a source on all cores and passes them to `write` in order, from one thread
 /// at a time. Memory is bounded by the number of cores, not of jobs. If the source fails, all

@@ -189,7 +189,7 @@ TEST(RoomParts, EndWhereTheRoomChanges) {
     RoomParts parts(source, [&](const ReadingJob& job) { return roomOf(all.rooms, job.sensor); });
     std::vector<ReadingJob> batch;
     std::string text;
-    while (const auto room = parts.begin()) {
+    while (const auto room = parts.begin(1)) {
         text += std::to_string(*room) + ':';
         for (parts.next(2, batch); !batch.empty(); parts.next(2, batch))
             for (const ReadingJob& job : batch)
@@ -203,12 +203,12 @@ TEST(RoomParts, GiveTheJobsBeforeAFailure) {
     RoomParts parts(source,
                     [](const ReadingJob& job) { return job.pose.position.z > 2 ? 1U : 0U; });
     std::vector<ReadingJob> batch;
-    EXPECT_EQ(parts.begin(), 0U);
+    EXPECT_EQ(parts.begin(1), 0U);
     parts.next(10, batch);
     EXPECT_EQ(batch.size(), 1U);
     parts.next(10, batch);
     EXPECT_TRUE(batch.empty());
-    EXPECT_EQ(parts.begin(), 1U);
+    EXPECT_EQ(parts.begin(1), 1U);
     parts.next(10, batch);
     EXPECT_EQ(batch.size(), 1U);
     EXPECT_THROW(parts.next(10, batch), FormatError);

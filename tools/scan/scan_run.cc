@@ -533,7 +533,7 @@ std::int64_t takeReadings(const ScanCommand& command, const ScanToolOptions& opt
     progress->begin("readings", std::max<std::int64_t>(work.count, 0));
     BuriedPoses buried(site);
     std::int64_t done = 0;
-    while (const auto room = parts.begin()) {
+    while (const auto room = parts.begin(batchSize(sensors))) {
         RoomSampler& sampler = sampler_in(*room);
         const auto site_from_room = moves ? site.siteFromRoom(*room) : std::nullopt;
         const auto write = [&](Readings& readings) {
