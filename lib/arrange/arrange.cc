@@ -27,14 +27,7 @@
 namespace ispace {
 
 std::string needsOneRoom(const ArrangeOptions& options) {
-    using Robust = RobustChoice::Of;
-    if (options.over_poses) return "--proof poses";
-    if (options.objective.of == ObjectiveChoice::Of::Path) return "--objective path";
-    if (options.robust.of == Robust::Rooms) return "--robust rooms";
-    // Each part of a site has a proof of its own.
-    const SearchShare& share = options.search.share;
-    if (share.what == Shared::Tree && (share.own || share.joined > 0)) return "--share tree";
-    return "";
+    return options.over_poses ? "--proof poses" : "";
 }
 
 namespace {
@@ -68,7 +61,7 @@ void writeModel(const CoverageModel& model, std::ostream& mps) {
             text.append(text.empty() ? "" : " ").append(formatDouble(number));
         return text;
     };
-    const std::string head = model.site().isOneRoom() ? "" : "room ";
+    const std::string head = model.site().rooms.front().id.empty() ? "" : "room ";
     writeMps(model.problem(), names, head + "x y z (m) heading tilt (degrees)", pose_text, mps);
 }
 
@@ -529,7 +522,8 @@ Arrangement arrange(const ArrangeSite& site, const std::vector<SensorGroup>& gro
         group.whole = group.model;
         limitCovered(group.model, options);
     }
-    if (options.over_poses && site.isOneRoom()) {
+    if (options.over_poses) {
+        if (!site.isOneRoom()) throw UsageError(needsOneRoom(options) + " needs one room");
         const Scene& scene = *limited.rooms.front().scene;
         if (options.target) return arrangeOverPoses(scene, limited_groups, options, progress);
         mustBeBoundable(scene, limited_groups, options);
@@ -554,6 +548,10 @@ ArrangeSite siteOf(const Scene& scene, const ArrangeOptions& options) {
     const std::shared_ptr<const Scene> only(std::shared_ptr<const Scene>(), &scene);
     ArrangeSite site;
     site.rooms.push_back({"", only, goalsOf(options)});
+    const RobustChoice& robust = options.robust;
+    if (robust.of == RobustChoice::Of::Crowd)
+        site.rooms.front().goals.crowds =
+            crowdsIn(scene, static_cast<std::size_t>(robust.people), options.seed);
     return site;
 }
 

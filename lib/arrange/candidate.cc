@@ -392,8 +392,7 @@ class Scanner {
     }
 
     void lookFrom(std::size_t i) {
-        if (stack_.size() == 1 && stack_.front().firsts == std::vector<std::size_t>{0})
-            return lookIn(0, i, parts_[i]);
+        if (stack_.size() == 1 && stack_.front().first == 0) return lookIn(0, i, parts_[i]);
         std::vector<CellParts> views(stack_.size());
         for (std::size_t k = 0; k < stack_.size(); ++k) lookIn(k, i, views[k]);
         stack(views, parts_[i]);
@@ -416,13 +415,12 @@ class Scanner {
         parts.runs.clear();
         parts.first.assign(1, 0);
         for (std::size_t part = 0; part < views.front().size(); ++part) {
-            for (std::size_t k = 0; k < views.size(); ++k)
-                for (const std::size_t first : stack_[k].firsts) {
-                    const auto shift = static_cast<std::uint32_t>(first);
-                    for (std::uint32_t r = views[k].first[part]; r < views[k].first[part + 1]; ++r)
-                        parts.runs.push_back(
-                            {views[k].runs[r].first + shift, views[k].runs[r].end + shift});
-                }
+            for (std::size_t k = 0; k < views.size(); ++k) {
+                const auto shift = static_cast<std::uint32_t>(stack_[k].first);
+                for (std::uint32_t r = views[k].first[part]; r < views[k].first[part + 1]; ++r)
+                    parts.runs.push_back(
+                        {views[k].runs[r].first + shift, views[k].runs[r].end + shift});
+            }
             parts.first.push_back(static_cast<std::uint32_t>(parts.runs.size()));
         }
     }

@@ -192,7 +192,7 @@ bool addCandidates(PosedCandidates& set, const CandidateViews& views, std::span<
 /// The views of one case, and where its cells begin in the set, see CaseRoom.
 struct StackedViews {
     const CandidateViews* views = nullptr;
-    std::vector<std::size_t> firsts = {0};
+    std::size_t first = 0;
 };
 /// The same for several cases: a candidate sees its cells in all of them.
 /// \pre the views are of one device, height, tilt and roll

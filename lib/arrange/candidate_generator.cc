@@ -257,7 +257,7 @@ struct CandidatePool::Data {
             all.push_back(std::make_unique<CandidateViews>(
                 room->sight, room->target.grid, kind.model, mount, &room->counted, std::nullopt,
                 room->errors ? &*room->errors : nullptr));
-            stack.push_back({all.back().get(), room->firsts});
+            stack.push_back({all.back().get(), room->first});
         }
         return addCandidates(set, stack, sites, options.max_bytes - bytes, progress, least,
                              options.search.share, &grace);

@@ -5,7 +5,6 @@
 
 #include "arrange/objective.h"
 #include "base/number.h"
-#include "coverage/crowd.h"
 
 namespace ispace {
 
@@ -21,10 +20,8 @@ Pose3 SiteErrors::mounted(const Sensor& sensor) const {
     return pose;
 }
 
-CaseRoom::CaseRoom(Scene in, std::string called, const ArrangeOptions& options,
-                   std::uint64_t number)
+CaseRoom::CaseRoom(Scene in, const ArrangeOptions& options, std::uint64_t number)
     : scene(std::move(in)),
-      name(std::move(called)),
       worlds(scene.environment),
       sight(scene.environment, options.plane, &worlds) {
     if (options.robust.of == RobustChoice::Of::Mounting)
@@ -41,46 +38,12 @@ Sensor CaseRoom::mounted(Sensor sensor) const {
     return sensor;
 }
 
-CellSet CaseRoom::stacked(const CellSet& cells, std::size_t all) const {
-    CellSet stack(all);
-    for (const std::size_t first : firsts)
-        cells.forEach([&](std::size_t cell) { stack.set(first + cell); });
-    return stack;
-}
-
-std::vector<std::unique_ptr<CaseRoom>> caseRoomsOf(const Scene& scene,
-                                                   const ArrangeOptions& options) {
-    const RobustChoice& robust = options.robust;
-    std::vector<std::unique_ptr<CaseRoom>> rooms;
-    const auto add = [&](Scene in, std::string name) {
-        const std::uint64_t number = rooms.size();
-        rooms.push_back(
-            std::make_unique<CaseRoom>(std::move(in), std::move(name), options, number));
-    };
-    switch (robust.of) {
-        case RobustChoice::Of::Nothing:
-            break;
-        case RobustChoice::Of::Rooms:
-            add(scene, robust.name);
-            for (const NamedScene& room : robust.rooms) add(*room.scene, room.name);
-            break;
-        case RobustChoice::Of::Failures:
-            add(scene, "");
-            break;
-        case RobustChoice::Of::Mounting:
-            for (int k = 0; k < kRobustSamples; ++k) add(scene, "");
-            break;
-        case RobustChoice::Of::Crowd: {
-            const CrowdFloor floor(scene);
-            for (int k = 0; k < kRobustSamples; ++k)
-                add(withCrowd(scene, floor.draw(static_cast<std::size_t>(robust.people),
-                                                {.seed = options.seed,
-                                                 .frame = static_cast<std::uint64_t>(k)})),
-                    "");
-            break;
-        }
-    }
-    return rooms;
+std::vector<Crowd> crowdsIn(const Scene& scene, std::size_t people, std::uint64_t seed) {
+    const CrowdFloor floor(scene);
+    std::vector<Crowd> crowds(kRobustSamples);
+    for (std::size_t k = 0; people > 0 && k < crowds.size(); ++k)
+        crowds[k] = floor.draw(people, {.seed = seed, .frame = k});
+    return crowds;
 }
 
 }  // namespace ispace

@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "arrange/arrange.h"
 #include "base/cell_set.h"
@@ -39,7 +37,7 @@ class SiteErrors {
 /// The room of one case.
 struct CaseRoom {
     /// \param number of the case: of the mounting or crowd
-    CaseRoom(Scene in, std::string called, const ArrangeOptions& options, std::uint64_t number);
+    CaseRoom(Scene in, const ArrangeOptions& options, std::uint64_t number);
     CaseRoom(const CaseRoom&) = delete;
     CaseRoom& operator=(const CaseRoom&) = delete;
 
@@ -47,22 +45,12 @@ struct CaseRoom {
     [[nodiscard]] Sensor mounted(Sensor sensor) const;
 
     Scene scene;  ///< its sensors as they are mounted
-    std::string name;
     Worlds worlds;
     VisibleArea sight;
     std::optional<SiteErrors> errors;
     Target target;
     CellSet counted = CellSet();  ///< cells with weight
-    /// Its cells in the problem begin there; several if the cells repeat.
-    std::vector<std::size_t> firsts = {};
-
-    /// Returns these cells of the room in the problem, of `all` cells.
-    [[nodiscard]] CellSet stacked(const CellSet& cells, std::size_t all) const;
+    std::size_t first = 0;        ///< its cells begin there among those of all cases
 };
-
-/// Builds the rooms of the cases; empty for a search that is not robust.
-/// \throws UnmetError as CrowdFloor::draw()
-std::vector<std::unique_ptr<CaseRoom>> caseRoomsOf(const Scene& scene,
-                                                   const ArrangeOptions& options);
 
 }  // namespace ispace

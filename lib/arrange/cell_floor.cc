@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -83,7 +84,17 @@ class Barriers {
     SegmentGrid grid_;
 };
 
-CellSet freeCellsOf(const Environment& environment, const Target& target, const std::string& zone) {
+/// Moves cells of a room to where they begin among all.
+CellSet movedTo(std::size_t first, std::size_t all, const CellSet& cells) {
+    CellSet moved(all);
+    cells.forEach([&](std::size_t cell) { moved.set(first + cell); });
+    return moved;
+}
+
+}  // namespace
+
+CellSet freeCellsOf(const Environment& environment, const Target& target, const std::string& zone,
+                    std::size_t first, std::size_t all) {
     const Polygon outline = readZone(zone, environment).outline;
     CellSet cells = cellsWithin(target.grid, {&outline, 1});
     cells &= target.free;
@@ -91,18 +102,38 @@ CellSet freeCellsOf(const Environment& environment, const Target& target, const 
         throw UsageError("zone " + printable(zone) +
                          " has no free cell: no way begins or ends there (--cell M makes them "
                          "smaller)");
+    return movedTo(first, all, cells);
+}
+
+CellSet landingCellsOf(const Environment& environment, const Target& target, const Box2& landing,
+                       std::size_t first, std::size_t all) {
+    const Grid& grid = target.grid;
+    const Point2 middle = landing.center();
+    const double far =
+        2 * std::hypot(grid.limits.width() / grid.columns, grid.limits.depth() / grid.rows);
+    const Barriers barriers(environment, target.height);
+    CellSet cells(all);
+    double least = far;
+    std::optional<std::size_t> nearest;
+    target.free.forEach([&](std::size_t cell) {
+        const Point2 center = grid.center(cell);
+        if (landing.contains(center)) cells.set(first + cell);
+        const double apart = distance(center, middle);
+        if (!(apart < least) || barriers.cross({middle, center})) return;
+        least = apart;
+        nearest = cell;
+    });
+    if (cells.empty() && nearest) cells.set(first + *nearest);
     return cells;
 }
 
-}  // namespace
-
-CellWays cellWaysOf(const Environment& environment, const Target& target, const WayChoice& of) {
+std::size_t addFloor(const Environment& environment, const Target& target, CellWays& ways) {
     const Grid& grid = target.grid;
-    CellWays ways;
-    ways.from = freeCellsOf(environment, target, of.from);
-    ways.to = freeCellsOf(environment, target, of.to);
-    for (const Move& move : kMoves) ways.steps.push_back(stepOf(grid, move));
-    ways.open.resize(grid.size());
+    const std::size_t first = ways.open.size();
+    CellFloor& floor = ways.floors.emplace_back();
+    floor.first = static_cast<std::uint32_t>(first);
+    for (const Move& move : kMoves) floor.steps.push_back(stepOf(grid, move));
+    ways.open.resize(first + grid.size());
     const Barriers barriers(environment, target.height);
     const auto is_free = [&](int column, int row) {
         return column >= 0 && row >= 0 && column < grid.columns && row < grid.rows &&
@@ -121,17 +152,37 @@ CellWays cellWaysOf(const Environment& environment, const Target& target, const 
                 if (!is_open) continue;
                 const std::size_t next = grid.cell(column + move.right, row + move.up);
                 if (barriers.cross({grid.center(cell), grid.center(next)})) continue;
-                ways.open[cell] |= std::uint32_t{1} << k;
-                ways.open[next] |= std::uint32_t{1} << backOf(k);
+                ways.open[first + cell] |= std::uint32_t{1} << k;
+                ways.open[first + next] |= std::uint32_t{1} << backOf(k);
             }
         }
-    return ways;
+    return first;
 }
 
 void CoverageModel::setWays() {
     const WayChoice& way = options_.objective.way;
     const std::string name = "between " + printable(way.from) + " and " + printable(way.to);
-    cell_ways_ = cellWaysOf(only().scene().environment, only().target(), way);
+    const std::size_t all = problem_.cells();
+    cell_ways_.from = cell_ways_.to = CellSet(all);
+    for (std::size_t i = 0; i < rooms_.size(); ++i) {
+        if (rooms_[i].model == nullptr) continue;
+        const RoomModel& model = *rooms_[i].model;
+        const Environment& room = model.scene().environment;
+        const std::size_t first = addFloor(room, model.target(), cell_ways_);
+        const auto add = [&](const std::string& zone, CellSet& cells) {
+            if (!zone.empty()) cells |= freeCellsOf(room, model.target(), zone, first, all);
+        };
+        add(site_.rooms[i].goals.way_from, cell_ways_.from);
+        add(site_.rooms[i].goals.way_to, cell_ways_.to);
+    }
+    for (const SitePassage& passage : site_.passages) {
+        CellSet& cells = cell_ways_.passages.emplace_back(all);
+        for (const auto& [room, floor] : passage.landings)
+            if (rooms_[room].model != nullptr)
+                cells |= landingCellsOf(rooms_[room].model->scene().environment,
+                                        rooms_[room].model->target(), floor,
+                                        cellsOfRoom(room).first, all);
+    }
     if (!cell_ways_.exist())
         throw UnmetError("no way " + name + " leads over free cells (--cell M makes them smaller)");
     cases_.ways = &cell_ways_;

@@ -36,13 +36,6 @@ std::vector<SensorModel> devicesOf(const std::vector<SensorClass>& kinds) {
     return devices;
 }
 
-CellSet countedCells(const Problem& problem) {
-    CellSet counted(problem.cells());
-    for (std::size_t i = 0; i < problem.cells(); ++i)
-        if (problem.weights[i] > 0) counted.set(i);
-    return counted;
-}
-
 /// Appends the blocks of a room's cells: squares of a grid.
 void addBlocks(const Grid& grid, std::size_t cells, std::vector<std::uint32_t>& blocks) {
     constexpr std::size_t kEdge = 6;  // cells; measured: smaller ones bound hardly better
@@ -64,14 +57,6 @@ CoverageModel::CoverageModel(const ArrangeSite& site, const std::vector<SensorGr
       options_(options),
       kinds_(kindsOf(groups, drawsForEach(options))) {
     mustBeAffordable();
-    if (const std::string option = needsOneRoom(options); !option.empty() && !site.isOneRoom())
-        throw UsageError(option + " needs one room");
-    if (options.is_connected && !site.isOneRoom() &&
-        (kinds_.size() > 1 || options.target || options.budget || options.refine ||
-         options.alternatives > 0))
-        throw UsageError(
-            "--connected with several kinds of sensors, --target, --budget, --refine or "
-            "--alternatives needs one room");
     if (options.refine)
         for (const SiteRoom& room : site.rooms)
             if (room.has_floor) mustBeRefinable(*room.scene, devicesOf(kinds_), room.goals.weights);
@@ -83,10 +68,6 @@ CoverageModel::CoverageModel(const ArrangeSite& site, const std::vector<SensorGr
     const std::vector<std::uint32_t> left = weightsLeft();
     for (Room& room : rooms_) {
         if (room.model == nullptr || room.model->hasPool()) continue;
-        if (site.isOneRoom()) {
-            room.model->makePool(left, progress);
-            continue;
-        }
         std::vector<std::uint32_t> own(room.cells);
         // Backwards: of cells that stand several times the first weight counts.
         for (auto copy = room.copies.rbegin(); copy != room.copies.rend(); ++copy)
@@ -96,6 +77,7 @@ CoverageModel::CoverageModel(const ArrangeSite& site, const std::vector<SensorGr
         room.model->makePool(std::move(own), progress);
     }
     addKinds(progress);
+    if (options.is_connected) addRegions();
 }
 
 CoverageModel::~CoverageModel() = default;
@@ -132,7 +114,10 @@ void CoverageModel::addRooms() {
         areas.push_back(0);
         if (!room.has_floor) continue;
         std::shared_ptr<RoomModel> own;
-        std::shared_ptr<RoomModel>& model = room.goals.isPlain() ? known[room.scene.get()] : own;
+        // Rooms that are equal here may differ in other sites.
+        const bool is_shared =
+            room.goals.isPlain() && options_.robust.of != RobustChoice::Of::Rooms;
+        std::shared_ptr<RoomModel>& model = is_shared ? known[room.scene.get()] : own;
         if (model == nullptr) model = std::make_shared<RoomModel>(room, options_, kinds_, unit_);
         added.model = model;
         added.cells = model->weights().size();
@@ -181,19 +166,28 @@ void CoverageModel::setAreas(std::vector<double> areas) {
     areas_ = std::move(areas);
 }
 
+std::vector<Sensor> CoverageModel::standingIn(std::size_t number, std::size_t room) const {
+    const bool is_other = options_.robust.of == RobustChoice::Of::Rooms && number > 0;
+    if (!is_other) return site_.rooms[room].scene->sensors;
+    std::vector<Sensor> sensors =
+        options_.robust.rooms[number - 1].site->rooms[room].scene->sensors;
+    for (Sensor& sensor : sensors) limitCovered(sensor.model, options_);
+    return sensors;
+}
+
 void CoverageModel::countStandingBeyond() {
-    for (std::size_t from = 0; from < rooms_.size(); ++from) {
-        for (const Sensor& sensor : site_.rooms[from].scene->sensors) {
-            if (!kindOf(sensor.model).perceives || isPartial(sensor.model)) continue;
-            CellSet cells(problem_.cells());
-            addBeyond(from, sensor, cells);
-            cells.forEach([&](std::size_t cell) {
-                problem_.achieved[cell] =
-                    static_cast<std::uint16_t>(std::min(problem_.achieved[cell] + unit_, 0xffff));
-            });
-            problem_.standing |= cells;
-        }
-    }
+    for (std::size_t number = 0; number < viewCases(); ++number)
+        for (std::size_t from = 0; from < rooms_.size(); ++from)
+            for (const Sensor& sensor : standingIn(number, from)) {
+                if (!kindOf(sensor.model).perceives || isPartial(sensor.model)) continue;
+                CellSet cells(problem_.cells());
+                addBeyond(number, from, sensor, cells);
+                cells.forEach([&](std::size_t cell) {
+                    problem_.achieved[cell] = static_cast<std::uint16_t>(
+                        std::min(problem_.achieved[cell] + unit_, 0xffff));
+                });
+                problem_.standing |= cells;
+            }
 }
 
 /// Explains why no floor counts.
@@ -216,8 +210,14 @@ std::string CoverageModel::nothingText() const {
 }
 
 bool CoverageModel::joinsRooms() const {
-    return site_.sight != nullptr && site_.sight->joinsRooms() && !options_.demand &&
-           options_.objective.isCoverage();
+    const auto joins = [](const ArrangeSite& site) {
+        return site.sight != nullptr && site.sight->joinsRooms();
+    };
+    const std::vector<NamedSite>& others = options_.robust.rooms;
+    return (joins(site_) ||
+            std::any_of(others.begin(), others.end(),
+                        [&](const NamedSite& other) { return joins(*other.site); })) &&
+           !options_.demand && options_.objective.of != ObjectiveChoice::Of::Localise;
 }
 
 bool CoverageModel::mayStand(const SensorClass& kind, std::size_t room) const {
@@ -243,20 +243,18 @@ bool CoverageModel::sees(const RoomSight& sight, std::size_t from, const Sensor&
     return to != from && rooms_[to].model != nullptr && sight.maySee(from, sensor, to);
 }
 
-void CoverageModel::addBeyond(std::size_t room, const Sensor& sensor, CellSet& cells) const {
-    if (!joinsRooms()) return;
-    for (std::size_t number = 0; number < viewCases(); ++number) {
-        const Sensor mounted = mountedIn(number, room, sensor);
-        for (std::size_t to = 0; to < rooms_.size(); ++to) {
-            if (!sees(sightIn(number), room, mounted, to)) continue;
-            CellParts seen;
-            sightIn(number).look(room, {&mounted, 1}, to, rooms_[to].model->target().grid, seen);
-            rooms_[to].model->withoutFaces(seen);
-            for (const CellRun& run : seen.runs)
-                for (const Copy& copy : copiesIn(number, to))
-                    for (std::size_t cell = run.first; cell < run.end; ++cell)
-                        cells.set(copy.first + cell);
-        }
+void CoverageModel::addBeyond(std::size_t number, std::size_t room, const Sensor& sensor,
+                              CellSet& cells) const {
+    const Sensor mounted = mountedIn(number, room, sensor);
+    for (std::size_t to = 0; to < rooms_.size(); ++to) {
+        if (!sees(sightIn(number), room, mounted, to)) continue;
+        CellParts seen;
+        sightIn(number).look(room, {&mounted, 1}, to, gridIn(number, to), seen);
+        rooms_[to].model->withoutFaces(seen);
+        for (const CellRun& run : seen.runs)
+            for (const Copy& copy : copiesIn(number, to))
+                for (std::size_t cell = run.first; cell < run.end; ++cell)
+                    cells.set(copy.first + cell);
     }
 }
 
@@ -359,9 +357,8 @@ class CoverageModel::Joiner {
             for (std::size_t to = 0; to < model_.rooms_.size(); ++to) {
                 if (!model_.sees(sight, from, mounted.front(), to)) continue;
                 CellsBeyond seen{to, number, {}};
-                const RoomModel& room = *model_.rooms_[to].model;
-                sight.look(from, mounted, to, room.target().grid, seen.parts);
-                room.withoutFaces(seen.parts);
+                sight.look(from, mounted, to, model_.gridIn(number, to), seen.parts);
+                model_.rooms_[to].model->withoutFaces(seen.parts);
                 if (!seen.parts.runs.empty()) all.push_back(std::move(seen));
             }
         }
@@ -444,7 +441,7 @@ std::unique_ptr<PosedCandidates> CoverageModel::candidatesOf(const SensorClass& 
                    ? "no place for " + nameOf(kind) + ": all see zones of --privacy"
                    : "stopped before there was any candidate for " + nameOf(kind);
     };
-    if (site_.isOneRoom()) {
+    if (hasCellsOfRoom()) {
         CandidatePool::Made made = only().pool().make(kind);
         is_complete_ = is_complete_ && made.is_complete;
         if (made.set->size() == 0)
@@ -532,6 +529,19 @@ std::vector<CoverageModel::Part> CoverageModel::parts() const {
     return parts;
 }
 
+void CoverageModel::addRegions() {
+    const std::vector<Part> all = parts();
+    if (all.size() < 2) return;
+    problem_.regions.resize(problem_.cells());
+    for (std::size_t part = 0; part < all.size(); ++part)
+        for (const std::size_t room : all[part].rooms) {
+            const CellBlock block = cellsOfRoom(room);
+            std::fill(problem_.regions.begin() + static_cast<std::ptrdiff_t>(block.first),
+                      problem_.regions.begin() + static_cast<std::ptrdiff_t>(block.end),
+                      static_cast<std::uint32_t>(part));
+        }
+}
+
 std::size_t CoverageModel::candidates() const {
     std::size_t count = 0;
     for (const auto& set : sets_) count += set->size();
@@ -591,8 +601,7 @@ std::vector<std::uint32_t> CoverageModel::weightsLeft() const {
 }
 
 Point3 CoverageModel::positionOf(const Choice& choice) const {
-    const Point3 position = poseOf(choice).position;
-    return site_.isOneRoom() ? position : site_.rooms[roomOf(choice)].inSite(position);
+    return site_.rooms[roomOf(choice)].inSite(poseOf(choice).position);
 }
 
 std::vector<Placement> CoverageModel::placementsOf(const std::vector<Choice>& chosen) const {
@@ -615,14 +624,15 @@ std::vector<CountedView> CoverageModel::viewsOf(std::span<const SiteSensor> sens
             const Room& own = rooms_[room];
             views[i].multiplicity = isPartial(sensor.model) ? 1 : unit_;
             if (own.model != nullptr) views[i].cells = own.model->cellsOf(sensor, problem_.cells());
-            if (site_.isOneRoom()) return;
+            if (hasCellsOfRoom()) return;
             CellSet cells(problem_.cells());
             views[i].cells.forEach([&](std::size_t cell) {
                 for (const Copy& copy : own.copies)
                     if (cell >= copy.own.first && cell < copy.own.end)
                         cells.set(copy.first + cell - copy.own.first);
             });
-            addBeyond(room, sensor, cells);
+            for (std::size_t number = 0; joinsRooms() && number < viewCases(); ++number)
+                addBeyond(number, room, sensor, cells);
             views[i].cells = std::move(cells);
         });
     });
@@ -653,29 +663,10 @@ std::uint64_t CoverageModel::valueOf(std::span<const CountedView> views) const {
 }
 
 bool CoverageModel::isConnected(std::span<const CountedView> views) const {
-    const CellSet counted = countedCells(problem_);
-    std::vector<CellSet> waiting;
-    CellSet reached = problem_.standing;
-    reached &= counted;
-    for (const CountedView& view : views) {
-        waiting.push_back(view.cells);
-        waiting.back() &= counted;
-    }
-    if (reached.empty() && !waiting.empty()) {
-        reached = waiting.back();
-        waiting.pop_back();
-    }
-    // Merges views that share a cell with the merged ones until the set stops growing.
-    for (bool grows = true; grows;) {
-        grows = false;
-        for (std::size_t i = 0; i < waiting.size(); ++i) {
-            if (countCommon(waiting[i], reached) == 0) continue;
-            reached |= waiting[i];
-            waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i--));
-            grows = true;
-        }
-    }
-    return waiting.empty();
+    std::vector<const CellSet*> cells;
+    cells.reserve(views.size());
+    for (const CountedView& view : views) cells.push_back(&view.cells);
+    return Connection(problem_, cells).isWhole();
 }
 
 void CoverageModel::spreadRedundant(std::vector<Choice>& chosen) const {
@@ -683,8 +674,7 @@ void CoverageModel::spreadRedundant(std::vector<Choice>& chosen) const {
     for (const SiteRoom& room : site_.rooms) {
         for (const Sensor& sensor : room.scene->sensors)
             if (kindOf(sensor.model).perceives)
-                standing.push_back(site_.isOneRoom() ? sensor.pose.position
-                                                     : room.inSite(sensor.pose.position));
+                standing.push_back(room.inSite(sensor.pose.position));
     }
     const auto position_of = [this](const Choice& choice) { return positionOf(choice); };
     ispace::spreadRedundant(problem_, standing, position_of, chosen);

@@ -54,8 +54,7 @@ class CoverageModel {
   public:
     /// Builds all candidates. Stores references.
     /// \throws UnmetError if a kind has no valid site, the budget buys no sensor or all weights are
-    ///         0, UsageError if the candidates do not fit in memory, cannot be refined as asked, or
-    ///         the options need one room
+    ///         0, UsageError if the candidates do not fit in memory, or cannot be refined as asked
     CoverageModel(const ArrangeSite& site, const std::vector<SensorGroup>& groups,
                   const ArrangeOptions& options, Progress& progress);
     ~CoverageModel();
@@ -149,7 +148,7 @@ class CoverageModel {
     /// required.
     [[nodiscard]] CellSet servedBy(std::span<const CountedView> views) const;
     /// Returns true if these views and the standing coverage, which counts as one part, are
-    /// connected, see Problem::is_connected. O(views^2 * cells / 64)
+    /// connected, see Problem::is_connected. O(views * cells)
     [[nodiscard]] bool isConnected(std::span<const CountedView> views) const;
     /// Spreads choices that add no value.
     /// \pre the choices have a value: else they may be some of the many that the required
@@ -172,7 +171,7 @@ class CoverageModel {
         std::size_t first = 0;  ///< in the problem
     };
     /// A room of the site. Its cells stand in the problem several times if sensors may fail; those
-    /// of random cases lie apart.
+    /// of cases lie apart.
     struct Room {
         std::shared_ptr<RoomModel> model;  ///< null: left out; equal rooms share it
         std::vector<Copy> copies = {{}};
@@ -194,25 +193,36 @@ class CoverageModel {
     [[nodiscard]] std::string nothingText() const;
     /// Sets the cells of all cases, and their weights.
     void stackCases();
-    void stackOneRoom();
-    /// Stacks the random cases of several rooms.
     void stackRooms();
     void stackFailures();
+    /// Returns the rooms in a case.
+    [[nodiscard]] SiteCase siteIn(std::size_t number) const;
     /// Sets the ways of an intruder. \throws UnmetError if there is none, or none that can be seen
     void setWays();
     void addKinds(Progress& progress);
+    /// Sets the regions in which coverage is to be connected: parts().
+    void addRegions();
     [[nodiscard]] std::unique_ptr<PosedCandidates> candidatesOf(const SensorClass& kind,
                                                                 Progress& progress);
+    /// Returns true if the cells of the problem are those of one room's model.
+    [[nodiscard]] bool hasCellsOfRoom() const {
+        return rooms_.size() == 1 && site_.sight == nullptr &&
+               rooms_.front().copies.size() <= viewCases();
+    }
     /// Returns true if sensors of one room may count in others.
     [[nodiscard]] bool joinsRooms() const;
     /// Returns true if sensors of a kind may stand in a room.
     [[nodiscard]] bool mayStand(const SensorClass& kind, std::size_t room) const;
-    /// Returns the number of random cases of several rooms, else 1.
+    /// Returns the number of cases in which sensors see different cells, else 1.
     [[nodiscard]] std::size_t viewCases() const { return std::max<std::size_t>(1, view_cases_); }
     /// Returns a sensor as it is mounted in a case.
     [[nodiscard]] Sensor mountedIn(std::size_t number, std::size_t room, Sensor sensor) const;
     [[nodiscard]] const RoomSight& sightIn(std::size_t number) const {
-        return crowded_.empty() ? *site_.sight : *crowded_[number];
+        return case_sights_.empty() ? *site_.sight : *case_sights_[number];
+    }
+    [[nodiscard]] const Grid& gridIn(std::size_t number, std::size_t room) const {
+        const RoomModel& model = *rooms_[room].model;
+        return view_cases_ == 0 ? model.target().grid : model.cases()[number]->target.grid;
     }
     /// Returns where the cells of a room in a case stand.
     [[nodiscard]] std::span<const Copy> copiesIn(std::size_t number, std::size_t room) const {
@@ -223,8 +233,11 @@ class CoverageModel {
                             std::size_t to) const;
     [[nodiscard]] TriedPose tried(const std::string& sensor, const Choice& choice,
                                   double value) const;
-    /// Adds the cells of other rooms that a sensor sees, with all copies of them.
-    void addBeyond(std::size_t room, const Sensor& sensor, CellSet& cells) const;
+    /// Adds the cells of other rooms that a sensor sees in a case, with all copies of them.
+    void addBeyond(std::size_t number, std::size_t room, const Sensor& sensor,
+                   CellSet& cells) const;
+    /// Returns the sensors that stand in a room in a case.
+    [[nodiscard]] std::vector<Sensor> standingIn(std::size_t number, std::size_t room) const;
 
     const ArrangeSite& site_;
     const std::vector<SensorGroup>& groups_;
@@ -234,9 +247,9 @@ class CoverageModel {
     std::vector<Room> rooms_;
     CellWays cell_ways_;
     WorstCaseProblem cases_;
-    std::size_t view_cases_ = 0;  ///< random cases of several rooms; 0 without
-    std::vector<std::shared_ptr<const RoomSight>> crowded_;  ///< by case, if rooms see each other
-    std::vector<std::string> standing_ids_;                  ///< of cases_.standing
+    std::size_t view_cases_ = 0;  ///< cases in which views differ; 0 without
+    std::vector<std::shared_ptr<const RoomSight>> case_sights_;
+    std::vector<std::string> standing_ids_;  ///< of cases_.standing
     Problem problem_;
     std::uint64_t total_ = 0;
     std::vector<double> areas_;  ///< weights of the cells of several rooms, not rounded

@@ -86,7 +86,11 @@ TEST(CellFloor, WaysAreAsLongAsTheyAre) {
     const auto length = [](const std::string& more) {
         const Scene scene = roomScene(kGuarded + more);
         const Target target = makeTarget(scene.environment, CellSize{0.1}, kScanHeight);
-        const CellWays ways = cellWaysOf(scene.environment, target, {"a", "b"});
+        CellWays ways;
+        EXPECT_EQ(addFloor(scene.environment, target, ways), 0U);
+        const std::size_t all = target.grid.size();
+        ways.from = freeCellsOf(scene.environment, target, "a", 0, all);
+        ways.to = freeCellsOf(scene.environment, target, "b", 0, all);
         const CellWay way = ways.leastSeen([](std::uint32_t) { return true; });
         EXPECT_TRUE(ways.exist());
         std::uint64_t sum = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "arrange/case_room.h"
 #include "coverage/crowd.h"
@@ -25,8 +26,14 @@ RobustChoice ofRooms(bool is_worst) {
     robust.of = RobustChoice::Of::Rooms;
     robust.is_worst = is_worst;
     robust.name = "room.env";
-    robust.rooms.push_back({"moved.env", std::make_shared<Scene>(roomScene(kMovedRoom))});
+    ArrangeSite moved;
+    moved.rooms.push_back({"", std::make_shared<const Scene>(roomScene(kMovedRoom))});
+    robust.rooms.push_back({"moved.env", std::make_shared<const ArrangeSite>(std::move(moved))});
     return robust;
+}
+
+const Scene& movedRoom(const ArrangeOptions& options) {
+    return *options.robust.rooms[0].site->rooms[0].scene;
 }
 
 double coverageOf(const Scene& scene) {
@@ -45,8 +52,7 @@ TEST(Robust, ValuesInRoomsAreThoseOfCoverage) {
         const Arrangement found = arranged(scene, groups, options);
         ASSERT_TRUE(found.robust);
         const double here = coverageOf(withPlaced(scene, groups, found.sensors));
-        const double moved =
-            coverageOf(withPlaced(*options.robust.rooms[0].scene, groups, found.sensors));
+        const double moved = coverageOf(withPlaced(movedRoom(options), groups, found.sensors));
         ASSERT_EQ(found.robust->shares.size(), 2U);
         EXPECT_NEAR(found.robust->shares[0], here, 1e-9);
         EXPECT_NEAR(found.robust->shares[1], moved, 1e-9);
@@ -65,7 +71,7 @@ TEST(Robust, TheWorstRoomGainsAgainstThePlainSearch) {
     const Arrangement plain = arranged(scene, groups, options);
     options.robust = ofRooms(true);
     const Arrangement robust = arranged(scene, groups, options);
-    const Scene& moved = *options.robust.rooms[0].scene;
+    const Scene& moved = movedRoom(options);
     const double before =
         std::min(plain.coverage, coverageOf(withPlaced(moved, groups, plain.sensors)));
     EXPECT_GT(robust.robust->worst, before + 0.001);
@@ -80,7 +86,7 @@ TEST(Robust, SitesAreFreeInAllRooms) {
     options.robust = ofRooms(false);
     options.wants_trace = true;
     const Arrangement found = arranged(scene, groups, options);
-    const Environment& moved = options.robust.rooms[0].scene->environment;
+    const Environment& moved = movedRoom(options).environment;
     for (const TriedPose& tried : found.tried)
         EXPECT_FALSE(
             moved.level(tried.pose.position.z)->isInsideSolid(tried.pose.position.onFloor()));

@@ -32,6 +32,8 @@ RoomGoals goalsOf(const ArrangeOptions& options) {
     goals.places = options.list;
     goals.demand = options.demand;
     goals.case_seed = options.robust.seed;
+    goals.way_from = options.objective.way.from;
+    goals.way_to = options.objective.way.to;
     return goals;
 }
 
@@ -63,20 +65,18 @@ RoomModel::RoomModel(const SiteRoom& room, const ArrangeOptions& options,
     if (options_.demand) countDemand(kinds);
 }
 
-void RoomModel::makeCases() { cases_ = caseRoomsOf(*scene_, options_); }
-
 CaseRoom& RoomModel::addCase(const Scene& scene) {
-    cases_.push_back(std::make_unique<CaseRoom>(scene, "", options_, cases_.size()));
+    cases_.push_back(std::make_unique<CaseRoom>(scene, options_, cases_.size()));
     return *cases_.back();
 }
 
-double RoomModel::areaOfCell() const {
+double RoomModel::areaOfCell(const Scene& scene, const Target& target) const {
     if (options_.demand) return 1;
-    const Grid& grid = target_.grid;
-    const std::size_t indoor = target_.indoor.count();
+    const Grid& grid = target.grid;
+    const std::size_t indoor = target.indoor.count();
     if (!options_.judges_inside || indoor == 0)
         return grid.limits.width() * grid.limits.depth() / static_cast<double>(grid.size());
-    return scene_->environment.indoor().area() / static_cast<double>(indoor);
+    return scene.environment.indoor().area() / static_cast<double>(indoor);
 }
 
 void RoomModel::countStanding(const std::vector<SensorView>& views, std::size_t first,
@@ -124,7 +124,8 @@ CellSet RoomModel::cellsOf(const Sensor& sensor, std::size_t all) const {
                     : cases_.empty() ? sight_.cellsOf(target_.grid, sensor)
                                      : CellSet(all);
     for (const auto& room : cases_)
-        cells |= room->stacked(room->sight.cellsOf(room->target.grid, room->mounted(sensor)), all);
+        room->sight.cellsOf(room->target.grid, room->mounted(sensor))
+            .forEach([&](std::size_t cell) { cells.set(room->first + cell); });
     if (facing_) facing_->keepFaces(sensor.model, sensor.pose.position.onFloor(), cells);
     return cells;
 }

@@ -49,9 +49,7 @@ class RoomModel {
     [[nodiscard]] const VisibleArea& sight() const { return sight_; }
     /// Returns the rooms of the cases; empty: not robust, or not yet.
     [[nodiscard]] CaseRooms cases() const { return cases_; }
-    /// Builds the rooms of the cases. \throws as caseRoomsOf()
-    void makeCases();
-    /// Adds the room of a random case. \param scene the room in it
+    /// Adds the room of a case. \param scene the room in it
     CaseRoom& addCase(const Scene& scene);
 
     /// Returns weights of the cells, by the options.
@@ -61,7 +59,9 @@ class RoomModel {
     [[nodiscard]] const CellSet& standing() const { return standing_; }
     /// Returns the floor area that one cell stands for, m2: a room that is seen whole has its
     /// indoor area. 1 for a demand, of which weights alone count.
-    [[nodiscard]] double areaOfCell() const;
+    [[nodiscard]] double areaOfCell() const { return areaOfCell(*scene_, target_); }
+    /// Returns that of the room in a case.
+    [[nodiscard]] double areaOfCell(const Scene& scene, const Target& target) const;
     /// Adds the multiplicities of these views from `first` on.
     void countStanding(const std::vector<SensorView>& views, std::size_t first,
                        std::vector<std::uint16_t>& achieved) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "arrange/search/share_out.h"
@@ -154,6 +155,7 @@ PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> r
     PartResults results;
     results.candidates = sites.candidatesIn(rooms);
     const auto last = std::min(static_cast<std::size_t>(most), results.candidates.size());
+    SearchOptions options = model.searchOptions();
     for (std::size_t n = 1; n <= last; ++n) {
         if (n > 1 && progress.stopped()) {
             results.by_number.push_back(
@@ -163,7 +165,8 @@ PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> r
         }
         part.problem().kinds.front().most = static_cast<int>(n);
         part.problem().order.assign(n, 0);
-        SearchResult found = search(part.problem(), model.searchOptions(), progress);
+        options.share.search = '/' + std::to_string(rooms.front()) + '/' + std::to_string(n);
+        SearchResult found = search(part.problem(), options, progress);
         // One more sensor never covers less.
         if (n > 1 && !part.problem().is_connected &&
             found.best.value < results.by_number.back().best.value)

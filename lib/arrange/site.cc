@@ -9,7 +9,7 @@ namespace ispace {
 bool RoomGoals::isPlain() const {
     return weights.isUniform() && counts && takes_sensors && keep_out.empty() && keep_in.empty() &&
            privacy.empty() && facing.empty() && forbidden.empty() && places.empty() &&
-           demand == nullptr && crowds.empty() && !case_seed;
+           demand == nullptr && crowds.empty() && !case_seed && way_from.empty() && way_to.empty();
 }
 
 Point3 SiteRoom::inSite(Point3 point) const {
@@ -32,9 +32,13 @@ std::vector<ServedDemand> servedByRoom(const ArrangeSite& site, const CellSet& s
     return rooms;
 }
 
+std::string wholeId(const ArrangeSite& site, std::size_t room, const std::string& id) {
+    const std::string& of = site.rooms[room].id;
+    return of.empty() ? id : of + '/' + id;
+}
+
 std::string wholeId(const ArrangeSite& site, const Placement& placement) {
-    const std::string& room = site.rooms[placement.room].id;
-    return room.empty() ? placement.sensor : room + '/' + placement.sensor;
+    return wholeId(site, placement.room, placement.sensor);
 }
 
 }  // namespace ispace

@@ -17,6 +17,7 @@
 #include "coverage/crowd.h"
 #include "coverage/target.h"
 #include "env/zone.h"
+#include "geom/point.h"
 #include "geom/pose.h"
 #include "raster/grid.h"
 #include "scene/scene.h"
@@ -43,6 +44,8 @@ struct RoomGoals {
     /// Of RobustChoice, for a room of several.
     std::optional<std::uint64_t> case_seed = {};
     std::vector<Crowd> crowds = {};  ///< by case
+    /// Of ObjectiveChoice::Of::Path: the zones in this room between which an intruder goes.
+    std::string way_from = {}, way_to = {};
     /// Counts instead of its floor, if the options ask for a demand. Every room then has one.
     std::shared_ptr<const Demand> demand = nullptr;
 
@@ -94,10 +97,10 @@ class RoomSight {
     RoomSight& operator=(const RoomSight&) = default;
 };
 
-/// The rooms of a site with people in them.
-struct CrowdedSite {
+/// The rooms of a site in one case of a robust search.
+struct SiteCase {
     std::vector<std::shared_ptr<const Scene>> rooms;
-    std::shared_ptr<const RoomSight> sight;
+    std::shared_ptr<const RoomSight> sight;  ///< null for a room alone
 };
 
 /// How the rooms of a site see each other. Thread-safe.
@@ -106,10 +109,21 @@ class SiteSight : public RoomSight {
     /// Returns false if no room sees another one.
     [[nodiscard]] virtual bool joinsRooms() const = 0;
     /// Returns the site with people in the way of sight. \param crowds by room
-    [[nodiscard]] virtual CrowdedSite crowded(std::span<const Crowd> crowds) const = 0;
+    [[nodiscard]] virtual SiteCase crowded(std::span<const Crowd> crowds) const = 0;
     /// Measures all rooms, as `coverage` does, with these sensors added to each.
     [[nodiscard]] virtual SiteFigures measure(std::span<const std::vector<Sensor>> added,
                                               const CoverageOptions& options) const = 0;
+};
+
+/// Stairs or a lift: a way leads from any of its landings to any other one.
+struct SitePassage {
+    /// Floor of a room where people enter it, in the frame of the room.
+    struct Landing {
+        std::size_t room = 0;
+        Box2 floor = {};
+    };
+    std::string id;
+    std::vector<Landing> landings = {};
 };
 
 /// Rooms, one or several. The cells of all of them are one problem: a sensor covers floor of its
@@ -118,6 +132,7 @@ struct ArrangeSite {
     std::vector<SiteRoom> rooms;
     /// Of several rooms; null for one alone. Not owned.
     const SiteSight* sight = nullptr;
+    std::vector<SitePassage> passages = {};
 
     [[nodiscard]] bool isOneRoom() const { return rooms.size() == 1 && sight == nullptr; }
 };
@@ -127,7 +142,8 @@ struct ArrangeSite {
 std::vector<ServedDemand> servedByRoom(const ArrangeSite& site, const CellSet& served);
 
 struct Placement;
-/// Returns the id of a placed sensor across the site: "ground/c1"; its own in a room alone.
+/// Returns the id of a sensor of a room across the site: "ground/c1"; its own in a room alone.
+std::string wholeId(const ArrangeSite& site, std::size_t room, const std::string& id);
 std::string wholeId(const ArrangeSite& site, const Placement& placement);
 
 }  // namespace ispace

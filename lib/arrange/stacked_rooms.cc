@@ -23,96 +23,59 @@ std::uint64_t totalOf(const std::vector<std::uint32_t>& weights) {
 }  // namespace
 
 void CoverageModel::stackCases() {
-    if (site_.isOneRoom()) return stackOneRoom();
-    if (options_.robust.of != RobustChoice::Of::Failures) return stackRooms();
-    // Failures of sensors in any room: the cells of all rooms are those of the one case.
-    cases_.blocks.push_back({0, problem_.cells()});
-    for (std::size_t i = 0; i < rooms_.size(); ++i) {
-        std::vector<SiteSensor> sensors;
-        for (const Sensor& sensor : site_.rooms[i].scene->sensors)
-            if (kindOf(sensor.model).perceives) sensors.push_back({i, sensor});
-        for (CountedView& view : viewsOf(std::span<const SiteSensor>(sensors)))
-            cases_.standing.push_back(std::move(view.cells));
-        for (const SiteSensor& sensor : sensors)
-            standing_ids_.push_back(site_.rooms[i].id + '/' + sensor.sensor.id);
-    }
-    stackFailures();
+    if (options_.robust.of == RobustChoice::Of::Failures)
+        stackFailures();
+    else
+        stackRooms();
     cases_.problem = &problem_;
     total_ = isWorstCase() ? cases_.totalOf(0) : problem_.totalWeight();
 }
 
-void CoverageModel::stackOneRoom() {
-    RoomModel& model = only();
-    model.makeCases();
-    std::vector<double> weights;
-    std::vector<std::uint16_t> achieved;
-    double first_total = 0;
-    for (const auto& room : model.cases()) {
-        const std::size_t first = weights.size();
-        const Coverage standing = measureCoverage(
-            room->scene, room->worlds,
-            {.cells = searchCells(options_), .plane = options_.plane, .exact = false});
-        room->target = standing.target;
-        std::vector<double> own = cellWeights(room->target, model.options());
-        const double total = std::accumulate(own.begin(), own.end(), 0.0);
-        if (total <= 0) throw UnmetError("nothing to cover in " + room->name);
-        if (first == 0) first_total = total;
-        room->counted = CellSet(own.size());
-        for (std::size_t i = 0; i < own.size(); ++i)
-            if (own[i] > 0) room->counted.set(i);
-        // Rooms count the same, however large they are.
-        if (total != first_total)
-            for (double& weight : own) weight *= first_total / total;
-        weights.insert(weights.end(), own.begin(), own.end());
-        achieved.resize(weights.size());
-        model.countStanding(standing.sensors, first, achieved);
-        room->firsts = {first};
-        cases_.blocks.push_back({first, weights.size()});
-        if (options_.robust.of == RobustChoice::Of::Failures)
-            for (const SensorView& view : standing.sensors) {
-                cases_.standing.push_back(view.cells);
-                standing_ids_.push_back(view.id);
-            }
+SiteCase CoverageModel::siteIn(std::size_t number) const {
+    const RobustChoice& robust = options_.robust;
+    if (robust.of == RobustChoice::Of::Crowd) {
+        std::vector<Crowd> crowds;
+        for (const SiteRoom& room : site_.rooms)
+            crowds.push_back(room.goals.crowds.empty() ? Crowd() : room.goals.crowds[number]);
+        if (site_.sight != nullptr) return site_.sight->crowded(crowds);
+        const Scene& room = *site_.rooms.front().scene;
+        return {{std::make_shared<const Scene>(withCrowd(room, crowds.front()))}, nullptr};
     }
-    problem_.weights = integerWeights(weights);
-    problem_.achieved = std::move(achieved);
-    problem_.standing = CellSet(problem_.cells());
-    if (options_.robust.of == RobustChoice::Of::Failures) stackFailures();
-    cases_.problem = &problem_;
-    total_ = isWorstCase() ? cases_.totalOf(0) : problem_.totalWeight();
+    const bool is_other = robust.of == RobustChoice::Of::Rooms && number > 0;
+    const ArrangeSite& site = is_other ? *robust.rooms[number - 1].site : site_;
+    SiteCase in{{}, std::shared_ptr<const RoomSight>(std::shared_ptr<void>(), site.sight)};
+    for (const SiteRoom& room : site.rooms) in.rooms.push_back(room.scene);
+    return in;
 }
 
-/// \pre the site says how its rooms see each other
 void CoverageModel::stackRooms() {
-    view_cases_ = kRobustSamples;
-    std::vector<double> weights, areas;
-    std::vector<std::uint16_t> achieved;
+    const RobustChoice& robust = options_.robust;
+    const bool has_sites = robust.of == RobustChoice::Of::Rooms;
+    view_cases_ = has_sites ? 1 + robust.rooms.size() : std::size_t{kRobustSamples};
     for (Room& room : rooms_) {
         if (room.model == nullptr) continue;
         room.copies.clear();
-        areas.push_back(room.model->areaOfCell());
+        room.cells = 0;
     }
-    const bool is_even =
-        std::all_of(areas.begin(), areas.end(), [&](double area) { return area == areas.front(); });
+    /// The cells of a room in a case, and the area of each.
+    struct Stacked {
+        CellBlock cells;
+        double area = 0;
+    };
+    std::vector<Stacked> stack;
+    std::vector<double> weights;
+    std::vector<std::uint16_t> achieved;
+    bool is_even = true;  // the cells of all rooms are of equal size
     for (std::size_t number = 0; number < view_cases_; ++number) {
-        const std::size_t begin = weights.size();
-        std::vector<std::shared_ptr<const Scene>> scenes;
-        if (options_.robust.of == RobustChoice::Of::Crowd) {
-            std::vector<Crowd> crowds;
-            for (const SiteRoom& room : site_.rooms)
-                crowds.push_back(room.goals.crowds.empty() ? Crowd() : room.goals.crowds[number]);
-            CrowdedSite crowded = site_.sight->crowded(crowds);
-            scenes = std::move(crowded.rooms);
-            crowded_.push_back(std::move(crowded.sight));
-        } else {
-            for (const SiteRoom& room : site_.rooms) scenes.push_back(room.scene);
-        }
+        const std::size_t begin = weights.size(), first = stack.size();
+        const SiteCase site = siteIn(number);
+        case_sights_.push_back(site.sight);
         for (std::size_t i = 0; i < rooms_.size(); ++i) {
             if (rooms_[i].model == nullptr) continue;
             RoomModel& model = *rooms_[i].model;
             // Equal rooms share their cases.
-            CaseRoom& in =
-                number < model.cases().size() ? *model.cases()[number] : model.addCase(*scenes[i]);
+            CaseRoom& in = number < model.cases().size() ? *model.cases()[number]
+                                                         : model.addCase(*site.rooms[i]);
             const Coverage standing = measureCoverage(
                 in.scene, in.worlds,
                 {.cells = searchCells(options_), .plane = options_.plane, .exact = false});
@@ -122,17 +85,34 @@ void CoverageModel::stackRooms() {
             for (std::size_t cell = 0; cell < own.size(); ++cell) {
                 if (!site_.rooms[i].goals.counts) own[cell] = 0;
                 if (own[cell] > 0) in.counted.set(cell);
-                if (!is_even) own[cell] *= model.areaOfCell();
             }
-            const std::size_t at = number * own.size();
-            in.firsts = {at};
-            rooms_[i].copies.push_back({{at, at + own.size()}, weights.size()});
-            rooms_[i].cells = at + own.size();
+            in.first = rooms_[i].cells;
+            rooms_[i].cells += own.size();
+            rooms_[i].copies.push_back({{in.first, rooms_[i].cells}, weights.size()});
+            stack.push_back({{weights.size(), weights.size() + own.size()},
+                             model.areaOfCell(in.scene, in.target)});
+            is_even = is_even && stack.back().area == stack[first].area;
             achieved.resize(weights.size() + own.size());
             model.countStanding(standing.sensors, weights.size(), achieved);
             weights.insert(weights.end(), own.begin(), own.end());
         }
         cases_.blocks.push_back({begin, weights.size()});
+    }
+    if (!is_even)
+        for (const auto& [cells, area] : stack)
+            for (std::size_t cell = cells.first; cell < cells.end; ++cell) weights[cell] *= area;
+    // Cases count the same, however large they are.
+    double first_total = 0;
+    for (std::size_t number = 0; number < view_cases_; ++number) {
+        const auto own = std::span(weights).subspan(
+            cases_.blocks[number].first, cases_.blocks[number].end - cases_.blocks[number].first);
+        const double total = std::accumulate(own.begin(), own.end(), 0.0);
+        if (total <= 0)
+            throw UnmetError("nothing to cover in " +
+                             (number == 0 ? robust.name : robust.rooms[number - 1].name));
+        if (number == 0) first_total = total;
+        if (total != first_total)
+            for (double& weight : own) weight *= first_total / total;
     }
     if (is_even)
         problem_.weights = integerWeights(weights);
@@ -141,11 +121,20 @@ void CoverageModel::stackRooms() {
     problem_.achieved = std::move(achieved);
     problem_.standing = CellSet(problem_.cells());
     if (joinsRooms()) countStandingBeyond();
-    cases_.problem = &problem_;
-    total_ = isWorstCase() ? cases_.totalOf(0) : problem_.totalWeight();
 }
 
 void CoverageModel::stackFailures() {
+    // Failures of sensors in any room: the cells of all rooms are those of the one case.
+    cases_.blocks.push_back({0, problem_.cells()});
+    for (std::size_t i = 0; i < rooms_.size(); ++i) {
+        std::vector<SiteSensor> sensors;
+        for (const Sensor& sensor : site_.rooms[i].scene->sensors)
+            if (kindOf(sensor.model).perceives) sensors.push_back({i, sensor});
+        for (CountedView& view : viewsOf(std::span<const SiteSensor>(sensors)))
+            cases_.standing.push_back(std::move(view.cells));
+        for (const SiteSensor& sensor : sensors)
+            standing_ids_.push_back(wholeId(site_, i, sensor.sensor.id));
+    }
     if (unit_ > 1)
         throw UsageError("--robust failures: receivers hear a tag together; leave them out");
     const auto failures = static_cast<std::size_t>(options_.robust.failures);
@@ -164,19 +153,12 @@ void CoverageModel::stackFailures() {
     problem_.standing = CellSet(problem_.cells());
     cases_.failures = options_.robust.failures;
     cases_.least_total = made.least_total;
-    std::vector<std::size_t>* const firsts =
-        site_.isOneRoom() ? &only().cases().front()->firsts : nullptr;
-    for (std::size_t m = 1; m <= failures; ++m) {
-        if (firsts != nullptr) {
-            firsts->push_back(m * cells + firsts->front());
-            continue;
-        }
+    for (std::size_t m = 1; m <= failures; ++m)
         for (Room& room : rooms_) {
             Copy copy = room.copies.front();
             copy.first += m * cells;
             room.copies.push_back(copy);
         }
-    }
     for (CellSet& view : cases_.standing) {
         CellSet stack(problem_.cells());
         for (std::size_t m = 0; m <= failures; ++m)
@@ -200,8 +182,10 @@ RobustValues CoverageModel::robustValuesOf(std::span<const CountedView> views,
     } else {
         for (const std::uint64_t value : values.ofBlocks())
             robust.shares.push_back(static_cast<double>(value) / unit);
-        if (site_.isOneRoom())
-            for (const auto& room : only().cases()) robust.names.push_back(room->name);
+        if (options_.robust.of == RobustChoice::Of::Rooms) {
+            robust.names = {options_.robust.name};
+            for (const NamedSite& site : options_.robust.rooms) robust.names.push_back(site.name);
+        }
     }
     for (const std::size_t failed : worst.failed)
         robust.failed.push_back(failed < standing_ids_.size()

@@ -66,12 +66,7 @@ std::vector<RoomGoals> goalsOf(const BuildingScene& building, const ArrangeOptio
             goals[i].case_seed = seedOfStorey(options.seed, i);
             continue;
         }
-        goals[i].crowds.resize(kRobustSamples);
-        if (people[i] == 0) continue;
-        const CrowdFloor floor(*building.scenes[i]);
-        for (std::size_t k = 0; k < kRobustSamples; ++k)
-            goals[i].crowds[k] =
-                floor.draw(people[i], {.seed = seedOfStorey(options.seed, i), .frame = k});
+        goals[i].crowds = crowdsIn(*building.scenes[i], people[i], seedOfStorey(options.seed, i));
     }
     return goals;
 }
@@ -175,6 +170,82 @@ TEST(BuildingCases, CamerasThatMayTurnSeeTheFloorBelowInEachMounting) {
     EXPECT_NEAR(still.found.robust->worst, still.found.robust->mean, 1e-6);
     EXPECT_LT(shaken.found.robust->worst, shaken.found.robust->mean);
     EXPECT_NEAR(shaken.found.robust->mean, plain.found.candidate_value, 0.05);
+}
+
+/// The same buildings with other furniture.
+const char* const kApartMoved =
+    "- storey: {id: ground, records: [{ispace: {size: 5 x 4 x 2.5}}, {screen: {at: [0, 0], size: "
+    "0.05 x 3 x 2}}]}\n"
+    "- storey: {id: upper, z: 3, records: [{ispace: {size: 3.2 x 2 x 2.5}}]}\n";
+const char* const kAtriumMoved =
+    "- storey: {id: ground, height: 2.8, records: [{fence: {path: [[0, 0], [8, 0], [8, 6], [0, "
+    "6]], closed: yes, height: 2.8}}, {desk: {at: [4, 3]}}]}\n"
+    "- storey: {id: gallery, z: 3, height: 2.8, records: [{fence: {path: [[0, 0], [8, 0], [8, 6], "
+    "[0, 6]], closed: yes, height: 2.8}}]}\n"
+    "- shaft: {storeys: 'ground,gallery', path: [[2, 1.5], [4, 1.5], [4, 4.5], [2, 4.5]]}\n";
+
+/// Options of a search in this building, and in another one.
+ArrangeOptions inBoth(const BuildingScene& other, bool is_worst) {
+    ArrangeOptions options = coarse(RobustChoice::Of::Rooms, is_worst);
+    const auto site = std::make_shared<const BuildingSite>(other, options);
+    options.robust.name = "house";
+    options.robust.rooms = {{"moved", {site, &site->site()}}};
+    return options;
+}
+
+double shareIn(const BuildingScene& building) {
+    return *measureBuilding(building, {.cells = CellSize{0.25}, .exact = false}).coverage.grid;
+}
+
+TEST(BuildingCases, ValuesInOtherBuildingsAreThoseOfCoverage) {
+    for (const bool is_apart : {true, false})
+        for (const bool is_worst : {true, false}) {
+            const BuildingScene building = buildingOf(is_apart ? kApart : kAtrium);
+            const BuildingScene moved = buildingOf(is_apart ? kApartMoved : kAtriumMoved);
+            const ArrangeOptions options = inBoth(moved, is_worst);
+            const std::vector<SensorSpec> sensors = {is_apart ? rangers(3) : cameras(3)};
+            const ArrangedBuilding result = arrangedIn(building, sensors, options);
+            BuildingScene other = moved;
+            for (std::size_t i = 0; i < 2; ++i)
+                other.scenes[i] = std::make_shared<const Scene>(
+                    withPlaced(*moved.scenes[i], result.groups, result.found.sensors, i));
+            ASSERT_TRUE(result.found.robust);
+            EXPECT_EQ(result.found.robust->names, (std::vector<std::string>{"house", "moved"}));
+            ASSERT_EQ(result.found.robust->shares.size(), 2U);
+            EXPECT_NEAR(result.found.robust->shares[0], shareIn(written(building, result)), 2e-3);
+            EXPECT_NEAR(result.found.robust->shares[1], shareIn(other), 2e-3);
+            const double value = is_worst ? result.found.robust->worst : result.found.robust->mean;
+            EXPECT_GE(result.found.bound, value - 1e-9);
+            // No worse there than the layout that is best here.
+            ArrangeOptions plain = options;
+            plain.robust = {};
+            const ArrangedBuilding best = arrangedIn(building, sensors, plain);
+            EXPECT_LE(result.found.robust->shares[0], best.found.candidate_bound + 1e-6);
+        }
+}
+
+TEST(BuildingCases, OtherBuildingsApartAreNeverBetterThanJoint) {
+    const BuildingScene building = buildingOf(kApart), moved = buildingOf(kApartMoved);
+    const ArrangedBuilding result = arrangedIn(building, {rangers(3)}, inBoth(moved, false));
+    SilentProgress progress;
+    const double areas[2][2] = {{20, 6}, {20, 6.4}};
+    for (int ground = 1; ground <= 2; ++ground) {
+        double apart = 0;
+        for (std::size_t i = 0; i < 2; ++i) {
+            ArrangeOptions own = coarse(RobustChoice::Of::Rooms, false);
+            ArrangeSite other;
+            other.rooms.push_back({"", moved.scenes[i]});
+            own.robust.rooms = {{"moved", std::make_shared<const ArrangeSite>(other)}};
+            const SensorSpec spec = rangers(i == 0 ? ground : 3 - ground);
+            const Scene& room = *building.scenes[i];
+            const Arrangement one =
+                arrange(room, groupsToPlace(room, std::span(&spec, 1), {}, false), own, progress);
+            for (std::size_t k = 0; k < 2; ++k)
+                apart += areas[k][i] * one.robust->shares[k] / (areas[k][0] + areas[k][1]) / 2;
+        }
+        EXPECT_GE(result.found.robust->mean, apart - 2e-3) << ground;
+        EXPECT_GE(result.found.bound, apart - 1e-3) << ground;
+    }
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ double highestSite(const BuildingScene& building, const ArrangeOptions& options)
 }  // namespace
 
 BuildingSite::BuildingSite(const BuildingScene& building, const ArrangeOptions& options,
-                           std::vector<RoomGoals> goals)
+                           std::vector<RoomGoals> goals, std::vector<SitePassage> passages)
     : building_(building),
       plane_(options.plane),
       highest_(highestSite(building_, options)),
@@ -42,6 +42,7 @@ BuildingSite::BuildingSite(const BuildingScene& building, const ArrangeOptions& 
                                hasFloor(*floors[i])});
     }
     site_.sight = this;
+    site_.passages = std::move(passages);
 }
 
 namespace {
@@ -60,7 +61,7 @@ struct Crowded {
 
 }  // namespace
 
-CrowdedSite BuildingSite::crowded(std::span<const Crowd> crowds) const {
+SiteCase BuildingSite::crowded(std::span<const Crowd> crowds) const {
     BuildingScene changed = building_;
     for (std::size_t i = 0; i < crowds.size(); ++i)
         if (!crowds[i].empty())

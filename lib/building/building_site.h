@@ -24,9 +24,9 @@ namespace ispace {
 ///     const Arrangement found = arrange(rooms.site(), groups, options, progress);
 class BuildingSite final : public SiteSight {
   public:
-    /// \param goals by storey; empty: all floor
+    /// \param goals by storey; empty: all floor \param passages of ObjectiveChoice::Of::Path
     BuildingSite(const BuildingScene& building, const ArrangeOptions& options,
-                 std::vector<RoomGoals> goals = {});
+                 std::vector<RoomGoals> goals = {}, std::vector<SitePassage> passages = {});
     BuildingSite(const BuildingSite&) = delete;
     BuildingSite& operator=(const BuildingSite&) = delete;
 
@@ -42,7 +42,7 @@ class BuildingSite final : public SiteSight {
               CellParts& parts) const override {
         sight_.look(from, turned, to, grid, parts);
     }
-    [[nodiscard]] CrowdedSite crowded(std::span<const Crowd> crowds) const override;
+    [[nodiscard]] SiteCase crowded(std::span<const Crowd> crowds) const override;
     /// As measureBuilding().
     [[nodiscard]] SiteFigures measure(std::span<const std::vector<Sensor>> added,
                                       const CoverageOptions& options) const override;

@@ -117,6 +117,70 @@ TEST(BuildingSite, SeveralKindsAreOneProblem) {
     EXPECT_LE(result.gap(), result.found.rounding + 1e-12) << "proven";
 }
 
+ArrangeOptions connected() {
+    ArrangeOptions options = coarse();
+    options.is_connected = true;
+    return options;
+}
+
+TEST(BuildingSite, ViewsHangTogetherInEachStorey) {
+    const BuildingScene building = twoStoreys();
+    SilentProgress progress;
+    const auto value_in = [&](std::size_t storey, int count, bool has_ranger) {
+        std::vector<SensorSpec> sensors;
+        if (count > 0) sensors.push_back(lasers(count));
+        if (has_ranger) sensors.push_back(ranger());
+        if (sensors.empty()) return 0.0;
+        const Scene& scene = *building.scenes[storey];
+        return areaOf(building, storey) *
+               arrange(scene, groupsToPlace(scene, sensors, {}, false), connected(), progress)
+                   .candidate_value;
+    };
+    double best = 0;
+    for (int ground = 0; ground <= 3; ++ground)
+        for (const bool is_below : {false, true})
+            best =
+                std::max(best, value_in(0, ground, is_below) + value_in(1, 3 - ground, !is_below));
+    const ArrangedBuilding result = arrangedIn(building, {lasers(3), ranger()}, connected());
+    EXPECT_NEAR(result.found.candidate_value, best / (areaOf(building, 0) + areaOf(building, 1)),
+                1e-6);
+    EXPECT_LE(result.gap(), result.found.rounding + 1e-12) << "proven";
+    const ArrangedBuilding free = arrangedIn(building, {lasers(3), ranger()}, coarse());
+    EXPECT_LT(result.found.candidate_value, free.found.candidate_value);
+    // With a budget for as many, any kinds may be bought.
+    ArrangeOptions buying = connected();
+    buying.budget = 4;
+    const ArrangedBuilding bought = arrangedIn(building, {lasers(3), ranger()}, buying);
+    EXPECT_GE(bought.found.candidate_value, result.found.candidate_value - 1e-9);
+    EXPECT_GE(bought.found.candidate_bound, bought.found.candidate_value - 1e-9);
+}
+
+TEST(BuildingSite, FewestAndRefinedViewsHangTogether) {
+    const BuildingScene building = twoStoreys();
+    ArrangeOptions options = connected();
+    options.target = 0.5;
+    const ArrangedBuilding fewest = arrangedIn(building, {lasers(9)}, options);
+    ASSERT_TRUE(fewest.found.is_reached);
+    const auto count = static_cast<int>(fewest.found.sensors.size());
+    EXPECT_EQ(fewest.found.least, count) << "proven";
+    const ArrangedBuilding plain = arrangedIn(building, {lasers(count)}, connected());
+    EXPECT_GE(plain.found.candidate_value, 0.5);
+    EXPECT_LT(arrangedIn(building, {lasers(count - 1)}, connected()).found.candidate_value, 0.5);
+    options = connected();
+    options.refine = true;
+    const ArrangedBuilding refined = arrangedIn(building, {lasers(count)}, options);
+    EXPECT_EQ(refined.found.candidate_value, plain.found.candidate_value);
+    EXPECT_GE(refined.found.coverage, plain.found.coverage - 1e-9);
+    options = connected();
+    options.alternatives = 2;
+    const ArrangedBuilding others = arrangedIn(building, {lasers(2)}, options);
+    ASSERT_EQ(others.found.alternatives.size(), 2U);
+    for (const Arrangement& other : others.found.alternatives) {
+        EXPECT_LE(other.candidate_value, others.found.candidate_value + 1e-9);
+        EXPECT_EQ(other.sensors.size(), 2U);
+    }
+}
+
 TEST(BuildingSite, ATargetIsThatOfAllRooms) {
     const BuildingScene building = twoStoreys();
     ArrangeOptions options = coarse();

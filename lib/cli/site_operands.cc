@@ -153,6 +153,16 @@ void mustBeOneRoom(const SiteInput& input, const std::string& option) {
     if (input.building && !option.empty()) refuseSeveralRooms(option, input.building->document);
 }
 
+SiteWay wayIn(const SiteInput& input, std::string_view option, const WayChoice& way) {
+    if (input.building)
+        return {zoneOfStorey(*input.building, option, way.from),
+                zoneOfStorey(*input.building, option, way.to), sitePassages(*input.building)};
+    for (const std::string* zone : {&way.from, &way.to})
+        static_cast<void>(ofOption(std::string(option),
+                                   [&] { return readZone(*zone, input.only().environment); }));
+    return {{0, way.from}, {0, way.to}};
+}
+
 void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,
                    const std::function<void(std::size_t room, const std::string& text)>& read) {
     if (input.isOneRoom()) return read(0, text);

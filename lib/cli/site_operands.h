@@ -17,6 +17,7 @@
 #include "cli/operands.h"
 #include "env/zone.h"
 #include "geom/pose.h"
+#include "passage/least_seen_trip.h"
 #include "record/record.h"
 #include "scene/findings/findings.h"
 #include "scene/scene.h"
@@ -99,6 +100,14 @@ std::vector<Diagnostic> siteWarnings(const SiteInput& input, const FindingFilter
 /// storey, and the first error of `read` if all rooms are left out
 void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,
                    const std::function<void(std::size_t room, const std::string& text)>& read);
+
+/// The zones between which a way leads; of a room alone in its only storey.
+struct SiteWay {
+    StoreyZone from, to;
+    std::vector<SitePassage> passages = {};  ///< of a building
+};
+/// Finds these zones. \throws UsageError as zoneOfStorey()
+SiteWay wayIn(const SiteInput& input, std::string_view option, const WayChoice& way);
 
 /// \throws UsageError saying that an option needs one room, with the storeys to choose from;
 /// accepts "" and a room alone

@@ -29,44 +29,26 @@ struct Stop {
     std::optional<std::size_t> passage;  ///< index of its link
 };
 
-/// Finds the storey of a zone. \throws UsageError
-Stop stopAt(const BuildingScene& building, const std::string& text) {
-    const StoreyText named = splitStoreys(building.document, "--path", text);
-    std::vector<Stop> found;
-    std::string first;
-    for (const std::size_t storey : named.storeys) {
-        try {
-            static_cast<void>(readZone(named.text, building.scenes[storey]->environment));
-            const std::string& id = building.document.storeys[storey].id;
-            found.push_back({storey, named.text, id + '/' + named.text, {}});
-        } catch (const UsageError& error) {
-            if (first.empty()) first = building.document.storeys[storey].id + ": " + error.what();
-        }
-    }
-    if (found.empty()) throw UsageError("--path: " + first);
-    if (found.size() > 1)
-        throw UsageError("--path: several storeys have the zone " + excerpt(named.text) +
-                         ": name one, as in " + found.front().name);
-    return found.front();
-}
-
-std::string squareAbout(Point2 at) {
-    return "rect:" + formatDouble(at.x - kLanding) + ',' + formatDouble(at.y - kLanding) + ',' +
-           formatDouble(at.x + kLanding) + ',' + formatDouble(at.y + kLanding);
+std::string textOf(const Box2& box) {
+    return "rect:" + formatDouble(box.low.x) + ',' + formatDouble(box.low.y) + ',' +
+           formatDouble(box.high.x) + ',' + formatDouble(box.high.y);
 }
 
 /// The ways on all storeys between stops, and the shortest of them end to end.
 class TripFinder {
   public:
-    TripFinder(const BuildingScene& building, const BuildingCoverage& coverage, const WayChoice& of)
-        : coverage_(coverage) {
-        stops_ = {stopAt(building, of.from), stopAt(building, of.to)};
-        const std::vector<StoreyLink> links = passagesOf(building);
-        if (links.empty()) return;
-        const StoreyWays ways(building, links, {humanRadius(kHeight), kHeight});
-        for (const Landing& landing : ways.landings())
-            stops_.push_back({landing.storey, squareAbout(landing.at.position),
-                              links[landing.passage].id, landing.passage});
+    TripFinder(const BuildingScene& building, const BuildingCoverage& coverage, const WayChoice& of,
+               int times)
+        : coverage_(coverage), times_(times) {
+        for (const std::string* text : {&of.from, &of.to}) {
+            const StoreyZone at = zoneOfStorey(building, "--path", *text);
+            const std::string& id = building.document.storeys[at.storey].id;
+            stops_.push_back({at.storey, at.zone, id + '/' + at.zone, {}});
+        }
+        const std::vector<SitePassage> passages = sitePassages(building);
+        for (std::size_t i = 0; i < passages.size(); ++i)
+            for (const SitePassage::Landing& landing : passages[i].landings)
+                stops_.push_back({landing.room, textOf(landing.floor), passages[i].id, i});
     }
 
     [[nodiscard]] WayChoice ends() const { return {stops_[0].name, stops_[1].name}; }
@@ -131,7 +113,7 @@ class TripFinder {
         LeastSeenWay& way = known->second;
         try {
             way = findLeastSeenWay(*coverage_.floors[storey], coverage_.storeys[storey],
-                                   {stops_[from].zone, stops_[to].zone});
+                                   {stops_[from].zone, stops_[to].zone}, times_);
         } catch (const UsageError&) {
             // A landing under a beam, say, has no floor at the height of the coverage.
             if (!stops_[from].passage && !stops_[to].passage) throw;
@@ -142,18 +124,79 @@ class TripFinder {
     }
 
     const BuildingCoverage& coverage_;
+    int times_;
     std::vector<Stop> stops_;  // the zones come first
     std::map<std::pair<std::size_t, std::size_t>, LeastSeenWay> ways_;
 };
 
 }  // namespace
 
+StoreyZone zoneOfStorey(const BuildingScene& building, std::string_view option,
+                        const std::string& text) {
+    const std::string head = std::string(option) + ": ";
+    const StoreyText named = splitStoreys(building.document, option, text);
+    std::vector<std::size_t> found;
+    std::string first;
+    for (const std::size_t storey : named.storeys) {
+        try {
+            static_cast<void>(readZone(named.text, building.scenes[storey]->environment));
+            found.push_back(storey);
+        } catch (const UsageError& error) {
+            if (first.empty()) first = building.document.storeys[storey].id + ": " + error.what();
+        }
+    }
+    if (found.empty()) throw UsageError(head + first);
+    if (found.size() > 1)
+        throw UsageError(head + "several storeys have the zone " + excerpt(named.text) +
+                         ": name one, as in " + building.document.storeys[found.front()].id + '/' +
+                         named.text);
+    return {found.front(), named.text};
+}
+
+std::vector<SitePassage> sitePassages(const BuildingScene& building) {
+    const std::vector<StoreyLink> links = passagesOf(building);
+    std::vector<SitePassage> passages;
+    passages.reserve(links.size());
+    for (const StoreyLink& link : links) passages.push_back({link.id, {}});
+    if (links.empty()) return passages;
+    const StoreyWays ways(building, links, {humanRadius(kHeight), kHeight});
+    for (const Landing& landing : ways.landings()) {
+        const Point2 at = landing.at.position;
+        passages[landing.passage].landings.push_back(
+            {landing.storey,
+             {{at.x - kLanding, at.y - kLanding}, {at.x + kLanding, at.y + kLanding}}});
+    }
+    return passages;
+}
+
 LeastSeenTrip findLeastSeenTrip(const BuildingScene& building, const BuildingCoverage& coverage,
-                                const WayChoice& of) {
-    TripFinder finder(building, coverage, of);
+                                const WayChoice& of, int times) {
+    TripFinder finder(building, coverage, of, times);
     LeastSeenTrip trip{{finder.ends()}};
     finder.find(trip);
     return trip;
+}
+
+BuildingObjectives measureObjectives(const BuildingScene& building,
+                                     const BuildingCoverage& coverage,
+                                     std::span<const WayChoice> ways, int times,
+                                     std::optional<double> localise_to) {
+    BuildingObjectives figures;
+    figures.storeys.resize(coverage.storeys.size());
+    for (const WayChoice& way : ways) {
+        LeastSeenTrip trip = findLeastSeenTrip(building, coverage, way, times);
+        for (LeastSeenTrip::Part& part : trip.parts)
+            figures.storeys[part.storey].ways.push_back(std::move(part.way));
+        figures.all.ways.push_back(std::move(trip.whole));
+    }
+    if (!localise_to) return figures;
+    std::vector<Localisation> storeys;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+        storeys.push_back(localise(*coverage.floors[i], coverage.storeys[i], *localise_to));
+        figures.storeys[i].localisation = storeys.back();
+    }
+    figures.all.localisation = localisedOver(storeys, coverage.storeys);
+    return figures;
 }
 
 }  // namespace ispace

@@ -3,12 +3,17 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "arrange/site.h"
 #include "building/building_coverage.h"
 #include "building/building_scene.h"
 #include "coverage/least_seen_way.h"
+#include "report/objective_report.h"
 
 namespace ispace {
 
@@ -30,11 +35,36 @@ struct LeastSeenTrip {
 /// the same length, the shortest. Sight does not count on landings (within 0.3 m of where a person
 /// enters), on stairs and in lifts, as in reports of runs; lifts stop at all their storeys.
 ///
-/// On one storey this is findLeastSeenWay(), or a way over other storeys that is seen less. Costs
-/// one findLeastSeenWay() for each pair of landings of a storey.
-/// \param of `ground/entrance` or a zone that only one storey has
-/// \throws UsageError for a zone that no storey or more than one has, and as findLeastSeenWay()
+/// Floor counts as seen if `times` sensors see it. On one storey this is findLeastSeenWay(), or a
+/// way over other storeys that is seen less. Costs one findLeastSeenWay() for each pair of landings
+/// of a storey. \param of `ground/entrance` or a zone that only one storey has \throws UsageError
+/// for a zone that no storey or more than one has, and as findLeastSeenWay()
 LeastSeenTrip findLeastSeenTrip(const BuildingScene& building, const BuildingCoverage& coverage,
-                                const WayChoice& of);
+                                const WayChoice& of, int times = 1);
+
+/// A zone of a storey.
+struct StoreyZone {
+    std::size_t storey = 0;
+    std::string zone;  ///< as readZone() takes it
+};
+/// Finds the storey of a zone, as findLeastSeenTrip() does. \param option for messages
+/// \throws UsageError for a zone that no storey or more than one has
+StoreyZone zoneOfStorey(const BuildingScene& building, std::string_view option,
+                        const std::string& text);
+
+/// Returns the stairs and lifts between the landings of which such ways lead.
+std::vector<SitePassage> sitePassages(const BuildingScene& building);
+
+/// Figures of objectives on each storey, and of the building.
+struct BuildingObjectives {
+    std::vector<ObjectiveFigures> storeys;
+    ObjectiveFigures all;
+};
+/// Measures the least seen ways through the building, their parts on each storey, and positions on
+/// each storey and over all. \param localise_to limit of errors, metres; empty: no positions
+BuildingObjectives measureObjectives(const BuildingScene& building,
+                                     const BuildingCoverage& coverage,
+                                     std::span<const WayChoice> ways, int times,
+                                     std::optional<double> localise_to);
 
 }  // namespace ispace

@@ -3,11 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "arrange/arrange.h"
 #include "base/error.h"
 #include "building/building_scene.h"
 #include "building/storeys.h"
+#include "scene/placement_schemas.h"
+#include "support/test_arrange_building.h"
 
 namespace ispace {
 namespace {
@@ -104,6 +112,80 @@ TEST(LeastSeenTrip, NeedsAWay) {
     const BuildingScene building = house("", ", {zone: {id: a, at: [9, 4], size: 1 x 1}}", kSouth);
     EXPECT_THROW(tripIn(building, {"a", "b"}), UsageError) << "two storeys have it";
     EXPECT_THROW(tripIn(building, {"g/b", "u/b"}), UsageError);
+}
+
+/// Goals and options of arrange --objective path.
+ArrangedBuilding guarded(const BuildingScene& building, int count, Optimizer optimizer, double fov,
+                         std::vector<RoomGoals> goals = std::vector<RoomGoals>(2)) {
+    ArrangeOptions options;
+    options.strategy = goals[0].places.empty() ? Strategy::All : Strategy::List;
+    options.density = {2, 2, 4};
+    options.cells = CellSize{0.2};
+    options.search.optimizer = optimizer;
+    options.objective.of = ObjectiveChoice::Of::Path;
+    options.objective.way = {"g/a", "u/b"};
+    goals[0].way_from = "a";
+    goals[1].way_to = "b";
+    Record record(*sceneSchemas().find("laser"));
+    record.set("range", Tuple{4});
+    record.set("fov", fov);
+    return arrangedIn(building, {{record, count}}, options, std::move(goals),
+                      sitePassages(building));
+}
+
+double seenOn(const BuildingScene& building) {
+    return *tripIn(building, {"g/a", "u/b"}).whole.seen;
+}
+
+TEST(LeastSeenLayout, IsSeenForAsLongAsCoverageSays) {
+    const BuildingScene building = house("", "", std::string(kSouth) + kNorth);
+    for (const int count : {1, 3}) {
+        const ArrangedBuilding result = guarded(building, count, Optimizer::Swap, 360);
+        const double seen = seenOn(written(building, result));
+        ASSERT_TRUE(result.found.value && result.found.whole);
+        EXPECT_NEAR(*result.found.value * *result.found.whole, seen, 0.05 * *result.found.whole);
+        EXPECT_GE(result.found.bound, *result.found.value - 1e-9);
+        if (count == 3) {
+            EXPECT_GT(seen, 0.5);
+        }
+    }
+}
+
+TEST(LeastSeenLayout, EqualsBruteForce) {
+    const BuildingScene building = house("", "", kSouth);
+    std::vector<RoomGoals> goals(2);
+    goals[0].places = {{{1, 1.5}, {Angle()}}, {{5, 1.2}, {Angle::degrees(180)}}};
+    goals[1].places = {{{1, 2}, {Angle(), Angle::degrees(90)}}};
+    for (const int count : {1, 2}) {
+        const ArrangedBuilding result = guarded(building, count, Optimizer::Exact, 180, goals);
+        double best = 0;
+        std::vector<std::pair<std::size_t, Pose3>> poses;
+        for (std::size_t room = 0; room < 2; ++room)
+            for (const Site& site : goals[room].places)
+                for (const Angle heading : site.headings)
+                    poses.push_back({room, {{site.place.x, site.place.y, 0.15}, heading, {}, {}}});
+        for (std::size_t i = 0; i < poses.size(); ++i)
+            for (std::size_t k = count == 1 ? i : i + 1; k < (count == 1 ? i + 1 : poses.size());
+                 ++k) {
+                BuildingScene placed = building;
+                for (const std::size_t one : std::set<std::size_t>{i, k}) {
+                    Scene scene = *placed.scenes[poses[one].first];
+                    Sensor sensor{"s" + std::to_string(one), result.groups.front().model,
+                                  poses[one].second};
+                    scene.sensors.push_back(sensor);
+                    placed.scenes[poses[one].first] = std::make_shared<const Scene>(scene);
+                }
+                best = std::max(best, seenOn(placed));
+            }
+        const double found = seenOn(written(building, result));
+        EXPECT_NEAR(found, best, 0.05 * *result.found.whole) << count;
+        EXPECT_GE(result.found.bound * *result.found.whole, best - 0.05 * *result.found.whole);
+        EXPECT_GT(best, 0);
+    }
+}
+
+TEST(LeastSeenLayout, NeedsAWay) {
+    EXPECT_THROW(guarded(house("", "", ""), 1, Optimizer::Swap, 360), UnmetError);
 }
 
 }  // namespace

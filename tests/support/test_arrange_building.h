@@ -31,10 +31,10 @@ struct ArrangedBuilding {
 
 inline ArrangedBuilding arrangedIn(const BuildingScene& building,
                                    const std::vector<SensorSpec>& sensors,
-                                   const ArrangeOptions& options,
-                                   std::vector<RoomGoals> goals = {}) {
+                                   const ArrangeOptions& options, std::vector<RoomGoals> goals = {},
+                                   std::vector<SitePassage> passages = {}) {
     SilentProgress progress;
-    const BuildingSite rooms(building, options, std::move(goals));
+    const BuildingSite rooms(building, options, std::move(goals), std::move(passages));
     ArrangedBuilding result{
         groupsOf(building, sensors, options.target.has_value() || options.budget.has_value()), {}};
     result.found = arrange(rooms.site(), result.groups, options, progress);

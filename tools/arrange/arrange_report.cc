@@ -8,10 +8,10 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "building/building_coverage.h"
 #include "building/building_page.h"
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
+#include "passage/least_seen_trip.h"
 #include "report/map/map.h"
 #include "report/page/coverage_page.h"
 #include "trace/ray_world.h"
@@ -199,18 +199,16 @@ std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangem
 
 namespace {
 
-/// Judges --objective localise in each storey, by its own sensors, then over all of them.
-std::vector<ObjectiveFigures> localisedIn(const ArrangeWork& work,
-                                          const BuildingCoverage& coverage) {
-    std::vector<ObjectiveFigures> figures;
-    std::vector<Localisation> storeys;
-    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
-        storeys.push_back(
-            localise(*coverage.floors[i], coverage.storeys[i], work.how.objective.within));
-        figures.emplace_back().localisation = storeys.back();
-    }
-    figures.emplace_back().localisation = localisedOver(storeys, coverage.storeys);
-    return figures;
+/// Judges --objective path and localise in each storey and over all.
+std::optional<BuildingObjectives> objectivesIn(const ArrangeWork& work,
+                                               const BuildingScene& building,
+                                               const BuildingCoverage& coverage) {
+    const ObjectiveChoice& objective = work.how.objective;
+    if (objective.isCoverage()) return std::nullopt;
+    const bool is_path = objective.of == ObjectiveChoice::Of::Path;
+    return measureObjectives(building, coverage, {&objective.way, is_path ? 1U : 0U},
+                             work.how.redundancy,
+                             is_path ? std::nullopt : std::optional(objective.within));
 }
 
 std::optional<ObjectiveFigures> objectivesOf(const ObjectiveChoice& objective, int times,
@@ -229,19 +227,17 @@ std::optional<ObjectiveFigures> objectivesOf(const ObjectiveChoice& objective, i
 std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
                                              const Arrangement& arrangement) {
     if (work.how.objective.isCoverage()) return std::nullopt;
-    if (work.input.building)
-        return localisedIn(work,
-                           measureBuilding(placedBuilding(work, arrangement), measuredAs(work.how)))
-            .back();
-    const Scene scene = withPlaced(work.input.only(), work.groups, arrangement.sensors);
-    Worlds worlds(scene.environment);
     // Positions are judged by cells; the regions for ways may take longer than a limit of time
     // allows.
-    const bool needs_regions =
-        work.how.objective.of == ObjectiveChoice::Of::Path && arrangement.is_complete;
-    const Coverage coverage = measureCoverage(
-        scene, worlds,
-        {.plane = work.how.plane, .density = work.how.pixel_density, .exact = needs_regions});
+    CoverageOptions measured = measuredAs(work.how);
+    measured.exact = work.how.objective.of == ObjectiveChoice::Of::Path && arrangement.is_complete;
+    if (work.input.building) {
+        const BuildingScene building = placedBuilding(work, arrangement);
+        return objectivesIn(work, building, measureBuilding(building, measured))->all;
+    }
+    const Scene scene = withPlaced(work.input.only(), work.groups, arrangement.sensors);
+    Worlds worlds(scene.environment);
+    const Coverage coverage = measureCoverage(scene, worlds, measured);
     return objectivesOf(work.how.objective, work.how.redundancy, scene, coverage);
 }
 
@@ -269,15 +265,14 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
                            const Arrangement& arrangement, const std::string& command) {
     const BuildingScene building = placedBuilding(work, arrangement);
     const BuildingCoverage coverage = measureBuilding(building, measuredAs(work.how));
-    std::vector<ObjectiveFigures> objectives;  // of the storeys, then of all
-    if (!work.how.objective.isCoverage()) objectives = localisedIn(work, coverage);
+    const std::optional<BuildingObjectives> objectives = objectivesIn(work, building, coverage);
     if (suffixOf(options.report_file) == "json") {
         BuildingParts parts;
-        if (!objectives.empty()) {
+        if (objectives) {
             parts.storeys.resize(coverage.storeys.size());
             for (std::size_t i = 0; i < parts.storeys.size(); ++i)
-                parts.storeys[i].objectives = &objectives[i];
-            parts.sum.objectives = &objectives.back();
+                parts.storeys[i].objectives = &objectives->storeys[i];
+            parts.sum.objectives = &objectives->all;
         }
         return buildingCoverageJson(building, coverage, parts);
     }
@@ -288,9 +283,10 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
     for (const JudgedRule& rule : judgedRules(rules))
         result.blocks.push_back(PageText{rule.rule + ": " + rule.finding});
     input.more.push_back(std::move(result));
-    if (!objectives.empty())
-        input.more.push_back(
-            {"objectives", "Positions", {PageCode{objectivesText(objectives.back())}}});
+    if (objectives)
+        input.more.push_back({"objectives",
+                              objectives->all.localisation ? "Positions" : "Ways",
+                              {PageCode{objectivesText(objectives->all)}}});
     input.cover = coverOf(options.page);
     input.paper = paperOf(options.page);
     input.prices = pricesOf(options.page);

@@ -15,6 +15,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "building/building_robustness.h"
+#include "building/building_site.h"
 #include "cli/outputs.h"
 #include "env/zone.h"
 #include "scene/findings/findings.h"
@@ -39,29 +40,7 @@ std::vector<NamedZone> zonesOf(const ArrangeToolOptions& options, const std::str
     return zones;
 }
 
-}  // namespace
-
-void takeZones(const ArrangeToolOptions& options, const Environment& environment,
-               ArrangeOptions& how) {
-    const ZoneWords& words = options.zones;
-    const auto add = [&](const std::vector<std::string>& texts, std::vector<NamedZone>& zones) {
-        for (const std::string& text : texts)
-            for (NamedZone& zone : zonesOf(options, text, environment))
-                zones.push_back(std::move(zone));
-    };
-    add(words.targets, how.weights.targets);
-    add(words.keep_out, how.mount.keep_out);
-    add(words.keep_in, how.mount.keep_in);
-    for (const std::string& text : words.weights) {
-        const auto [name, weight] = splitWeight(text);
-        for (NamedZone& zone : zonesOf(options, name, environment))
-            how.weights.weights.emplace_back(std::move(zone), weight);
-    }
-}
-
-namespace {
-
-/// Reads all zones and rules of a building, each for its storeys.
+/// Reads all zones and rules, those of a building each for its storeys.
 void takeGoals(const ArrangeToolOptions& options, ArrangeWork& work) {
     const SiteInput& input = work.input;
     const ZoneWords& words = options.zones;
@@ -132,7 +111,7 @@ void takePlaces(const ArrangeToolOptions& options, ArrangeWork& work) {
     const std::vector<Angle> headings =
         headingsAround(work.how.headings.value_or(work.how.density.headings));
     if (!work.input.building) {
-        work.how.list = readSites(work.places, file, headings);
+        work.goals.front().places = readSites(work.places, file, headings);
         return;
     }
     const StoreyedDocument& building = work.input.building->document;
@@ -165,8 +144,7 @@ void takeDemand(const ArrangeToolOptions& options, ArrangeWork& work) {
     }
 }
 
-/// Draws the random cases of a building: mountings by storey, and crowds spread by free floor, as
-/// coverage does.
+/// Draws the random cases: mountings by storey, and crowds spread by free floor, as coverage does.
 void takeCases(const ArrangeToolOptions& options, ArrangeWork& work) {
     const RobustChoice& robust = work.how.robust;
     const std::uint64_t seed = options.common.seed;
@@ -174,20 +152,28 @@ void takeCases(const ArrangeToolOptions& options, ArrangeWork& work) {
         for (std::size_t i = 0; i < work.goals.size(); ++i)
             work.goals[i].case_seed = seedOfStorey(seed, i);
     if (robust.of != RobustChoice::Of::Crowd) return;
-    const BuildingScene& building = *work.input.building;
-    const std::vector<std::size_t> people =
-        spreadOverStoreys(building, work.how.plane, static_cast<std::size_t>(robust.people));
-    for (std::size_t i = 0; i < work.goals.size(); ++i) {
-        std::vector<Crowd>& crowds = work.goals[i].crowds;
-        crowds.resize(kRobustSamples);
-        if (people[i] == 0) continue;
-        const CrowdFloor floor(*building.scenes[i]);
-        for (std::size_t k = 0; k < crowds.size(); ++k)
-            crowds[k] = floor.draw(people[i], {.seed = seedOfStorey(seed, i), .frame = k});
-    }
+    std::vector<std::size_t> people = {static_cast<std::size_t>(robust.people)};
+    if (work.input.building)
+        people = spreadOverStoreys(*work.input.building, work.how.plane, people.front());
+    for (std::size_t i = 0; i < work.goals.size(); ++i)
+        work.goals[i].crowds = crowdsIn(*work.input.rooms[i], people[i], seedOfStorey(seed, i));
 }
 
-/// Reads the rooms of --robust, each with the layout.
+/// Returns the site of a room or building, which it owns. \param goals by room
+std::shared_ptr<const ArrangeSite> ownSite(const SiteInput& input, const ArrangeOptions& how,
+                                           std::vector<RoomGoals> goals,
+                                           std::vector<SitePassage> passages = {}) {
+    if (input.building) {
+        const auto building = std::make_shared<const BuildingSite>(
+            *input.building, how, std::move(goals), std::move(passages));
+        return {building, &building->site()};
+    }
+    ArrangeSite site;
+    site.rooms.push_back({"", input.rooms.front(), goals.empty() ? RoomGoals() : goals.front()});
+    return std::make_shared<const ArrangeSite>(std::move(site));
+}
+
+/// Reads the rooms or buildings of --robust, each with the layout.
 void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
     if (options.robust_rooms.empty()) return;
     RobustChoice& robust = work.how.robust;
@@ -199,16 +185,33 @@ void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
         request.rules.same_environment = false;
         if (!work.input.layout_operand.empty())
             request.operands.push_back(work.input.layout_operand);
-        SceneInput room = readScene(request);
-        if (!options.fixed.empty() && room.layout) {
-            room.layout = withoutPlaces(*room.layout, options.fixed);
-            room.scene = makeScene(room.environment, &*room.layout,
-                                   devicesFor({&room.environment, &*room.layout}), &room.scene);
+        SiteInput other = readSite(request);
+        if (other.ids != work.input.ids) {
+            const auto text = [](const SiteInput& site) {
+                std::string all;
+                for (const std::string& id : site.ids)
+                    all.append(all.empty() ? "" : ", ").append(printable(id));
+                return site.building ? "the storeys " + all : "one room";
+            };
+            throw UsageError("--robust rooms: " + file + " has " + text(other) + ", " +
+                             robust.name + " has " + text(work.input) +
+                             ": choose the same with --storey");
         }
-        warnOfImport(options.common, "arrange", room);
-        for (const std::string& source : filesOf(room)) work.files.push_back(source);
-        robust.rooms.push_back({baseName(file), std::make_shared<Scene>(std::move(room.scene))});
+        if (!options.fixed.empty() && other.layout)
+            other.setLayout(withoutPlaces(*other.layout, options.fixed));
+        warnOfImport(options.common, "arrange", other);
+        work.files.insert(work.files.end(), other.files.begin(), other.files.end());
+        robust.rooms.push_back({baseName(file), ownSite(other, work.how, {})});
     }
+}
+
+/// Looks up the zones of --objective path, each in its room.
+void takeWay(ArrangeWork& work) {
+    if (work.how.objective.of != ObjectiveChoice::Of::Path) return;
+    const SiteWay way = wayIn(work.input, "--objective", work.how.objective.way);
+    work.goals[way.from.storey].way_from = way.from.zone;
+    work.goals[way.to.storey].way_to = way.to.zone;
+    work.passages = way.passages;
 }
 
 }  // namespace
@@ -265,41 +268,30 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
                                  ": the storey comes before it by itself; leave it out");
         // Devices of --sensor are not among those of the records.
         if (input.building->devices.devices().empty()) input.building->devices = devices;
-        takeGoals(options, work);
-        takePlaces(options, work);
-        takeDemand(options, work);
-        takeCases(options, work);
-        work.rooms = std::make_shared<BuildingSite>(*input.building, work.how, work.goals);
-        return work;
     }
-    const Environment& room = input.only().environment;
-    takeZones(options, room, work.how);
+    takeGoals(options, work);
+    takePlaces(options, work);
     takeRooms(options, work);
     takeDemand(options, work);
-    if (work.how.objective.of == ObjectiveChoice::Of::Path)
-        for (const std::string* zone : {&work.how.objective.way.from, &work.how.objective.way.to})
-            static_cast<void>(ofOption("--objective", [&] { return readZone(*zone, room); }));
-    work.how.facing = facingIn(room, options.how.facing);
-    for (const PrivacyRule& rule : options.how.privacy) static_cast<void>(privateZones(rule, room));
-    takePlaces(options, work);
+    takeCases(options, work);
+    takeWay(work);
+    work.site = ownSite(input, work.how, work.goals, work.passages);
     return work;
 }
 
 Arrangement ArrangeWork::run(Progress& progress, std::ostream* mps) const {
-    return rooms ? arrange(rooms->site(), groups, how, progress, mps)
-                 : arrange(input.only(), groups, how, progress, mps);
+    return arrange(*site, groups, how, progress, mps);
 }
 
 std::vector<ServedDemand> ArrangeWork::served(const Arrangement& arrangement) const {
-    if (rooms) return servedByRoom(rooms->site(), arrangement.served);
-    return {{how.demand.get(), arrangement.served}};
+    return servedByRoom(*site, arrangement.served);
 }
 
 std::string ArrangeWork::contentOfDemand() const {
     if (!how.demand) return "";
-    if (!rooms) return how.demand->content();
+    if (site->isOneRoom()) return how.demand->content();
     std::string text;
-    for (const RoomGoals& room : goals) text += room.demand->content() + '\n';
+    for (const SiteRoom& room : site->rooms) text += room.goals.demand->content() + '\n';
     return text;
 }
 

@@ -8,7 +8,6 @@
 
 #include "arrange/arrange.h"
 #include "arrange/arrange_options.h"
-#include "building/building_site.h"
 #include "cli/operands.h"
 #include "cli/site_operands.h"
 
@@ -19,10 +18,11 @@ struct ArrangeWork {
     SiteInput input;
     std::vector<SensorGroup> groups;
     ArrangeOptions how;
-    std::vector<RoomGoals> goals;         ///< by room; those of `how` for a room alone
-    std::shared_ptr<BuildingSite> rooms;  ///< of a building; else null
-    std::vector<std::string> files;       ///< for -MD
-    std::string places;                   ///< the text of --places
+    std::vector<RoomGoals> goals;       ///< by room
+    std::vector<SitePassage> passages;  ///< of ways through a building
+    std::shared_ptr<const ArrangeSite> site;
+    std::vector<std::string> files;  ///< for -MD
+    std::string places;              ///< the text of --places
 
     /// Searches. \throws as arrange()
     [[nodiscard]] Arrangement run(Progress& progress, std::ostream* mps = nullptr) const;
@@ -35,10 +35,6 @@ struct ArrangeWork {
 /// Reads room, layout, sensors, zones and sites. \throws UsageError without a sensor to place, and
 /// as the readers
 ArrangeWork readWork(const ArrangeToolOptions& options);
-
-/// Reads the zones of --zone, --weight, --keep-out and --keep-in of a room alone.
-void takeZones(const ArrangeToolOptions& options, const Environment& environment,
-               ArrangeOptions& how);
 
 /// Warns, before the search, of heights and strategies that cannot do well.
 void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work);

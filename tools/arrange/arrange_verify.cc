@@ -78,7 +78,15 @@ void verifyCertificate(const ArrangeToolOptions& options) {
     if (isOfGuards(written)) return verifyGuards(options, input.scene, written);
     const PoseCertificate certificate = readCertificate(written, file);
     ArrangeOptions how = options.how;
-    takeZones(options, input.scene.environment, how);
+    const Environment& room = input.scene.environment;
+    for (const std::string& text : options.zones.targets)
+        for (NamedZone& zone : readZones(text, room))
+            how.weights.targets.push_back(std::move(zone));
+    for (const std::string& text : options.zones.weights) {
+        const auto [name, weight] = splitWeight(text);
+        for (NamedZone& zone : readZones(name, room))
+            how.weights.weights.emplace_back(std::move(zone), weight);
+    }
     const CheckedPoses checked =
         checkPoses(input.scene, how.weights, how.redundancy, certificate, file);
     const std::string unit = how.weights.isUniform() ? " m2" : " m2 by weight";

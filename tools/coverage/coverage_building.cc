@@ -128,21 +128,10 @@ void measurePresences(const CoverageToolOptions& options, BuildingInput& input,
 void measureObjectives(const CoverageToolOptions& options, const BuildingScene& building,
                        const BuildingCoverage& coverage, BuildingResults& results) {
     if (options.paths.empty() && !options.localise_to) return;
-    results.objectives.resize(coverage.storeys.size());
-    results.objectives_sum.emplace();
-    for (const WayChoice& path : options.paths) {
-        LeastSeenTrip trip = findLeastSeenTrip(building, coverage, path);
-        for (LeastSeenTrip::Part& part : trip.parts)
-            results.objectives[part.storey].ways.push_back(std::move(part.way));
-        results.objectives_sum->ways.push_back(std::move(trip.whole));
-    }
-    if (!options.localise_to) return;
-    std::vector<Localisation> storeys;
-    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
-        storeys.push_back(localise(*coverage.floors[i], coverage.storeys[i], *options.localise_to));
-        results.objectives[i].localisation = storeys.back();
-    }
-    results.objectives_sum->localisation = localisedOver(storeys, coverage.storeys);
+    BuildingObjectives measured =
+        measureObjectives(building, coverage, options.paths, 1, options.localise_to);
+    results.objectives = std::move(measured.storeys);
+    results.objectives_sum = std::move(measured.all);
 }
 
 /// Returns the crowds of --crowd: by sample, then by storey.

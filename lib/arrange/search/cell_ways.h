@@ -29,14 +29,23 @@ struct CellWay {
     std::vector<WayCell> cells;  ///< ascending; without those of the zones
 };
 
-/// The ways between two zones over cells, with lengths in whole units.
-struct CellWays {
+/// The cells of a floor, from `first` to those of the next one, and the steps between them.
+struct CellFloor {
+    std::uint32_t first = 0;
     std::vector<CellStep> steps;
-    std::vector<std::uint32_t> open;  ///< by cell: bit k if step k may be taken
+};
+
+/// The ways between two zones over the cells of floors, with lengths in whole units.
+struct CellWays {
+    std::vector<CellFloor> floors;
+    std::vector<std::uint32_t> open;  ///< by cell: bit k if step k of its floor may be taken
     CellSet from, to;
+    /// Each joins floors: a way leads from any of its cells to any other one.
+    std::vector<CellSet> passages;
 
     /// Finds a way of which the least length lies in cells that are seen; of these a shortest one.
-    /// Cells of the zones do not count. Dijkstra; O(cells log cells)
+    /// Cells of the zones and of passages do not count, and passages have no length. Dijkstra;
+    /// O(cells log cells + passages * cells)
     /// \pre there is a way, and its length is below 2^32
     [[nodiscard]] CellWay leastSeen(const std::function<bool(std::uint32_t)>& is_seen) const;
     /// Returns true if there is a way.
@@ -44,6 +53,9 @@ struct CellWays {
 
   private:
     struct Tree;
+    [[nodiscard]] const CellFloor& floorOf(std::uint32_t cell) const;
+    /// Returns the cells that do not count.
+    [[nodiscard]] CellSet free() const;
     [[nodiscard]] Tree search(const std::function<bool(std::uint32_t)>& is_seen) const;
 };
 

@@ -174,6 +174,7 @@ std::uint64_t fingerprintOf(const Problem& problem) {
     add(std::bit_cast<std::uint64_t>(problem.budget.value_or(-1)));
     add(static_cast<unsigned>(problem.required));
     add(problem.is_connected ? 1 : 0);
+    for (const std::uint32_t region : problem.regions) add(region);
     for (const std::size_t kind : problem.order) add(kind);
     return hash;
 }

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "base/number.h"
@@ -109,7 +110,7 @@ double normaliseCost(double cost) {
 }
 
 bool isConnected(const Problem& problem, const std::vector<Choice>& chosen) {
-    return Connection(problem, chosen).parts() <= 1;
+    return Connection(problem, chosen).isWhole();
 }
 
 namespace {
@@ -139,17 +140,42 @@ constexpr std::size_t kNoOwner = static_cast<std::size_t>(-1);
 
 Connection::Connection(const Problem& problem, const std::vector<Choice>& chosen)
     : problem_(&problem), part_of_cell_(problem.cells(), kNoOwner) {
-    // Member 0 stands for the standing sensors, member 1 + i for choice i; a cell is first owned by
-    // a sensor that sees it.
-    UnionFind members(chosen.size() + 1);
-    bool has_standing = false;
+    join(chosen.size(), [&](std::size_t i, const Visit& visit) {
+        problem.kinds[chosen[i].kind].candidates->forEachRun(chosen[i].candidate, visit);
+    });
+}
+
+Connection::Connection(const Problem& problem, std::span<const CellSet* const> views)
+    : problem_(&problem), part_of_cell_(problem.cells(), kNoOwner) {
+    join(views.size(), [&](std::size_t i, const Visit& visit) {
+        views[i]->forEach([&](std::size_t cell) {
+            const auto at = static_cast<std::uint32_t>(cell);
+            visit({at, at + 1});
+        });
+    });
+}
+
+void Connection::join(std::size_t sensors,
+                      const std::function<void(std::size_t, const Visit&)>& see) {
+    // A cell is first owned by a sensor that sees it. Sensor i is member 1 + i. Member 0 stands for
+    // the standing sensors; those of further regions follow the sensors.
+    const Problem& problem = *problem_;
+    const std::size_t regions =
+        problem.regions.empty()
+            ? 1
+            : *std::max_element(problem.regions.begin(), problem.regions.end()) + std::size_t{1};
+    UnionFind members(sensors + regions);
+    std::vector<bool> is_member(sensors + regions, false);
+    std::fill_n(is_member.begin() + 1, sensors, true);
     problem.standing.forEach([&](std::size_t cell) {
         if (problem.weights[cell] == 0) return;
-        part_of_cell_[cell] = 0;
-        has_standing = true;
+        const std::size_t region = problem.regions.empty() ? 0 : problem.regions[cell];
+        const std::size_t member = region == 0 ? 0 : sensors + region;
+        part_of_cell_[cell] = member;
+        is_member[member] = true;
     });
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        const auto see = [&](const CellRun& run) {
+    for (std::size_t i = 0; i < sensors; ++i)
+        see(i, [&](const CellRun& run) {
             for (std::uint32_t cell = run.first; cell < run.end; ++cell) {
                 if (problem.weights[cell] == 0) continue;
                 if (part_of_cell_[cell] == kNoOwner)
@@ -157,30 +183,70 @@ Connection::Connection(const Problem& problem, const std::vector<Choice>& chosen
                 else
                     members.join(part_of_cell_[cell], i + 1);
             }
-        };
-        problem.kinds[chosen[i].kind].candidates->forEachRun(chosen[i].candidate, see);
-    }
-    std::vector<std::size_t> part_of_member(chosen.size() + 1, kNoOwner);
-    for (std::size_t i = has_standing ? 0 : 1; i <= chosen.size(); ++i) {
+        });
+    std::vector<std::size_t> part_of_member(is_member.size(), kNoOwner);
+    for (std::size_t i = 0; i < is_member.size(); ++i) {
+        if (!is_member[i]) continue;
         std::size_t& part = part_of_member[members.rootOf(i)];
         if (part == kNoOwner) part = parts_++;
     }
     for (std::size_t& member : part_of_cell_)
         if (member != kNoOwner) member = part_of_member[members.rootOf(member)];
+    if (regions == 1) return;
+    parts_in_region_.resize(regions);
+    std::vector<std::set<std::uint32_t>> regions_of(parts_);
+    for (std::size_t cell = 0; cell < part_of_cell_.size(); ++cell)
+        if (part_of_cell_[cell] != kNoOwner)
+            regions_of[part_of_cell_[cell]].insert(problem.regions[cell]);
+    for (const std::set<std::uint32_t>& of : regions_of) {
+        regions_of_part_.emplace_back(of.begin(), of.end());
+        for (const std::uint32_t region : of) ++parts_in_region_[region];
+    }
+}
+
+bool Connection::isWhole() const {
+    if (parts_ <= 1) return true;
+    if (regions_of_part_.empty()) return false;
+    return std::all_of(parts_in_region_.begin(), parts_in_region_.end(),
+                       [](std::size_t parts) { return parts <= 1; }) &&
+           std::none_of(regions_of_part_.begin(), regions_of_part_.end(),
+                        [](const std::vector<std::uint32_t>& of) { return of.empty(); });
 }
 
 bool Connection::isJoinedBy(const Choice& choice) const {
+    const std::size_t cells = part_of_cell_.size();
     if (parts_ > 0 && cells_of_part_.empty()) {
-        std::vector<std::uint32_t> is_of(part_of_cell_.size());
+        std::vector<std::uint32_t> is_of(cells);
         cells_of_part_.reserve(parts_);
         for (std::size_t part = 0; part < parts_; ++part) {
-            for (std::size_t i = 0; i < is_of.size(); ++i) is_of[i] = part_of_cell_[i] == part;
+            for (std::size_t i = 0; i < cells; ++i) is_of[i] = part_of_cell_[i] == part;
             cells_of_part_.emplace_back(is_of);
+        }
+        for (std::size_t region = 0; region < parts_in_region_.size(); ++region) {
+            for (std::size_t i = 0; i < cells; ++i)
+                is_of[i] = problem_->weights[i] > 0 && problem_->regions[i] == region;
+            cells_of_region_.emplace_back(is_of);
         }
     }
     const CandidateSet& candidates = *problem_->kinds[choice.kind].candidates;
-    for (const WeightSums& cells : cells_of_part_)
-        if (candidates.weigh(choice.candidate, cells) == 0) return false;
+    const auto sees = [&](const WeightSums& of) {
+        return candidates.weigh(choice.candidate, of) > 0;
+    };
+    if (parts_in_region_.empty())
+        return std::all_of(cells_of_part_.begin(), cells_of_part_.end(), sees);
+    std::vector<bool> sees_region(cells_of_region_.size());
+    std::transform(cells_of_region_.begin(), cells_of_region_.end(), sees_region.begin(), sees);
+    if (std::find(sees_region.begin(), sees_region.end(), true) == sees_region.end())
+        return parts_ == 0;
+    for (std::size_t part = 0; part < parts_; ++part) {
+        if (sees(cells_of_part_[part])) continue;
+        const std::vector<std::uint32_t>& of = regions_of_part_[part];
+        const bool is_apart =
+            !of.empty() && std::all_of(of.begin(), of.end(), [&](std::uint32_t r) {
+                return !sees_region[r] && parts_in_region_[r] == 1;
+            });
+        if (!is_apart) return false;
+    }
     return true;
 }
 

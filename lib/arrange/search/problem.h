@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <ostream>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,9 @@ struct Problem {
     /// node, which sees `standing`; the node is absent if no cell of that has positive weight.
     bool is_connected = false;
     CellSet standing = CellSet();
+    /// Of connected coverage, the region of each cell, from 0 on: rooms that no sensor joins.
+    /// Coverage is then connected in each region by itself. Empty: all cells are one region.
+    std::vector<std::uint32_t> regions = {};
     /// A hint for bounds: the block of each cell, from 0 on. Cells of one block lie together, so
     /// that a sensor sees all of most blocks or none. Empty: blocks are of consecutive cells.
     std::vector<std::uint32_t> blocks = {};
@@ -95,18 +99,28 @@ class Connection {
   public:
     /// O(cells + cells that the chosen see)
     Connection(const Problem& problem, const std::vector<Choice>& chosen);
+    /// The same for sensors that see these cells.
+    Connection(const Problem& problem, std::span<const CellSet* const> views);
 
-    /// Returns the number of components.
-    [[nodiscard]] std::size_t parts() const { return parts_; }
-    /// Returns true if this sensor joins all components. O(parts * runs); the first call O(parts *
-    /// cells)
+    /// Returns true if the coverage is connected: no region has cells of two components, and a
+    /// sensor that sees no cell of positive weight is the only one.
+    [[nodiscard]] bool isWhole() const;
+    /// Returns true if the coverage is connected with this sensor. O(parts * runs); the first call
+    /// O(parts * cells)
     [[nodiscard]] bool isJoinedBy(const Choice& choice) const;
 
   private:
+    /// Calls visit(run) for the cells that a sensor sees.
+    using Visit = std::function<void(const CellRun&)>;
+    void join(std::size_t sensors, const std::function<void(std::size_t, const Visit&)>& see);
+
     const Problem* problem_;
-    std::size_t parts_ = 0;
-    std::vector<std::size_t> part_of_cell_;          // kNoOwner: of no part
-    mutable std::vector<WeightSums> cells_of_part_;  // 1 for its cells; built on demand
+    std::size_t parts_ = 0;                                    // components
+    std::vector<std::size_t> part_of_cell_;                    // kNoOwner: of no part
+    std::vector<std::vector<std::uint32_t>> regions_of_part_;  // ascending; of several regions
+    std::vector<std::size_t> parts_in_region_;
+    // 1 for the cells of a part, and for those of positive weight in a region; built on demand.
+    mutable std::vector<WeightSums> cells_of_part_, cells_of_region_;
 };
 
 /// Scales weights to the integers of a Problem, with a sum below 2^32. The factor is the smallest

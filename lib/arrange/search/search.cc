@@ -112,19 +112,29 @@ T recalled(const SearchShare& share, const Problem& problem, const std::string& 
     return made;
 }
 
-std::string proofName(int shard) { return "proof/" + std::to_string(shard); }
+std::string proofName(const SearchShare& share, int shard) {
+    return "proof/" + std::to_string(shard) + share.search;
+}
 
-/// Merges the shards' proofs: the best of their subtrees, and the highest of their bounds.
-/// \pre all are there
+/// Merges the shards' proofs: the best of their subtrees, and the highest of their bounds. Without
+/// that of a shard, which was cut short before this one of several searches, the bound is that of
+/// all sensors.
 SearchResult joinedProof(const Problem& problem, const SearchShare& share) {
     SearchResult all;
+    all.best.value = valueOf(problem, {});
     for (int i = 1; i <= share.joined; ++i) {
-        const auto bytes = share.results->find(proofName(i));
-        if (!bytes) Unpacker::refuse();
+        const auto bytes = share.results->find(proofName(share, i));
+        if (!bytes && share.search.empty()) Unpacker::refuse();
+        if (!bytes) {
+            all.bound = problem.totalWeight();
+            all.is_complete = false;
+            continue;
+        }
         Unpacker from(*bytes);
         if (from.number() != fingerprintOf(problem)) Unpacker::refuse();
         SearchResult own = unpackResult(from, problem);
-        if (i == 1 || own.best.value > all.best.value) all.best = std::move(own.best);
+        if (all.best.chosen.empty() || own.best.value > all.best.value)
+            all.best = std::move(own.best);
         all.bound = std::max(all.bound, own.bound);
         all.is_complete = all.is_complete && own.is_complete;
     }
@@ -276,7 +286,7 @@ SearchResult search(const Problem& problem, const SearchOptions& options, Progre
         Packer to;
         to.add(fingerprintOf(problem));
         pack(to, result);
-        share.results->store(proofName(share.own->index), to.bytes());
+        share.results->store(proofName(share, share.own->index), to.bytes());
     }
     return result;
 }

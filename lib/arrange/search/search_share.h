@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "base/part_file.h"
@@ -39,6 +40,7 @@ struct SearchShare {
     std::optional<Shard> own;       ///< compute only these steps, and end
     int joined = 0;                 ///< of a merge: the number of shards
     JobResults* results = nullptr;  ///< null: do not store steps
+    std::string search = {};        ///< of several searches of a job, each with a tree: its name
 
     /// Returns true for a shard that divides this work.
     [[nodiscard]] bool isOwn(Shared which) const { return own && what == which; }

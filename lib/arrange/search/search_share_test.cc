@@ -113,6 +113,31 @@ TEST(SearchShare, BoundsOfShardsThatAreCutShortHold) {
     EXPECT_GT(open, 0) << "nothing was cut short";
 }
 
+TEST(SearchShare, OneOfSeveralSearchesMayBeMissing) {
+    const RandomProblem random = hardProblem(36);
+    SilentProgress silent;
+    SearchOptions options = searchOptions(Optimizer::Exact);
+    const SearchResult best = search(random.problem, options, silent);
+    TestResults all, own;
+    options.share = {.what = Shared::Tree,
+                     .own = Shard{1, 2},
+                     .joined = 0,
+                     .results = own.get(),
+                     .search = "/0/3"};
+    (void)search(random.problem, options, silent);
+    all.takeFrom(own, "proof/");
+    options.share = {
+        .what = Shared::Tree, .own = {}, .joined = 2, .results = all.get(), .search = "/0/3"};
+    const SearchResult merged = search(random.problem, options, silent);
+    EXPECT_EQ(merged.best.value, valueOf(random.problem, merged.best.chosen));
+    EXPECT_GT(merged.best.value, 0U);
+    EXPECT_LE(merged.best.value, best.best.value);
+    EXPECT_EQ(merged.bound, random.problem.totalWeight());
+    EXPECT_FALSE(merged.is_complete);
+    options.share.search = "/0/4";
+    EXPECT_TRUE(search(random.problem, options, silent).best.chosen.empty());
+}
+
 /// Runs that are stopped, each a little later, until one is complete.
 TEST(SearchShare, ASearchGoesOnWhereItWasStopped) {
     for (const Optimizer optimizer : {Optimizer::Swap, Optimizer::Exact})

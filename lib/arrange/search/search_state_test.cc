@@ -132,12 +132,17 @@ TEST(Connection, IsJoinedByThatWhichMakesItConnected) {
     options.is_connected = true;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         options.has_standing = seed % 2 == 0;
-        const RandomProblem made = randomProblem(seed, options);
+        RandomProblem made = randomProblem(seed, options);
         test_problems::Random random(seed);
+        if (seed % 3 > 0) {  // two regions, which sensors may join
+            made.problem.regions.resize(made.problem.cells());
+            const std::size_t split = random() % made.problem.cells();
+            for (std::size_t i = split; i < made.problem.cells(); ++i) made.problem.regions[i] = 1;
+        }
         std::vector<Choice> chosen;
         for (int i = 0; i < 4; ++i) {
             const Connection connection(made.problem, chosen);
-            EXPECT_EQ(connection.parts() <= 1, isConnected(made.problem, chosen));
+            EXPECT_EQ(connection.isWhole(), isConnected(made.problem, chosen));
             for (std::size_t c = 0; c < made.candidates[0]->size(); ++c) {
                 auto more = chosen;
                 more.push_back({0, c});
