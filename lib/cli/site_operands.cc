@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/glob.h"
 #include "base/message.h"
 #include "building/building_edit.h"
 #include "cli/common_options.h"
@@ -153,19 +154,26 @@ void mustBeOneRoom(const SiteInput& input, const std::string& option) {
     if (input.building && !option.empty()) refuseSeveralRooms(option, input.building->document);
 }
 
+std::string inOwnStorey(const SiteInput& input, const std::string& text) {
+    const std::size_t slash = text.find('/');
+    if (input.building || input.storey.empty() || slash == std::string::npos) return text;
+    return Glob(text.substr(0, slash)).matches(input.storey) ? text.substr(slash + 1) : text;
+}
+
 SiteWay wayIn(const SiteInput& input, std::string_view option, const WayChoice& way) {
     if (input.building)
         return {zoneOfStorey(*input.building, option, way.from),
                 zoneOfStorey(*input.building, option, way.to), sitePassages(*input.building)};
-    for (const std::string* zone : {&way.from, &way.to})
+    SiteWay found{{0, inOwnStorey(input, way.from)}, {0, inOwnStorey(input, way.to)}};
+    for (const StoreyZone* at : {&found.from, &found.to})
         static_cast<void>(ofOption(std::string(option),
-                                   [&] { return readZone(*zone, input.only().environment); }));
-    return {{0, way.from}, {0, way.to}};
+                                   [&] { return readZone(at->zone, input.only().environment); }));
+    return found;
 }
 
 void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,
                    const std::function<void(std::size_t room, const std::string& text)>& read) {
-    if (input.isOneRoom()) return read(0, text);
+    if (input.isOneRoom()) return read(0, inOwnStorey(input, text));
     if (text.starts_with("rect:") || text.starts_with("poly:"))
         throw UsageError(std::string(option) + ": " + excerpt(text) + " names no storey, as in " +
                          input.ids.front() + '/' + text);

@@ -101,6 +101,10 @@ std::vector<Diagnostic> siteWarnings(const SiteInput& input, const FindingFilter
 void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,
                    const std::function<void(std::size_t room, const std::string& text)>& read);
 
+/// Returns a text about a room that is a storey without the storey before it: of `ground/entry` and
+/// of `g*/entry` `entry`. Other texts, and those about other rooms, stay.
+std::string inOwnStorey(const SiteInput& input, const std::string& text);
+
 /// The zones between which a way leads; of a room alone in its only storey.
 struct SiteWay {
     StoreyZone from, to;

@@ -197,8 +197,9 @@ void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
                              robust.name + " has " + text(work.input) +
                              ": choose the same with --storey");
         }
-        if (!options.fixed.empty() && other.layout)
-            other.setLayout(withoutPlaces(*other.layout, options.fixed));
+        std::vector<std::string> fixed;
+        for (const std::string& id : options.fixed) fixed.push_back(inOwnStorey(other, id));
+        if (!fixed.empty() && other.layout) other.setLayout(withoutPlaces(*other.layout, fixed));
         warnOfImport(options.common, "arrange", other);
         work.files.insert(work.files.end(), other.files.begin(), other.files.end());
         robust.rooms.push_back({baseName(file), ownSite(other, work.how, {})});
@@ -246,9 +247,11 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     SiteInput& input = work.input;
     warnOfImport(options.common, "arrange", input);
     mustBeOneRoom(input, needsOneRoom(options.how));
-    if (!options.fixed.empty()) {
+    std::vector<std::string> fixed;
+    for (const std::string& id : options.fixed) fixed.push_back(inOwnStorey(input, id));
+    if (!fixed.empty()) {
         if (!input.layout) throw UsageError("--fixed is about the sensors of a LAYOUT: give one");
-        input.setLayout(withoutPlaces(*input.layout, options.fixed));
+        input.setLayout(withoutPlaces(*input.layout, fixed));
     }
     warn(options.common, "arrange", siteWarnings(input, {.checks = {"outside", "buried"}}));
     const bool open = options.how.target || options.how.budget;

@@ -304,6 +304,14 @@ void ArrangeCommand::settleFiles() const {
     for (const auto& [name, file] : sideFiles(options_))
         if (isStdout(*file))
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
+    const auto must_be_one = [](const char* name, const std::string& file) {
+        if (isStoreyPattern(file))
+            throw UsageError(std::string(name) +
+                             ": it is one file, also of a building: leave out %s");
+    };
+    if (options_.batch.list.empty()) must_be_one("--output", options_.common.output);
+    for (const auto& [name, file] : sideFiles(options_))
+        if (std::string_view(name) != "--heat") must_be_one(name, *file);
     if (!options_.curve_file.empty()) (void)outputFormat({}, options_.curve_file, curveFormats());
     if (!options_.report_file.empty())
         (void)outputFormat({}, options_.report_file, {"json", "html", "pdf"});
