@@ -122,6 +122,32 @@ class StepQueue {
     std::deque<std::shared_ptr<Ticket>> tickets_;
 };
 
+/// The newest messages of clients to topics of ROS, which other clients may read.
+class TopicEchoes {
+  public:
+    struct Echo {
+        std::shared_ptr<const std::string> message;
+        std::int64_t number = 0;  ///< counted from 1
+    };
+    /// \param key of the topic and its type
+    void put(const std::string& key, std::string_view message) {
+        Echo& echo = echoes_[key];
+        if (!echo.message) ++topics_;
+        echo = {std::make_shared<const std::string>(message), ++messages_};
+    }
+    /// Returns null if there is none yet.
+    [[nodiscard]] const Echo* newest(const std::string& key) const {
+        const auto found = echoes_.find(key);
+        return found == echoes_.end() ? nullptr : &found->second;
+    }
+    /// Returns the number of topics that have messages.
+    [[nodiscard]] std::int64_t topics() const { return topics_; }
+
+  private:
+    std::map<std::string, Echo> echoes_;
+    std::int64_t topics_ = 0, messages_ = 0;
+};
+
 /// Limits clients' changes of the world to half of the time.
 class ChangeBudget {
   public:
@@ -281,6 +307,7 @@ class ServerState {
     [[nodiscard]] bool isBusy() const { return isMaking() || (builders_ && builders_->open() > 0); }
     /// What slow readers of this world's data have lost.
     [[nodiscard]] ReaderLosses& losses() { return losses_; }
+    [[nodiscard]] TopicEchoes& echoes() { return echoes_; }
     /// Bytes of outdated scans that connections still have to send.
     [[nodiscard]] std::size_t staleBytes() const { return *alive_ - kept_; }
 
@@ -339,6 +366,7 @@ class ServerState {
     std::function<bool()> stopped_;
     // Declared last, since their jobs use the other members: pictures, and changes of the world.
     std::optional<BackgroundWorker> workshop_, builders_;
+    TopicEchoes echoes_;
     ReaderLosses losses_;
 };
 

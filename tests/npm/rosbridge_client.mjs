@@ -98,6 +98,16 @@ for (const Client of [ROS2TFClient, TFClient]) {
     assert.ok(Math.abs(Math.hypot(pose.rotation.z, pose.rotation.w) - 1) < 1e-9);
     client.dispose();
 }
+// By the service of tf2_web_republisher, as roslib 1 has it without groovyCompatibility.
+const republished = await new Promise((done, failed) => new Service(
+    {ros, name: '/republish_tfs', serviceType: 'tf2_web_republisher/RepublishTFs'}).callService(
+        {source_frames: ['r1'], target_frame: 'map', angular_thres: 0.001, trans_thres: 0.001, rate: 20,
+         timeout: {secs: 2, nsecs: 0}}, done, failed));
+const array = new Topic({ros, name: republished.topic_name, messageType: 'tf2_web_republisher/TFArray'});
+const {transforms} = await new Promise(done => array.subscribe(done));
+assert.strictEqual(transforms[0].child_frame_id, 'r1');
+assert.ok(Math.hypot(transforms[0].transform.translation.x + 1.2, transforms[0].transform.translation.y + 0.5) < 3);
+array.unsubscribe();
 const picture = new Topic({ros, name: '/tf', messageType: 'tf2_msgs/TFMessage', compression: 'png'});
 const inPicture = await new Promise(done => picture.subscribe(done));
 assert.ok(inPicture.transforms.some(one => one.child_frame_id === 'r1'));

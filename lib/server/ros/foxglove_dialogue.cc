@@ -99,19 +99,23 @@ void FoxgloveDialogue::advertise() {
     JsonWriter json;
     json.beginObject().key("op").value("advertise").key("channels").beginArray();
     bool has_new = false;
-    // Numbers grow: those after the newest known one are new.
-    for (auto at = entries.upper_bound(newest_); at != entries.end(); ++at) {
-        const auto& [number, entry] = *at;
-        newest_ = number;
-        if (entry.channel.isInput()) continue;
+    const auto add = [&](std::uint32_t number, const RosFeed::Entry& entry) {
         has_new = true;
-        advertised_.insert(advertised_.end(), number);
+        advertised_.insert(number);
         json.beginObject().key("id").value(std::int64_t{number});
         json.key("topic").value(entry.channel.topic).key("encoding").value(kCdr);
         json.key("schemaName").value(nameOf(entry.channel.type));
         json.key("schemaEncoding").value("ros2msg");
         json.key("schema").value(rosDefinition(entry.channel.type)).endObject();
+    };
+    // Numbers grow: those after the newest known one are new.
+    for (auto at = entries.upper_bound(newest_); at != entries.end(); ++at) {
+        newest_ = at->first;
+        if (!at->second.channel.isInput()) add(at->first, at->second);
     }
+    // Orders of clients are channels for the others once there are some, as in ROS.
+    for (const std::uint32_t number : feed().echoed())
+        if (!advertised_.contains(number)) add(number, entries.at(number));
     json.endArray().endObject();
     if (has_gone) sendText(gone.take());
     if (has_new || is_first) sendText(json.take());
@@ -222,7 +226,7 @@ void FoxgloveDialogue::subscribeAll(const Json& request) {
     for (const Json& one : member(request, "subscriptions")) {
         const auto key = numberOf(member(one, "id")), channel = numberOf(member(one, "channelId"));
         const auto topic = feed().entries().find(channel.value_or(0));
-        if (!key || topic == feed().entries().end() || topic->second.channel.isInput()) {
+        if (!key || topic == feed().entries().end() || !advertised_.contains(topic->first)) {
             tell(Level::Error, "a subscription to an unknown channel");
             continue;
         }

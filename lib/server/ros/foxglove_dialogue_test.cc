@@ -196,6 +196,35 @@ TEST(Foxglove, TwistsDriveUntilTheySilence) {
     EXPECT_TRUE(talk.state.hold("r1")) << "it is free";
 }
 
+TEST(Foxglove, OrdersBecomeChannelsOfTheOthers) {
+    FoxgloveTalk talk;
+    talk.advertise(5, "/r1/cmd_vel", "geometry_msgs/Twist");
+    talk.publish(5, R"({"linear":{"x":0.25}})");
+    talk.step();
+    const json told = talk.text();
+    ASSERT_EQ(told["op"], "advertise") << told;
+    ASSERT_EQ(told["channels"].size(), 1U);
+    const json channel = told["channels"][0];
+    EXPECT_EQ(channel["topic"], "/r1/cmd_vel");
+    EXPECT_EQ(channel["schemaName"], "geometry_msgs/msg/Twist");
+    talk.send(
+        {{"op", "subscribe"}, {"subscriptions", {{{"id", 3}, {"channelId", channel["id"]}}}}});
+    // Among times, which are for players.
+    const auto next_message = [&talk] {
+        std::string bytes = talk.next().value_or("");
+        while (bytes.starts_with('\2')) bytes = talk.next().value_or("");
+        return bytes;
+    };
+    const std::string echo = next_message();
+    constexpr std::size_t kHead = 13;  // of a message in bytes
+    ASSERT_GT(echo.size(), kHead);
+    EXPECT_NEAR(twistOf(RosType::Twist, std::string_view(echo).substr(kHead)).forward, 0.25, 1e-12);
+    talk.publish(5, R"({"linear":{"x":0.3}})");
+    talk.step();
+    EXPECT_NE(next_message(), "");
+    EXPECT_EQ(next_message(), "") << "it is a channel already";
+}
+
 TEST(Foxglove, StampedTwistsInCdrDriveToo) {
     FoxgloveTalk talk;
     talk.advertise(6, "/r2/cmd_vel", "geometry_msgs/msg/TwistStamped", "cdr");

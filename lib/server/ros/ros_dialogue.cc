@@ -42,6 +42,15 @@ void RosDialogue::send(WebMessage message) {
     out_.push_back(std::move(message));
 }
 
+void RosDialogue::sendParts(std::vector<WebMessage> parts) {
+    std::size_t size = 0;
+    for (WebMessage& part : parts) {
+        size += part.size();
+        send(std::move(part));
+    }
+    largest_ = std::max(largest_, size);
+}
+
 bool RosDialogue::subscribe(std::uint32_t key, Subscription subscription) {
     unsubscribe(key);
     if (subscriptions_.size() >= kMaxSubscriptions || feed_->isFull()) return false;
@@ -61,6 +70,14 @@ void RosDialogue::unsubscribe(std::uint32_t key) {
     keys_.erase(found->second.topic);
     feed_->unwant(found->second.topic);
     subscriptions_.erase(found);
+}
+
+bool RosDialogue::adjust(std::uint32_t key, const Subscription& like) {
+    const auto found = subscriptions_.find(key);
+    if (found == subscriptions_.end()) return false;
+    found->second.depth = like.depth;
+    found->second.interval = like.interval;
+    return true;
 }
 
 void RosDialogue::enqueue(std::uint32_t key, Subscription& subscription,

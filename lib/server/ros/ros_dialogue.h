@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "server/ros/ros_feed.h"
 #include "server/ros/ros_orders.h"
@@ -74,11 +75,16 @@ class RosDialogue : public WebDialogue {
     [[nodiscard]] RosFeed& feed() { return *feed_; }
     [[nodiscard]] ServerState& state() { return *state_; }
     void send(WebMessage message);
+    /// Sends the parts of one message.
+    void sendParts(std::vector<WebMessage> parts);
     void sendText(std::string text) { send({.head = std::move(text)}); }
     /// Replaces an earlier subscription with this key. \returns false if there are too many
     /// \pre no other subscription has the topic
     bool subscribe(std::uint32_t key, Subscription subscription);
     void unsubscribe(std::uint32_t key);
+    /// Changes depth and interval of a subscription, without sending its newest message again.
+    /// \returns false if no subscription has this key
+    bool adjust(std::uint32_t key, const Subscription& like);
     [[nodiscard]] bool hasSubscription(std::uint32_t key) const {
         return subscriptions_.contains(key);
     }
@@ -87,7 +93,7 @@ class RosDialogue : public WebDialogue {
         const auto found = keys_.find(topic);
         return found != keys_.end() && found->second != key;
     }
-    /// Finds an input topic of this type; null if there is none.
+    /// Finds an input topic of this type; else null.
     [[nodiscard]] const RosChannel* input(std::string_view topic, RosType type) const;
     [[nodiscard]] RosOrders& orders() { return orders_; }
     /// True if answers are unsent, which come before all else.

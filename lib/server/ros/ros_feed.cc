@@ -157,6 +157,8 @@ void RosFeed::stepped() {
     if (clients_ == 0 && wanted_.empty()) return;
     sync();
     place();
+    const std::int64_t echoed = state_->echoes().topics();
+    if (std::exchange(echoed_, echoed) != echoed) ++version_;
     for (const std::uint32_t number : wanted_) update(entries_.at(number));
     takeFrames();
 }
@@ -198,6 +200,23 @@ void RosFeed::updateSource(Entry& entry) {
         channel.source->message({channel.topic, channel.type, channel.about, channel.rate}, run());
     const bool is_same = !entry.periods && entry.newest && *entry.newest->cdr() == message;
     publish(entry, period, is_same ? std::string() : std::move(message));
+}
+
+/// Publishes the newest message of a client to an input topic, for the others.
+void RosFeed::updateEcho(Entry& entry) {
+    const TopicEchoes::Echo* const echo = state_->echoes().newest(entry.channel.echoKey());
+    if (echo == nullptr || echo->number == entry.period) return;
+    publish(entry, echo->number, *echo->message);
+}
+
+std::vector<std::uint32_t> RosFeed::echoed() const {
+    std::vector<std::uint32_t> numbers;
+    if (state_->echoes().topics() == 0) return numbers;
+    for (const auto& [number, entry] : entries_)
+        if (entry.channel.isInput() && entry.channel.row != nullptr &&
+            state_->echoes().newest(entry.channel.echoKey()) != nullptr)
+            numbers.push_back(number);
+    return numbers;
 }
 
 /// Publishes a state after a change of the world that has set it.

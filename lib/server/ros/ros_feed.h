@@ -81,6 +81,8 @@ class RosFeed {
     /// Subscribes to a topic, and cancels a subscription; unknown numbers are ignored.
     void want(std::uint32_t number);
     void unwant(std::uint32_t number);
+    /// Returns the input topics of which there are messages of clients to read.
+    [[nodiscard]] std::vector<std::uint32_t> echoed() const;
     /// Returns true if all clients together have as many subscriptions as they may.
     [[nodiscard]] bool isFull() const;
 
@@ -116,6 +118,7 @@ class RosFeed {
     void update(Entry& entry);
     void updateState(Entry& entry);
     void updateSource(Entry& entry);
+    void updateEcho(Entry& entry);
     [[nodiscard]] RosRun run() const;
     void addSources(std::vector<RosChannel>& out);
     void publish(Entry& entry, std::int64_t period, std::string message);
@@ -139,8 +142,9 @@ class RosFeed {
     std::size_t clients_ = 0, subscriptions_ = 0;
     std::uint32_t next_number_ = 1;
     std::int64_t version_ = 0, messages_ = 0;
-    bool is_taking_ = false;  // a frame
-    SensorOfRoom turn_{};     // whose frame is next
+    std::int64_t echoed_ = 0;  // topics that have echoes
+    bool is_taking_ = false;   // a frame
+    SensorOfRoom turn_{};      // whose frame is next
     // Guards deliveries of background jobs that outlive the feed.
     std::shared_ptr<RosFeed*> self_ = std::make_shared<RosFeed*>(this);
 };

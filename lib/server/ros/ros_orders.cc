@@ -118,6 +118,7 @@ void RosOrders::obey(const RosChannel& channel, std::string_view message) {
     if (channel.source != nullptr) return request(channel, message);
     if (channel.state) return set(*channel.state, stateValue(channel.type, message));
     const RosOrder order = channel.row->decode(channel.type, message);
+    state_->echoes().put(channel.echoKey(), message);
     if (const auto* tracks = std::get_if<std::vector<RosTrack>>(&order))
         return take(*tracks, stateOf(channel.room));
     const std::string robot = robotOf(channel);

@@ -148,6 +148,8 @@ struct RosChannel {
         return source != nullptr ? is_input
                : state           ? state->is_command
                                  : row != nullptr && row->decode != nullptr;
+    /// Returns the key of the messages of clients in TopicEchoes.
+    [[nodiscard]] std::string echoKey() const { return topic + ' ' + std::string(nameOf(type)); }
     }
 };
 /// Returns all topics of the worlds: of rows, of sensors, of states. Inputs that accept two types

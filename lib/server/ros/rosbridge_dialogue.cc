@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <iterator>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -22,7 +23,11 @@ namespace {
 
 /// The action that roslib's TF clients use, and the beginning of its topics in ROS 1.
 constexpr std::string_view kRepublisher = "/tf2_web_republisher";
+/// The beginning of topics that its service answers with.
+constexpr std::string_view kRepublished = "/tf2_web_republisher/tf_repub_";
 
+/// Smaller fragments would be heads for the greater part.
+constexpr std::size_t kMinFragment = 256;
 constexpr std::size_t kMaxWishes = 1024, kMaxIds = 64, kMaxAdvertised = 256;
 
 const nlohmann::json& memberOf(const nlohmann::json& value, const char* name) {
@@ -75,6 +80,20 @@ std::string cborPublication(const std::string& topic) {
     return out;
 }
 
+/// Cuts a text into pieces of about so many bytes, between characters.
+std::vector<std::string_view> piecesOf(std::string_view text, std::size_t size) {
+    constexpr unsigned kMask = 0xc0, kInside = 0x80;  // of bytes within a character of UTF-8
+    std::vector<std::string_view> pieces;
+    while (!text.empty()) {
+        std::size_t end = std::min(size, text.size());
+        while (end < text.size() && (static_cast<unsigned char>(text[end]) & kMask) == kInside)
+            ++end;
+        pieces.push_back(text.substr(0, end));
+        text.remove_prefix(end);
+    }
+    return pieces;
+}
+
 /// Returns a message as a PNG whose samples are its text, with blanks up to a rectangle.
 std::string inPng(std::string text) {
     constexpr double kSamples = 3;
@@ -92,13 +111,60 @@ std::string inPng(std::string text) {
 
 }  // namespace
 
+std::size_t RosbridgeDialogue::Wish::count() const {
+    std::size_t count = 0;
+    for (const auto& [name, ids] : names) count += ids.size();
+    return count;
+}
+
+RosbridgeDialogue::Form RosbridgeDialogue::formOf(const Wish::Ids& ids) {
+    Form form = Form::Json;
+    for (const auto& [id, one] : ids) form = std::max(form, one.form);
+    return form;
+}
+
+/// Clients find their topic by the name that they asked for.
 WebMessage RosbridgeDialogue::write(std::uint32_t /*key*/, const RosFeed::Entry& topic,
                                     const RosMessage& message) {
     const auto wish = wishes_.find(topic.channel.topic);
-    const bool is_known = wish != wishes_.end();
-    // Clients find their topic by the name that they asked for.
-    const std::string& name = is_known ? wish->second.name : topic.channel.topic;
-    const Form form = is_known ? wish->second.form : Form::Json;
+    if (wish == wishes_.end()) return publication(topic.channel.topic, Form::Json, message);
+    std::vector<WebMessage> all;
+    for (const auto& [name, ids] : wish->second.names)
+        for (WebMessage& one : publications(name, ids, message)) all.push_back(std::move(one));
+    WebMessage first = std::move(all.front());
+    all.erase(all.begin());
+    // They come next: this is written only when all else is sent.
+    sendParts(std::move(all));
+    return first;
+}
+
+/// Returns a message, or the fragments of its text if that is longer than they shall be.
+std::vector<WebMessage> RosbridgeDialogue::publications(const std::string& name,
+                                                        const Wish::Ids& ids,
+                                                        const RosMessage& message) {
+    std::vector<WebMessage> out;
+    out.push_back(publication(name, formOf(ids), message));
+    std::size_t size = 0;
+    for (const auto& [id, one] : ids)
+        if (one.fragment > 0 && (size == 0 || one.fragment < size)) size = one.fragment;
+    if (size == 0 || !out.front().is_text || out.front().size() <= size) return out;
+    const WebMessage& whole = out.front();
+    const std::string text = whole.head + (whole.body ? *whole.body : "") + whole.tail;
+    const std::vector<std::string_view> pieces = piecesOf(text, size);
+    const std::string id = std::to_string(next_fragmented_++);
+    std::vector<WebMessage> fragments;
+    fragments.reserve(pieces.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        JsonWriter json;
+        json.beginObject().key("op").value("fragment").key("id").value(id);
+        json.key("data").value(pieces[i]).key("num").value(i).key("total").value(pieces.size());
+        fragments.push_back({.head = json.endObject().take()});
+    }
+    return fragments;
+}
+
+WebMessage RosbridgeDialogue::publication(const std::string& name, Form form,
+                                          const RosMessage& message) {
     if (form == Form::Json || form == Form::Png) {
         JsonWriter head;
         head.beginObject().key("op").value("publish").key("topic").value(name).key("msg");
@@ -170,31 +236,52 @@ void RosbridgeDialogue::subscribeTo(const Json& request) {
     const bool is_new = !wishes_.contains(topic);
     if (is_new && wishes_.size() >= kMaxWishes)
         return tell(Level::Error, "too many subscriptions", id);
+    if (!is_new && wishes_.at(topic).count() >= kMaxIds)
+        return tell(Level::Error, "too many subscriptions", id);
+    if (const auto type = rosTypeNamed(wordOf(request, "type")))
+        for (const std::uint32_t number : feed().numbersOf(topic)) {
+            const RosChannel& channel = feed().entries().at(number).channel;
+            if (!channel.isInput() && channel.type != *type)
+                return tell(Level::Error,
+                            excerpt(topic) + " is of type " + std::string(nameOf(channel.type)) +
+                                ", not " + std::string(nameOf(*type)),
+                            id);
+        }
     Wish& wish = wishes_[topic];
-    if (wish.ids.size() >= kMaxIds) return tell(Level::Error, "too many subscriptions", id);
     const double wait = figureOf(request, "throttle_rate", kMaxMilliseconds);
-    wish.ids[id] = {std::chrono::milliseconds(std::llround(wait)),
-                    static_cast<std::size_t>(figureOf(request, "queue_length", kMaxQueue))};
-    wish.name = wordOf(request, "topic");
-    wish.form = form == "cbor"       ? Form::Cbor
-                : form == "cbor-raw" ? Form::Raw
-                : form == "png"      ? Form::Png
-                                     : Form::Json;
+    const auto fragment = static_cast<std::size_t>(figureOf(request, "fragment_size", 1e9));
+    wish.names[wordOf(request, "topic")][id] = {
+        std::chrono::milliseconds(std::llround(wait)),
+        static_cast<std::size_t>(figureOf(request, "queue_length", kMaxQueue)),
+        form == "cbor"       ? Form::Cbor
+        : form == "cbor-raw" ? Form::Raw
+        : form == "png"      ? Form::Png
+                             : Form::Json,
+        fragment > 0 ? std::max(fragment, kMinFragment) : 0};
     apply(topic, wish);
+    const auto republished =
+        std::ranges::find(republished_, topic, &std::pair<std::string, Json>::first);
+    if (republished != republished_.end() && !transform_actions_.contains(topic))
+        beginTransforms(topic, "", republished->second);
 }
 
-/// Subscribes to a topic with the least interval and the longest queue of its requests.
-void RosbridgeDialogue::apply(const std::string& topic, const Wish& wish) {
+/// Subscribes to a topic with the least interval and the shortest queue of its requests.
+/// \param is_new a request has come, to which the newest message goes
+void RosbridgeDialogue::apply(const std::string& topic, const Wish& wish, bool is_new) {
     for (const std::uint32_t number : feed().numbersOf(topic)) {
         const RosFeed::Entry& entry = feed().entries().at(number);
-        if (entry.channel.isInput()) continue;
-        Subscription subscription{.topic = number, .depth = 0};
+        // Orders of clients can be read, as they are topics in ROS, too.
+        if (entry.channel.isInput() && entry.channel.row == nullptr) continue;
+        Subscription subscription{.topic = number};
         subscription.interval = std::chrono::nanoseconds::max();
-        for (const auto& [id, one] : wish.ids) {
-            subscription.interval = std::min(subscription.interval, one.interval);
-            subscription.depth = std::max(subscription.depth,
-                                          one.depth > 0 ? one.depth : entry.channel.quality.depth);
-        }
+        subscription.depth = std::numeric_limits<std::size_t>::max();
+        for (const auto& [name, ids] : wish.names)
+            for (const auto& [id, one] : ids) {
+                subscription.interval = std::min(subscription.interval, one.interval);
+                subscription.depth = std::min(subscription.depth, one.depth);
+            }
+        if (subscription.depth == 0) subscription.depth = entry.channel.quality.depth;
+        if (!is_new && adjust(number, subscription)) continue;
         if (!subscribe(number, std::move(subscription)))
             tell(Level::Error, "too many subscriptions");
     }
@@ -204,12 +291,20 @@ void RosbridgeDialogue::unsubscribeFrom(const Json& request) {
     const std::string topic = absolute(wordOf(request, "topic")), id = idOf(request);
     const auto wish = wishes_.find(topic);
     if (wish == wishes_.end()) return;
-    // Without an id all requests for the topic end.
-    if (id.empty()) wish->second.ids.clear();
-    wish->second.ids.erase(id);
-    if (!wish->second.ids.empty()) return;
+    auto& names = wish->second.names;
+    auto found = names.find(wordOf(request, "topic"));
+    if (found == names.end() && names.size() == 1) found = names.begin();
+    if (found == names.end()) return;
+    found->second.erase(id);
+    // Without an id all requests by this name end.
+    if (id.empty() || found->second.empty()) names.erase(found);
+    if (!names.empty()) return apply(topic, wish->second, false);
     wishes_.erase(wish);
     for (const std::uint32_t number : feed().numbersOf(topic)) unsubscribe(number);
+    const auto gone = std::ranges::find(republished_, topic, &std::pair<std::string, Json>::first);
+    if (gone == republished_.end()) return;
+    republished_.erase(gone);
+    if (transforms_.end(topic)) transform_actions_.erase(topic);
 }
 
 void RosbridgeDialogue::topicsChanged() {
@@ -388,12 +483,29 @@ void RosbridgeDialogue::tellTransforms(const std::string& id, const std::string&
         json.key("op").value("action_feedback").key("action").value(action).key("values");
         return sendText(json.take() + feedback + idMember(text_id) + '}');
     }
-    const std::string topic = std::string(kRepublisher) + "/feedback";
+    const bool is_republished = id.starts_with(kRepublished);
+    const std::string topic = is_republished ? id : std::string(kRepublisher) + "/feedback";
     const auto wish = wishes_.find(topic);
     json.key("op").value("publish").key("topic");
-    json.value(wish == wishes_.end() ? topic : wish->second.name).key("msg");
+    json.value(wish == wishes_.end() ? topic : wish->second.names.begin()->first).key("msg");
+    if (is_republished) return sendText(json.take() + feedback + '}');
     sendText(json.take() + R"({"status":{"status":1,"goal_id":{"id":)" + text_id +
              R"(}},"feedback":)" + feedback + "}}");
+}
+
+/// Takes a request of the service republish_tfs, for poses on a separate topic, which begin
+/// with the subscription to it. Of requests without one the oldest gives way. \returns the topic;
+/// "" if there are too many
+std::string RosbridgeDialogue::republish(const Json& arguments) {
+    if (republished_.size() >= TransformGoals::kMostGoals) {
+        const auto unread = std::ranges::find_if(
+            republished_, [&](const auto& one) { return !wishes_.contains(one.first); });
+        if (unread == republished_.end()) return "";
+        republished_.erase(unread);
+    }
+    republished_.emplace_back(std::string(kRepublished) + std::to_string(next_republished_++),
+                              arguments);
+    return republished_.back().first;
 }
 
 void RosbridgeDialogue::endGoal(const std::string& robot, std::int64_t number, RosGoalEnd end,
@@ -474,6 +586,14 @@ void RosbridgeDialogue::callService(const Json& request) {
         return answer(id, service, true, *values);
     if (name == "/rosapi/set_param") return setParameter(memberOf(request, "args"), id, service);
     if (cancelAll(name)) return answer(id, service, true, "{}");
+    if (name == "/republish_tfs" || name == std::string(kRepublisher) + "/republish_tfs") {
+        const std::string topic = republish(memberOf(request, "args"));
+        if (topic.empty())
+            return answer(id, service, false, JsonWriter().value("too many requests").take());
+        JsonWriter json;
+        json.beginObject().key("topic_name").value(topic).endObject();
+        return answer(id, service, true, json.take());
+    }
     const auto services = rosServices();
     const auto found = std::find_if(services.begin(), services.end(),
                                     [&](const RosService& one) { return one.name == name; });

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "server/ros/ros_dialogue.h"
 #include "server/ros/transform_goals.h"
@@ -25,17 +27,23 @@ class RosbridgeDialogue final : public RosDialogue {
 
   private:
     using Json = nlohmann::json;
-    enum class Form { Json, Cbor, Raw, Png };
-    /// The requests of a client for one topic, by their ids; they share its messages.
+    /// In ascending order: of several requests the last one counts, as in rosbridge_suite.
+    enum class Form { Json, Png, Cbor, Raw };
+    /// The requests of a client for one topic, which share its messages: by the name that they use
+    /// for it, perhaps without its slash, and by their ids.
     struct Wish {
         struct One {
             std::chrono::nanoseconds interval{};
             std::size_t depth = 0;  ///< 0: that of the topic
+            Form form = Form::Json;
+            std::size_t fragment = 0;  ///< bytes of its parts; 0: whole messages
         };
-        std::map<std::string, One> ids;
-        Form form = Form::Json;  ///< of the newest request
-        std::string name = {};   ///< the topic as that request calls it, perhaps without its slash
+        using Ids = std::map<std::string, One>;
+        std::map<std::string, Ids> names = {};
+
+        [[nodiscard]] std::size_t count() const;
     };
+    static Form formOf(const Wish::Ids& ids);
     /// A goal of the action navigate_to_pose.
     struct Goal {
         std::string id, action;
@@ -47,6 +55,9 @@ class RosbridgeDialogue final : public RosDialogue {
 
     WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
                      const RosMessage& message) override;
+    static WebMessage publication(const std::string& name, Form form, const RosMessage& message);
+    std::vector<WebMessage> publications(const std::string& name, const Wish::Ids& ids,
+                                         const RosMessage& message);
     void tell(Level level, const std::string& text) override { tell(level, text, ""); }
     void tell(Level level, const std::string& text, const std::string& id);
     void topicsChanged() override;
@@ -68,8 +79,9 @@ class RosbridgeDialogue final : public RosDialogue {
     void beginTransforms(const std::string& id, const std::string& action, const Json& arguments);
     bool publishTransforms(const std::string& topic, const Json& message);
     void tellTransforms(const std::string& id, const std::string& feedback);
+    std::string republish(const Json& arguments);
     void ignore(const Json& /*request*/) {}
-    void apply(const std::string& topic, const Wish& wish);
+    void apply(const std::string& topic, const Wish& wish, bool is_new = true);
     void answer(const std::string& id, std::string_view service, bool is_done,
                 std::string_view values);
 
@@ -81,6 +93,9 @@ class RosbridgeDialogue final : public RosDialogue {
     TransformGoals transforms_;
     /// Names of the action of goals in transforms_, by id; "" for goals by topics, as of ROS 1.
     std::map<std::string, std::string> transform_actions_;
+    /// Requests of the service republish_tfs, by the topics that answer them, oldest first.
+    std::vector<std::pair<std::string, Json>> republished_;
+    std::int64_t next_republished_ = 0, next_fragmented_ = 0;
 };
 
 }  // namespace ispace

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "base/message.h"
 #include "support/ros_talk.h"
@@ -80,6 +82,82 @@ TEST(Rosbridge, ThrottlesInWallTime) {
     EXPECT_EQ(count, 2) << "the quickest request of a client counts";
 }
 
+TEST(Rosbridge, RequestsOfOneTopicHaveTheirCommonForm) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "/l1/scan"}, {"compression", "cbor"}, {"queue_length", 4}});
+    talk.subscribe({{"topic", "/l1/scan"}, {"id", "s2"}, {"queue_length", 2}});
+    talk.drain();
+    talk.step(6);
+    EXPECT_EQ(json::from_cbor(talk.next().value_or(""), true, true,
+                              json::cbor_tag_handler_t::ignore)["topic"],
+              "/l1/scan")
+        << "as rosbridge_suite: cbor before none, whichever came last";
+    EXPECT_TRUE(talk.next());
+    EXPECT_FALSE(talk.next()) << "the shortest queue counts";
+    talk.send({{"op", "unsubscribe"}, {"id", "s1"}, {"topic", "/l1/scan"}});
+    EXPECT_FALSE(talk.next()) << "the newest message has been sent";
+    talk.step();
+    EXPECT_EQ(talk.text()["topic"], "/l1/scan") << "no cbor is left";
+    talk.send({{"op", "unsubscribe"}, {"id", "s2"}, {"topic", "/l1/scan"}});
+    talk.step();
+    EXPECT_FALSE(talk.next());
+}
+
+TEST(Rosbridge, SendsFragments) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "/l1/scan"}, {"fragment_size", 1e6}});
+    const json whole = talk.text();
+    EXPECT_EQ(whole["op"], "publish") << "it fits";
+    talk.send({{"op", "unsubscribe"}, {"topic", "/l1/scan"}});
+    talk.subscribe({{"topic", "/l1/scan"}, {"fragment_size", 1}});
+    std::string text;
+    std::size_t num = 0, total = 1;
+    for (; num < total; ++num) {
+        const json part = talk.text();
+        ASSERT_EQ(part["op"], "fragment") << part;
+        EXPECT_EQ(part["num"], num);
+        EXPECT_EQ(part["id"], "0");
+        total = part["total"];
+        EXPECT_LE(part["data"].get<std::string>().size(), 256U);
+        text += part["data"];
+    }
+    EXPECT_GT(total, 1U);
+    EXPECT_EQ(json::parse(text), whole);
+    EXPECT_FALSE(talk.next());
+    talk.subscribe({{"topic", "/l1/scan"}, {"compression", "cbor"}, {"fragment_size", 256}});
+    EXPECT_EQ(json::from_cbor(talk.next().value_or(""), true, true,
+                              json::cbor_tag_handler_t::ignore)["op"],
+              "publish")
+        << "bytes stay whole, as in rosbridge_suite";
+}
+
+TEST(Rosbridge, EachNameOfATopicHasItsMessages) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "l1/scan"}});
+    talk.subscribe({{"topic", "/l1/scan"}, {"id", "s2"}});
+    talk.drain();
+    talk.step();
+    std::set<std::string> names{talk.text()["topic"], talk.text()["topic"]};
+    EXPECT_EQ(names, (std::set<std::string>{"/l1/scan", "l1/scan"}));
+    EXPECT_FALSE(talk.next());
+    talk.send({{"op", "unsubscribe"}, {"topic", "l1/scan"}});
+    talk.step();
+    EXPECT_EQ(talk.text()["topic"], "/l1/scan");
+    EXPECT_FALSE(talk.next());
+}
+
+TEST(Rosbridge, OtherTypesThanATopicsAreRefused) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "/l1/scan"}, {"type", "nav_msgs/Odometry"}});
+    const json status = talk.text();
+    EXPECT_EQ(status["level"], "error");
+    EXPECT_EQ(status["id"], "s1");
+    EXPECT_NE(status["msg"].get<std::string>().find("sensor_msgs/msg/LaserScan"),
+              std::string::npos);
+    talk.step();
+    EXPECT_FALSE(talk.next());
+}
+
 TEST(Rosbridge, SendsCbor) {
     BridgeTalk talk;
     talk.subscribe({{"topic", "/l1/scan"}, {"compression", "cbor"}});
@@ -112,6 +190,23 @@ TEST(Rosbridge, PublishedTwistsDrive) {
     talk.room.simulation.allow(10);
     for (int i = 0; i < 10; ++i) talk.room.simulation.run({}, std::chrono::nanoseconds(0));
     EXPECT_EQ(talk.room.world.status(0).speed, 0);
+}
+
+TEST(Rosbridge, OrdersCanBeRead) {
+    BridgeTalk talk;
+    talk.subscribe({{"topic", "/r1/cmd_vel"}, {"type", "geometry_msgs/Twist"}});
+    talk.step();
+    EXPECT_FALSE(talk.next());
+    for (const double speed : {0.2, 0.3}) {
+        talk.send(
+            {{"op", "publish"}, {"topic", "/r1/cmd_vel"}, {"msg", {{"linear", {{"x", speed}}}}}});
+        talk.step();
+        const json echo = talk.text();
+        EXPECT_EQ(echo["topic"], "/r1/cmd_vel");
+        EXPECT_EQ(echo["msg"]["linear"]["x"], speed);
+        talk.step();
+        EXPECT_FALSE(talk.next()) << "each once";
+    }
 }
 
 TEST(Rosbridge, CallsServices) {
@@ -276,6 +371,36 @@ TEST(Rosbridge, SendsPosesOfFramesThatMove) {
                    {"action", "/tf2_web_republisher"},
                    {"args", framesGoal("nowhere", 0)}});
     EXPECT_EQ(talk.text()["values"], "too many goals");
+}
+
+TEST(Rosbridge, RepublishesFramesOnTopics) {
+    BridgeTalk talk;
+    const json args = {{"source_frames", {"/r1", "l1"}},
+                       {"target_frame", "map"},
+                       {"rate", 100},
+                       {"timeout", {{"secs", 2}, {"nsecs", 0}}}};
+    const std::string topic = talk.call("/republish_tfs", args)["values"]["topic_name"];
+    EXPECT_EQ(topic, "/tf2_web_republisher/tf_repub_0");
+    talk.step(2);
+    EXPECT_FALSE(talk.next()) << "unread as yet";
+    talk.subscribe({{"topic", topic}, {"type", "tf2_web_republisher/TFArray"}});
+    talk.step(2);
+    const json message = talk.text();
+    EXPECT_EQ(message["topic"], topic);
+    ASSERT_EQ(message["msg"]["transforms"].size(), 2U) << message;
+    EXPECT_EQ(message["msg"]["transforms"][1]["child_frame_id"], "r1");
+    talk.drain();
+    talk.send({{"op", "unsubscribe"}, {"topic", topic}});
+    talk.room.world.command(0, {Verb::Speed, 0.5});
+    talk.step(20);
+    EXPECT_FALSE(talk.next());
+    // Those that are never read give way to later ones.
+    for (int i = 0; i < 40; ++i) EXPECT_EQ(talk.call("republish_tfs", args)["result"], true);
+    for (int i = 30; i < 46; ++i)
+        talk.subscribe(
+            {{"topic", "/tf2_web_republisher/tf_repub_" + std::to_string(i)}, {"id", i}});
+    talk.drain();
+    EXPECT_EQ(talk.call("/republish_tfs", args)["result"], true) << "some have gone";
 }
 
 TEST(Rosbridge, SubscriptionsAwaitTheirTopic) {
