@@ -129,13 +129,15 @@ ExportedFiles writeIfc(const Scene& scene, const std::string& title);
 
 /// Writes the placed sensors as URDF: a link each, named by its id, with a fixed joint from `world`
 /// or from the link of the robot or person that carries it. The joint of that link from `world` is
-/// floating. Frames have x forward and z up; cameras and rangers with a lens have a second one,
-/// ID_optical, with z forward and x right (REP 103).
+/// floating. A robot with a differential drive has the links ID_left_wheel and ID_right_wheel, with
+/// continuous joints. Frames have x forward and z up; cameras and rangers with a lens have a second
+/// one, ID_optical, with z forward and x right (REP 103).
 std::string writeUrdf(const Scene& scene, const std::string& title);
 /// Writes a robot and the sensors on it likewise, for programs that know links by other names: the
-/// root is the robot. \param frame of the robot \param sensors frames of all sensors of the scene;
-/// those without one are left out
+/// root is the robot. \param frame of the robot \param wheels frames of its left and right one
+/// \param sensors frames of all sensors of the scene; those without one are left out
 std::string writeRobotUrdf(const Scene& scene, std::size_t robot, const std::string& frame,
+                           std::span<const std::string> wheels,
                            std::span<const std::string> sensors);
 
 /// Cells of a map along a side, and in all.

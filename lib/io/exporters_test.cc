@@ -209,10 +209,13 @@ TEST(RobotUrdf, HasTheRobotAndItsSensorsByTheirFrames) {
                        "robot id=r1 at=1,1\nrobot id=r2 at=2,0 heading=90\nlaser id=a on=r1\n"
                        "camera id=b on=r2 at=0.1,0,0.4\nlaser id=c at=0,0,1\n");
     const std::vector<std::string> frames{"a", "b_2", "c"};
-    const std::string text = writeRobotUrdf(scene, 1, "r_2", frames);
+    const std::vector<std::string> wheels{"left", "right"};
+    const std::string text = writeRobotUrdf(scene, 1, "r_2", wheels, frames);
     for (const char* part :
-         {"<robot name=\"r_2\">", "<link name=\"r_2\">", "<link name=\"b_2\">",
-          "<link name=\"b_2_optical\"", "<parent link=\"r_2\"", "xyz=\"0.1 0 0.4\""})
+         {"<robot name=\"r_2\">", "<link name=\"left\">",
+          "<joint name=\"right_joint\" type=\"continuous\">", "xyz=\"0 -0.24 0.11\"",
+          "<link name=\"r_2\">", "<link name=\"b_2\">", "<link name=\"b_2_optical\"",
+          "<parent link=\"r_2\"", "xyz=\"0.1 0 0.4\""})
         EXPECT_NE(text.find(part), std::string::npos) << part << '\n' << text;
     for (const char* part : {"world", "\"a\"", "\"c\"", "floating"})
         EXPECT_EQ(text.find(part), std::string::npos) << part;

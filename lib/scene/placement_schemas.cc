@@ -122,6 +122,16 @@ void addRobotParameters(std::vector<KeySpec>& keys) {
                                "greatest speed to a side with drive=omni, metres a second; "
                                "without it max_speed",
                                kFastest));
+    keys.push_back({.name = "wheels",
+                    .type = KeyType::Tuple,
+                    .unit = Unit::Length,
+                    .help = "radius,track of the driven wheels, for their joints in URDF; without "
+                            "it by the size of the body",
+                    .min_count = 2,
+                    .max_count = 2,
+                    .lower = 0,
+                    .upper = kMaxSize,
+                    .lower_open = true});
     addStrayKeys(keys);
     addContactKeys(keys);
 }

@@ -67,6 +67,12 @@ void applySpeed(const SpeedKeys& keys, double& speed, double& greatest, const Re
     findings.add(record.finding(keys.speed, std::move(message)));
 }
 
+void applyWheels(RobotModel& model, const Record& record) {
+    if (!record.has("wheels")) return;
+    const Tuple& wheels = record.tuple("wheels");
+    model.wheels = {wheels[0], wheels[1]};
+}
+
 void applyNoise(MotionNoise& noise, const Record& record) {
     const auto apply = [&](std::string_view key, std::array<double, 4>& alphas) {
         if (!record.has(key)) return;
@@ -123,6 +129,13 @@ void applyContacts(RobotModel& model, const Record& record, Diagnostics& finding
 
 }  // namespace
 
+Wheels wheelsOf(const RobotModel& model) {
+    if (model.wheels.radius > 0) return model.wheels;
+    constexpr double kTrack = 0.8, kMaxRadius = 0.2;  // shares of the width
+    const double width = model.length > 0 ? model.width : 2 * model.radius;
+    return {std::min(model.height / 2, kMaxRadius * width), kTrack * width};
+}
+
 RobotModel withParameters(RobotModel base, const Record& record) {
     Diagnostics findings;
     applyBody(base, record);
@@ -134,6 +147,7 @@ RobotModel withParameters(RobotModel base, const Record& record) {
     if (record.has("accel")) base.accel = record.number("accel");
     if (record.has("rotaccel")) base.rotaccel = record.angle("rotaccel");
     applyDrive(base, record, findings);
+    applyWheels(base, record);
     applyNoise(base.noise, record);
     applyContacts(base, record, findings);
     findings.throwIfAny();

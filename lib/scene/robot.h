@@ -48,6 +48,13 @@ struct Bumper {
     friend bool operator==(const Bumper&, const Bumper&) = default;
 };
 
+/// The two driven wheels of a differential drive, at the sides of the centre of rotation.
+struct Wheels {
+    double radius = 0;  ///< metres
+    double track = 0;   ///< from the middle of one to that of the other, metres
+    friend bool operator==(const Wheels&, const Wheels&) = default;
+};
+
 /// The ring of sonars of a robot, all of one kind.
 struct SonarRing {
     std::vector<Pose2> places;              ///< in the robot's frame
@@ -74,11 +81,16 @@ struct RobotModel {
     Angle rotaccel = Angle::degrees(100);      ///< a second a second
     Drive drive = Drive::Differential;
     double max_sidespeed = 0;  ///< m/s, to either side; 0 but for Drive::Omni
+    Wheels wheels;             ///< all 0: unknown, see wheelsOf()
     MotionNoise noise;
     SonarRing sonar;
     std::vector<Bumper> bumpers;
     friend bool operator==(const RobotModel&, const RobotModel&) = default;
 };
+
+/// Returns the wheels of a differential drive; without them a track of 0.8
+/// of the body's width, and a radius of half of its height, but at most a fifth of its width.
+Wheels wheelsOf(const RobotModel& model);
 
 /// The autonomous motion of a robot or a person.
 struct MotionPlan {

@@ -55,6 +55,18 @@ TEST(RobotOf, BareRobotIsACylinderOfThirtyCentimetres) {
     EXPECT_LE(bare.rotspeed, bare.max_rotspeed);
 }
 
+TEST(RobotOf, WheelsAreThoseOfTheModelElseOfTheBody) {
+    EXPECT_EQ(wheelsOf(robot("model=pioneer-3dx")), (Wheels{0.0975, 0.33}));
+    EXPECT_EQ(wheelsOf(robot("model=pioneer-3dx wheels=0.1,0.3")), (Wheels{0.1, 0.3}));
+    const Wheels bare = wheelsOf(robot(""));
+    EXPECT_NEAR(bare.track, 0.48, 1e-12);
+    EXPECT_NEAR(bare.radius, 0.11, 1e-12);
+    const Wheels tall = wheelsOf(robot("size=0.5,0.4,1.2"));
+    EXPECT_NEAR(tall.track, 0.32, 1e-12);
+    EXPECT_NEAR(tall.radius, 0.08, 1e-12) << "within the body";
+    EXPECT_THROW(robot("wheels=0,0.3"), FormatError);
+}
+
 TEST(RobotOf, ModelGivesTheParametersAndExplicitKeysWin) {
     const RobotModel pioneer = robot("model=pioneer-2dx");
     EXPECT_EQ(pioneer.model, "pioneer-2dx");

@@ -83,8 +83,10 @@ struct RosScenery {
     std::function<RosGrid(const Scene& scene)> map = {};       ///< null: there is no map
     std::function<std::string(const Scene& scene)> room = {};  ///< a mesh as GLB; null: none
     /// Describes a robot and the sensors on it in URDF; null: none does. \param frame of the
-    /// robot \param sensors frames of all sensors, "" without
+    /// robot \param wheels frames of its left and right one, "" without \param sensors frames of
+    /// all sensors, "" without
     std::function<std::string(const Scene& scene, std::size_t robot, const std::string& frame,
+                              std::span<const std::string> wheels,
                               std::span<const std::string> sensors)>
         robot_model = {};
     /// Id of the robot whose topics have names without a prefix, too; "": the only one.

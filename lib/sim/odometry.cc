@@ -174,6 +174,22 @@ std::vector<std::size_t> strayStarts(std::span<Mover> movers, const ObstacleSets
     return kept;
 }
 
+WheelTravel travelOf(const Motion& from, const Motion& to, double duration) {
+    constexpr double kTurn = 360, kHalfTurn = 180;
+    const Vec2 way = to.pose.position - from.pose.position;
+    const double rate = (from.turn.speed + to.turn.speed) / 2;  // degrees a second
+    if (rate == 0 && from.pose.heading == to.pose.heading) return {dot(way, from.forward()), {}};
+    double turned = wrapped(to.pose.heading - from.pose.heading).degrees();
+    turned += kTurn * std::round((rate * duration - turned) / kTurn);
+    if (std::abs(turned) > kHalfTurn)  // the chord tells little
+        return {(from.drive.speed + to.drive.speed) / 2 * duration, Angle::degrees(turned)};
+    if (way == Vec2{}) return {0, Angle::degrees(turned)};
+    const Angle half = Angle::degrees(turned / 2);
+    // The chord points half of the turn to the side.
+    const double chord = dot(way, unitVector(from.pose.heading + half));
+    return {chord / sineOver(half.radians() * half.radians()), Angle::degrees(turned)};
+}
+
 Odometer::Odometer(const Mover& mover, std::uint64_t seed, bool noise)
     : noise_(mover.model.noise),
       seed_(seed),

@@ -13,6 +13,7 @@
 #include "sense/scan.h"
 #include "sim/collision.h"
 #include "sim/mover.h"
+#include "sim/wheel_travel.h"
 
 namespace ispace {
 
@@ -59,6 +60,10 @@ Pose2 strayed(const Pose2& motion, const MotionAlphas& alphas, const RandomKey& 
 std::vector<std::size_t> strayStarts(std::span<Mover> movers, const ObstacleSets& obstacles,
                                      std::uint64_t seed);
 
+/// Returns the way along the heading and the turn of a step, taken as an arc: exact for straight
+/// ways, turns on the spot and constant speeds. The speeds tell whole turns.
+WheelTravel travelOf(const Motion& from, const Motion& to, double duration);
+
 /// Computes a robot's pose from its wheels, from 0,0 and heading 0 at the start.
 class Odometer {
   public:
@@ -70,6 +75,12 @@ class Odometer {
     Vec2 stray(Motion& end, const Pose2& start, std::int64_t step);
     /// Records that the step was cancelled: the wheels stood still.
     void stay() { turned_ = {}; }
+    /// Adds the motion of a step to travel().
+    void roll(const WheelTravel& step) {
+        travel_.driven += step.driven;
+        travel_.turned = travel_.turned + step.turned;
+    }
+    [[nodiscard]] const WheelTravel& travel() const { return travel_; }
     /// Updates the odometry by the step, with its errors.
     void count(std::int64_t step);
 
@@ -107,6 +118,7 @@ class Odometer {
     Pose2 pose_;  // estimate so far
     PoseCovariance covariance_;
     Pose2 turned_;  // motion of the wheels in this step
+    WheelTravel travel_;
 };
 
 }  // namespace ispace

@@ -233,6 +233,24 @@ TEST_F(ReplayTest, OdometryAndNoiseAreThoseOfThen) {
     EXPECT_NE(again.odometry(0).pose.position, again.status(0).pose.position);
 }
 
+TEST_F(ReplayTest, WheelsRollAlongTheRecordedPoses) {
+    const Scene room = scene(kRoom, "robot id=r1 at=0,0 path=1,1;-1,-1 loop=yes\n");
+    World world(room, kStep);
+    {
+        Recorder recorder(folder_.path(), world, {});
+        for (int i = 0; i < 2000; ++i) {
+            world.step();
+            recorder.record(world);
+        }
+    }
+    Replay replay(folder_.path());
+    World again(room, kStep);
+    while (replay.step(again)) continue;
+    EXPECT_GT(std::abs(world.wheelTravel(0).driven), 1);
+    EXPECT_EQ(again.wheelTravel(0).driven, world.wheelTravel(0).driven);
+    EXPECT_EQ(again.wheelTravel(0).turned, world.wheelTravel(0).turned);
+}
+
 TEST_F(ReplayTest, SeeksBackAndForth) {
     record();
     // As step by step, whatever was sought before.

@@ -97,6 +97,10 @@ Odometry World::odometry(std::size_t robot) const {
             .alphas = data_->odometers[robot].alphas()};
 }
 
+const WheelTravel& World::wheelTravel(std::size_t robot) const {
+    return data_->odometers[robot].travel();
+}
+
 const SensorReading& World::reading(std::size_t sensor) const {
     return data_->sensors.reading(sensor);
 }

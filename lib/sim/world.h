@@ -19,6 +19,7 @@
 #include "sim/sensor_reading.h"
 #include "sim/sim_time.h"
 #include "sim/way_finder.h"
+#include "sim/wheel_travel.h"
 
 namespace ispace {
 
@@ -161,6 +162,9 @@ class World {
     /// its wheels, with the errors of its record's odometry_noise. Without noise it is the true
     /// pose relative to the start.
     [[nodiscard]] Odometry odometry(std::size_t robot) const;
+    /// Returns the motion of a robot's wheels since its start, which do not slip: along an arc in
+    /// each step.
+    [[nodiscard]] const WheelTravel& wheelTravel(std::size_t robot) const;
     /// Returns the newest reading; of a heavy sensor (see Sensor) the last one taken, if any.
     [[nodiscard]] const SensorReading& reading(std::size_t sensor) const;
     /// Returns the number of a sensor's newest period: that of its reading, unless it is heavy.

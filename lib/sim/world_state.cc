@@ -184,7 +184,9 @@ void World::Data::tell(std::size_t mover) {
 void World::Data::put(std::size_t mover, const RobotStatus& status) {
     moved = moved || status.pose != motions[mover].pose;
     if (moved) sensors.moved();
-    motions[mover] = motionOf(status);
+    const Motion before = std::exchange(motions[mover], motionOf(status));
+    if (mover < odometers.size() && status.pose != before.pose)
+        odometers[mover].roll(travelOf(before, motions[mover], seconds(step_length)));
     // It may suddenly be near to others, and faster than it drives by itself.
     for (MoverState& state : states) state.room = 0;
     longest_step.reset();

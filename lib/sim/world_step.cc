@@ -194,11 +194,15 @@ void World::Data::collide(const Collision& collision) {
 void World::Data::finish(std::size_t mover, Chunk& chunk) {
     Motion& motion = next_motions[mover];
     motion = moves[mover].to.motion;
-    chunk.moved = chunk.moved || motion.pose != motions[mover].pose;
-    if (mover >= odometers.size())
+    const bool has_moved = motion.pose != motions[mover].pose;
+    chunk.moved = chunk.moved || has_moved;
+    if (mover >= odometers.size()) {
         walk(mover);
-    else if (options.noise)
-        odometers[mover].count(steps);
+    } else {
+        if (has_moved)
+            odometers[mover].roll(travelOf(motions[mover], motion, moves[mover].duration));
+        if (options.noise) odometers[mover].count(steps);
+    }
     if (const auto point = pilots[mover].takeUnreached())
         chunk.unreached.push_back({mover, *point});
     if (states[mover].running == 0) return;

@@ -119,6 +119,62 @@ TEST(World, StepsOfAnyLengthComeToTheSameEnd) {
     }
 }
 
+TEST(World, WheelsRollAsFarAsTheRobotGoes) {
+    const Scene room = scene(kRoom, "robot id=r1 at=-2,0 heading=30\nrobot id=r2 at=3,0\n");
+    for (const SimTime step : {milliseconds(5), milliseconds(1000)}) {
+        World world(room, step);
+        world.command(0, {Verb::Forward, 1.3});
+        run(world, seconds(7));
+        world.command(0, {Verb::Left, 500});
+        run(world, seconds(12));
+        world.command(0, {Verb::Backward, 0.4});
+        run(world, seconds(4));
+        const WheelTravel& travel = world.wheelTravel(0);
+        EXPECT_NEAR(travel.driven, 0.9, 1e-12);
+        EXPECT_NEAR(travel.turned.degrees(), 500, 1e-9) << "more than a turn";
+        const Wheels wheels{.radius = 0.1, .track = 0.4};
+        const double arc = 0.2 * Angle::degrees(500).radians();
+        EXPECT_NEAR(travel.of(wheels, 1).radians(), (0.9 - arc) / 0.1, 1e-9);
+        EXPECT_NEAR(travel.of(wheels, -1).radians(), (0.9 + arc) / 0.1, 1e-9);
+        EXPECT_EQ(world.wheelTravel(1).driven, 0);
+        world.change(Scene(world.scene()));
+        EXPECT_NEAR(world.wheelTravel(0).driven, 0.9, 1e-12) << "kept";
+        world.rewind();
+        EXPECT_EQ(world.wheelTravel(0).driven, 0);
+    }
+}
+
+TEST(World, WheelsRollAlongCurves) {
+    const Scene room = scene(kRoom,
+                             "robot id=r1 at=-1,0 accel=5 rotaccel=5000 max_rotspeed=900\n"
+                             "robot id=r2 at=2,0 accel=0.3 rotaccel=40\n");
+    for (const SimTime step : {milliseconds(5), milliseconds(20), milliseconds(1000)}) {
+        World world(room, step);
+        world.command(0, {Verb::Speed, 0.5});
+        world.command(0, {Verb::Rotspeed, 400});
+        world.command(1, {Verb::Speed, 0.3});
+        world.command(1, {Verb::Rotspeed, 60});
+        run(world, seconds(20));
+        ASSERT_FALSE(world.isStalled(0) || world.isStalled(1));
+        // Until the speeds are reached, it goes half as far.
+        const bool is_short = step < seconds(1);
+        EXPECT_NEAR(world.wheelTravel(1).driven, 0.3 * (20 - 0.5), is_short ? 1e-6 : 0.02);
+        EXPECT_NEAR(world.wheelTravel(1).turned.degrees(), 60 * (20 - 0.75), 1e-6);
+        if (!is_short) continue;  // the other one turns by more than half a turn as it starts
+        EXPECT_NEAR(world.wheelTravel(0).driven, 0.5 * (20 - 0.05), 1e-3);
+        EXPECT_NEAR(world.wheelTravel(0).turned.degrees(), 400 * (20 - 0.04), 1e-6);
+    }
+}
+
+TEST(World, WheelsStandWhenAWallStopsThem) {
+    const Scene room = scene(kRoom, "robot id=r1\n");
+    World world(room, kStep);
+    world.command(0, {Verb::Speed, 0.5});
+    run(world, seconds(30));
+    ASSERT_TRUE(world.isStalled(0));
+    EXPECT_NEAR(world.wheelTravel(0).driven, world.status(0).pose.position.x, 1e-9);
+}
+
 TEST(World, NewCommandsEndOldOnes) {
     const Scene room = scene(kRoom, "robot id=r1\nrobot id=r2 at=2,0\n");
     World world(room, kStep);

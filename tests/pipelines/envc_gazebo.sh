@@ -49,6 +49,8 @@ root Link: world has 6 child(ren)
     child(4):  l1
     child(5):  r1
         child(1):  l2
+        child(2):  r1_left_wheel
+        child(3):  r1_right_wheel
     child(6):  u1
 END
     diff wanted tree || fail "another tree of links"
@@ -66,6 +68,9 @@ END
     joint c1 c1_optical 0 0 0 -1.570796 0 -1.570796
     joint world g1 2 2 1 0.0872665 0.174533 0
     joint r1 l2 0.1 0 0.3 0 0 1.570796
+    joint r1 r1_left_wheel 0 0.165 0.0975 0 0 0
+    joint r1 r1_right_wheel 0 -0.165 0.0975 0 0 0
+    [ "$(grep -c 'type="continuous"' room.urdf)" -eq 2 ] || fail "other wheels: $(cat room.urdf)"
     sed -i 's/<child link="l1"/<child link="l9"/' room.urdf
     if check_urdf room.urdf >/dev/null 2>&1; then fail "self-test: a link that is not there passes"; fi
 else

@@ -264,9 +264,11 @@ TEST(Head, IsTwoJointsOfItsRobot) {
     const std::uint32_t number = feed.numbersOf("/joint_states").front();
     feed.want(number);
     const auto joints = nlohmann::json::parse(*feed.entries().at(number).newest->json());
-    EXPECT_EQ(joints["name"], nlohmann::json({"h_1_pan", "h_1_tilt"}));
-    EXPECT_NEAR(joints["position"][0].get<double>(), std::numbers::pi / 2, 1e-12);
-    EXPECT_NEAR(joints["position"][1].get<double>(), -std::numbers::pi / 6, 1e-12);
+    EXPECT_EQ(joints["name"],
+              nlohmann::json({"r_left_wheel_joint", "r_right_wheel_joint", "h_1_pan", "h_1_tilt"}));
+    EXPECT_NEAR(joints["position"][2].get<double>(), std::numbers::pi / 2, 1e-12);
+    EXPECT_NEAR(joints["position"][3].get<double>(), -std::numbers::pi / 6, 1e-12);
+    EXPECT_TRUE(joints["velocity"][2].is_null()) << "unknown";
 }
 
 TEST(HeadService, IsForHeads) {

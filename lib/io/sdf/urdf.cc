@@ -2,6 +2,7 @@
 #include "io/sdf/urdf.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -84,6 +85,8 @@ namespace {
 
 /// Returns ROS' optical frame in a body's: x right, y down, z forward (REP 103).
 constexpr const char* kOpticalAngles = "-1.570796326795 0 -1.570796326795";
+/// Turns an upright cylinder so that its axis lies along y.
+constexpr const char* kAcrossAngles = "1.570796326795 0 0";
 
 /// The sensors of a layout as links: from `world`, or from the robot or person that carries them.
 class UrdfWriter {
@@ -106,8 +109,10 @@ class UrdfWriter {
     }
 
     std::string writeRobot(std::size_t robot, const std::string& frame,
+                           std::span<const std::string> wheels,
                            std::span<const std::string> sensors) {
         addRobotBody(addLink(frame), robot);
+        addWheels(robot, frame, wheels);
         for (const PlacedRecord& placed : scene_.placed)
             if (placed.mount && placed.mount->robot == robot &&
                 sensorKind(keywordOf(placed)) != nullptr && !sensors[placed.index].empty())
@@ -136,14 +141,15 @@ class UrdfWriter {
         origin.append_attribute("rpy").set_value(angles.c_str());
     }
 
-    void addJoint(const char* type, const std::string& parent, const std::string& child,
-                  Point3 place, const std::string& angles) {
+    pugi::xml_node addJoint(const char* type, const std::string& parent, const std::string& child,
+                            Point3 place, const std::string& angles) {
         pugi::xml_node joint = robot_.append_child("joint");
         joint.append_attribute("name").set_value((child + "_joint").c_str());
         joint.append_attribute("type").set_value(type);
         setOrigin(joint, place, angles);
         joint.append_child("parent").append_attribute("link").set_value(parent.c_str());
         joint.append_child("child").append_attribute("link").set_value(child.c_str());
+        return joint;
     }
 
     /// Adds a link's appearance; materials are defined at their first use.
@@ -195,6 +201,31 @@ class UrdfWriter {
             }
         }
         addJoint("floating", "world", name, placed.pose.position, anglesText(placed.pose));
+        if (keywordOf(placed) != "robot" ||
+            scene_.robots[placed.index].model.drive != Drive::Differential)
+            return;
+        const std::array<std::string, 2> wheels{names_.take(idOf(placed) + "_left_wheel"),
+                                                names_.take(idOf(placed) + "_right_wheel")};
+        addWheels(placed.index, name, wheels);
+    }
+
+    /// Adds the left and the right wheel; those without a name are left out.
+    void addWheels(std::size_t robot, const std::string& parent,
+                   std::span<const std::string> names) {
+        constexpr double kThickness = 0.4;  // shares of the radius
+        const Wheels wheels = wheelsOf(scene_.robots[robot].model);
+        double side = 1;
+        for (const std::string& name : names) {
+            const double place = side * wheels.track / 2;
+            side = -side;
+            if (name.empty()) continue;
+            const pugi::xml_node geometry = addVisual(addLink(name), {}, Material::Robot);
+            setCylinder(geometry, wheels.radius, kThickness * wheels.radius);
+            geometry.parent().child("origin").attribute("rpy").set_value(kAcrossAngles);
+            pugi::xml_node joint =
+                addJoint("continuous", parent, name, {0, place, wheels.radius}, "0 0 0");
+            joint.append_child("axis").append_attribute("xyz").set_value("0 1 0");
+        }
     }
 
     void addRobotBody(pugi::xml_node link, std::size_t index) {
@@ -260,8 +291,9 @@ class UrdfWriter {
 }  // namespace
 
 std::string writeRobotUrdf(const Scene& scene, std::size_t robot, const std::string& frame,
+                           std::span<const std::string> wheels,
                            std::span<const std::string> sensors) {
-    return UrdfWriter(scene, frame).writeRobot(robot, frame, sensors);
+    return UrdfWriter(scene, frame).writeRobot(robot, frame, wheels, sensors);
 }
 
 std::string writeUrdf(const Scene& scene, const std::string& title) {

@@ -190,12 +190,19 @@ std::string batteryMessage(const RosHeader& header, float volts) {
 std::string jointsMessage(const RosHeader& header, std::span<const RosJoint> joints) {
     CdrWriter out = headed(header);
     out.count(joints.size());
-    std::vector<double> angles;
+    std::vector<double> angles, rates;
+    angles.reserve(joints.size());
+    rates.reserve(joints.size());
+    bool has_rates = false;
     for (const RosJoint& joint : joints) {
         out.put(joint.name);
         angles.push_back(joint.angle.radians());
+        rates.push_back(joint.rate ? joint.rate->radians()
+                                   : std::numeric_limits<double>::quiet_NaN());
+        has_rates = has_rates || joint.rate;
     }
-    return out.sequence<double>(angles).count(0).count(0).take();
+    if (!has_rates) rates.clear();
+    return out.sequence<double>(angles).sequence<double>(rates).count(0).take();
 }
 
 std::string pointMessage(const RosHeader& header, Point3 point) {

@@ -146,7 +146,9 @@ std::string batteryMessage(const RosHeader& header, float volts);
 struct RosJoint {
     std::string name;
     Angle angle;
+    std::optional<Angle> rate = {};  ///< a second; empty: unknown
 };
+/// Writes angles and, if any is known, rates: those that are not are NaN.
 std::string jointsMessage(const RosHeader& header, std::span<const RosJoint> joints);
 
 struct RosDiagnostic {

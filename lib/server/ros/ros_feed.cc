@@ -166,7 +166,7 @@ void RosFeed::stepped() {
 /// Computes the message of the current period, unless a background job does.
 void RosFeed::update(Entry& entry) {
     const RosChannel& channel = entry.channel;
-    if (channel.isInput()) return;
+    if (channel.isInput()) return updateEcho(entry);
     if (channel.state) return updateState(entry);
     if (channel.source != nullptr) return updateSource(entry);
     const World& world = worlds_[channel.room].world();
@@ -270,9 +270,10 @@ RosMoment RosFeed::moment(std::size_t index) {
                     const RosFrames& frames = worlds_[index].frames;
                     return scenery_.robot_model
                                ? scenery_.robot_model(world.scene(), robot, frames.movers[robot],
-                                                      frames.sensors)
+                                                      frames.wheels[robot], frames.sensors)
                                : std::string();
-                }};
+                },
+            .lone = lone_};
 }
 
 /// Computes the map of a room in the background, then publishes it.

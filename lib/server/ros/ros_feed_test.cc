@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
@@ -215,9 +218,10 @@ TEST(RosFeed, RobotsAreMarkers) {
 TEST(RosFeed, RobotsHaveABatteryJointsAndAModel) {
     int written = 0;
     Fed fed("", {.robot_model = [&written](const Scene&, std::size_t robot,
-                                           const std::string& frame, auto sensors) {
+                                           const std::string& frame, auto wheels, auto sensors) {
                 ++written;
                 std::string text = std::to_string(robot) + frame;
+                for (const std::string& each : wheels) text += ' ' + each;
                 for (const std::string& each : sensors) text += ' ' + each;
                 return text;
             }});
@@ -230,9 +234,11 @@ TEST(RosFeed, RobotsHaveABatteryJointsAndAModel) {
     EXPECT_EQ(battery["present"], true);
     EXPECT_TRUE(battery["current"].is_null());
     EXPECT_EQ(battery["serial_number"], "");
-    EXPECT_EQ(fed.newest("/r1/joint_states")["name"], json::array()) << "no head is on it";
+    EXPECT_EQ(fed.newest("/r1/joint_states")["name"],
+              json({"r1_left_wheel_joint", "r1_right_wheel_joint"}));
     const auto model = fed.entry("/r2/robot_description").newest;
-    EXPECT_EQ(fed.newest("/r2/robot_description")["data"], "1r2 l1 l2");
+    EXPECT_EQ(fed.newest("/r2/robot_description")["data"],
+              "1r2 r2_left_wheel r2_right_wheel l1 l2");
     EXPECT_TRUE(fed.entry("/r2/robot_description").channel.quality.is_latched);
     fed.room.world.change(Scene(fed.room.world.scene()));
     fed.state.sync();
@@ -280,6 +286,69 @@ TEST(RosFeed, OdometryAndFramesAgreeWithTheWorld) {
         EXPECT_NEAR(one["transform"]["translation"]["x"].get<double>(), 2, 1e-9) << "its start";
         EXPECT_NEAR(one["transform"]["rotation"]["z"].get<double>(), std::sqrt(0.5), 1e-9);
     }
+}
+
+TEST(RosFeed, WheelsAgreeInFramesAndJoints) {
+    Fed fed;
+    for (const char* topic : {"/r1/joint_states", "/tf"}) fed.feed.want(fed.number(topic));
+    World& world = fed.room.world;
+    world.command(0, {Verb::Speed, 0.5});
+    fed.step(20);
+    world.command(0, {Verb::Rotspeed, 30});
+    fed.step(20);
+    const Wheels wheels{.radius = 0.0825, .track = 0.33};
+    const RobotStatus status = world.status(0);
+    ASSERT_GT(std::abs(status.rotspeed.radians()), 0.1);
+    const json joints = fed.newest("/r1/joint_states");
+    const json frames = fed.newest("/tf")["transforms"];
+    for (const double side : {1, -1}) {
+        const std::string frame = side > 0 ? "r1_left_wheel" : "r1_right_wheel";
+        const std::size_t joint = side > 0 ? 0 : 1;
+        EXPECT_EQ(joints["name"][joint], frame + "_joint");
+        const double angle = joints["position"][joint];
+        EXPECT_EQ(angle, world.wheelTravel(0).of(wheels, side).radians());
+        EXPECT_NEAR(joints["velocity"][joint].get<double>(),
+                    (status.speed - side * status.rotspeed.radians() * 0.165) / 0.0825, 1e-12);
+        const auto one = std::find_if(frames.begin(), frames.end(), [&](const json& each) {
+            return each["child_frame_id"] == frame;
+        });
+        ASSERT_NE(one, frames.end()) << frame;
+        EXPECT_EQ((*one)["header"]["frame_id"], "r1");
+        EXPECT_EQ((*one)["transform"]["translation"]["y"], side * 0.165);
+        EXPECT_EQ((*one)["transform"]["translation"]["z"], 0.0825);
+        // The axis of the joint is y.
+        const json& turn = (*one)["transform"]["rotation"];
+        const double half =
+            std::atan2(turn["y"].get<double>(), turn["w"].get<double>()) - angle / 2;
+        EXPECT_NEAR(std::sin(half), 0, 1e-9);
+        EXPECT_NEAR(std::hypot(turn["x"].get<double>(), turn["z"].get<double>()), 0, 1e-12);
+    }
+}
+
+TEST(RosFeed, OnlyDifferentialDrivesHaveTwoWheels) {
+    Fed fed("robot id=r3 at=-2,-1 drive=omni\n");
+    for (const char* topic : {"/r3/joint_states", "/tf"}) fed.feed.want(fed.number(topic));
+    EXPECT_EQ(fed.newest("/r3/joint_states")["name"], json::array());
+    EXPECT_EQ(fed.newest("/r3/joint_states")["velocity"], json::array());
+    EXPECT_EQ(fed.newest("/tf").dump().find("r3_left_wheel"), std::string::npos);
+}
+
+TEST(RosFeed, TheFramesOfOneRobotHaveTheirUsualNames) {
+    const auto parents = [](const std::string& robot, const std::string& more) {
+        Fed fed(more, {.robot = robot});
+        fed.feed.want(fed.number("/tf_static"));
+        std::map<std::string, std::string> out;
+        const json message = fed.newest("/tf_static");
+        for (const json& one : message["transforms"])
+            out.emplace(one["child_frame_id"], one["header"]["frame_id"]);
+        return out;
+    };
+    EXPECT_FALSE(parents("", "").contains("base_link")) << "two robots";
+    auto of_r2 = parents("r2", "");
+    EXPECT_EQ(of_r2["odom"], "r2_odom");
+    EXPECT_EQ(of_r2["base_footprint"], "r2");
+    EXPECT_EQ(of_r2["base_link"], "r2");
+    EXPECT_EQ(parents("r2", "laser id=odom at=1,1\n")["odom"], "map") << "something else has it";
 }
 
 TEST(RosFeed, SonarsAndPeopleFollowTheWorld) {

@@ -36,6 +36,12 @@ std::string uniqueName(std::set<std::string>& taken, const std::string& name) {
     return unique;
 }
 
+std::array<std::string, 2> wheelNames(std::set<std::string>& taken, const std::string& robot,
+                                      const RobotModel& model) {
+    if (model.drive != Drive::Differential) return {};
+    return {uniqueName(taken, robot + "_left_wheel"), uniqueName(taken, robot + "_right_wheel")};
+}
+
 bool hasOptical(const Sensor& sensor) {
     const auto topics = rosTopicsOf(sensor);
     return std::any_of(topics.begin(), topics.end(),
@@ -55,6 +61,8 @@ RosFrames::RosFrames(const World& world) {
         const bool is_shown = !rosTopicsOf(sensor).empty();
         sensors.push_back(is_shown ? uniqueName(taken, rosName(sensor.id)) : "");
     }
+    for (std::size_t i = 0; i < robots; ++i)
+        wheels.push_back(wheelNames(taken, movers[i], world.robots()[i].model));
 }
 
 std::string RosRoom::topic(std::string_view name) const {
@@ -73,6 +81,7 @@ void nameFrames(std::span<RosRoom> rooms) {
     std::set<std::string> taken{std::string(kRosWorld)};
     // By id, in whichever room a thing is now. Odometry frames are named after all movers.
     std::map<std::string, std::string> movers, odometries, sensors;
+    std::map<std::string, std::array<std::string, 2>> wheels;
     for (RosRoom& room : rooms) {
         room.frames = {};
         room.frames.room = uniqueName(taken, rosName(room.id));
@@ -84,11 +93,17 @@ void nameFrames(std::span<RosRoom> rooms) {
     for (auto& [id, name] : movers) name = uniqueName(taken, rosName(id));
     for (auto& [id, name] : odometries) name = uniqueName(taken, movers[id] + "_odom");
     for (auto& [id, name] : sensors) name = uniqueName(taken, rosName(id));
+    std::map<std::string, const RobotModel*> models;
+    for (const RosRoom& room : rooms)
+        for (const PlacedRobot& robot : room.world().robots()) models[robot.id] = &robot.model;
+    for (const auto& [id, model] : models) wheels[id] = wheelNames(taken, movers[id], *model);
     for (RosRoom& room : rooms) {
         for (const Mover& mover : room.world().movers())
             room.frames.movers.push_back(movers[mover.id]);
-        for (const PlacedRobot& robot : room.world().robots())
+        for (const PlacedRobot& robot : room.world().robots()) {
             room.frames.odometries.push_back(odometries[robot.id]);
+            room.frames.wheels.push_back(wheels[robot.id]);
+        }
         for (const Sensor& sensor : room.world().sensors()) {
             const auto named = sensors.find(nameAcross(room.id, sensor.id));
             room.frames.sensors.push_back(named == sensors.end() ? "" : named->second);
@@ -133,7 +148,25 @@ std::string clockOf(const RosMoment& moment, std::size_t /*robot*/, std::size_t 
     return clockMessage(moment.now());
 }
 
-/// Adds movers, odometry frames, and swept lasers, which move on their mounts.
+constexpr std::array<double, 2> kSides{1, -1};  // left, right
+
+/// Adds the wheels of a robot, as far as they have rolled.
+void addWheels(const RosRoom& room, std::size_t robot, std::uint64_t now,
+               std::vector<RosTransform>& out) {
+    const World& world = room.world();
+    const Wheels wheels = wheelsOf(world.robots()[robot].model);
+    for (std::size_t i = 0; i < kSides.size(); ++i) {
+        const std::string& frame = room.frames.wheels[robot][i];
+        if (frame.empty()) continue;
+        const Angle rolled = world.wheelTravel(robot).of(wheels, kSides[i]);
+        // A positive tilt looks up: the wheel rolls down ahead.
+        out.push_back({{now, room.frames.movers[robot]},
+                       frame,
+                       {{0, kSides[i] * wheels.track / 2, wheels.radius}, {}, -rolled, {}}});
+    }
+}
+
+/// Adds movers, odometry frames, wheels, and swept lasers, which move on their mounts.
 void addMoving(const RosRoom& room, std::uint64_t now, std::vector<RosTransform>& out) {
     const World& world = room.world();
     const RosFrames& frames = room.frames;
@@ -144,6 +177,7 @@ void addMoving(const RosRoom& room, std::uint64_t now, std::vector<RosTransform>
         else
             addRobotFrames(out, now, frames.odometries[i], frames.movers[i], pose,
                            world.odometry(i).pose);
+        if (i < world.robots().size()) addWheels(room, i, now, out);
     }
     for (RosTransform& one : out)
         if (one.header.frame == kRosWorld) one.header.frame = frames.room;
@@ -205,10 +239,31 @@ void addFixed(const RosRoom& room, std::uint64_t now, std::deque<std::string>& n
     }
 }
 
+/// Adds the frames that programs of one robot expect, but for those that something else has.
+void addLoneFrames(const RosMoment& moment, std::vector<RosTransform>& out) {
+    const auto add = [&](std::string_view parent, std::string_view child) {
+        const auto has_it = [&](const RosRoom& room) {
+            const auto& [of_room, movers, odometries, sensors, wheels] = room.frames;
+            return of_room == child || std::ranges::find(movers, child) != movers.end() ||
+                   std::ranges::find(sensors, child) != sensors.end();
+        };
+        if (std::ranges::any_of(moment.rooms, has_it)) return;
+        out.push_back({{moment.now(), parent}, child, {}});
+    };
+    for (const RosRoom& room : moment.rooms) {
+        const auto robot = room.world().robotNamed(moment.lone);
+        if (!robot) continue;
+        add(room.frames.odometries[*robot], "odom");
+        add(room.frames.movers[*robot], "base_footprint");
+        add(room.frames.movers[*robot], "base_link");
+    }
+}
+
 std::string fixedFrames(const RosMoment& moment, std::size_t /*robot*/, std::size_t /*part*/) {
     std::deque<std::string> names;
     std::vector<RosTransform> out;
     for (const RosRoom& room : moment.rooms) addFixed(room, moment.now(), names, out);
+    addLoneFrames(moment, out);
     addRooms(moment, true, out);
     return transformsMessage(out);
 }
@@ -303,11 +358,21 @@ std::string batteryOf(const RosMoment& moment, std::size_t robot, std::size_t /*
     return batteryMessage({moment.now(), moment.frames().movers[robot]}, kBatteryVolts);
 }
 
-/// Writes the angles of the things on a robot that turn, such as heads.
+/// Writes the angles of a robot's wheels and of the things on it that turn, such as heads.
 std::string jointsOf(const RosMoment& moment, std::size_t robot, std::size_t /*part*/) {
-    const Scene& scene = moment.world().scene();
-    const std::string& id = moment.world().robots()[robot].id;
+    const World& world = moment.world();
+    const Scene& scene = world.scene();
+    const std::string& id = world.robots()[robot].id;
     std::vector<RosJoint> joints;
+    const Wheels wheels = wheelsOf(world.robots()[robot].model);
+    const RobotStatus status = world.status(robot);
+    for (std::size_t i = 0; i < kSides.size(); ++i) {
+        const std::string& frame = moment.frames().wheels[robot][i];
+        if (frame.empty()) continue;
+        const WheelTravel rate{status.speed, status.rotspeed};
+        joints.push_back({frame + "_joint", world.wheelTravel(robot).of(wheels, kSides[i]),
+                          rate.of(wheels, kSides[i])});
+    }
     for (std::size_t i = 0; i < scene.records.size(); ++i) {
         const Record& record = scene.records[i];
         if (carrierOf(record) != id) continue;
@@ -359,7 +424,7 @@ constexpr RosRow kRows[] = {
     {"move_base_simple/goal", RosType::PoseStamped, Of::Robot, 0, kNewest, nullptr, goalOf},
     {"robots", RosType::MarkerArray, Of::Room, 10, kDefault, robotsOf},
     {"battery_state", RosType::BatteryState, Of::Robot, 1, kDefault, batteryOf},
-    {"joint_states", RosType::JointState, Of::Robot, 10, kDefault, jointsOf},
+    {"joint_states", RosType::JointState, Of::Robot, 20, kDefault, jointsOf},
     {"robot_description", RosType::String, Of::Robot, 0, kLatched, modelOf},
     {"clicked_point", RosType::PointStamped, Of::Robot, 0, kNewest, nullptr, clickedOf}};
 // NOLINTEND(readability-magic-numbers)

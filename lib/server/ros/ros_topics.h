@@ -4,6 +4,7 @@
 // files. Private to lib/server; uses sim and below.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -37,6 +38,8 @@ struct RosFrames {
     std::string room = std::string(kRosWorld);    ///< of all that stands in the scene
     std::vector<std::string> movers, odometries;  ///< of robots alone: odometries
     std::vector<std::string> sensors;             ///< of mats and gates: ""
+    /// Left and right wheel of each robot: "r1_left_wheel"; of omnidirectional ones "".
+    std::vector<std::array<std::string, 2>> wheels;
     /// Returns the frame of one sonar: "r1_sonar_3".
     [[nodiscard]] std::string sonar(std::size_t robot, std::size_t which) const;
 };
@@ -77,6 +80,7 @@ struct RosMoment {
     std::function<const std::vector<float>&(std::size_t robot)> sonars;
     std::function<const std::vector<bool>&(std::size_t robot)> bumpers;
     std::function<std::string(std::size_t robot)> robot_model;  ///< in URDF, "" without
+    std::string_view lone = {};  ///< id of the robot whose topics have names without a prefix, too
 
     [[nodiscard]] const World& world() const { return room.world(); }
     [[nodiscard]] const RosFrames& frames() const { return room.frames; }
@@ -144,12 +148,12 @@ struct RosChannel {
     std::string about = {};              ///< of a source, see RosSourceTopic
     bool is_input = false;               ///< of a source
 
+    /// Returns the key of the messages of clients in TopicEchoes.
+    [[nodiscard]] std::string echoKey() const { return topic + ' ' + std::string(nameOf(type)); }
     [[nodiscard]] bool isInput() const {
         return source != nullptr ? is_input
                : state           ? state->is_command
                                  : row != nullptr && row->decode != nullptr;
-    /// Returns the key of the messages of clients in TopicEchoes.
-    [[nodiscard]] std::string echoKey() const { return topic + ' ' + std::string(nameOf(type)); }
     }
 };
 /// Returns all topics of the worlds: of rows, of sensors, of states. Inputs that accept two types
