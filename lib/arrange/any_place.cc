@@ -66,18 +66,17 @@ std::uint64_t maxCellsInView(const SensorModel& device, const Grid& grid) {
 namespace {
 
 /// Computes the multiplicity that sensors at any poses can add to all cells together.
-std::uint64_t maxParts(const Problem& problem, const Grid& grid,
-                       std::span<const SensorModel> devices, std::span<const int> most) {
+std::uint64_t maxParts(const Problem& problem, std::span<const std::uint64_t> in_view,
+                       std::span<const int> most) {
     struct Offer {
         double parts, cost;
         int most;
     };
     std::vector<Offer> offers;
-    offers.reserve(devices.size());
-    for (std::size_t k = 0; k < devices.size(); ++k) {
+    offers.reserve(in_view.size());
+    for (std::size_t k = 0; k < in_view.size(); ++k) {
         const SensorType& kind = problem.kinds[k];
-        offers.push_back({kind.multiplicity * static_cast<double>(maxCellsInView(devices[k], grid)),
-                          kind.cost, most[k]});
+        offers.push_back({kind.multiplicity * static_cast<double>(in_view[k]), kind.cost, most[k]});
     }
     std::stable_sort(offers.begin(), offers.end(), [](const Offer& a, const Offer& b) {
         return a.parts * b.cost > b.parts * a.cost;
@@ -93,9 +92,9 @@ std::uint64_t maxParts(const Problem& problem, const Grid& grid,
 
 }  // namespace
 
-std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
-                              std::span<const SensorModel> devices, std::span<const int> most) {
-    std::uint64_t value = 0, parts = maxParts(problem, grid, devices, most);
+std::uint64_t maxFromAnyPlace(const Problem& problem, std::span<const std::uint64_t> in_view,
+                              std::span<const int> most) {
+    std::uint64_t value = 0, parts = maxParts(problem, in_view, most);
     /// Multiplicity that a cell lacks.
     struct Missing {
         std::uint32_t weight;
@@ -103,7 +102,7 @@ std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
     };
     std::vector<Missing> missing;
     int together = 0;  // from all sensors per cell
-    for (std::size_t k = 0; k < devices.size(); ++k)
+    for (std::size_t k = 0; k < in_view.size(); ++k)
         together += most[k] * problem.kinds[k].multiplicity;
     for (std::size_t i = 0; i < problem.cells(); ++i) {
         const int achieved = problem.achieved.empty() ? 0 : problem.achieved[i];

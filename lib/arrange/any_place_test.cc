@@ -185,10 +185,10 @@ TEST(MostFromAnyPlace, TakesTheDearestCellsThatAreMissing) {
     ASSERT_GE(cells, 1U);
     ASSERT_LT(cells, 10U);
     const auto most_of = [&](int number) {
-        const SensorModel devices[] = {small};
+        const std::uint64_t in_view[] = {cells};
         const int most[] = {number};
         problem.kinds = {SensorType{}};
-        return maxFromAnyPlace(problem, grid, devices, most);
+        return maxFromAnyPlace(problem, in_view, most);
     };
     EXPECT_EQ(most_of(0), 10U) << "what is met already";
     EXPECT_EQ(most_of(1), 10 + 50 + (cells - 1));
@@ -218,19 +218,19 @@ TEST(MostFromAnyPlace, ABudgetBuysWhatSeesMostForItsCost) {
     Problem problem;
     problem.weights.assign(grid.size(), 1);
     problem.achieved.assign(grid.size(), 0);
-    const SensorModel devices[] = {receiver(2), receiver(4)};
-    const std::uint64_t few = maxCellsInView(devices[0], grid),
-                        many = maxCellsInView(devices[1], grid);
+    const std::uint64_t few = maxCellsInView(receiver(2), grid),
+                        many = maxCellsInView(receiver(4), grid);
+    const std::uint64_t in_view[] = {few, many};
     ASSERT_GT(many, 2 * few);
     problem.kinds = {SensorType{}, SensorType{}};
     problem.kinds[1].cost = 2;
     const int most[] = {10, 10};
     problem.budget = 5;
-    const std::uint64_t bought = maxFromAnyPlace(problem, grid, devices, most);
+    const std::uint64_t bought = maxFromAnyPlace(problem, in_view, most);
     EXPECT_GE(bought, 2 * many + few);
     EXPECT_LE(bought, 5 * many / 2 + 1);
     problem.budget.reset();
-    EXPECT_EQ(maxFromAnyPlace(problem, grid, devices, most), 10 * (many + few));
+    EXPECT_EQ(maxFromAnyPlace(problem, in_view, most), 10 * (many + few));
 }
 
 }  // namespace

@@ -247,6 +247,9 @@ std::vector<SearchResult> searchByNumber(const SearchResult& found, const Covera
     // multipliers.
     SimilarSearch similar;
     SearchOptions options = model.searchOptions();
+    // The proofs that shards have are of the first search.
+    if (options.share.joined > 0 && options.share.what == Shared::Tree)
+        options.share = SearchShare();
     options.similar = &similar;
     for (std::size_t n = 1; n <= last; ++n) {
         fewer.budget = static_cast<double>(n);

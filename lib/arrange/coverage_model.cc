@@ -681,8 +681,16 @@ void CoverageModel::spreadRedundant(std::vector<Choice>& chosen) const {
 }
 
 std::uint64_t CoverageModel::maxFromAnyPlace(const std::vector<int>& most) const {
-    if (!site_.isOneRoom()) return total_;
-    return ispace::maxFromAnyPlace(problem_, only().target().grid, devicesOf(kinds_), most);
+    std::vector<std::uint64_t> in_view;
+    for (const SensorClass& kind : kinds_) {
+        std::uint64_t& cells = in_view.emplace_back(0);
+        for (const Room& room : rooms_) {
+            if (room.model == nullptr) continue;
+            const std::uint64_t own = maxCellsInView(kind.model, room.model->target().grid);
+            cells = joinsRooms() ? cells + own : std::max(cells, own);
+        }
+    }
+    return ispace::maxFromAnyPlace(problem_, in_view, most);
 }
 
 namespace {

@@ -273,12 +273,12 @@ class CoverageModel {
 ///   its outline, as of any convex figure, is at most pi times its diameter.
 std::uint64_t maxCellsInView(const SensorModel& device, const Grid& grid);
 
-/// Returns an upper bound of the value of sensors at any poses, on the grid of the problem's
-/// weights: the standing coverage and the heaviest other cells, as many as these sensors can see
-/// together. `devices` holds one model per kind of the problem, `most` the maximum number of each
-/// kind; with a budget, sensors with the most cells per cost count first, the last one in part.
-std::uint64_t maxFromAnyPlace(const Problem& problem, const Grid& grid,
-                              std::span<const SensorModel> devices, std::span<const int> most);
+/// Returns an upper bound of the value of sensors at any poses: the standing coverage and the
+/// heaviest other cells, as many as these sensors can see together. `in_view` holds the maximum
+/// number of cells that a sensor of each kind of the problem sees, `most` the maximum number of
+/// sensors; with a budget, those with the most cells per cost count first, the last one in part.
+std::uint64_t maxFromAnyPlace(const Problem& problem, std::span<const std::uint64_t> in_view,
+                              std::span<const int> most);
 
 class CoverageModel;
 struct CountedView;

@@ -224,6 +224,8 @@ std::vector<SearchResult> searchParts(const CoverageModel& model, Progress& prog
             for (const Choice& choice : own.best.chosen)
                 result.best.chosen.push_back({0, results[i].candidates[choice.candidate]});
         }
+        // Numbers that are not part of the best split may lack a proof.
+        result.is_complete = result.is_complete || result.best.value >= result.bound;
     }
     return all;
 }
