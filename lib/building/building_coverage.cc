@@ -68,6 +68,17 @@ void nameWholly(const BuildingScene& building, std::size_t storey,
 }
 
 void addUp(BuildingCoverage& building) {
+    if (building.storeys.size() == 1) {
+        const CoverageReport& report = building.storeys.front().report;
+        building.indoor_area = report.indoor_area;
+        building.free_area = report.free_area;
+        building.total_effective_area = report.total_effective_area;
+        building.outside = report.outside;
+        building.coverage = report.coverage;
+        building.free_coverage = report.free_coverage;
+        building.redundancy = report.redundancy;
+        return;
+    }
     AreaSum total_grid, total_exact, outside, grid, exact, free_grid, free_exact;
     for (const Coverage& storey : building.storeys) {
         const CoverageReport& report = storey.report;
@@ -124,7 +135,8 @@ std::shared_ptr<const OutsideView> withCells(const StoreySight& sight,
 
 }  // namespace
 
-BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options) {
+BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options,
+                                 Progress* progress) {
     const Coupling coupling(building);
     BuildingCoverage measured;
     measured.floors = coupling.floors(options.plane);
@@ -141,7 +153,7 @@ BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOp
             for (std::size_t k = 0; k < views.size(); ++k)
                 views[k] = withCells(sight, building, outside[i][k], i);
             Worlds worlds(scene.environment);
-            measured.storeys.push_back(measureWithOutside(scene, worlds, options, views));
+            measured.storeys.push_back(measureWithOutside(scene, worlds, options, views, progress));
         } else {
             measured.storeys.push_back(measured.storeys[first->second]);
         }
@@ -273,6 +285,7 @@ void addRedundancy(std::vector<double>& sum, std::span<const double> shares, dou
 
 CoverageReport sumOfStoreys(const BuildingCoverage& coverage) {
     const CoverageReport& first = coverage.storeys.front().report;
+    if (coverage.storeys.size() == 1) return first;
     CoverageReport sum;
     sum.height = first.height;
     sum.plane = first.plane;
@@ -332,22 +345,39 @@ CoverageReport sumOfStoreys(const BuildingCoverage& coverage) {
     return sum;
 }
 
-Coverage subjectOf(const Requirement& requirement, const BuildingScene& building,
-                   const BuildingCoverage& coverage) {
-    if (requirement.of != Requirement::Of::Zone) {
-        Coverage sum;
-        sum.report = sumOfStoreys(coverage);
-        return sum;
-    }
+namespace {
+
+/// Returns the storey with the zone of a requirement. \throws as mustHaveZone()
+std::size_t storeyOfZone(const Requirement& requirement, const BuildingScene& building) {
     std::vector<std::string> known;
-    for (const Coverage& storey : coverage.storeys)
-        for (const ZoneMetrics& zone : storey.report.zones) {
-            if (zone.id == requirement.zone) return storey;
-            known.push_back(zone.id);
+    for (std::size_t i = 0; i < building.scenes.size(); ++i)
+        for (const Element& element : building.scenes[i]->environment.elements()) {
+            if (element.record.keyword() != "zone") continue;
+            known.push_back(wholeId(building.document.storeys[i], element.id));
+            if (known.back() == requirement.zone) return i;
         }
     throw UsageError("the building has no zone `" + printable(requirement.zone) + '`' +
                      didYouMean(requirement.zone, known) + "; the storey comes first, as in " +
                      building.document.storeys.front().id + "/NAME");
+}
+
+}  // namespace
+
+void mustHaveZone(const Requirement& requirement, const BuildingScene& building) {
+    if (building.isRoomAlone())
+        mustHaveZone(requirement, building.scenes.front()->environment);
+    else if (requirement.of == Requirement::Of::Zone)
+        static_cast<void>(storeyOfZone(requirement, building));
+}
+
+Verdict checkRequirement(const Requirement& requirement, const BuildingScene& building,
+                         const BuildingCoverage& coverage) {
+    if (building.isRoomAlone()) return checkRequirement(requirement, coverage.storeys.front());
+    if (requirement.of == Requirement::Of::Zone)
+        return checkRequirement(requirement, coverage.storeys[storeyOfZone(requirement, building)]);
+    Coverage sum;
+    sum.report = sumOfStoreys(coverage);
+    return checkRequirement(requirement, sum);
 }
 
 void compareStoreys(BuildingCoverage& coverage, const BuildingCoverage& other,
@@ -375,8 +405,18 @@ BuildingParts partsOf(const BuildingRunCoverage& run) {
     return parts;
 }
 
+ReportParts partsOfRoom(const BuildingCoverage& coverage, const BuildingParts& parts) {
+    ReportParts own = parts.storeys.empty() ? ReportParts() : parts.storeys.front();
+    own.advice = parts.sum.advice;
+    own.robustness = parts.sum.robustness;
+    if (!coverage.rules.empty()) own.rules = &coverage.rules.front();
+    return own;
+}
+
 std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage,
                                  const BuildingParts& parts) {
+    if (building.isRoomAlone())
+        return coverageJson(coverage.storeys.front().report, partsOfRoom(coverage, parts));
     std::vector<ReportedRoom> rooms;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
         rooms.push_back({building.document.storeys[i].id, &coverage.storeys[i].report});
@@ -425,6 +465,9 @@ std::uint32_t redundancyScale(const BuildingCoverage& coverage) {
 
 std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage,
                                  const BuildingParts& parts) {
+    if (building.isRoomAlone())
+        return coverageText(coverage.storeys.front().report) +
+               partsText(partsOfRoom(coverage, parts));
     std::string text;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         text += "storey " + building.document.storeys[i].id + '\n' +

@@ -21,7 +21,7 @@
 namespace ispace {
 
 /// The coverage of each storey, and their sums: areas add up, shares are of all floor. Ids in the
-/// reports name the storey, as in "ground/l1".
+/// reports name the storey, as in "ground/l1". Of a room alone the figures are its own.
 struct BuildingCoverage {
     std::vector<Coverage> storeys;                     ///< with the views from other storeys
     std::vector<std::shared_ptr<const Scene>> floors;  ///< what was measured, Coupling::floors()
@@ -37,7 +37,9 @@ struct BuildingCoverage {
 
 /// Measures the floor of all storeys, without openings in it; those with equal rooms and views
 /// once. Rangers and cameras see through shafts and over stairs, see viewsBetweenStoreys().
-BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options);
+/// \param progress see measureCoverage(), for each storey
+BuildingCoverage measureBuilding(const BuildingScene& building, const CoverageOptions& options,
+                                 Progress* progress = nullptr);
 
 /// Measures rules of facing and of privacy in the storeys that have their doors or zones; a rule
 /// `GLOB/ZONE` or `GLOB/door:...` only in storeys with matching ids. Cameras of other storeys
@@ -74,10 +76,14 @@ std::uint32_t redundancyScale(const BuildingCoverage& coverage);
 /// sensor with what it sees in all storeys, and the zones of all in their order, with whole ids.
 CoverageReport sumOfStoreys(const BuildingCoverage& coverage);
 
-/// Returns the coverage that a requirement is about: of a zone `ID/NAME` that of its storey, else
-/// the sums of the building. \throws UsageError for a zone that the building does not have
-Coverage subjectOf(const Requirement& requirement, const BuildingScene& building,
-                   const BuildingCoverage& coverage);
+/// Checks the zone's name, `ID/NAME`. \throws UsageError for a zone that the building does not
+/// have, with the nearest name
+void mustHaveZone(const Requirement& requirement, const BuildingScene& building);
+
+/// Checks a requirement of a zone with the coverage of its storey, others with the sums of the
+/// building. \throws as mustHaveZone()
+Verdict checkRequirement(const Requirement& requirement, const BuildingScene& building,
+                         const BuildingCoverage& coverage);
 
 /// Compares the storeys and their sums with those of another layout of the same building.
 void compareStoreys(BuildingCoverage& coverage, const BuildingCoverage& other,
@@ -92,10 +98,13 @@ struct BuildingParts {
 BuildingParts partsOf(const BuildingRunCoverage& run);
 
 /// Writes one JSON object and a newline, schema ispace-coverage/1 with an item of `rooms` for each
-/// storey.
+/// storey; of a room alone coverageJson().
 std::string buildingCoverageJson(const BuildingScene& building, const BuildingCoverage& coverage,
                                  const BuildingParts& parts = {});
-/// Writes the report of each storey, then a table of all, and the parts of the building.
+/// Returns the parts of a room alone, which is one storey and the sum.
+ReportParts partsOfRoom(const BuildingCoverage& coverage, const BuildingParts& parts);
+/// Writes the report of each storey, then a table of all, and the parts of the building; of a room
+/// alone its report.
 std::string buildingCoverageText(const BuildingScene& building, const BuildingCoverage& coverage,
                                  const BuildingParts& parts = {});
 

@@ -71,6 +71,7 @@ bool arePlain(const Storey& storey, std::span<const Edit> edits) {
 }  // namespace
 
 std::shared_ptr<const Scene> sceneOfBuilding(const BuildingScene& building, std::size_t storey) {
+    if (building.isRoomAlone()) return building.scenes[storey];
     const Scene& scene = *building.scenes[storey];
     std::vector<Record> records;
     for (std::size_t i = 0; i < scene.records.size(); ++i)

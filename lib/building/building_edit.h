@@ -20,7 +20,8 @@ namespace ispace {
 /// storey, and as makeBuilding()
 void editBuilding(StoreyedDocument& building, std::span<const Edit> edits);
 
-/// Returns the scene of a storey with the ids of all its records across the building.
+/// Returns the scene of a storey with the ids of all its records across the building; that of a
+/// room alone.
 std::shared_ptr<const Scene> sceneOfBuilding(const BuildingScene& building, std::size_t storey);
 
 }  // namespace ispace

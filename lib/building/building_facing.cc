@@ -95,6 +95,11 @@ std::vector<CameraRules> measureBuildingRules(const BuildingScene& building,
                                               const CoverageOptions& options,
                                               std::span<const FacingRule> facing,
                                               std::span<const PrivacyRule> privacy) {
+    if (building.isRoomAlone()) {
+        const Scene& room = *building.scenes.front();
+        return {CameraRules{measureFacing(room, coverage.storeys.front(), facing),
+                            measurePrivacy(room, options.plane, privacy)}};
+    }
     std::vector<CameraRules> measured(building.scenes.size());
     for (const FacingRule& rule : facing)
         forEachStoreyOf(
@@ -170,7 +175,7 @@ std::vector<JudgedRule> judgedInBuilding(const BuildingScene& building,
     std::vector<JudgedRule> all;
     for (std::size_t i = 0; i < rules.size(); ++i)
         for (JudgedRule& rule : judgedRules(rules[i])) {
-            const std::string storey = building.document.storeys[i].id + ": ";
+            const std::string storey = building.document.storeys[i].prefix();
             rule.rule.insert(0, storey);
             if (!rule.plain.empty()) rule.plain.insert(0, storey);
             all.push_back(std::move(rule));

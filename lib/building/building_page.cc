@@ -10,8 +10,11 @@
 #include "building/coupling.h"
 #include "report/coverage_report.h"
 #include "report/map/map.h"
+#include "report/objective_report.h"
 #include "report/page/cables.h"
 #include "report/page/installation.h"
+#include "report/presence_report.h"
+#include "report/robustness_report.h"
 #include "report/run_report.h"
 
 namespace ispace {
@@ -36,11 +39,11 @@ PageSection buildingSummary(const BuildingPageInput& input) {
                  squareMetres(coverage.free_area) + " of it free, and " + std::to_string(sensors) +
                  (sensors == 1 ? " sensor." : " sensors.")});
     section.blocks.push_back(PageText{seenText(coverage.coverage)});
-    if (input.run != nullptr && !input.run->sum.all.time_shares.empty())
-        section.blocks.push_back(sightInRun(input.run->sum, "robots and people on storeys"));
-    if (input.run != nullptr)
-        for (PageText& text : incidentsOf(input.run->sum))
-            section.blocks.push_back(std::move(text));
+    const RunCoverage* const run = input.parts.sum.run;
+    if (run != nullptr && !run->all.time_shares.empty())
+        section.blocks.push_back(sightInRun(*run, "robots and people on storeys"));
+    if (run != nullptr)
+        for (PageText& text : incidentsOf(*run)) section.blocks.push_back(std::move(text));
     for (PageText& text : findingTexts(input.findings)) section.blocks.push_back(std::move(text));
     if (!input.requirements.empty())
         section.blocks.push_back(requirementsTable(input.requirements));
@@ -56,7 +59,8 @@ PageSection storeysSection(const BuildingPageInput& input) {
         {std::make_move_iterator(rows.begin() + 1), std::make_move_iterator(rows.end())}};
     PageSection section{"storeys", "Storeys", {}};
     section.blocks.push_back(std::move(table));
-    if (input.run != nullptr) section.blocks.push_back(PageCode{runText(input.run->sum)});
+    if (input.parts.sum.run != nullptr)
+        section.blocks.push_back(PageCode{runText(*input.parts.sum.run)});
     return section;
 }
 
@@ -82,10 +86,9 @@ bool isEmpty(const Coverage& coverage) {
 PageSection storeySection(const BuildingPageInput& input, std::size_t storey) {
     const Storey& own = input.building.document.storeys[storey];
     const Coverage& coverage = input.coverage.storeys[storey];
-    const RunCoverage* const run =
-        input.run == nullptr || input.run->storeys[storey].members.empty()
-            ? nullptr
-            : &input.run->storeys[storey];
+    const RunCoverage* run =
+        input.parts.storeys.empty() ? nullptr : input.parts.storeys[storey].run;
+    if (run != nullptr && run->members.empty()) run = nullptr;
     MapOptions options;
     options.redundancy_scale = redundancyScale(input.coverage);
     options.run = run;
@@ -165,12 +168,44 @@ PageSection recordsOf(const BuildingPageInput& input) {
     return section;
 }
 
+/// Adds the parts that are about all storeys together.
+void addPartsOfAll(const BuildingPageInput& input, ReportPage& page) {
+    const auto add = [&page](const char* id, const char* title, std::string text) {
+        page.sections.push_back({id, title, {PageCode{std::move(text)}}});
+    };
+    const BuildingCoverage& coverage = input.coverage;
+    if (coverage.comparison)
+        add("comparison", "Beside another layout",
+            comparisonText(*coverage.comparison, coverage.coverage));
+    const ReportParts& parts = input.parts.sum;
+    if (parts.objectives != nullptr)
+        add("objectives", parts.objectives->localisation ? "Positions" : "Ways",
+            objectivesText(*parts.objectives));
+    if (parts.presence != nullptr) add("presence", "Presence", presenceText(*parts.presence));
+    if (parts.robustness != nullptr) page.sections.push_back(robustnessSection(*parts.robustness));
+}
+
+ReportPage pageOfRoom(const BuildingPageInput& input) {
+    CoveragePageInput page{*input.coverage.floors.front(), input.coverage.storeys.front(),
+                           input.name, input.command, input.requirements};
+    page.parts = partsOfRoom(input.coverage, input.parts);
+    page.more = input.more;
+    page.media = input.media;
+    page.cover = input.cover;
+    page.paper = input.paper;
+    page.prices = input.prices;
+    page.findings = input.findings;
+    page.progress = input.progress;
+    return coveragePage(page);
+}
+
 }  // namespace
 
 ReportPage buildingPage(const BuildingPageInput& input) {
+    if (input.building.isRoomAlone()) return pageOfRoom(input);
     ReportPage page;
-    page.title =
-        input.name + (input.name.empty() ? "" : ": ") + (input.run == nullptr ? "coverage" : "run");
+    page.title = input.name + (input.name.empty() ? "" : ": ") +
+                 (input.parts.sum.run == nullptr ? "coverage" : "run");
     page.cover = input.cover;
     if (!page.cover.title.empty()) page.title = page.cover.title;
     page.paper = input.paper;
@@ -179,6 +214,7 @@ ReportPage buildingPage(const BuildingPageInput& input) {
     page.sections.push_back(buildingSummary(input));
     page.sections.push_back(storeysSection(input));
     for (const PageSection& section : input.more) page.sections.push_back(section);
+    addPartsOfAll(input, page);
     if (!input.coverage.rules.empty()) page.sections.push_back(rulesSection(input));
     std::vector<CabledRoom> rooms;
     std::vector<PageSection> sheets;
@@ -199,10 +235,11 @@ ReportPage buildingPage(const BuildingPageInput& input) {
             {"material", "Material", {materialTable(material, input.prices.currency)}});
     page.sections.push_back(methodsSection(input.coverage.storeys.front().report));
     for (PageSection& sheet : sheets) page.sections.push_back(std::move(sheet));
-    if (input.advice != nullptr) page.sections.push_back(adviceSection(*input.advice));
+    if (input.parts.sum.advice != nullptr)
+        page.sections.push_back(adviceSection(*input.parts.sum.advice));
     const std::size_t appendix = page.sections.size();
-    if (input.advice != nullptr && !input.advice->suggestions.empty())
-        page.sections.push_back(adviceCommands(*input.advice));
+    if (input.parts.sum.advice != nullptr && !input.parts.sum.advice->suggestions.empty())
+        page.sections.push_back(adviceCommands(*input.parts.sum.advice));
     page.sections.push_back(recordsOf(input));
     page.sections[appendix].begins_sheet = input.cover.isGiven();
     return typeset(std::move(page));

@@ -16,8 +16,8 @@ struct BuildingPageInput {
     std::string name;     ///< base name of ENV; "" from stdin
     std::string command;  ///< as in histories
     std::vector<JudgedRequirement> requirements = {};
-    const BuildingRunCoverage* run = nullptr;  ///< null: without
-    const Advice* advice = nullptr;            ///< null: without
+    BuildingParts parts = {};
+    CoveragePageInput::Media media = CoveragePageInput::Media::Any;  ///< of a room alone
     PageCover cover = {};
     Paper paper = Paper::A4;
     PriceList prices = {};
@@ -26,9 +26,9 @@ struct BuildingPageInput {
     Progress* progress = nullptr;           ///< of the pictures; null: silent
 };
 
-/// Builds the report of a building: summary, requirements, figures by storey and in sum; map,
-/// figures and the sheet of the installer of each storey; the material of all. With a cover each
-/// camera has a sheet.
+/// Builds the report of a building, of a room alone coveragePage(): summary, requirements, figures
+/// by storey and in sum; map, figures and the sheet of the installer of each storey; the material
+/// of all. With a cover each camera has a sheet.
 ReportPage buildingPage(const BuildingPageInput& input);
 
 }  // namespace ispace

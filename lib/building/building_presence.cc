@@ -29,6 +29,7 @@ void nameWholly(const Storey& storey, bool of_people, Presence& presence) {
 }
 
 Presence sumOverStoreys(std::span<const Presence> storeys) {
+    if (storeys.size() == 1) return storeys.front();
     Presence sum;
     std::map<std::string, std::size_t> known;
     for (const Presence& storey : storeys) {

@@ -24,6 +24,11 @@ struct BuildingInfo {
     EnvironmentInfo sum;  // limits: in the building; height: from the lowest floor
 };
 
+EnvironmentInfo infoOfRoom(const BuildingScene& alone) {
+    const Scene& scene = *alone.scenes.front();
+    return describe(scene.environment, scene.records, scene.digest());
+}
+
 BuildingInfo describe(const BuildingScene& building) {
     BuildingInfo info;
     std::map<const Scene*, EnvironmentInfo> known;
@@ -65,6 +70,7 @@ BuildingInfo describe(const BuildingScene& building) {
 }  // namespace
 
 std::string buildingInfoJson(const BuildingScene& building) {
+    if (building.isRoomAlone()) return infoJson(infoOfRoom(building));
     const BuildingInfo info = describe(building);
     std::vector<RoomInfo> rooms;
     for (std::size_t i = 0; i < info.storeys.size(); ++i) {
@@ -98,6 +104,7 @@ std::string buildingInfoJson(const BuildingScene& building) {
 }
 
 std::string buildingInfoText(const BuildingScene& building) {
+    if (building.isRoomAlone()) return infoText(infoOfRoom(building));
     const BuildingInfo info = describe(building);
     std::string text;
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {

@@ -73,6 +73,9 @@ SampledFigures perturbBuilding(const BuildingScene& building, const BuildingCove
                                const CoverageOptions& measure, const MountingTolerance& tolerance,
                                int mountings, std::uint64_t seed,
                                std::span<const Requirement> requirements, Progress& progress) {
+    if (building.isRoomAlone())  // with the sight of its walls from one mounting to the next
+        return perturbMounting(*building.scenes.front(), planned.storeys.front().report, measure,
+                               tolerance, mountings, seed, requirements, progress);
     const CoverageOptions options = sharesOf(measure);
     progress.begin("mountings", mountings);
     const auto mounted = [&](int mounting) {
@@ -98,6 +101,13 @@ SampledFigures perturbBuilding(const BuildingScene& building, const BuildingCove
 SampledFigures crowdBuilding(const BuildingScene& building, const BuildingCoverage& planned,
                              const CoverageOptions& measure, std::span<const BuildingCrowd> crowds,
                              std::span<const Requirement> requirements, Progress& progress) {
+    if (building.isRoomAlone()) {
+        std::vector<Crowd> in_room;
+        in_room.reserve(crowds.size());
+        for (const BuildingCrowd& crowd : crowds) in_room.push_back(crowd.front());
+        return measureCrowds(*building.scenes.front(), planned.storeys.front().report, measure,
+                             in_room, requirements, progress);
+    }
     const CoverageOptions options = sharesOf(measure);
     progress.begin("crowds", static_cast<std::int64_t>(crowds.size()));
     const auto crowded = [&](int sample) {

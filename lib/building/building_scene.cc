@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/message.h"
+#include "building/building_schemas.h"
 #include "env/body_shapes.h"
 #include "env/walls.h"
 #include "io/glb/glb_write.h"
@@ -37,6 +38,18 @@ Record withIds(Record record, const std::string& id, Change change) {
 
 double BuildingScene::height(std::size_t storey) const {
     return document.storeys[storey].height.value_or(scenes[storey]->environment.height());
+}
+
+BuildingScene roomAlone(Document room, std::shared_ptr<const Scene> scene,
+                        const DeviceCatalogue& devices) {
+    StoreyedDocument document;
+    document.storeys.push_back(Storey{Record(*buildingSchemas().find("storey")),
+                                      "",
+                                      {},
+                                      0,
+                                      {},
+                                      std::make_shared<const Document>(std::move(room))});
+    return {std::move(document), {std::move(scene)}, devices};
 }
 
 Point2 inStorey(const Storey& storey, Point2 p) {
@@ -99,7 +112,7 @@ Record inBuilding(const Storey& storey, Record record, const std::string& id) {
 
 std::shared_ptr<const Scene> sceneWithWholeIds(const BuildingScene& building, std::size_t storey) {
     const std::shared_ptr<const Scene>& scene = building.scenes[storey];
-    if (scene->robots.empty() && scene->people.empty()) return scene;
+    if (building.isRoomAlone() || (scene->robots.empty() && scene->people.empty())) return scene;
     std::set<std::string_view> movers;
     for (std::size_t i = 0; i < scene->records.size(); ++i)
         if (isMoverRecord(scene->records[i])) movers.insert(scene->ids[i]);

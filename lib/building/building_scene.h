@@ -16,7 +16,8 @@
 
 namespace ispace {
 
-/// A building and the scene of each storey. Storeys of one room without a layout share a scene.
+/// A building and the scene of each storey. Storeys of one room without a layout share a scene. A
+/// room alone is one, too, with a storey without an id: see roomAlone().
 struct BuildingScene {
     StoreyedDocument document;
     std::vector<std::shared_ptr<const Scene>> scenes;  ///< by storey
@@ -24,7 +25,13 @@ struct BuildingScene {
 
     /// Returns the height of a storey: as given, else that of its highest wall.
     [[nodiscard]] double height(std::size_t storey) const;
+    [[nodiscard]] bool isRoomAlone() const { return document.isRoomAlone(); }
 };
+
+/// Returns the building that a room alone is: its ids stand for themselves, and it is all that its
+/// sensors see. \param room its environment \param scene of it
+BuildingScene roomAlone(Document room, std::shared_ptr<const Scene> scene,
+                        const DeviceCatalogue& devices);
 
 /// Converts a point of the building to the frame of a storey.
 Point2 inStorey(const Storey& storey, Point2 p);
@@ -33,9 +40,9 @@ Point2 inStorey(const Storey& storey, Point2 p);
 /// corner to the head's, its left one, and that of the foot.
 Polygon footprintOf(const StoreyPassage& passage, const Storey& storey);
 
-/// Returns the id of a thing across the building: "ground/d1".
+/// Returns the id of a thing across the building: "ground/d1"; in a room alone "d1".
 inline std::string wholeId(const Storey& storey, const std::string& id) {
-    return storey.id + '/' + id;
+    return storey.id.empty() ? id : storey.id + '/' + id;
 }
 
 /// Splits a layout by storey: ids become plain, and so do ids in references. `environment` and
@@ -70,7 +77,7 @@ bool hasWayOn(const BuildingScene& building, std::size_t storey, Point2 end,
               std::optional<Vec2> back);
 
 /// Returns one JSON object and a newline, schema ispace-info/1 with an item of `rooms` for each
-/// storey.
+/// storey; of a room alone infoJson() and infoText().
 std::string buildingInfoJson(const BuildingScene& building);
 std::string buildingInfoText(const BuildingScene& building);
 

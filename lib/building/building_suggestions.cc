@@ -122,7 +122,7 @@ std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
     const auto uncovered_of = [&](const BuildingCoverage& by) {
         double sum = 0;
         for (const Requirement& requirement : options.requirements)
-            sum += checkRequirement(requirement, subjectOf(requirement, building, by)).missing;
+            sum += checkRequirement(requirement, building, by).missing;
         return sum;
     };
     const double before = seenShare(coverage), missing = missing_of(building, coverage);
@@ -187,6 +187,29 @@ std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
     std::move(savings.begin(), savings.end(), std::back_inserter(gains));
     if (gains.size() > options.most) gains.resize(options.most);
     return gains;
+}
+
+Advice adviceFor(const BuildingScene& building, const BuildingCoverage& coverage,
+                 const SuggestOptions& options, const DeviceCatalogue& devices,
+                 Progress& progress) {
+    Advice advice;
+    double missing = 0;
+    if (building.isRoomAlone()) {
+        const Scene& room = *building.scenes.front();
+        const Coverage& measured = coverage.storeys.front();
+        advice.suggestions = suggestChanges(room, measured, options, devices, progress);
+        missing = missingFloor(room, measured, options);
+    } else {
+        BuildingScene equipped = building;
+        equipped.devices = devices;
+        advice.suggestions = suggestForBuilding(equipped, coverage, options, progress);
+        missing = missingFloor(coverage.rules);
+    }
+    advice.is_short =
+        missing > 0 && (advice.suggestions.empty() ||
+                        advice.suggestions.front().kind != Suggestion::Kind::Together ||
+                        advice.suggestions.front().unmet > 0);
+    return advice;
 }
 
 }  // namespace ispace

@@ -9,6 +9,7 @@
 #include "arrange/suggestion.h"
 #include "building/building_coverage.h"
 #include "building/building_scene.h"
+#include "report/suggestion_report.h"
 
 namespace ispace {
 
@@ -40,5 +41,10 @@ BuildingScene editedStorey(const BuildingScene& building, std::size_t storey, co
 std::vector<Suggestion> suggestForBuilding(const BuildingScene& building,
                                            const BuildingCoverage& coverage,
                                            const SuggestOptions& options, Progress& progress);
+
+/// Finds suggestForBuilding(), of a room alone suggestChanges(), and whether they fall short of the
+/// rules, of a room alone also of the requirements. \param devices that may stand in for sensors
+Advice adviceFor(const BuildingScene& building, const BuildingCoverage& coverage,
+                 const SuggestOptions& options, const DeviceCatalogue& devices, Progress& progress);
 
 }  // namespace ispace

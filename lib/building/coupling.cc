@@ -769,6 +769,7 @@ std::shared_ptr<const Environment> Coupling::surroundings(std::size_t storey, Mo
 
 std::shared_ptr<const Scene> Coupling::floor(std::size_t storey, double highest) const {
     const auto& scene = building_.scenes[storey];
+    if (building_.isRoomAlone()) return scene;
     const auto [low, high] = heightsOfSensors(*scene);
     RoomBuilder::Extent extent{.low = 0, .high = std::max(high, highest) + kRayEpsilon};
     extent.with_own_slab = low < -kSkin;
@@ -801,6 +802,7 @@ std::vector<std::shared_ptr<const Scene>> Coupling::floors(double highest) const
 
 std::shared_ptr<const Scene> Coupling::recordedFloor(std::size_t storey) const {
     const auto& scene = building_.scenes[storey];
+    if (building_.isRoomAlone()) return scene;
     RoomBuilder::Extent extent{.low = 0};
     extent.with_own_slab = heightsOfSensors(*scene).first < -kSkin;
     RoomBuilder builder(*this, {storey}, storey, extent);
@@ -908,7 +910,7 @@ std::vector<Diagnostic> storeyFindings(const Coupling& coupling, std::size_t sto
     std::vector<Diagnostic> found;
     for (const Finding& finding : findings) {
         Diagnostic& diagnostic = found.emplace_back(finding.diagnostic());
-        diagnostic.message = building.document.storeys[storey].id + ": " + diagnostic.message;
+        diagnostic.message.insert(0, building.document.storeys[storey].prefix());
     }
     return found;
 }

@@ -68,7 +68,8 @@ bool hasFloor(const Scene& scene);
 /// Guarantees: for sensors of a storey that look at its own floor, floor() gives the same answer as
 /// surroundings(), as it leaves out only bodies above or below all lines of sight. The same
 /// building gives the same environments. Thread-safe; shares the scenes of the building, which are
-/// those of the constructor's call.
+/// those of the constructor's call. A room alone has no surroundings: floor() and surroundings()
+/// return its own scene and environment.
 ///
 /// Cost: the constructor takes O(passages). An environment is built at the first call and kept; it
 /// holds the elements of its storey and one mesh of all that is around, and building it takes

@@ -16,6 +16,7 @@
 #include "base/run_files.h"
 #include "building/building_imports.h"
 #include "building/building_schemas.h"
+#include "drawing/plan/found_rooms.h"
 #include "io/exporters.h"
 #include "io/glb/glb_read.h"
 #include "io/import_records.h"
@@ -160,8 +161,11 @@ class RoomFiles {
         const std::string path = sideFilePath(operand_, name);
         checkPlace(record, name, path);
         const auto [known, is_new] = rooms_.try_emplace(fs::canonical(path).string());
-        if (is_new) known->second = readRoom(record, name, path);
-        return known->second;
+        auto& [room, plans] = known->second;
+        const std::size_t before = options_.found == nullptr ? 0 : options_.found->rooms.size();
+        if (is_new) room = readRoom(record, name, path);
+        if (options_.found != nullptr) listRooms(record.writtenId(), before, is_new, plans);
+        return room;
     }
     [[nodiscard]] std::vector<std::string> takeSources() { return std::move(sources_); }
     /// Returns true if the building has no work left for further rooms.
@@ -206,10 +210,26 @@ class RoomFiles {
         return std::make_shared<const Document>(std::move(room));
     }
 
+    /// Names the storey of the rooms that its plan has, of one read before those again.
+    void listRooms(const std::string& storey, std::size_t before, bool is_new,
+                   std::vector<FoundRoom>& plans) const {
+        std::vector<FoundRoom>& all = options_.found->rooms;
+        const auto first = all.begin() + static_cast<std::ptrdiff_t>(before);
+        if (is_new) plans.assign(first, all.end());
+        all.erase(first, all.end());
+        for (FoundRoom room : plans) {
+            room.storey = storey;
+            all.push_back(std::move(room));
+        }
+    }
+
+    /// A room, and those that its plan has.
+    using Read = std::pair<std::shared_ptr<const Document>, std::vector<FoundRoom>>;
+
     const std::string& operand_;
     const ImportOptions& options_;
     Budget& work_;
-    std::map<std::string, std::shared_ptr<const Document>> rooms_;  // by canonical path
+    std::map<std::string, Read> rooms_;  // by canonical path
     std::vector<std::string> sources_;
 };
 
@@ -253,6 +273,7 @@ bool isBuilding(std::string_view bytes) {
 }
 
 std::string StoreyedDocument::digest() const {
+    if (isRoomAlone()) return environmentDigest(storeys.front().room->records);
     std::string text;
     for (const Storey& storey : storeys)
         text += formatRecord(storey.record) + ' ' + environmentDigest(storey.room->records) + '\n';

@@ -28,6 +28,9 @@ struct Storey {
     /// Names of files in its records are relative to the folder of the building. Storeys of equal
     /// files share it.
     std::shared_ptr<const Document> room;
+
+    /// Returns "ID: ", the beginning of a message about it; "" for a room alone, which has no id.
+    [[nodiscard]] std::string prefix() const { return id.empty() ? "" : id + ": "; }
 };
 
 /// Stairs, a lift or a shaft, in the coordinates of the building.
@@ -52,8 +55,13 @@ struct StoreyedDocument {
     std::vector<std::string> notes;
     std::vector<Diagnostic> warnings;
 
-    /// Returns the digest of the rooms' environments and of all that joins them.
+    /// Returns the digest of the rooms' environments and of all that joins them, of a room alone
+    /// that of its environment.
     [[nodiscard]] std::string digest() const;
+    /// Returns true for a room alone: a site of one room, whose id is empty.
+    [[nodiscard]] bool isRoomAlone() const {
+        return storeys.size() == 1 && storeys.front().id.empty();
+    }
     /// Returns the ids, lowest first, as "ground, upper".
     [[nodiscard]] std::string storeyList() const;
     /// Finds a storey by its id, else by its name, else by either in any case. \throws UsageError

@@ -97,6 +97,10 @@ std::string recordedBuilding(const std::string& folder) {
     return holdsBuilding(folder) ? fileOfRecord(folder, kRecordedBuilding) : "";
 }
 
+std::string recordOfStorey(const std::string& folder, const Storey& storey) {
+    return storey.id.empty() ? folder : folder + '/' + storey.id;
+}
+
 namespace {
 
 /// Fixed sensors of a storey that a run has changed.
@@ -115,7 +119,7 @@ std::vector<SensorChange> sensorChanges(const BuildingScene& building, const std
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         std::shared_ptr<const Scene> now = sceneWithWholeIds(building, i);
         RunChanges changes =
-            changesOfRun(folder + '/' + building.document.storeys[i].id, *now, max_work);
+            changesOfRun(recordOfStorey(folder, building.document.storeys[i]), *now, max_work);
         while (auto step = changes.next(std::numeric_limits<double>::infinity(), *now, unknown)) {
             auto next = std::make_shared<const Scene>(std::move(step->scene));
             if (looksOtherwise(*now, *next)) found.push_back({step->change.time, i, next});
@@ -141,7 +145,11 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
     for (const Storey& storey : building.document.storeys) ids.push_back(storey.id);
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         if (!sensor_changes.empty()) rooms.emplace(building, watch.plane);
-        own_watch.outside = [&rooms, i](const Scene& scene) { return rooms->outside(i, scene); };
+        const Storey& storey = building.document.storeys[i];
+        if (!building.isRoomAlone())
+            own_watch.outside = [&rooms, i](const Scene& scene) {
+                return rooms->outside(i, scene);
+            };
         const auto advance = [&, next = sensor_changes.begin()](double time) mutable {
             bool is_new = false;
             for (; next != sensor_changes.end() && next->time < time; ++next) {
@@ -150,21 +158,19 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
             }
             return is_new;
         };
-        const std::string& id = ids[i];
-        std::string own = folder;
-        own.append("/").append(id);
-        RunCoverage& storey = run.storeys.emplace_back();
-        if (RunReader(own).next()) {
+        const std::string own = recordOfStorey(folder, storey);
+        RunCoverage& measured = run.storeys.emplace_back();
+        if (building.isRoomAlone() || RunReader(own).next()) {
             const auto scene = sceneWithWholeIds(building, i);
             RunReader reader(own);
             RunChanges changes = changesOfRun(own, *scene, max_work);
-            storey = measureRun(*scene, reader, own_watch, &changes, advance);
-            if (!changes.failure().empty()) warnings.push_back(id + ": " + changes.failure());
+            measured = measureRun(*scene, reader, own_watch, &changes, advance);
+            if (!changes.failure().empty()) warnings.push_back(storey.prefix() + changes.failure());
             if (reader.isCut())
-                warnings.push_back(id +
-                                   ": the record ends in the midst of a step, which is left out");
+                warnings.push_back(storey.prefix() +
+                                   "the record ends in the midst of a step, which is left out");
         }
-        storey.name = baseName(folder) + '/' + id;
+        measured.name = baseName(folder) + (storey.id.empty() ? "" : '/' + storey.id);
     }
     run.sum = sumOverStoreys(run.storeys, ids);
     run.sum.name = baseName(folder);
@@ -392,6 +398,10 @@ void addZones(std::span<const std::string> zones, BuildingScene& building) {
     const StoreyedDocument& document = building.document;
     std::map<std::size_t, std::vector<std::string>> by_storey;
     for (const std::string& text : zones) {
+        if (building.isRoomAlone()) {
+            by_storey[0].push_back(text);
+            continue;
+        }
         const std::size_t slash = text.find('/');
         if (slash == std::string::npos && !text.starts_with(kDoorPrefix))
             throw UsageError("--zone: " + excerpt(text) + " names no storey, as in " +
@@ -409,6 +419,7 @@ void addZones(std::span<const std::string> zones, BuildingScene& building) {
             for (Record& zone : zoneRecords(texts, scene.environment, sceneSchemas()))
                 records.push_back(std::move(zone));
         } catch (const UsageError& error) {
+            if (building.isRoomAlone()) throw;
             throw UsageError("--zone: " + document.storeys[storey].id + ": " + error.what());
         }
         building.scenes[storey] =

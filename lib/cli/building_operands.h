@@ -56,6 +56,9 @@ bool holdsBuilding(const std::string& folder);
 /// \throws as checkRecordFolder() and fileOfRecord()
 std::string recordedBuilding(const std::string& folder);
 
+/// Returns the folder of a storey's record; of a room alone that of the record.
+std::string recordOfStorey(const std::string& folder, const Storey& storey);
+
 /// Measures the record of a building's run, storey by storey and in sum. \param max_work of changes
 /// \param warnings gets what could not be read or repeated \throws as measureRun()
 BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std::string& folder,
@@ -63,7 +66,8 @@ BuildingRunCoverage measureBuildingRun(const BuildingScene& building, const std:
                                        std::optional<std::uint64_t> max_work,
                                        std::vector<std::string>& warnings);
 
-/// Adds the zones of --zone to the scenes of their storeys, as records: `ground/rect:1,1,2,2`.
+/// Adds the zones of --zone to the scenes of their storeys, as records: `ground/rect:1,1,2,2`; to
+/// a room alone those without a storey.
 /// \throws UsageError without a storey, for an unknown one, and as readZones()
 void addZones(std::span<const std::string> zones, BuildingScene& building);
 

@@ -310,9 +310,9 @@ void addZones(std::span<const std::string> zones, SceneInput& input) {
         makeScene(std::move(records), input.scene, devicesFor({&input.environment, layout}));
 }
 
-OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
+OtherLayout readOtherLayout(const LaidRoom& room, const std::string& operand,
                             const SceneRules& rules) {
-    std::vector<std::string> operands = input.named;
+    std::vector<std::string> operands = room.named;
     operands.push_back(operand);
     mustReadStdinOnce(operands);
     const Document layout = read(operand, rules);
@@ -320,15 +320,15 @@ OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
         throw FormatError(
             {displayName(operand), 0, 0, "an environment, where a layout (`#3dm 1`) is wanted"});
     std::vector<Diagnostic> warnings;
-    const bool is_operand = std::find(input.named.begin(), input.named.end(),
-                                      input.environment_operand) != input.named.end();
-    checkDigest(layout, {input.environment.records, input.environment_operand, is_operand},
+    const bool is_operand = std::find(room.named.begin(), room.named.end(),
+                                      room.environment_operand) != room.named.end();
+    checkDigest(layout, {room.environment.records, room.environment_operand, is_operand},
                 rules.same_environment, warnings);
     std::vector<std::string> files = {operand};
     files.insert(files.end(), layout.sources.begin(), layout.sources.end());
-    return {makeScene(input.environment, &layout, devicesFor({&input.environment, &layout}),
-                      &input.scene),
-            std::move(files), std::move(warnings)};
+    return {
+        makeScene(room.environment, &layout, devicesFor({&room.environment, &layout}), &room.scene),
+        std::move(files), std::move(warnings)};
 }
 
 namespace {

@@ -77,6 +77,13 @@ std::vector<std::string> filesOf(const SceneInput& input);
 ///         FormatError, std::system_error as the readers do, and for a digest that differs
 SceneInput readScene(const SceneRequest& request);
 
+/// A room whose layout is compared with another one. Keeps references.
+struct LaidRoom {
+    const Document& environment;
+    const Scene& scene;
+    const std::vector<std::string>& named;  ///< as SceneInput::named
+    const std::string& environment_operand;
+};
 /// The scene of another layout in the same environment.
 struct OtherLayout {
     Scene scene;
@@ -85,7 +92,7 @@ struct OtherLayout {
 };
 /// Reads it from `operand`, which may be - if stdin was not read yet. \throws as readScene, and
 /// FormatError if it is no layout
-OtherLayout readOtherLayout(const SceneInput& input, const std::string& operand,
+OtherLayout readOtherLayout(const LaidRoom& room, const std::string& operand,
                             const SceneRules& rules);
 
 /// \throws UsageError if two of these files are stdin

@@ -66,13 +66,16 @@ TEST_F(Operands, AnotherLayoutSharesTheRoom) {
     writeLayout("layout.txt", "");
     writeLayout("other.txt", "laser id=l2 at=3,3,0.2\n");
     const SceneInput input = readScene({{"room.env", "layout.txt"}});
-    const OtherLayout other = readOtherLayout(input, "other.txt", {});
+    const OtherLayout other = readOtherLayout(
+        {input.environment, input.scene, input.named, input.environment_operand}, "other.txt", {});
     EXPECT_EQ(&other.scene.environment.elements(), &input.scene.environment.elements());
     EXPECT_EQ(other.scene.sensors.size(), 2U);
     EXPECT_EQ(input.scene.sensors.size(), 1U);
     // One that changes the room has one of its own.
     writeLayout("changed.txt", "cube at=2,2 size=0.5,0.5\n");
-    const OtherLayout changed = readOtherLayout(input, "changed.txt", {});
+    const OtherLayout changed =
+        readOtherLayout({input.environment, input.scene, input.named, input.environment_operand},
+                        "changed.txt", {});
     EXPECT_EQ(changed.scene.environment.elements().size(),
               input.scene.environment.elements().size() + 1);
     EXPECT_EQ(changed.scene.digest(), input.scene.digest());

@@ -113,19 +113,19 @@ std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const BuildingScen
     for (std::size_t i = 0; i < people.size(); ++i) {
         RoomWays& own = rooms.emplace_back(RoomWays{choice, seedOfStorey(seed, i)});
         own.choice.people = static_cast<int>(people[i]);
-        if (!choice.record.empty()) own.choice.record += '/' + building.document.storeys[i].id;
+        if (!choice.record.empty())
+            own.choice.record = recordOfStorey(choice.record, building.document.storeys[i]);
     }
     return rooms;
 }
 
 std::vector<RoomWays> waysIn(const SiteInput& site, const std::string& option,
                              const WaysChoice& choice, std::uint64_t seed, double plane) {
-    if (!site.building) return {{choice, seed}};
-    if (!choice.record.empty() && recordedBuilding(choice.record).empty())
-        refuseSeveralRooms(option + " by the record of one room", site.building->document);
+    if (site.isOneRoom()) return {{choice, seed}};
+    if (!choice.record.empty()) mustBeRecordOf(site, option, choice.record);
     return waysOfStoreys(
-        choice, *site.building,
-        spreadOverStoreys(*site.building, plane, static_cast<std::size_t>(choice.people)), seed);
+        choice, site.building,
+        spreadOverStoreys(site.building, plane, static_cast<std::size_t>(choice.people)), seed);
 }
 
 PeopleWays readWays(const RoomWays& ways, const Scene& scene) {
@@ -140,8 +140,8 @@ std::vector<std::shared_ptr<const Demand>> demandsOfPresence(const WaysChoice& c
     const std::vector<RoomWays> ways = waysIn(site, "--presence", choice, seed, plane);
     for (std::size_t i = 0; i < ways.size(); ++i) {
         if (!choice.record.empty()) files.push_back(RecordedFiles(ways[i].choice.record).robots);
-        demands.push_back(
-            presenceDemand(std::make_shared<PeopleWays>(readWays(ways[i], *site.rooms[i])), plane));
+        demands.push_back(presenceDemand(
+            std::make_shared<PeopleWays>(readWays(ways[i], *site.rooms()[i])), plane));
     }
     return demands;
 }

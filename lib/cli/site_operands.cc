@@ -14,44 +14,51 @@
 
 namespace ispace {
 
+std::vector<std::string> SiteInput::ids() const {
+    std::vector<std::string> ids;
+    ids.reserve(building.document.storeys.size());
+    for (const Storey& storey : building.document.storeys) ids.push_back(storey.id);
+    return ids;
+}
+
 std::string SiteInput::digest() const {
-    return building ? building->document.digest() : only().digest();
+    return isOneRoom() ? only().digest() : building.document.digest();
 }
 
 std::vector<Record> SiteInput::environmentRecords() const {
-    if (environment) return environment->records;
+    if (isOneRoom()) return environment().records;
     std::vector<Record> records;
-    for (const Storey& storey : building->document.storeys) {
+    for (const Storey& storey : building.document.storeys) {
         records.push_back(storey.record);
         records.insert(records.end(), storey.room->records.begin(), storey.room->records.end());
     }
-    for (const StoreyPassage& passage : building->document.passages)
+    for (const StoreyPassage& passage : building.document.passages)
         records.push_back(passage.record);
     return records;
 }
 
 std::string SiteInput::idOf(std::size_t room, const std::string& id) const {
-    return ids[room].empty() ? id : ids[room] + '/' + id;
+    return wholeId(building.document.storeys[room], id);
 }
 
 std::string SiteInput::prefix(std::size_t room) const {
-    return ids[room].empty() ? "" : ids[room] + ": ";
+    return building.document.storeys[room].prefix();
 }
 
 void SiteInput::setLayout(Document changed) {
     layout = std::move(changed);
-    if (!building) {
-        rooms = {std::make_shared<const Scene>(makeScene(
-            *environment, &*layout, devicesFor({&*environment, &*layout}), rooms.front().get()))};
+    if (isOneRoom()) {
+        building.devices = devicesFor({&environment(), &*layout});
+        building.scenes = {std::make_shared<const Scene>(
+            makeScene(environment(), &*layout, building.devices, &only()))};
         return;
     }
     std::vector<const Document*> all;
-    for (const Storey& storey : building->document.storeys) all.push_back(storey.room.get());
-    const std::vector<Document> layouts = layoutsOf(*layout, building->document);
+    for (const Storey& storey : building.document.storeys) all.push_back(storey.room.get());
+    const std::vector<Document> layouts = layoutsOf(*layout, building.document);
     for (const Document& one : layouts) all.push_back(&one);
-    building = makeBuildingScene(building->document, layouts,
+    building = makeBuildingScene(building.document, layouts,
                                  devicesFor(std::span<const Document* const>(all)));
-    rooms = building->scenes;
 }
 
 SiteInput readSite(const SceneRequest& request) {
@@ -64,8 +71,6 @@ SiteInput readSite(const SceneRequest& request) {
         site.layout = std::move(found->layout);
         site.warnings = std::move(found->warnings);
         site.choices = std::move(found->choices);
-        site.rooms = found->building.scenes;
-        for (const Storey& storey : found->building.document.storeys) site.ids.push_back(storey.id);
         site.building = std::move(found->building);
         return site;
     }
@@ -78,39 +83,40 @@ SiteInput readSite(const SceneRequest& request) {
     site.warnings = room.environment.warnings;
     site.choices = std::move(room.choices);
     site.storey = std::move(room.storey);
-    site.environment = std::move(room.environment);
-    site.rooms = {std::make_shared<const Scene>(std::move(room.scene))};
-    site.ids = {""};
+    const DeviceCatalogue& devices =
+        devicesFor({&room.environment, site.layout ? &*site.layout : nullptr});
+    site.building = roomAlone(std::move(room.environment),
+                              std::make_shared<const Scene>(std::move(room.scene)), devices);
     return site;
 }
 
 SeenSite::SeenSite(const SiteInput& input) : input_(&input) {
-    if (input.building) coupling_.emplace(*input.building);
+    if (!input.isOneRoom()) coupling_.emplace(input.building);
 }
 
 std::shared_ptr<const Scene> SeenSite::scene(std::size_t room) const {
-    if (!coupling_) return input_->rooms[room];
-    Scene scene = *input_->rooms[room];
+    if (!coupling_) return input_->rooms()[room];
+    Scene scene = *input_->rooms()[room];
     scene.environment = *coupling_->surroundings(room, Coupling::Movers::OfNeighbours);
     return std::make_shared<const Scene>(std::move(scene));
 }
 
 Scene SeenSite::fromOutside(std::size_t room) const {
-    Scene scene = *sceneOfBuilding(*input_->building, room);
+    Scene scene = *sceneOfBuilding(input_->building, room);
     if (auto opened = coupling_->opened(room)) scene.environment = *std::move(opened);
     return scene;
 }
 
 std::optional<Pose3> SeenSite::siteFromRoom(std::size_t room) const {
     if (!coupling_) return std::nullopt;
-    const Storey& storey = input_->building->document.storeys[room];
+    const Storey& storey = input_->building.document.storeys[room];
     const Pose2& pose = storey.building_from_storey;
     return Pose3{{pose.position.x, pose.position.y, storey.floor}, pose.heading, {}, {}};
 }
 
 std::size_t SeenSite::roomAt(Point3 point) const {
     if (!coupling_) return 0;
-    const std::vector<Storey>& storeys = input_->building->document.storeys;
+    const std::vector<Storey>& storeys = input_->building.document.storeys;
     std::vector<std::size_t> from_above(storeys.size());
     std::iota(from_above.begin(), from_above.end(), std::size_t{0});
     std::stable_sort(from_above.begin(), from_above.end(), [&](std::size_t a, std::size_t b) {
@@ -121,22 +127,36 @@ std::size_t SeenSite::roomAt(Point3 point) const {
         if (storeys[i].floor > point.z) continue;
         if (!highest) highest = i;
         const Point2 local = inStorey(storeys[i], point.onFloor());
-        if (input_->rooms[i]->environment.indoorIndex().locate(local) != Side::Outside) return i;
+        if (input_->rooms()[i]->environment.indoorIndex().locate(local) != Side::Outside) return i;
     }
     return highest.value_or(from_above.back());
 }
 
-void addZones(std::span<const std::string> zones, SiteInput& input) {
-    if (zones.empty()) return;
-    if (input.building) {
-        addZones(zones, *input.building);
-        input.rooms = input.building->scenes;
-        return;
+OtherSite readOtherLayout(const SiteInput& input, const std::string& operand,
+                          const SceneRules& rules) {
+    if (input.isOneRoom()) {
+        OtherLayout other = readOtherLayout(
+            {input.environment(), input.only(), input.named, input.environment_operand}, operand,
+            rules);
+        BuildingScene laid = input.building;
+        laid.scenes = {std::make_shared<const Scene>(std::move(other.scene))};
+        return {std::move(laid), std::move(other.files), std::move(other.warnings)};
     }
-    SceneInput room{
-        input.only(), *input.environment, input.layout, input.environment_operand, "", {}, {}};
-    addZones(zones, room);
-    input.rooms = {std::make_shared<const Scene>(std::move(room.scene))};
+    auto other = readBuildingInput({{input.environment_operand, operand}, rules, true});
+    if (!other) throw UsageError("--compare: " + operand + " is no layout of a building");
+    return {std::move(other->building), std::move(other->files), std::move(other->warnings)};
+}
+
+void mustBeRecordOf(const SiteInput& input, const std::string& option, const std::string& folder) {
+    if (input.isOneRoom()) {
+        if (holdsBuilding(folder))
+            throw UsageError(option + ": " + folder +
+                             " is the record of a building: leave out --storey and ENV");
+    } else if (recordedBuilding(folder).empty()) {
+        throw UsageError(option + ": " + folder +
+                         " is the record of one room: choose it with --storey (" +
+                         input.building.document.storeyList() + ')');
+    }
 }
 
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SiteInput& input) {
@@ -145,25 +165,23 @@ void warnOfImport(const CommonOptions& options, const std::string& tool, const S
 }
 
 std::vector<Diagnostic> siteWarnings(const SiteInput& input, const FindingFilter& filter) {
-    return input.building
-               ? storeyWarnings(Coupling(*input.building), {.checks = filter.checks}, filter.ids)
-               : sceneWarnings(input.only(), filter);
+    return storeyWarnings(Coupling(input.building), {.checks = filter.checks}, filter.ids);
 }
 
 void mustBeOneRoom(const SiteInput& input, const std::string& option) {
-    if (input.building && !option.empty()) refuseSeveralRooms(option, input.building->document);
+    if (!input.isOneRoom() && !option.empty()) refuseSeveralRooms(option, input.building.document);
 }
 
 std::string inOwnStorey(const SiteInput& input, const std::string& text) {
     const std::size_t slash = text.find('/');
-    if (input.building || input.storey.empty() || slash == std::string::npos) return text;
+    if (!input.isOneRoom() || input.storey.empty() || slash == std::string::npos) return text;
     return Glob(text.substr(0, slash)).matches(input.storey) ? text.substr(slash + 1) : text;
 }
 
 SiteWay wayIn(const SiteInput& input, std::string_view option, const WayChoice& way) {
-    if (input.building)
-        return {zoneOfStorey(*input.building, option, way.from),
-                zoneOfStorey(*input.building, option, way.to), sitePassages(*input.building)};
+    if (!input.isOneRoom())
+        return {zoneOfStorey(input.building, option, way.from),
+                zoneOfStorey(input.building, option, way.to), sitePassages(input.building)};
     SiteWay found{{0, inOwnStorey(input, way.from)}, {0, inOwnStorey(input, way.to)}};
     for (const StoreyZone* at : {&found.from, &found.to})
         static_cast<void>(ofOption(std::string(option),
@@ -174,10 +192,16 @@ SiteWay wayIn(const SiteInput& input, std::string_view option, const WayChoice& 
 void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,
                    const std::function<void(std::size_t room, const std::string& text)>& read) {
     if (input.isOneRoom()) return read(0, inOwnStorey(input, text));
+    forEachRoomOf(input.building.document, option, text, read);
+}
+
+void forEachRoomOf(const StoreyedDocument& site, std::string_view option, const std::string& text,
+                   const std::function<void(std::size_t room, const std::string& text)>& read) {
+    if (site.isRoomAlone()) return read(0, text);
     if (text.starts_with("rect:") || text.starts_with("poly:"))
         throw UsageError(std::string(option) + ": " + excerpt(text) + " names no storey, as in " +
-                         input.ids.front() + '/' + text);
-    const StoreyText named = splitStoreys(input.building->document, option, text);
+                         site.storeys.front().id + '/' + text);
+    const StoreyText named = splitStoreys(site, option, text);
     std::string first;
     bool is_read = false;
     for (const std::size_t room : named.storeys) {
@@ -186,7 +210,7 @@ void forEachRoomOf(const SiteInput& input, std::string_view option, const std::s
             is_read = true;
         } catch (const UsageError& error) {
             if (!first.empty()) continue;
-            first = input.ids[room] + ": " + error.what();
+            first = site.storeys[room].prefix() + error.what();
         }
     }
     if (!is_read)

@@ -24,22 +24,28 @@
 
 namespace ispace {
 
-/// The rooms that a tool was given, and a layout of all of them.
+/// The rooms that a tool was given, one or those of a building, and a layout of all of them.
 struct SiteInput {
     std::string environment_operand, layout_operand;
     std::vector<std::string> named;  ///< as SceneInput::named
     std::vector<std::string> files;  ///< all that were read, for -MD
     std::optional<Document> layout;
-    std::vector<std::shared_ptr<const Scene>> rooms;      ///< scenes; equal storeys share one
-    std::vector<std::string> ids;                         ///< of the rooms; "" of one alone
-    std::optional<Document> environment;                  ///< of a room alone
-    std::optional<BuildingScene> building;                ///< of several rooms
+    BuildingScene building;                               ///< of one room: roomAlone()
     std::vector<Diagnostic> warnings = {}, choices = {};  ///< of importers
     std::string storey = {};                              ///< as SceneInput::storey
 
-    [[nodiscard]] bool isOneRoom() const { return !building; }
-    /// Returns the scene of a room alone.
-    [[nodiscard]] const Scene& only() const { return *rooms.front(); }
+    [[nodiscard]] bool isOneRoom() const { return building.isRoomAlone(); }
+    /// Returns the scenes; equal storeys share one.
+    [[nodiscard]] const std::vector<std::shared_ptr<const Scene>>& rooms() const {
+        return building.scenes;
+    }
+    /// Returns the ids of the rooms; "" of one alone.
+    [[nodiscard]] std::vector<std::string> ids() const;
+    /// Returns the scene of a room alone, and its environment.
+    [[nodiscard]] const Scene& only() const { return *building.scenes.front(); }
+    [[nodiscard]] const Document& environment() const {
+        return *building.document.storeys.front().room;
+    }
     /// Returns the digest of the room's environment, or of the building.
     [[nodiscard]] std::string digest() const;
     /// Returns all records of the environment, for digests of jobs.
@@ -82,9 +88,20 @@ class SeenSite {
     std::optional<Coupling> coupling_;
 };
 
-/// Adds the zones of --zone to the scenes of their rooms, as records. \throws UsageError as
-/// addZones() of a room and of a building
-void addZones(std::span<const std::string> zones, SiteInput& input);
+/// The site with another layout.
+struct OtherSite {
+    BuildingScene building;
+    std::vector<std::string> files;  ///< that it was read from, for -MD
+    std::vector<Diagnostic> warnings;
+};
+/// Reads it from `operand`, which may be - if stdin was not read yet. \throws as readSite(), and
+/// FormatError if it is no layout
+OtherSite readOtherLayout(const SiteInput& input, const std::string& operand,
+                          const SceneRules& rules);
+
+/// \throws UsageError unless the folder holds the record of a run of the site: of a room for one
+/// room, of a building for several; as recordedBuilding() \param option for messages
+void mustBeRecordOf(const SiteInput& input, const std::string& option, const std::string& folder);
 
 /// Prints the warnings and choices of importers, as warnOfImport() of a room.
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SiteInput& input);
@@ -93,11 +110,14 @@ void warnOfImport(const CommonOptions& options, const std::string& tool, const S
 /// \param filter takes ids of the site: "ground/l1"
 std::vector<Diagnostic> siteWarnings(const SiteInput& input, const FindingFilter& filter);
 
-/// Reads a text about zones in the rooms of a site: `STOREY/TEXT` for each storey that the glob
-/// STOREY matches, `TEXT` for all. Calls read(room, text); rooms of which it throws UsageError are
-/// left out, unless there is no other. \param option for messages
+/// Reads a text about zones in the rooms of a site, in that of a room alone as it is: `STOREY/TEXT`
+/// for each storey that the glob STOREY matches, `TEXT` for all. Calls read(room, text); rooms of
+/// which it throws UsageError are left out, unless there is no other. \param option for messages
 /// \throws UsageError for a storey that does not exist, for rectangles and polygons without a
 /// storey, and the first error of `read` if all rooms are left out
+void forEachRoomOf(const StoreyedDocument& site, std::string_view option, const std::string& text,
+                   const std::function<void(std::size_t room, const std::string& text)>& read);
+/// The same in the rooms of an input; of a storey that was chosen, its own id may come first.
 void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,
                    const std::function<void(std::size_t room, const std::string& text)>& read);
 

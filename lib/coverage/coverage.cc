@@ -634,11 +634,12 @@ std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
 }
 
 Coverage measureWithOutside(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
-                            std::span<const std::shared_ptr<const OutsideView>> outside) {
-    if (outside.empty()) return measureCoverage(scene, worlds, options);
+                            std::span<const std::shared_ptr<const OutsideView>> outside,
+                            Progress* progress) {
+    if (outside.empty()) return measureCoverage(scene, worlds, options, progress);
     Scene joined = scene;
     for (const auto& view : outside) joined.sensors.push_back(view->sensor);
-    return measure(joined, scene, worlds, options, outside);
+    return measure(joined, scene, worlds, options, outside, {}, progress);
 }
 
 void compare(Coverage& coverage, const Coverage& other, const Regions& indoor,

@@ -41,7 +41,8 @@ OutsideView moved(OutsideView view, const Pose2& pose, double lift);
 /// Measures a scene as measureCoverage() does, with the views of sensors that stand outside of its
 /// room. Their indices follow those of the scene's own sensors.
 Coverage measureWithOutside(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
-                            std::span<const std::shared_ptr<const OutsideView>> outside);
+                            std::span<const std::shared_ptr<const OutsideView>> outside,
+                            Progress* progress = nullptr);
 
 /// Returns the view by cells and in closed form, as measureCoverage() has it of a sensor of the
 /// room. \param index see SensorView \param limits of the room, see SensorView::region

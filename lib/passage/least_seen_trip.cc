@@ -171,6 +171,11 @@ std::vector<SitePassage> sitePassages(const BuildingScene& building) {
 
 LeastSeenTrip findLeastSeenTrip(const BuildingScene& building, const BuildingCoverage& coverage,
                                 const WayChoice& of, int times) {
+    if (building.isRoomAlone()) {
+        const LeastSeenWay way =
+            findLeastSeenWay(*coverage.floors.front(), coverage.storeys.front(), of, times);
+        return {way, {{0, way}}};
+    }
     TripFinder finder(building, coverage, of, times);
     LeastSeenTrip trip{{finder.ends()}};
     finder.find(trip);

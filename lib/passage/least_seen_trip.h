@@ -35,10 +35,11 @@ struct LeastSeenTrip {
 /// the same length, the shortest. Sight does not count on landings (within 0.3 m of where a person
 /// enters), on stairs and in lifts, as in reports of runs; lifts stop at all their storeys.
 ///
-/// Floor counts as seen if `times` sensors see it. On one storey this is findLeastSeenWay(), or a
-/// way over other storeys that is seen less. Costs one findLeastSeenWay() for each pair of landings
-/// of a storey. \param of `ground/entrance` or a zone that only one storey has \throws UsageError
-/// for a zone that no storey or more than one has, and as findLeastSeenWay()
+/// Floor counts as seen if `times` sensors see it. In a room alone, and on one storey, this is
+/// findLeastSeenWay(), or a way over other storeys that is seen less. Costs one findLeastSeenWay()
+/// for each pair of landings of a storey. \param of `ground/entrance` or a zone that only one
+/// storey has \throws UsageError for a zone that no storey or more than one has, and as
+/// findLeastSeenWay()
 LeastSeenTrip findLeastSeenTrip(const BuildingScene& building, const BuildingCoverage& coverage,
                                 const WayChoice& of, int times = 1);
 

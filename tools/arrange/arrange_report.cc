@@ -82,7 +82,7 @@ PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
 
 /// Returns the building with sensors that were placed.
 BuildingScene placedBuilding(const ArrangeWork& work, const std::vector<Placement>& sensors) {
-    BuildingScene placed = *work.input.building;
+    BuildingScene placed = work.input.building;
     for (std::size_t i = 0; i < placed.scenes.size(); ++i)
         placed.scenes[i] =
             std::make_shared<const Scene>(withPlaced(*placed.scenes[i], work.groups, sensors, i));
@@ -101,7 +101,7 @@ void writeStoreyHeat(const ArrangeWork& work, const GainMap& gains,
     const std::string title = map.title;
     std::vector<Picture> panels;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
-        const std::string& id = work.input.ids[i];
+        const std::string& id = work.input.building.document.storeys[i].id;
         map.title = id;
         map.title.append(": ").append(title);
         map.trace.clear();
@@ -119,11 +119,11 @@ std::vector<std::string> heatFiles(const ArrangeToolOptions& options, const Arra
                                    std::size_t number) {
     const std::string file =
         number == 1 ? options.heat_file : numberedFile(options.heat_file, number);
-    if (!work.input.building)
+    if (work.input.isOneRoom())
         return {roomFile(file, work.input.storey, work.input.environment_operand)};
     if (!isStoreyPattern(file)) return {file};
     std::vector<std::string> files;
-    for (const std::string& id : work.input.ids) files.push_back(storeyFile(file, id));
+    for (const std::string& id : work.input.ids()) files.push_back(storeyFile(file, id));
     return files;
 }
 
@@ -141,7 +141,7 @@ void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
                                        : PictureFormat::Png;
         map.title = "gain of " + printable(gains.sensor) + ", after " +
                     std::to_string(gains.before.size()) + " placed";
-        if (work.input.building) {
+        if (!work.input.isOneRoom()) {
             writeStoreyHeat(work, gains, files, map, scale);
             continue;
         }
@@ -173,7 +173,7 @@ std::vector<FacingResult> facingOf(const ArrangeWork& work, const BuildingCovera
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
         for (FacingResult& result :
              measureFacing(*coverage.floors[i], coverage.storeys[i], work.goals[i].facing)) {
-            result.rule.zone.insert(0, work.input.ids[i] + '/');
+            result.rule.zone.insert(0, work.input.building.document.storeys[i].id + '/');
             all.push_back(std::move(result));
         }
     return all;
@@ -185,7 +185,7 @@ std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangem
     if (work.how.facing.empty() && work.how.privacy.empty()) return std::nullopt;
     CameraRules rules{{}, arrangement.privacy};
     if (work.how.facing.empty()) return rules;
-    if (work.input.building) {
+    if (!work.input.isOneRoom()) {
         rules.facing = facingOf(
             work, measureBuilding(placedBuilding(work, arrangement), measuredAs(work.how)));
         return rules;
@@ -231,7 +231,7 @@ std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
     // allows.
     CoverageOptions measured = measuredAs(work.how);
     measured.exact = work.how.objective.of == ObjectiveChoice::Of::Path && arrangement.is_complete;
-    if (work.input.building) {
+    if (!work.input.isOneRoom()) {
         const BuildingScene building = placedBuilding(work, arrangement);
         return objectivesIn(work, building, measureBuilding(building, measured))->all;
     }
@@ -283,10 +283,7 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
     for (const JudgedRule& rule : judgedRules(rules))
         result.blocks.push_back(PageText{rule.rule + ": " + rule.finding});
     input.more.push_back(std::move(result));
-    if (objectives)
-        input.more.push_back({"objectives",
-                              objectives->all.localisation ? "Positions" : "Ways",
-                              {PageCode{objectivesText(objectives->all)}}});
+    if (objectives) input.parts.sum.objectives = &objectives->all;
     input.cover = coverOf(options.page);
     input.paper = paperOf(options.page);
     input.prices = pricesOf(options.page);
@@ -300,8 +297,8 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
 std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& work,
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command) {
-    if (work.input.building) return buildingReport(options, work, arrangement, command);
-    const Scene scene = makeScene(*work.input.environment, &layout, shippedDevices());
+    if (!work.input.isOneRoom()) return buildingReport(options, work, arrangement, command);
+    const Scene scene = makeScene(work.input.environment(), &layout, shippedDevices());
     Worlds worlds(scene.environment);
     const Coverage coverage = measureCoverage(scene, worlds, measuredAs(work.how));
     const CameraRules rules{measureFacing(scene, coverage, work.how.facing), arrangement.privacy};
@@ -329,11 +326,11 @@ void writeMaterialOf(const ArrangeToolOptions& options, const ArrangeWork& work,
                      const Arrangement& arrangement, const Document& layout) {
     if (options.page.material.empty() && options.page.prices.empty()) return;
     std::vector<std::shared_ptr<const Scene>> scenes;
-    if (work.input.building)
+    if (!work.input.isOneRoom())
         scenes = placedBuilding(work, arrangement).scenes;
     else
         scenes.push_back(std::make_shared<const Scene>(
-            makeScene(*work.input.environment, &layout, shippedDevices())));
+            makeScene(work.input.environment(), &layout, shippedDevices())));
     if (const std::string text = writeMaterialOf(options.page, scenes); !text.empty())
         warn(options.common, "arrange", text);
 }

@@ -45,9 +45,9 @@ void takeGoals(const ArrangeToolOptions& options, ArrangeWork& work) {
     const SiteInput& input = work.input;
     const ZoneWords& words = options.zones;
     ArrangeOptions& how = work.how;
-    work.goals.resize(input.rooms.size());
+    work.goals.resize(input.rooms().size());
     const auto room_of = [&](std::size_t room) -> const Environment& {
-        return input.rooms[room]->environment;
+        return input.rooms()[room]->environment;
     };
     const auto each = [&](const char* option, const std::vector<std::string>& texts,
                           const std::function<void(std::size_t, const NamedZone&)>& add) {
@@ -110,12 +110,12 @@ void takePlaces(const ArrangeToolOptions& options, ArrangeWork& work) {
     work.files.push_back(file);
     const std::vector<Angle> headings =
         headingsAround(work.how.headings.value_or(work.how.density.headings));
-    if (!work.input.building) {
+    if (work.input.isOneRoom()) {
         work.goals.front().places = readSites(work.places, file, headings);
         return;
     }
-    const StoreyedDocument& building = work.input.building->document;
-    const PlaceRooms rooms{work.input.ids, [&building](const std::string& name) {
+    const StoreyedDocument& building = work.input.building.document;
+    const PlaceRooms rooms{work.input.ids(), [&building](const std::string& name) {
                                return storeysNamed(building, name);
                            }};
     std::vector<std::vector<Site>> sites = readSites(work.places, file, headings, rooms);
@@ -153,23 +153,23 @@ void takeCases(const ArrangeToolOptions& options, ArrangeWork& work) {
             work.goals[i].case_seed = seedOfStorey(seed, i);
     if (robust.of != RobustChoice::Of::Crowd) return;
     std::vector<std::size_t> people = {static_cast<std::size_t>(robust.people)};
-    if (work.input.building)
-        people = spreadOverStoreys(*work.input.building, work.how.plane, people.front());
+    if (!work.input.isOneRoom())
+        people = spreadOverStoreys(work.input.building, work.how.plane, people.front());
     for (std::size_t i = 0; i < work.goals.size(); ++i)
-        work.goals[i].crowds = crowdsIn(*work.input.rooms[i], people[i], seedOfStorey(seed, i));
+        work.goals[i].crowds = crowdsIn(*work.input.rooms()[i], people[i], seedOfStorey(seed, i));
 }
 
 /// Returns the site of a room or building, which it owns. \param goals by room
 std::shared_ptr<const ArrangeSite> ownSite(const SiteInput& input, const ArrangeOptions& how,
                                            std::vector<RoomGoals> goals,
                                            std::vector<SitePassage> passages = {}) {
-    if (input.building) {
+    if (!input.isOneRoom()) {
         const auto building = std::make_shared<const BuildingSite>(
-            *input.building, how, std::move(goals), std::move(passages));
+            input.building, how, std::move(goals), std::move(passages));
         return {building, &building->site()};
     }
     ArrangeSite site;
-    site.rooms.push_back({"", input.rooms.front(), goals.empty() ? RoomGoals() : goals.front()});
+    site.rooms.push_back({"", input.rooms().front(), goals.empty() ? RoomGoals() : goals.front()});
     return std::make_shared<const ArrangeSite>(std::move(site));
 }
 
@@ -186,12 +186,12 @@ void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
         if (!work.input.layout_operand.empty())
             request.operands.push_back(work.input.layout_operand);
         SiteInput other = readSite(request);
-        if (other.ids != work.input.ids) {
+        if (other.ids() != work.input.ids()) {
             const auto text = [](const SiteInput& site) {
                 std::string all;
-                for (const std::string& id : site.ids)
+                for (const std::string& id : site.ids())
                     all.append(all.empty() ? "" : ", ").append(printable(id));
-                return site.building ? "the storeys " + all : "one room";
+                return site.isOneRoom() ? "one room" : "the storeys " + all;
             };
             throw UsageError("--robust rooms: " + file + " has " + text(other) + ", " +
                              robust.name + " has " + text(work.input) +
@@ -256,7 +256,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     warn(options.common, "arrange", siteWarnings(input, {.checks = {"outside", "buried"}}));
     const bool open = options.how.target || options.how.budget;
     std::vector<const Scene*> scenes;
-    for (const auto& room : input.rooms) scenes.push_back(room.get());
+    for (const auto& room : input.rooms()) scenes.push_back(room.get());
     work.groups = groupsToPlace(scenes, added, devices, open);
     noteWholeFloor(options);
     if (work.groups.empty())
@@ -264,13 +264,13 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
             "nothing to place: give --sensor MODEL[:COUNT], such as dome-2.8-1080p:4, or a LAYOUT "
             "with a sensor without `at`");
     work.files = input.files;
-    if (input.building) {
+    if (!input.isOneRoom()) {
         for (const SensorGroup& group : work.groups)
             if (group.id.find('/') != std::string::npos)
                 throw UsageError("--sensor id=" + group.id +
                                  ": the storey comes before it by itself; leave it out");
         // Devices of --sensor are not among those of the records.
-        if (input.building->devices.devices().empty()) input.building->devices = devices;
+        if (input.building.devices.devices().empty()) input.building.devices = devices;
     }
     takeGoals(options, work);
     takePlaces(options, work);
@@ -307,7 +307,7 @@ struct Numbers {
 
 Numbers numbersOf(const ArrangeWork& work) {
     Numbers numbers;
-    for (const auto& room : work.input.rooms)
+    for (const auto& room : work.input.rooms())
         for (const Sensor& sensor : room->sensors)
             if (kindOf(sensor.model).perceives)
                 ++(isPartial(sensor.model) ? numbers.receivers : numbers.others);
@@ -399,9 +399,9 @@ void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work) {
         tell(options.common, "arrange", std::string(kFacesOnFloor));
     if (const std::string hint = hintAlongWalls(work); !hint.empty())
         warn(options.common, "arrange", hint);
-    for (std::size_t i = 0; i < work.input.rooms.size(); ++i)
-        warnOfHeights(options, work.how.mount, work.input.rooms[i]->environment,
-                      work.input.prefix(i));
+    for (std::size_t i = 0; i < work.input.rooms().size(); ++i)
+        warnOfHeights(options, work.how.mount, work.input.rooms()[i]->environment,
+                      work.input.building.document.storeys[i].prefix());
 }
 
 void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,

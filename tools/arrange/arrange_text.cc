@@ -161,7 +161,7 @@ std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) 
     const ArrangeOptions& how = work.how;
     if (arrangement.over_poses) return posesText(arrangement);
     std::ptrdiff_t standing = 0;
-    for (const auto& room : work.input.rooms)
+    for (const auto& room : work.input.rooms())
         standing +=
             std::count_if(room->sensors.begin(), room->sensors.end(), [](const Sensor& one) {
                 return !one.mount && !one.person && kindOf(one.model).is_arranged;

@@ -46,8 +46,9 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
         std::string(work.how.demand ? work.how.demand->name() : work.how.objective.name())};
     parts.history.push_back(command.historyLine(input.named));
     const auto document = [&](const Arrangement& found) {
-        return input.building ? buildingLayout(parts, *input.building, before, work.groups, found)
-                              : layoutDocument(parts, before, work.groups, found);
+        return !input.isOneRoom()
+                   ? buildingLayout(parts, input.building, before, work.groups, found)
+                   : layoutDocument(parts, before, work.groups, found);
     };
     const Document layout = document(arrangement);
     if (!options.trace_file.empty())

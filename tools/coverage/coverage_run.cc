@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,47 +17,83 @@
 #include "base/number.h"
 #include "base/part_file.h"
 #include "base/run_files.h"
+#include "building/building_presence.h"
+#include "building/building_robustness.h"
+#include "building/building_suggestions.h"
+#include "building/coupling.h"
 #include "cli/batch.h"
+#include "cli/building_operands.h"
+#include "cli/common_options.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
+#include "cli/presence_ways.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "coverage/crowd.h"
-#include "coverage/presence.h"
+#include "passage/least_seen_trip.h"
 #include "record/text.h"
 #include "report/coverage_formats.h"
-#include "report/coverage_report.h"
 #include "report/map/depth_shades.h"
+#include "report/map/map.h"
 #include "report/trace_file.h"
 #include "scene/findings/findings.h"
-#include "scene/scene.h"
+#include "scene/run/run_reader.h"
 #include "scene/sensor/ultrasound.h"
-#include "trace/ray_world.h"
 
 namespace ispace {
 
-std::vector<TriedPose> readTried(const CoverageToolOptions& options,
-                                 const std::vector<std::string>& named) {
-    if (options.trace.empty()) return {};
-    std::vector<std::string> streams = named;
-    streams.insert(streams.end(), {options.other, options.trace});
-    mustReadStdinOnce(streams);
-    const std::string bytes = options.trace == "-" ? readStdin() : readAll(options.trace);
-    return readTrace(bytes, displayName(options.trace)).poses;
+namespace {
+
+/// Random mountings and crowds of --perturb and --crowd.
+constexpr int kSamples = 100;
+
+/// Seconds; most layouts are measured in less.
+constexpr double kQuick = 0.5;
+
+const Storey& storeyOf(const SiteInput& input, std::size_t room) {
+    return input.building.document.storeys[room];
 }
 
-std::vector<TriedPose> triedInRoom(const CoverageToolOptions& options, const std::string& storey,
-                                   std::vector<TriedPose> tried) {
-    const std::size_t all = tried.size();
-    std::erase_if(tried, [&storey](const TriedPose& pose) {
-        return !pose.room.empty() && pose.room != storey;
-    });
-    if (tried.empty() && all > 0)
-        throw UsageError("--trace: the candidates of " + displayName(options.trace) +
-                         (storey.empty() ? " are those of a building: give it, or one of its "
-                                           "storeys with --storey"
-                                         : " are those of other storeys than " + excerpt(storey)));
-    return tried;
+}  // namespace
+
+BuildingParts SiteResults::parts() const {
+    BuildingParts parts;
+    if (run) parts = partsOf(*run);
+    parts.storeys.resize(coverage.storeys.size());
+    for (std::size_t i = 0; i < presence.size(); ++i) parts.storeys[i].presence = &presence[i];
+    for (std::size_t i = 0; i < objectives.size(); ++i)
+        parts.storeys[i].objectives = &objectives[i];
+    if (robustness) parts.sum.robustness = &*robustness;
+    if (presence_sum) parts.sum.presence = &*presence_sum;
+    if (objectives_sum) parts.sum.objectives = &*objectives_sum;
+    if (advice) parts.sum.advice = &*advice;
+    return parts;
+}
+
+std::vector<std::string> operandsOf(const CoverageToolOptions& options) {
+    if (options.run.empty() || !options.operands.empty()) return options.operands;
+    if (const std::string building = recordedBuilding(options.run); !building.empty())
+        return {building};
+    static_cast<void>(RunReader(options.run));  // fails before a missing layout does
+    const std::string scene = sceneOfRecord(options.run);
+    return scene.empty() ? std::vector<std::string>() : std::vector{scene};
+}
+
+void fitOptions(CoverageToolOptions& options, const SiteInput& input) {
+    const auto check_record = [&input](const char* option, const std::string& folder) {
+        if (!folder.empty()) mustBeRecordOf(input, option, folder);
+    };
+    check_record("--run", options.run);
+    if (options.presence) check_record("--presence", options.presence->record);
+    if (options.format == nullptr) return;
+    if (input.isOneRoom()) {
+        options.common.output =
+            roomFile(options.common.output, input.storey, input.environment_operand);
+        return;
+    }
+    mustBeOneProduct(options.common);
+    if (!options.format->picture)
+        mustNameStoreys(options.common.output, options.format->name, options.format->suffix);
 }
 
 namespace {
@@ -67,65 +105,236 @@ void mustBeSameRoom(const Environment& room, const Environment& other, const std
                        "its walls make another room: layouts of one room can be compared"});
 }
 
-/// Returns the content of a model: the records of the scene, below the history of both inputs and
-/// this command.
-Document documentOf(const CoverageToolOptions& options, const SceneInput& input) {
-    Document document;
-    document.history = input.environment.history;
-    if (input.layout)
-        document.history.insert(document.history.end(), input.layout->history.begin(),
-                                input.layout->history.end());
-    document.history.push_back(options.history_line);
-    document.records = input.scene.records;
-    rebaseFiles(document.records, "",
-                std::filesystem::path(options.common.output).parent_path().string());
-    return document;
+/// Returns a warning of too few ultrasound receivers; empty if there are none or enough.
+std::optional<Diagnostic> receiverFinding(const Scene& scene) {
+    if (const std::size_t count = sensorsOf<Receiver>(scene).size();
+        count > 0 && count < kMinReceivers)
+        return Diagnostic{
+            .file = "",
+            .message = "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
+                       " receivers have to hear a tag, here are " + std::to_string(count),
+            .severity = Severity::Warning};
+    return std::nullopt;
 }
 
-/// Seconds; most layouts are measured in less.
-constexpr double kQuick = 0.5;
+/// Tells if the cells of a room are larger than usual by default.
+void tellLargeCells(const CoverageToolOptions& options, const SiteInput& input,
+                    const BuildingCoverage& coverage) {
+    if (!std::holds_alternative<RoomCells>(options.measure.cells)) return;
+    for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
+        const Grid& grid = coverage.storeys[i].report.grid;
+        const double edge = roundSignificant(grid.limits.width() / grid.columns);
+        if (edge <= kRoomCell) continue;
+        tell(options.common, "coverage",
+             storeyOf(input, i).prefix() + "the room is large: cells are " + formatDouble(edge) +
+                 " m instead of " + formatDouble(kRoomCell) + " m (--cell M makes them smaller)");
+    }
+}
+
+/// Returns the number of sensors that see floor.
+std::size_t countSeeing(const BuildingScene& building) {
+    std::size_t count = 0;
+    for (const auto& scene : building.scenes)
+        count += static_cast<std::size_t>(
+            std::count_if(scene->sensors.begin(), scene->sensors.end(),
+                          [](const Sensor& sensor) { return kindOf(sensor.model).perceives; }));
+    return count;
+}
 
 }  // namespace
 
-Measured measure(const CoverageToolOptions& options, const Scene& scene, const Scene* other) {
-    Worlds worlds(scene.environment);
+void measure(const CoverageToolOptions& options, const SiteInput& input,
+             std::vector<std::string>& files, SiteResults& results) {
+    std::optional<OtherSite> other;
+    if (!options.other.empty()) {
+        other = readOtherLayout(input, options.other, options.rules);
+        warn(options.common, "coverage", other->warnings);
+        files.insert(files.end(), other->files.begin(), other->files.end());
+    }
+    for (const Requirement& requirement : options.requirements)
+        mustHaveZone(requirement, input.building);
+    warn(options.common, "coverage", sensorFindings(input.building));
+    // A page alone shows depths in a few shades.
+    const bool by_shades = options.measure.keep_depths && options.format == nullptr &&
+                           countSeeing(input.building) > kFewDepths;
+    CoverageOptions how = options.measure;
+    how.keep_depths = how.keep_depths && !by_shades;
     const auto progress =
         makeProgress("coverage", options.common.progress, options.common.quiet, kQuick);
-    Measured measured{measureCoverage(scene, worlds, options.measure, progress.get()), {}};
-    if (other == nullptr) return measured;
-    mustBeSameRoom(scene.environment, other->environment, options.other);
-    Worlds other_worlds(other->environment);
-    measured.other = measureCoverage(*other, other_worlds, options.measure, progress.get());
-    compare(measured.coverage, *measured.other, scene.environment.indoor(),
-            options.other == "-" ? displayName("-") : baseName(options.other));
-    return measured;
+    BuildingCoverage& coverage = results.coverage;
+    coverage = measureBuilding(input.building, how, progress.get());
+    if (other) {
+        for (std::size_t i = 0; i < input.rooms().size(); ++i)
+            mustBeSameRoom(input.rooms()[i]->environment, other->building.scenes[i]->environment,
+                           options.other);
+        results.other = measureBuilding(other->building, how, progress.get());
+        compareStoreys(coverage, *results.other,
+                       options.other == "-" ? displayName("-") : baseName(options.other));
+    }
+    if (by_shades)
+        for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
+            addDepthShades(coverage.storeys[i], *coverage.floors[i], redundancyScale(coverage));
+    tellLargeCells(options, input, coverage);
 }
 
-std::optional<RunCoverage> measureRecordedRun(const CoverageToolOptions& options,
-                                              const Scene& scene) {
-    if (options.run.empty()) return std::nullopt;
-    RunReader reader(options.run);
-    RunChanges changes = changesOfRun(options.run, scene, options.rules.max_work);
-    RunCoverage run =
-        measureRun(scene, reader,
-                   {.plane = options.measure.plane, .density = options.measure.density}, &changes);
-    if (!changes.failure().empty()) warn(options.common, "coverage", changes.failure());
-    run.name = baseName(options.run);
-    if (reader.isCut())
-        warn(options.common, "coverage",
-             "the record ends in the midst of a step, which is left out");
-    return run;
+std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SiteInput& input) {
+    if (options.trace.empty()) return {};
+    std::vector<std::string> streams = input.named;
+    streams.insert(streams.end(), {options.other, options.trace});
+    mustReadStdinOnce(streams);
+    const std::string bytes = options.trace == "-" ? readStdin() : readAll(options.trace);
+    std::vector<TriedPose> tried = readTrace(bytes, displayName(options.trace)).poses;
+    const std::string file = displayName(options.trace);
+    if (input.isOneRoom()) {
+        const std::size_t all = tried.size();
+        std::erase_if(tried, [&input](const TriedPose& pose) {
+            return !pose.room.empty() && pose.room != input.storey;
+        });
+        if (tried.empty() && all > 0)
+            throw UsageError("--trace: the candidates of " + file +
+                             (input.storey.empty()
+                                  ? " are those of a building: give it, or one of its storeys "
+                                    "with --storey"
+                                  : " are those of other storeys than " + excerpt(input.storey)));
+        return tried;
+    }
+    const std::vector<std::string> ids = input.ids();
+    for (const TriedPose& pose : tried) {
+        if (pose.room.empty())
+            throw UsageError("--trace: the candidates of " + file +
+                             " are those of one room: choose it with --storey (" +
+                             input.building.document.storeyList() + ')');
+        if (std::find(ids.begin(), ids.end(), pose.room) == ids.end())
+            throw UsageError("--trace: the building has no storey " + excerpt(pose.room) + " (" +
+                             input.building.document.storeyList() + ')');
+    }
+    return tried;
 }
 
-std::optional<Presence> presenceOf(const CoverageToolOptions& options, const Scene& scene) {
-    if (!options.presence) return std::nullopt;
-    return measurePresence(scene, readWays(*options.presence, scene, options.common.seed),
-                           options.measure.plane);
+namespace {
+
+/// Measures --presence in each room: a record's ways, or wanderers on all free floor.
+void measurePresences(const CoverageToolOptions& options, const SiteInput& input,
+                      std::vector<std::string>& files, SiteResults& results) {
+    const WaysChoice& choice = *options.presence;
+    const std::vector<RoomWays> ways =
+        waysIn(input, "--presence", choice, options.common.seed, options.measure.plane);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        if (!choice.record.empty()) files.push_back(RecordedFiles(ways[i].choice.record).robots);
+        Presence presence =
+            measurePresence(*results.coverage.floors[i], readWays(ways[i], *input.rooms()[i]),
+                            options.measure.plane);
+        nameWholly(storeyOf(input, i), choice.record.empty(), presence);
+        results.presence.push_back(std::move(presence));
+    }
+    results.presence_sum = sumOverStoreys(results.presence);
 }
 
-std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInput& input,
-                              const Coverage& coverage, int& signal) {
-    if (!options.suggestions) return std::nullopt;
+/// Measures --path through the site, and --localise in each room and over all.
+void measureObjectives(const CoverageToolOptions& options, const SiteInput& input,
+                       SiteResults& results) {
+    if (options.paths.empty() && !options.localise_to) return;
+    BuildingObjectives measured =
+        measureObjectives(input.building, results.coverage, options.paths, 1, options.localise_to);
+    results.objectives = std::move(measured.storeys);
+    results.objectives_sum = std::move(measured.all);
+}
+
+}  // namespace
+
+void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
+                   std::vector<std::string>& files, SiteResults& results) {
+    if (!options.run.empty()) {
+        for (const Storey& storey : input.building.document.storeys)
+            files.push_back(RecordedFiles(recordOfStorey(options.run, storey)).robots);
+        std::vector<std::string> warnings;
+        results.run =
+            measureBuildingRun(input.building, options.run,
+                               {.plane = options.measure.plane, .density = options.measure.density},
+                               options.rules.max_work, warnings);
+        for (const std::string& warning : warnings) warn(options.common, "coverage", warning);
+    }
+    measureObjectives(options, input, results);
+    if (options.presence) measurePresences(options, input, files, results);
+}
+
+void measureRules(const CoverageToolOptions& options, const SiteInput& input,
+                  SiteResults& results) {
+    if (options.facing.empty() && options.privacy.empty()) return;
+    results.coverage.rules = measureBuildingRules(input.building, results.coverage, options.measure,
+                                                  options.facing, options.privacy);
+    if (!options.facing.empty() && options.measure.plane == 0)
+        tell(options.common, "coverage", std::string(kFacesOnFloor));
+}
+
+namespace {
+
+/// Returns the crowds of --crowd: by sample, then by room.
+std::vector<BuildingCrowd> crowdsOf(const CoverageToolOptions& options, const SiteInput& input,
+                                    const BuildingCoverage& coverage) {
+    const std::size_t rooms = input.rooms().size();
+    std::vector<BuildingCrowd> crowds;
+    switch (options.crowd->of) {
+        case Robustness::CrowdOf::Random: {
+            const std::vector<std::size_t> people =
+                spreadOverStoreys(coverage, static_cast<std::size_t>(options.crowd->people));
+            crowds.assign(kSamples, BuildingCrowd(rooms));
+            for (std::size_t i = 0; i < rooms; ++i) {
+                if (people[i] == 0) continue;
+                const CrowdFloor floor(*input.rooms()[i]);
+                for (std::size_t k = 0; k < kSamples; ++k)
+                    crowds[k][i] = floor.draw(
+                        people[i], {.seed = seedOfStorey(options.common.seed, i), .frame = k});
+            }
+            break;
+        }
+        case Robustness::CrowdOf::Scene:
+            crowds.emplace_back();
+            for (const auto& scene : input.rooms()) crowds[0].push_back(crowdOf(*scene));
+            break;
+        case Robustness::CrowdOf::Run:
+            // The storeys of a record have the same moments.
+            for (std::size_t i = 0; i < rooms; ++i) {
+                const std::vector<Crowd> own = crowdsOfRun(
+                    recordOfStorey(options.run, storeyOf(input, i)), *input.rooms()[i], kSamples);
+                crowds.resize(i == 0 ? own.size() : std::min(crowds.size(), own.size()),
+                              BuildingCrowd(rooms));
+                for (std::size_t k = 0; k < crowds.size(); ++k) crowds[k][i] = own[k];
+            }
+            break;
+    }
+    return crowds;
+}
+
+}  // namespace
+
+void measureRobustness(const CoverageToolOptions& options, const SiteInput& input,
+                       SiteResults& results) {
+    if (!options.perturb && options.failures == 0 && !options.crowd) return;
+    const BuildingCoverage& coverage = results.coverage;
+    Robustness& robustness = results.robustness.emplace(
+        Robustness{.requirements = options.requirements, .failures = options.failures});
+    if (options.failures > 0)
+        robustness.losses =
+            worstFailuresOfBuilding(coverage, options.failures, options.requirements);
+    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
+    if (options.crowd) {
+        robustness.crowd_of = options.crowd->of;
+        robustness.people = options.crowd->people;
+        robustness.crowd =
+            crowdBuilding(input.building, coverage, options.measure,
+                          crowdsOf(options, input, coverage), options.requirements, *progress);
+    }
+    if (!options.perturb) return;
+    robustness.tolerance = *options.perturb;
+    robustness.mounting =
+        perturbBuilding(input.building, coverage, options.measure, *options.perturb, kSamples,
+                        options.common.seed, options.requirements, *progress);
+}
+
+void suggest(const CoverageToolOptions& options, const SiteInput& input, SiteResults& results,
+             int& signal) {
+    if (!options.suggestions) return;
     SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
                           .measure = options.measure,
                           .requirements = options.requirements,
@@ -134,98 +343,59 @@ std::optional<Advice> suggest(const CoverageToolOptions& options, const SceneInp
     std::erase_if(wanted.facing, [](const FacingRule& rule) { return !rule.required; });
     SearchWatch watch(makeProgress("coverage", options.common.progress, options.common.quiet),
                       options.time_limit);
-    Advice advice{suggestChanges(input.scene, coverage, wanted, shippedDevices(), watch),
-                  editCommand(input.named, options.rules)};
-    advice.is_cut = watch.stopped();
+    results.advice = adviceFor(input.building, results.coverage, wanted, shippedDevices(), watch);
+    results.advice->command = editCommand(input.named, options.rules);
+    results.advice->is_cut = watch.stopped();
     signal = watch.signal();
-    advice.is_short = missingFloor(input.scene, coverage, wanted) > 0 &&
-                      (advice.suggestions.empty() ||
-                       advice.suggestions.front().kind != Suggestion::Kind::Together);
-    return advice;
 }
 
 namespace {
 
-std::vector<Crowd> crowdsOf(const CoverageToolOptions& options, const Scene& scene) {
-    switch (options.crowd->of) {
-        case Robustness::CrowdOf::Scene:
-            return {crowdOf(scene)};
-        case Robustness::CrowdOf::Run:
-            return crowdsOfRun(options.run, scene, kSamples);
-        case Robustness::CrowdOf::Random:
-            break;
+/// Returns the content of a model: the records of the scene, below the history of both inputs and
+/// this command.
+Document documentOf(const CoverageToolOptions& options, const SiteInput& input, std::size_t room,
+                    const Scene& scene) {
+    Document document;
+    document.history = storeyOf(input, room).room->history;
+    if (input.layout)
+        document.history.insert(document.history.end(), input.layout->history.begin(),
+                                input.layout->history.end());
+    document.history.push_back(options.history_line);
+    document.records = scene.records;
+    rebaseFiles(document.records, "",
+                std::filesystem::path(options.common.output).parent_path().string());
+    return document;
+}
+
+/// Returns what the map of a room shows.
+MapOptions mapOf(const CoverageToolOptions& options, const SiteInput& input,
+                 const SiteResults& results, std::size_t room) {
+    MapOptions map = options.map;
+    if (!results.objectives.empty()) map.objectives = &results.objectives[room];
+    if (results.run) map.run = &results.run->storeys[room];
+    if (input.isOneRoom()) {
+        map.title = input.environment_operand == "-" ? "" : baseName(input.environment_operand);
+        map.trace = results.tried;
+        return map;
     }
-    const CrowdFloor floor(scene);
-    std::vector<Crowd> crowds;
-    for (std::uint64_t frame = 0; frame < kSamples; ++frame)
-        crowds.push_back(floor.draw(static_cast<std::size_t>(options.crowd->people),
-                                    {.seed = options.common.seed, .frame = frame}));
-    return crowds;
+    if (map.run != nullptr && map.run->members.empty()) map.run = nullptr;
+    map.title = storeyOf(input, room).id;
+    map.redundancy_scale = redundancyScale(results.coverage);
+    std::copy_if(results.tried.begin(), results.tried.end(), std::back_inserter(map.trace),
+                 [&map](const TriedPose& pose) { return pose.room == map.title; });
+    return map;
 }
 
-}  // namespace
-
-std::optional<Robustness> robustnessOf(const CoverageToolOptions& options, const Scene& scene,
-                                       const Coverage& coverage) {
-    if (!options.perturb && options.failures == 0 && !options.crowd) return std::nullopt;
-    Robustness robustness{.requirements = options.requirements, .failures = options.failures};
-    if (options.failures > 0)
-        robustness.losses = worstFailures(scene, coverage, options.failures, options.requirements);
-    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
-    if (options.crowd) {
-        robustness.crowd_of = options.crowd->of;
-        robustness.people = options.crowd->people;
-        robustness.crowd = measureCrowds(scene, coverage.report, options.measure,
-                                         crowdsOf(options, scene), options.requirements, *progress);
-    }
-    if (!options.perturb) return robustness;
-    robustness.tolerance = *options.perturb;
-    robustness.mounting =
-        perturbMounting(scene, coverage.report, options.measure, *options.perturb, kSamples,
-                        options.common.seed, options.requirements, *progress);
-    return robustness;
-}
-
-std::optional<CameraRules> cameraRulesOf(const CoverageToolOptions& options, const Scene& scene,
-                                         const Coverage& coverage) {
-    if (options.facing.empty() && options.privacy.empty()) return std::nullopt;
-    CameraRules rules{measureFacing(scene, coverage, options.facing),
-                      measurePrivacy(scene, options.measure.plane, options.privacy)};
-    if (!options.facing.empty() && options.measure.plane == 0)
-        tell(options.common, "coverage", std::string(kFacesOnFloor));
-    return rules;
-}
-
-std::optional<ObjectiveFigures> objectivesOf(const CoverageToolOptions& options, const Scene& scene,
-                                             const Coverage& coverage) {
-    if (options.paths.empty() && !options.localise_to) return std::nullopt;
-    ObjectiveFigures figures;
-    for (const WayChoice& path : options.paths)
-        figures.ways.push_back(findLeastSeenWay(scene, coverage, path));
-    if (options.localise_to) figures.localisation = localise(scene, coverage, *options.localise_to);
-    return figures;
-}
-
-std::vector<JunitCase> judge(const CameraRules& rules) { return judge(judgedRules(rules)); }
-
-std::vector<JunitCase> judge(std::span<const JudgedRule> rules) {
-    std::vector<JunitCase> verdicts;
-    for (const JudgedRule& rule : rules)
-        if (rule.is_required)
-            verdicts.push_back(
-                {.name = rule.rule,
-                 .outcome = rule.is_met ? JunitCase::Outcome::Met : JunitCase::Outcome::Unmet,
-                 .message = rule.rule + ": " + rule.finding});
-    return verdicts;
-}
-
-void writeProduct(const CoverageToolOptions& options, const SceneInput& input,
-                  const Measured& measured) {
+/// Writes the map of a room, with its accompanying file.
+void writeProduct(const CoverageToolOptions& options, const SiteInput& input,
+                  const SiteResults& results, std::size_t room) {
     const std::string& output = options.common.output;
     const CoverageFormat& format = *options.format;
-    CoverageProduct product{input.scene, measured.coverage,
-                            measured.other ? &*measured.other : nullptr, options.map};
-    product.document = documentOf(options, input);
+    const Scene& scene = *results.coverage.floors[room];
+    CoverageProduct product{scene, results.coverage.storeys[room],
+                            results.other ? &results.other->storeys[room] : nullptr,
+                            mapOf(options, input, results, room)};
+    product.document = documentOf(options, input, room, scene);
     product.speeds = options.speeds;
     if (const auto* cells = std::get_if<CellSize>(&options.measure.cells))
         product.cell = cells->edge;
@@ -239,59 +409,83 @@ void writeProduct(const CoverageToolOptions& options, const SceneInput& input,
     writeTogether(std::vector<NamedBytes>{{beside, files.beside}, {output, files.product}});
 }
 
-std::vector<Diagnostic> sensorFindings(const Scene& scene) {
-    std::vector<Diagnostic> found = sceneWarnings(scene, sensorChecks());
-    if (auto deaf = receiverFinding(scene)) found.push_back(*std::move(deaf));
-    return found;
-}
-
-FindingFilter sensorChecks() { return {.checks = {"unplaced", "outside", "buried"}}; }
-
-std::optional<Diagnostic> receiverFinding(const Scene& scene) {
-    if (const std::size_t count = sensorsOf<Receiver>(scene).size();
-        count > 0 && count < kMinReceivers)
-        return Diagnostic{
-            .file = "",
-            .message = "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
-                       " receivers have to hear a tag, here are " + std::to_string(count),
-            .severity = Severity::Warning};
-    return std::nullopt;
-}
-
-std::string largeCellsText(const CoverageOptions& options, const Grid& grid) {
-    const double edge = roundSignificant(grid.limits.width() / grid.columns);
-    if (!std::holds_alternative<RoomCells>(options.cells) || edge <= kRoomCell) return "";
-    return "the room is large: cells are " + formatDouble(edge) + " m instead of " +
-           formatDouble(kRoomCell) + " m (--cell M makes them smaller)";
-}
-
-namespace {
-
-template <typename SomeRequirement, typename Measured>
-std::vector<JunitCase> verdictsOn(std::span<const SomeRequirement> requirements,
-                                  const Measured& measured, const std::string& name) {
-    std::vector<JunitCase> verdicts;
-    verdicts.reserve(requirements.size());
-    for (const SomeRequirement& requirement : requirements) {
-        const Verdict verdict = checkRequirement(requirement, measured);
-        verdicts.push_back(
-            {.name = name + requirementText(requirement),
-             .outcome = verdict.is_met ? JunitCase::Outcome::Met : JunitCase::Outcome::Unmet,
-             .message = verdict.text});
+/// Draws all storeys on one page.
+void writePanels(const CoverageToolOptions& options, const SiteInput& input,
+                 const SiteResults& results) {
+    std::vector<Picture> panels;
+    for (std::size_t i = 0; i < results.coverage.storeys.size(); ++i) {
+        MapOptions map = mapOf(options, input, results, i);
+        map.format = *options.format->picture;
+        panels.push_back(
+            coverageMap(*results.coverage.floors[i], results.coverage.storeys[i], map));
     }
-    return verdicts;
+    Picture page = panelsOf(panels);
+    page.describe(baseName(input.environment_operand),
+                  "Coverage of its storeys, the lowest at the bottom");
+    writeAll(options.common.output, page.write(*options.format->picture));
 }
 
 }  // namespace
 
-std::vector<JunitCase> judge(std::span<const Requirement> requirements, const Coverage& coverage,
-                             const std::string& name) {
-    return verdictsOn(requirements, coverage, name);
+void writeProducts(const CoverageToolOptions& options, const SiteInput& input,
+                   const SiteResults& results) {
+    if (input.isOneRoom()) return writeProduct(options, input, results, 0);
+    if (!isStoreyPattern(options.common.output)) return writePanels(options, input, results);
+    for (std::size_t i = 0; i < input.rooms().size(); ++i) {
+        CoverageToolOptions own = options;
+        own.common.output = storeyFile(options.common.output, storeyOf(input, i).id);
+        claimOutput(own.common.output, "the map of a storey");
+        writeProduct(own, input, results, i);
+    }
 }
 
-std::vector<JunitCase> judge(std::span<const PresenceRequirement> requirements,
-                             const Presence& presence) {
-    return verdictsOn(requirements, presence, "");
+std::vector<Diagnostic> sensorFindings(const BuildingScene& building) {
+    std::vector<Diagnostic> found =
+        storeyWarnings(Coupling(building), {.checks = {"unplaced", "outside", "buried"}});
+    for (std::size_t i = 0; i < building.scenes.size(); ++i)
+        if (auto deaf = receiverFinding(*building.scenes[i])) {
+            deaf->message.insert(0, building.document.storeys[i].prefix());
+            found.push_back(*std::move(deaf));
+        }
+    return found;
+}
+
+namespace {
+
+JunitCase caseOf(std::string name, bool is_met, std::string message) {
+    return {.name = std::move(name),
+            .outcome = is_met ? JunitCase::Outcome::Met : JunitCase::Outcome::Unmet,
+            .message = std::move(message)};
+}
+
+}  // namespace
+
+std::vector<JunitCase> judge(std::span<const Requirement> requirements,
+                             const BuildingScene& building, const BuildingCoverage& coverage,
+                             const std::string& name) {
+    std::vector<JunitCase> verdicts;
+    verdicts.reserve(requirements.size());
+    for (const Requirement& requirement : requirements) {
+        Verdict verdict = checkRequirement(requirement, building, coverage);
+        verdicts.push_back(
+            caseOf(name + requirementText(requirement), verdict.is_met, std::move(verdict.text)));
+    }
+    return verdicts;
+}
+
+std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const BuildingScene& building,
+                                const SiteResults& results) {
+    std::vector<JunitCase> verdicts = judge(options.requirements, building, results.coverage);
+    if (results.presence_sum)
+        for (const PresenceRequirement& requirement : options.presence_requirements) {
+            Verdict verdict = checkRequirement(requirement, *results.presence_sum);
+            verdicts.push_back(
+                caseOf(requirementText(requirement), verdict.is_met, std::move(verdict.text)));
+        }
+    for (const JudgedRule& rule : judgedInBuilding(building, results.coverage.rules))
+        if (rule.is_required)
+            verdicts.push_back(caseOf(rule.rule, rule.is_met, rule.rule + ": " + rule.finding));
+    return verdicts;
 }
 
 std::string unmetText(std::span<const JunitCase> verdicts) {
@@ -300,28 +494,6 @@ std::string unmetText(std::span<const JunitCase> verdicts) {
         if (verdict.outcome == JunitCase::Outcome::Unmet)
             text.append(text.empty() ? "" : "; ").append(verdict.message);
     return text;
-}
-
-Measured measureScene(const CoverageToolOptions& options, const SceneInput& input,
-                      const Scene* other) {
-    for (const Requirement& requirement : options.requirements)
-        mustHaveZone(requirement, input.scene.environment);
-    warn(options.common, "coverage", sensorFindings(input.scene));
-    const auto& sensors = input.scene.sensors;
-    const auto seeing = static_cast<std::size_t>(
-        std::count_if(sensors.begin(), sensors.end(),
-                      [](const Sensor& sensor) { return kindOf(sensor.model).perceives; }));
-    // A page alone shows depths in a few shades.
-    const bool by_shades =
-        options.measure.keep_depths && options.format == nullptr && seeing > kFewDepths;
-    CoverageToolOptions own = options;
-    own.measure.keep_depths = options.measure.keep_depths && !by_shades;
-    Measured measured = measure(own, input.scene, other);
-    if (by_shades) addDepthShades(measured.coverage, input.scene);
-    if (const std::string text = largeCellsText(options.measure, measured.coverage.report.grid);
-        !text.empty())
-        tell(options.common, "coverage", text);
-    return measured;
 }
 
 }  // namespace ispace

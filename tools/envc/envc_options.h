@@ -49,9 +49,6 @@ std::string besideOf(const EnvcOptions& options);
 void writeProduct(const EnvcOptions& options, const Scene& scene, const Document& document,
                   const FoundRooms* found);
 
-/// Adds the zones of --zone to a room, as records. \throws UsageError as zoneRecords()
-void addZones(std::span<const std::string> zones, Document& document);
-
 /// Returns remedies as suggestionsText() writes suggestions. \param findings their number before
 std::string remediesText(const EnvcOptions& options, std::size_t findings,
                          const std::vector<Remedy>& remedies);

@@ -95,11 +95,12 @@ class RecordedSite {
         if (!is_whole_ && !input.isOneRoom())
             throw UsageError("--run: " + folder +
                              " is the record of one room: choose its storey with --storey (" +
-                             input.building->document.storeyList() + ')');
+                             input.building.document.storeyList() + ')');
     }
     [[nodiscard]] std::string folder(std::size_t room) const {
         if (!is_whole_) return folder_;
-        return folder_ + '/' + (input_->isOneRoom() ? input_->storey : input_->ids[room]);
+        return folder_ + '/' +
+               (input_->isOneRoom() ? input_->storey : input_->building.document.storeys[room].id);
     }
     /// Returns the id across the site of a thing in the record of a room. In that of a building
     /// movers, and sensors on them, have the storey of their start before their ids.
@@ -127,7 +128,7 @@ class RecordedSite {
 /// alphas.
 std::vector<RunMember> membersOf(const RecordedSite& record, const SiteInput& input) {
     std::vector<RunMember> members;
-    for (std::size_t room = 0; room < input.rooms.size(); ++room) {
+    for (std::size_t room = 0; room < input.rooms().size(); ++room) {
         RunReader run(record.folder(room));
         while (run.next()) {
         }
@@ -136,8 +137,8 @@ std::vector<RunMember> membersOf(const RecordedSite& record, const SiteInput& in
                              [&](const RunMember& known) { return known.id == member.id; }))
                 members.push_back(member);
     }
-    for (std::size_t room = 0; room < input.rooms.size(); ++room)
-        for (const PlacedRobot& robot : input.rooms[room]->robots)
+    for (std::size_t room = 0; room < input.rooms().size(); ++room)
+        for (const PlacedRobot& robot : input.rooms()[room]->robots)
             for (RunMember& member : members)
                 if (member.id == record.recordedId(room, robot.id))
                     member.alphas = alphasOf(robot.model.noise);
@@ -190,7 +191,7 @@ class RecordedMoments {
 };
 
 SiteSensors recordedLasers(const ScanToolOptions& options, const SiteInput& input) {
-    SiteSensors lasers = sensorsOf(input.rooms, input.ids, options.select);
+    SiteSensors lasers = sensorsOf(input.rooms(), input.ids(), options.select);
     std::vector<Sensor> kept;
     std::size_t next = 0;
     for (SensorRoom& room : lasers.rooms) {
@@ -264,7 +265,7 @@ class RecordedReadings {
                       .beam_poses = {},
                       .ranges = found->ranges};
             if (options_.format == "carmen" && laser->mount) {
-                const std::string& robot = input_.rooms[home]->robots[laser->mount->robot].id;
+                const std::string& robot = input_.rooms()[home]->robots[laser->mount->robot].id;
                 if (const auto at = odometry.poseOf(record_.recordedId(home, robot), scan.time)) {
                     scan.pose = mountedPose(at->pose, laser->mount->robot_from_sensor);
                     if (at->is_true) scan.pose = inRoom(room, home, scan.pose);
@@ -328,7 +329,7 @@ void writeRecorded(const ScanCommand& command) {
     RecordedReadings readings(options, input, lasers, record, *format, members, *stream);
     std::vector<std::string> files = input.files;
     std::int64_t count = 0;
-    for (std::size_t room = 0; room < input.rooms.size(); ++room) {
+    for (std::size_t room = 0; room < input.rooms().size(); ++room) {
         count += readings.write(room);
         files.push_back(RecordedFiles(record.folder(room)).scans);
         if (wants_moments) files.push_back(RecordedFiles(record.folder(room)).robots);

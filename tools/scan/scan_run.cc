@@ -84,7 +84,7 @@ SceneRequest requestOf(const ScanToolOptions& options) {
 namespace {
 
 SiteSensors placedSensors(const ScanToolOptions& options, const SiteInput& input) {
-    SiteSensors found = sensorsOf(input.rooms, input.ids, options.select);
+    SiteSensors found = sensorsOf(input.rooms(), input.ids(), options.select);
     if (!found.sensors.read.empty()) return found;
     if (!options.select.empty())
         throw UsageError(
@@ -159,9 +159,9 @@ struct KnownSensor {
 
 KnownSensor onlySensor(const SiteInput& site, const std::vector<std::string>& globs) {
     std::vector<KnownSensor> found;
-    for (std::size_t room = 0; room < site.rooms.size(); ++room)
-        for (const std::size_t record : sensorRecords(*site.rooms[room], movable(), {}))
-            if (KnownSensor one{room, record, site.idOf(room, site.rooms[room]->ids[record])};
+    for (std::size_t room = 0; room < site.rooms().size(); ++room)
+        for (const std::size_t record : sensorRecords(*site.rooms()[room], movable(), {}))
+            if (KnownSensor one{room, record, site.idOf(room, site.rooms()[room]->ids[record])};
                 isSelected(one.id, globs))
                 found.push_back(std::move(one));
     if (found.size() == 1) return found.front();
@@ -199,7 +199,7 @@ MovedSensor sensorForPoses(const ScanToolOptions& options, const SiteInput& site
                         {}});
     } else {
         const KnownSensor only = onlySensor(site, options.select);
-        const Scene& scene = *site.rooms[only.room];
+        const Scene& scene = *site.rooms()[only.room];
         read.push_back({only.id, sensorModelOf(scene.records[only.record], devices), {}});
         if (const Sensor* placed = placedSensor(scene, scene.ids[only.record])) {
             read.front().mount = placed->mount;
@@ -211,7 +211,7 @@ MovedSensor sensorForPoses(const ScanToolOptions& options, const SiteInput& site
     const std::string& id = sensor.id;
     if (options.motion && sensor.is<Laser>() && sensor.as<Laser>().sweep != SweepAxis::None)
         throw UsageError("--motion: a laser either sweeps or drives, and " + id + " sweeps");
-    moved.found.rooms = {{"", site.rooms.front().get(), 1, 0}};
+    moved.found.rooms = {{"", site.rooms().front().get(), 1, 0}};
     return moved;
 }
 
@@ -404,7 +404,7 @@ class RoomSampler {
         : scene_(site.scene(room)),
           worlds_(scene_->environment),
           bodies_(bodiesOf(*scene_)),
-          room_(site.input().rooms[room]),
+          room_(site.input().rooms()[room]),
           burial_(room_->environment),
           sensors_{all.sensors.read, {}} {
         TakerOptions taking{.celsius = options.celsius,

@@ -146,7 +146,7 @@ class SiteViews {
         std::vector<std::string> found;
         for (const RoomView& one : views_) {
             if (!one.room) continue;
-            const std::string phrase = standpointWarning(one.view, *input_.rooms[*one.room]);
+            const std::string phrase = standpointWarning(one.view, *input_.rooms()[*one.room]);
             if (!phrase.empty()) found.push_back(input_.prefix(*one.room) + phrase);
         }
         return found;
@@ -158,7 +158,7 @@ class SiteViews {
         jobs.reserve(views_.size());
         for (const RoomView& one : views_) {
             const Scene& scene =
-                one.room ? roomFor(*one.room, isWithinRoom(one.view)) : *input_.rooms[0];
+                one.room ? roomFor(*one.room, isWithinRoom(one.view)) : *input_.rooms()[0];
             jobs.push_back({one.view.name, labelFor(one),
                             pictureSizeOf(one.view, scene, options_.picture_size),
                             [&, this](PictureSize size, const auto& on_progress) {
@@ -182,7 +182,7 @@ class SiteViews {
     }
 
     void addInBuilding(ViewSpec view) {
-        const std::vector<Storey>& storeys = input_.building->document.storeys;
+        const std::vector<Storey>& storeys = input_.building.document.storeys;
         std::string called = view.storey;
         if (!view.id.empty()) {
             const std::size_t slash = view.id.find('/');
@@ -195,7 +195,7 @@ class SiteViews {
         }
         if (!called.empty()) {
             const Storey* const storey =
-                ofOption("--view", [&] { return &input_.building->document.storey(called); });
+                ofOption("--view", [&] { return &input_.building.document.storey(called); });
             views_.push_back({static_cast<std::size_t>(storey - storeys.data()), std::move(view)});
         } else if (view.mode == ViewMode::Orbit || (view.mode == ViewMode::Central && !view.at)) {
             views_.push_back({std::nullopt, std::move(view)});
@@ -227,7 +227,7 @@ class SiteViews {
     /// Returns the scene of a room; where the viewer is inside, with all that is seen through
     /// openings.
     const Scene& roomFor(std::size_t room, bool is_within) {
-        if (!is_within) return *input_.rooms[room];
+        if (!is_within) return *input_.rooms()[room];
         auto& seen = seen_[room];
         if (seen == nullptr) seen = site_.scene(room);
         return *seen;
@@ -252,7 +252,7 @@ class SiteViews {
         std::vector<ViewSpec> views;
         for (const RoomView& one : views_)
             if (one.room == room) views.push_back(one.view);
-        own.viewers = viewersOf(views, *input_.rooms[room]);
+        own.viewers = viewersOf(views, *input_.rooms()[room]);
         return own;
     }
 
@@ -282,7 +282,7 @@ class SiteViews {
     /// the higher storey first, rays that ascend the lower one.
     [[nodiscard]] Image drawWhole(const ViewSpec& view, PictureSize size,
                                   const std::function<void(double)>& on_progress) const {
-        const std::vector<Storey>& storeys = input_.building->document.storeys;
+        const std::vector<Storey>& storeys = input_.building.document.storeys;
         const std::vector<Point3> contents = contentsOf();
         std::vector<std::size_t> order;
         for (std::size_t i = 0; i < storeys.size(); ++i) order.push_back(i);
@@ -290,7 +290,7 @@ class SiteViews {
             eyeHeight(inFrameOf(storeys.front(), view, contents), size) + storeys.front().floor;
         const auto apart = [&](std::size_t i) {
             return std::max(
-                {0.0, storeys[i].floor - eye, eye - storeys[i].floor - input_.building->height(i)});
+                {0.0, storeys[i].floor - eye, eye - storeys[i].floor - input_.building.height(i)});
         };
         std::stable_sort(order.begin(), order.end(),
                          [&](std::size_t a, std::size_t b) { return apart(a) > apart(b); });
@@ -321,9 +321,9 @@ class SiteViews {
     /// Returns the corners of all storeys, in the building.
     [[nodiscard]] std::vector<Point3> contentsOf() const {
         std::vector<Point3> contents;
-        for (std::size_t i = 0; i < input_.rooms.size(); ++i) {
-            const Storey& storey = input_.building->document.storeys[i];
-            const Environment& room = input_.rooms[i]->environment;
+        for (std::size_t i = 0; i < input_.rooms().size(); ++i) {
+            const Storey& storey = input_.building.document.storeys[i];
+            const Environment& room = input_.rooms()[i]->environment;
             for (const Region& part : room.indoor().parts)
                 for (const Point2& corner : part.outline) {
                     const Point2 p = storey.building_from_storey * corner;
@@ -349,7 +349,7 @@ class SiteViews {
     }
 
     [[nodiscard]] double eyeHeight(const ViewSpec& view, PictureSize size) const {
-        return standpointOf(view, *input_.rooms.front(), size).place->z;
+        return standpointOf(view, *input_.rooms().front(), size).place->z;
     }
 
     const ScanToolOptions& options_;
@@ -364,12 +364,12 @@ void mustHaveHighlighted(const ScanToolOptions& options, const SiteInput& input)
     if (input.isOneRoom()) return;
     for (const std::string& id : options.view.drawing.highlight) {
         bool is_known = false;
-        for (std::size_t i = 0; i < input.rooms.size(); ++i)
-            for (const std::string& plain : input.rooms[i]->ids)
+        for (std::size_t i = 0; i < input.rooms().size(); ++i)
+            for (const std::string& plain : input.rooms()[i]->ids)
                 is_known = is_known || id == input.idOf(i, plain);
         if (!is_known)
             throw UsageError("--highlight: nothing has the id " + excerpt(id) +
-                             "; ids begin with their storey, as in " + input.ids.front() +
+                             "; ids begin with their storey, as in " + input.ids().front() +
                              "/desk1");
     }
 }
@@ -426,7 +426,7 @@ void takeViews(const ScanCommand& command) {
         RecordedMoment moment;
         if (run) {
             moment = run->moveTo(frame, frames);
-            input.rooms.front() = std::make_shared<const Scene>(run->scene());
+            input.building.scenes.front() = std::make_shared<const Scene>(run->scene());
             views = std::make_unique<SiteViews>(options, input);
         }
         const std::vector<PictureJob> jobs = views->jobs(moment);
@@ -436,7 +436,7 @@ void takeViews(const ScanCommand& command) {
     pictures.finish();
     progress->end();
     if (run && !run->failure().empty()) warn(options.common, "scan", run->failure());
-    for (const auto& scene : input.rooms)
+    for (const auto& scene : input.rooms())
         for (const std::string& texture : textureFiles(*scene)) files.push_back(texture);
     writeDependencies(options.common, files);
     const std::int64_t count = frames * static_cast<std::int64_t>(names.size());

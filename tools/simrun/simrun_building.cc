@@ -75,7 +75,7 @@ void forward(BuildingRun& run, SimTime from) {
 class BuildingRunSite final : public RunSite {
   public:
     BuildingRunSite(const SimrunCommand& command, SiteInput building)
-        : RunSite(command, std::move(building)), run_(runOf(options, *input.building)) {
+        : RunSite(command, std::move(building)), run_(runOf(options, input.building)) {
         forward(run_, options.from);
         claimRecords();
         if (options.script.empty()) return;
@@ -90,7 +90,7 @@ class BuildingRunSite final : public RunSite {
         return run_.replay(room);
     }
     void recordWhole() override {
-        writeBuilding(*input.building, history, options.record);
+        writeBuilding(input.building, history, options.record);
         run_.recordLifts(options.record + '/' + BuildingRun::kLiftFile);
     }
 

@@ -34,12 +34,12 @@ std::optional<double> shareSeen(const SimrunOptions& options, const BuildingScen
 
 std::string buildingReportFile(const SimrunOptions& options, const SiteInput& input,
                                const RunJudge& judge, const std::string& command) {
-    const BuildingScene& building = *input.building;
+    const BuildingScene& building = input.building;
     const BuildingCoverage coverage = measureBuilding(building, {});
     const BuildingRunCoverage run = measuredRun(options, building);
     const std::string suffix = suffixOf(options.report);
     if (suffix == "json") return buildingCoverageJson(building, coverage, partsOf(run));
-    BuildingPageInput page{building, coverage, "", command, {}, &run};
+    BuildingPageInput page{building, coverage, "", command, {}, partsOf(run)};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     for (const RunVerdict& verdict : judge.verdicts())
         page.requirements.push_back({verdict.expectation, verdict.is_met, verdict.reason});
@@ -49,7 +49,7 @@ std::string buildingReportFile(const SimrunOptions& options, const SiteInput& in
 
 std::string buildingSuggestionsText(const SimrunOptions& options, const SiteInput& input) {
     std::vector<RunSuggestion> found;
-    const BuildingScene& building = *input.building;
+    const BuildingScene& building = input.building;
     const std::optional<double> before = shareSeen(options, building);
     const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
     const auto whole = wholeScenes(building);

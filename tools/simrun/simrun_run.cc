@@ -72,8 +72,8 @@ SiteInput readInput(const SimrunOptions& options) {
     if (!options.replay.empty() && building.empty() && !input.isOneRoom())
         throw UsageError("--replay: " + options.replay +
                          " is the record of one room: choose its storey with --storey (" +
-                         input.building->document.storeyList() + ')');
-    addZones(options.zones, input);
+                         input.building.document.storeyList() + ')');
+    addZones(options.zones, input.building);
     warnOfImport(options.common, kTool, input);
     warn(options.common, kTool,
          siteWarnings(input, {.checks = {"unplaced", "outside", "buried", "paths"}}));
@@ -185,7 +185,7 @@ std::unique_ptr<RunSite> openSite(const SimrunCommand& command) {
     const SimrunOptions& options = command.options();
     SiteInput input = readInput(options);
     if (options.noise &&
-        std::none_of(input.rooms.begin(), input.rooms.end(),
+        std::none_of(input.rooms().begin(), input.rooms().end(),
                      [&](const auto& scene) { return hasNoise(*scene, options.replay.empty()); }))
         warn(options.common, kTool,
              "--noise changes nothing: no sensor has noise, and no robot has motion_noise, "
@@ -197,7 +197,7 @@ std::unique_ptr<RunSite> openSite(const SimrunCommand& command) {
     Scene scene = input.only();
     std::optional<Replay> replay = openReplay(options, scene);
     if (!replay) warnOfTrips(scene, options.common);
-    input.rooms = {std::make_shared<const Scene>(std::move(scene))};
+    input.building.scenes = {std::make_shared<const Scene>(std::move(scene))};
     return std::make_unique<RoomRunSite>(command, std::move(input), std::move(replay));
 }
 

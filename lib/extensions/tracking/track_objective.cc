@@ -43,7 +43,7 @@ class TrackObjective : public ObjectiveGroup {
         for (std::size_t i = 0; i < ways.size(); ++i) {
             MomentSampler sampler;
             if (!ways[i].isEmpty())
-                visitWays(ways[i].choice, *site.rooms[i], ways[i].seed,
+                visitWays(ways[i].choice, *site.rooms()[i], ways[i].seed,
                           [&sampler](const std::string& id, double time, Point2 place) {
                               sampler.add(id, time, place);
                           });

@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-void addDepthShades(Coverage& coverage, const Scene& scene) {
+void addDepthShades(Coverage& coverage, const Scene& scene, std::uint32_t scale) {
     if (!coverage.overlay) return;
     std::vector<Layer> layers;
     layers.reserve(coverage.sets.size() + 1);
@@ -21,7 +21,7 @@ void addDepthShades(Coverage& coverage, const Scene& scene) {
         layers.push_back(
             {.curves = *coverage.sets[i].region, .number = static_cast<std::int64_t>(i) + 1});
     layers.push_back(markLayer(curvesWithArcs(scene.environment.indoor()), kIndoorMark));
-    const Shades shades = shadesFor(coverage.report);
+    const Shades shades = shadesFor(coverage.report, scale);
     const auto shade_of = [&shades](const LayerLabel& label) {
         LayerLabel shade{.marks = label.marks};
         if (label.count == 1) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "coverage/coverage.h"
 #include "scene/scene.h"
@@ -16,6 +17,7 @@ constexpr std::size_t kFewDepths = 24;
 /// with the lowest count of its floor above 1. Where hundreds of views overlap that is a small part
 /// of all depths. The overlay has no marks but kIndoorMark. Without effect if the coverage has no
 /// overlay, which it loses if its views cross too often for the other one.
-void addDepthShades(Coverage& coverage, const Scene& scene);
+/// \param scale see MapOptions::redundancy_scale
+void addDepthShades(Coverage& coverage, const Scene& scene, std::uint32_t scale = 0);
 
 }  // namespace ispace

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks, describes, draws and writes what envc has read.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/message.h"
+#include "base/number.h"
+#include "base/run_files.h"
+#include "building/building_edit.h"
+#include "building/building_scene.h"
+#include "building/coupling.h"
+#include "cli/building_operands.h"
+#include "cli/outputs.h"
+#include "cli/run_tool.h"
+#include "cli/site_operands.h"
+#include "env/zone.h"
+#include "envc/envc_site.h"
+#include "passage/building_run.h"
+#include "passage/landing_check.h"
+#include "report/page/page.h"
+#include "report/page/room_page.h"
+#include "scene/findings/findings.h"
+#include "scene/findings/remedies.h"
+#include "sim/course_check.h"
+
+namespace ispace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Returns the scenes of the rooms. \throws FormatError as makeScene()
+BuildingScene sceneOf(const StoreyedDocument& document) {
+    std::vector<const Document*> rooms;
+    for (const Storey& storey : document.storeys) rooms.push_back(storey.room.get());
+    return makeBuildingScene(document, {}, devicesFor(std::span<const Document* const>(rooms)));
+}
+
+/// Returns moves that resolve findings of a storey, by the ids of the building.
+std::string movesIn(const EnvcOptions& options, const BuildingScene& building, std::size_t storey,
+                    const FindingFilter& filter, int& left) {
+    if (left == 0) return "";
+    const auto scene = sceneOfBuilding(building, storey);
+    const std::vector<Finding> found = checkScene(*scene, filter);
+    const std::size_t count = found.size() + checkCourses(*scene).size();
+    if (count == 0) return "";
+    const std::vector<Remedy> remedies =
+        remediesOf(*scene, found, filter, static_cast<std::size_t>(left), building.devices,
+                   [](const Scene& one) { return checkCourses(one).size(); });
+    left -= static_cast<int>(remedies.size());
+    return building.document.storeys[storey].prefix() + remediesText(options, count, remedies);
+}
+
+/// Adds the findings of all rooms, each once, and of what joins them.
+/// \returns moves that resolve some of them
+std::string addFindings(const EnvcOptions& options, const BuildingScene& building,
+                        Diagnostics& findings) {
+    FindingFilter mistakes;
+    for (const SceneCheck& check : sceneChecks())
+        if (check.name != "unplaced") mistakes.checks.push_back(check.name);
+    const Coupling coupling(building);
+    // arrange accepts a sensor without a position: it is reported, but is no error.
+    warn(options.common, "envc", storeyWarnings(coupling, {.checks = {"unplaced"}}));
+    std::vector<const Scene*> checked;
+    std::string moves;
+    int moves_left = options.suggestions.value_or(0);
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Scene* const scene = building.scenes[i].get();
+        const bool is_new = std::find(checked.begin(), checked.end(), scene) == checked.end();
+        checked.push_back(scene);
+        for (Diagnostic& finding : storeyFindings(coupling, i, mistakes, is_new))
+            findings.add(std::move(finding));
+        if (!is_new) continue;
+        if (options.suggestions) moves += movesIn(options, building, i, mistakes, moves_left);
+        for (const Finding& finding : checkCourses(*scene)) {
+            Diagnostic diagnostic = finding.diagnostic();
+            diagnostic.message.insert(0, building.document.storeys[i].prefix());
+            findings.add(std::move(diagnostic));
+        }
+    }
+    if (building.isRoomAlone()) return moves;
+    for (Diagnostic& finding : checkBuilding(building)) findings.add(std::move(finding));
+    for (Diagnostic& finding : BuildingRun::tripFindings(building))
+        findings.add(std::move(finding));
+    for (Diagnostic& finding : landingFindings(building)) findings.add(std::move(finding));
+    return moves;
+}
+
+}  // namespace
+
+void checkSite(const EnvcOptions& options, const EnvcSite& site) {
+    Diagnostics findings;
+    for (const Diagnostic& warning : site.document.warnings) findings.add(warning);
+    for (const Diagnostic& doubt : site.report.doubts) findings.add(doubt);
+    try {
+        const std::string moves = addFindings(options, sceneOf(site.document), findings);
+        if (options.suggestions) writeAll("-", moves);
+    } catch (const FormatError& error) {
+        findings.add(error);
+    }
+    findings.throwIfAny();
+    logInfo(options.common, "envc", "nothing found");
+}
+
+namespace {
+
+/// Returns the page of a building: of each storey that of its room, on sheets of its own.
+ReportPage pageOfBuilding(const EnvcOptions& options, const EnvcSite& site,
+                          const BuildingScene& building) {
+    ReportPage page;
+    const std::string& input = options.inputs.front();
+    page.title = isStream(input) ? "Building" : baseName(input);
+    double area = 0;
+    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+        const Scene& scene = *building.scenes[i];
+        area += scene.environment.indoor().area();
+        const Storey& storey = building.document.storeys[i];
+        const std::string name = storey.record.has("name") ? storey.record.text("name") : storey.id;
+        RoomPageInput room{scene, name, options.history_line};
+        if (i == 0) room.warnings = site.document.warnings;
+        ReportPage own = roomPage(room);
+        for (std::size_t k = 0; k < own.sections.size(); ++k) {
+            PageSection& section = own.sections[k];
+            section.id = storey.id + '-' + section.id;
+            section.title = name + ": " + section.title;
+            section.begins_sheet |= k == 0 && i > 0;
+            page.sections.push_back(std::move(section));
+        }
+    }
+    page.subtitle = squareMetres(area) + " · " + building.document.digest();
+    return typeset(std::move(page));
+}
+
+ReportPage pageOfRoom(const EnvcOptions& options, const EnvcSite& site, const Scene& scene) {
+    RoomPageInput page{scene, "", options.history_line, &site.found, site.document.warnings};
+    if (options.inputs.front() != "-") page.name = baseName(options.inputs.front());
+    return roomPage(page);
+}
+
+void writeReport(const EnvcOptions& options, const EnvcSite& site, const BuildingScene& building) {
+    const std::string kind = suffixOf(options.report);
+    if (kind == "json") return writeAll(options.report, buildingInfoJson(building));
+    const ReportPage page = building.isRoomAlone()
+                                ? pageOfRoom(options, site, *building.scenes.front())
+                                : pageOfBuilding(options, site, building);
+    writeAll(options.report, kind == "pdf" ? pdfOf(page) : htmlOf(page));
+}
+
+/// Writes a building as records: its file, and those of its rooms.
+void writeRecordFiles(const std::string& output, const StoreyedDocument& building) {
+    if (isStream(output))
+        throw UsageError(
+            "a building in records is several files: name it with -o FILE.env, or "
+            "write it as YAML (--to yaml)");
+    const fs::path folder = fs::path(output).parent_path();
+    const std::vector<BuildingPart> parts =
+        writeBuildingRecords(building, fs::path(output).stem().string());
+    std::vector<NamedBytes> files;
+    for (const BuildingPart& part : parts) {
+        files.push_back({part.name.empty() ? output : (folder / part.name).string(), part.bytes});
+        if (!part.name.empty()) claimOutput(files.back().name, "the room of a storey");
+    }
+    writeTogether(files);
+}
+
+/// Returns the name of the product of a storey.
+std::string productOf(const EnvcOptions& options, const Storey& storey) {
+    if (storey.id.empty()) return options.common.output;
+    std::string name = storeyFile(options.common.output, storey.id);
+    claimOutput(name, "the storey " + storey.id);
+    return name;
+}
+
+/// Writes records without making scenes of them: those of a room, of each storey by its name, or of
+/// the building.
+void convert(const EnvcOptions& options, const StoreyedDocument& document) {
+    const std::string& output = options.common.output;
+    if (!document.isRoomAlone() && !isStoreyPattern(output)) {
+        if (options.format->name == "env") return writeRecordFiles(output, document);
+        return writeAll(output, writeBuildingYaml(document));
+    }
+    for (const Storey& storey : document.storeys) {
+        Document room = *storey.room;
+        room.history.insert(room.history.end(), document.history.begin(), document.history.end());
+        writeAll(productOf(options, storey), options.format->write_records(std::move(room)));
+    }
+}
+
+/// Returns for each storey those of the zones that it has. \throws as forEachRoomOf()
+std::vector<std::vector<std::string>> zonesByStorey(const EnvcOptions& options,
+                                                    const BuildingScene& building) {
+    std::vector<std::vector<std::string>> zones(building.scenes.size());
+    for (const std::string& text : options.zones)
+        forEachRoomOf(building.document, "--zone", text,
+                      [&](std::size_t i, const std::string& own) {
+                          static_cast<void>(readZones(own, building.scenes[i]->environment));
+                          zones[i].push_back(own);
+                      });
+    return zones;
+}
+
+void writeProducts(const EnvcOptions& options, const EnvcSite& site,
+                   const BuildingScene& building) {
+    const StoreyedDocument& document = building.document;
+    if (document.isRoomAlone())
+        return writeProduct(options, *building.scenes.front(), *document.storeys.front().room,
+                            &site.found);
+    const std::string& output = options.common.output;
+    if (isStoreyPattern(output)) {
+        std::vector<std::vector<std::string>> zones(building.scenes.size());
+        if (options.format->takes_zones) zones = zonesByStorey(options, building);
+        for (std::size_t i = 0; i < building.scenes.size(); ++i) {
+            EnvcOptions own = options;
+            own.common.output = productOf(options, document.storeys[i]);
+            own.zones = std::move(zones[i]);
+            writeProduct(own, *building.scenes[i], *document.storeys[i].room, nullptr);
+        }
+        return;
+    }
+    if (options.format->name == "glb") {
+        OutputFile file(output);
+        writeBuildingGlb(building, [&file](std::string_view bytes) { file.write(bytes); });
+        return file.commit();
+    }
+    const std::string& input = options.inputs.front();
+    const std::string_view format = options.format->name;
+    const PictureFormat picture = format == "svg"   ? PictureFormat::Svg
+                                  : format == "pdf" ? PictureFormat::Pdf
+                                                    : PictureFormat::Png;
+    writeAll(output, drawBuilding(building, picture, options.width,
+                                  isStream(input) ? "" : baseName(input)));
+}
+
+}  // namespace
+
+void writeSite(const EnvcOptions& options, const EnvcSite& site) {
+    const std::string& output = options.common.output;
+    if (options.list_rooms)
+        return writeAll(output, options.json ? roomsJson(site.found) : roomsText(site.found));
+    if (options.format != nullptr && options.format->write_records != nullptr)
+        return convert(options, site.document);
+    const BuildingScene& building =
+        *leftToExit(std::make_unique<const BuildingScene>(sceneOf(site.document)));
+    if (!options.report.empty()) writeReport(options, site, building);
+    if (options.info)
+        return writeAll(output,
+                        options.json ? buildingInfoJson(building) : buildingInfoText(building));
+    if (options.format == nullptr) return;
+    writeProducts(options, site, building);
+    std::size_t records = 0;
+    double area = 0;
+    for (const auto& scene : building.scenes) {
+        records += scene->records.size();
+        area += scene->environment.indoor().area();
+    }
+    logInfo(
+        options.common, "envc",
+        std::to_string(records) + " records compiled, indoor area " + formatFixed(area, 2) + " m2");
+}
+
+}  // namespace ispace
