@@ -95,6 +95,7 @@ std::vector<Suggestion> suggestForStorey(const BuildingScene& building, std::siz
     const Coverage measured = measureCoverage(scene, worlds, own.measure);
     std::vector<Suggestion> found =
         suggestChanges(scene, measured, own, building.devices, progress);
+    if (building.isRoomAlone()) return found;
     for (Suggestion& one : found) nameAdded(one, building.document.storeys[storey], scene.ids);
     return found;
 }
@@ -104,6 +105,11 @@ BuildingScene editedStorey(const BuildingScene& building, std::size_t storey, co
     Document records;
     records.records = edited(whole.records, edits, sceneSchemas());
     BuildingScene changed = building;
+    if (building.isRoomAlone()) {
+        changed.scenes[storey] = std::make_shared<const Scene>(
+            makeScene(std::move(records.records), *building.scenes[storey], building.devices));
+        return changed;
+    }
     changed.scenes[storey] = std::make_shared<const Scene>(
         makeScene(std::move(layoutsOf(records, building.document)[storey].records),
                   *building.scenes[storey], building.devices));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -12,93 +13,98 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
+#include "building/building_coverage.h"
+#include "building/building_page.h"
+#include "building/building_suggestions.h"
+#include "cli/building_operands.h"
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
-#include "coverage/run_coverage.h"
-#include "report/page/coverage_page.h"
 #include "report/suggestion_report.h"
-#include "scene/placement_schemas.h"
-#include "trace/ray_world.h"
+#include "scene/run/run_reader.h"
 
 namespace ispace {
 
 namespace {
 
-/// Measures the sight of robots and people in the record; empty if it has none.
-std::optional<RunCoverage> recordedRun(const SimrunOptions& options, const Scene& scene) {
-    if (!RunReader(options.record).next()) return std::nullopt;
-    RunReader reader(options.record);
-    RunChanges changes = changesOfRun(options.record, scene, options.rules.max_work);
-    return measureRun(scene, reader, {}, &changes);
+/// Measures the sight of robots and people in the record; empty if that of a room has none.
+std::optional<BuildingRunCoverage> recordedRun(const SimrunOptions& options,
+                                               const BuildingScene& building) {
+    if (building.isRoomAlone() && !RunReader(options.record).next()) return std::nullopt;
+    std::vector<std::string> repeated;  // warnings that the run itself gave
+    return measureBuildingRun(building, options.record, {}, options.rules.max_work, repeated);
 }
 
 }  // namespace
 
 std::string reportFile(const SimrunOptions& options, const SiteInput& input, const RunJudge& judge,
                        const std::string& command) {
-    if (!input.isOneRoom()) return buildingReportFile(options, input, judge, command);
-    const Scene& scene = input.only();
-    Worlds worlds(scene.environment);
+    const BuildingScene& building = input.building;
     const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
-    const Coverage coverage = measureCoverage(scene, worlds, {}, progress.get());
-    std::optional<RunCoverage> run = recordedRun(options, scene);
-    if (run) run->name = baseName(options.record);
-    CoveragePageInput page{scene, coverage, "", command};
+    const BuildingCoverage coverage = measureBuilding(building, {}, progress.get());
+    const std::optional<BuildingRunCoverage> run = recordedRun(options, building);
+    const BuildingParts parts = run ? partsOf(*run) : BuildingParts();
+    const std::string suffix = suffixOf(options.report);
+    if (suffix == "json") return buildingCoverageJson(building, coverage, parts);
+    BuildingPageInput page{building, coverage, "", command, {}, parts};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     for (const RunVerdict& verdict : judge.verdicts())
         page.requirements.push_back({verdict.expectation, verdict.is_met, verdict.reason});
-    page.parts.run = run ? &*run : nullptr;
     page.progress = progress.get();
-    const std::string suffix = suffixOf(options.report);
-    if (suffix == "json") return coverageJson(coverage.report, {.run = page.parts.run});
-    const ReportPage pages = coveragePage(page);
+    const ReportPage pages = buildingPage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }
 
 namespace {
 
+/// A change of a sensor, and the share of the time of all movers for which a sensor sees them after
+/// it.
+struct RunSuggestion {
+    Suggestion change;
+    double seen = 0;
+};
+
 /// Returns the share of the time of all movers for which a sensor saw them; empty if none was
 /// there.
-std::optional<double> seenShare(const SimrunOptions& options, const Scene& scene) {
-    const std::optional<RunCoverage> run = recordedRun(options, scene);
-    if (!run || run->all.time_shares.empty()) return std::nullopt;
-    return 1 - run->all.time_shares.front();
+std::optional<double> seenShare(const SimrunOptions& options, const BuildingScene& building) {
+    const std::optional<BuildingRunCoverage> run = recordedRun(options, building);
+    if (!run || run->sum.all.time_shares.empty()) return std::nullopt;
+    return 1 - run->sum.all.time_shares.front();
 }
 
-/// Returns the additions, turns and shifts of suggestChanges() that raise the share.
-std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options, const Scene& scene,
-                                         double before) {
+/// Returns the additions, turns and shifts of suggestForStorey() that raise the share.
+std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options,
+                                         const BuildingScene& building, double before) {
     const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
-    SuggestOptions wanted;
-    wanted.most = 7;  // one of each kind
-    Worlds worlds(scene.environment);
-    const Coverage coverage = measureCoverage(scene, worlds, wanted.measure, progress.get());
+    const auto whole = wholeScenes(building);
     std::vector<RunSuggestion> found;
-    for (Suggestion& change :
-         suggestChanges(scene, coverage, wanted, shippedDevices(), *progress)) {
-        using Kind = Suggestion::Kind;
-        if (change.kind != Kind::Add && change.kind != Kind::Turn && change.kind != Kind::Shift)
-            continue;
-        const Scene changed =
-            makeScene(edited(scene.records, change.edits, sceneSchemas()), scene, shippedDevices());
-        const std::optional<double> seen = seenShare(options, changed);
-        if (seen && *seen > before) found.push_back({std::move(change), *seen});
+    SilentProgress silent;
+    Progress& of_storey = building.isRoomAlone() ? *progress : silent;
+    if (!building.isRoomAlone())
+        progress->begin("storeys", static_cast<std::int64_t>(whole.size()));
+    for (std::size_t i = 0; i < whole.size() && !progress->stopped(); ++i) {
+        if (!building.isRoomAlone()) progress->advance(1);
+        if (whole[i] == nullptr) continue;
+        for (Suggestion& change : suggestForStorey(building, i, whole, {}, of_storey)) {
+            using Kind = Suggestion::Kind;
+            if (change.kind != Kind::Add && change.kind != Kind::Turn && change.kind != Kind::Shift)
+                continue;
+            const auto seen =
+                seenShare(options, editedStorey(building, i, *whole[i], change.edits));
+            if (seen && *seen > before) found.push_back({std::move(change), *seen});
+        }
     }
+    progress->end();
     return found;
 }
 
 }  // namespace
 
 std::string suggestionsText(const SimrunOptions& options, const SiteInput& input) {
-    if (!input.isOneRoom()) return buildingSuggestionsText(options, input);
-    const std::optional<double> before = seenShare(options, input.only());
+    BuildingScene building = input.building;
+    building.devices = shippedDevices();
+    const std::optional<double> before = seenShare(options, building);
     if (!before) return "the run has no robots or people to see\n";
-    return suggestionsText(options, input.named, suggestForRun(options, input.only(), *before),
-                           *before);
-}
-
-std::string suggestionsText(const SimrunOptions& options, const std::vector<std::string>& named,
-                            std::vector<RunSuggestion> found, double before) {
+    std::vector<RunSuggestion> found = suggestForRun(options, building, *before);
     constexpr double kPoints = 100;
     std::stable_sort(
         found.begin(), found.end(),
@@ -109,10 +115,10 @@ std::string suggestionsText(const SimrunOptions& options, const std::vector<std:
     std::string text = "suggestions:\n";
     for (const RunSuggestion& one : found)
         text += "  " + printable(one.change.text) + ": +" +
-                formatFixed(kPoints * (one.seen - before), 2) +
+                formatFixed(kPoints * (one.seen - *before), 2) +
                 " points, robots and people are seen for " + percentText(one.seen) +
                 " of their time\n    " +
-                commandOf(editCommand(named, options.rules), one.change.edits) + '\n';
+                commandOf(editCommand(input.named, options.rules), one.change.edits) + '\n';
     return text;
 }
 
