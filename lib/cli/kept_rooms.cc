@@ -15,10 +15,10 @@
 #include "base/file.h"
 #include "base/missed_files.h"
 #include "base/run_files.h"
-#include "building/chosen_storeys.h"
 #include "cli/common_options.h"
 #include "io/glb/glb_read.h"
 #include "scene/placement_schemas.h"
+#include "site/chosen_storeys.h"
 
 namespace ispace {
 

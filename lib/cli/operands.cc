@@ -12,11 +12,10 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/run_files.h"
-#include "building/chosen_storeys.h"
-#include "cli/building_operands.h"
 #include "cli/common_options.h"
 #include "cli/kept_rooms.h"
 #include "cli/outputs.h"
+#include "cli/storey_operands.h"
 #include "env/walls.h"
 #include "env/zone.h"
 #include "io/exporters.h"
@@ -25,6 +24,7 @@
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
+#include "site/chosen_storeys.h"
 
 namespace ispace {
 

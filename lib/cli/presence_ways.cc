@@ -12,14 +12,14 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/run_files.h"
-#include "building/building_robustness.h"
-#include "cli/building_operands.h"
 #include "cli/common_options.h"
+#include "cli/storey_operands.h"
 #include "coverage/crowd.h"
 #include "env/body_shapes.h"
 #include "scene/placement_schemas.h"
 #include "scene/run/run_reader.h"
 #include "sim/world.h"
+#include "site/site_robustness.h"
 
 namespace ispace {
 
@@ -107,7 +107,7 @@ PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t 
     return cutter.finish();
 }
 
-std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const BuildingScene& building,
+std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const SiteScene& building,
                                     std::span<const std::size_t> people, std::uint64_t seed) {
     std::vector<RoomWays> rooms;
     for (std::size_t i = 0; i < people.size(); ++i) {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "building/building_scene.h"
 #include "cli/site_operands.h"
 #include "scene/run/people_ways.h"
 #include "scene/scene.h"
 #include "sim/sim_time.h"
+#include "site/site_scene.h"
 
 namespace ispace {
 
@@ -47,7 +47,7 @@ struct RoomWays {
 };
 /// Returns the ways in each storey of a building: those of its record, or of wanderers.
 /// \param people wanderers by storey
-std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const BuildingScene& building,
+std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const SiteScene& building,
                                     std::span<const std::size_t> people, std::uint64_t seed);
 /// Returns the ways in each room of a site; wanderers are spread by free floor. \param plane of the
 /// free floor \param option for messages \throws UsageError for several rooms and the record of one

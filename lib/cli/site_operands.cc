@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "base/glob.h"
 #include "base/message.h"
-#include "building/building_edit.h"
 #include "cli/common_options.h"
 #include "env/point_location.h"
+#include "site/site_edit.h"
 
 namespace ispace {
 
@@ -57,8 +57,8 @@ void SiteInput::setLayout(Document changed) {
     for (const Storey& storey : building.document.storeys) all.push_back(storey.room.get());
     const std::vector<Document> layouts = layoutsOf(*layout, building.document);
     for (const Document& one : layouts) all.push_back(&one);
-    building = makeBuildingScene(building.document, layouts,
-                                 devicesFor(std::span<const Document* const>(all)));
+    building = makeSiteScene(building.document, layouts,
+                             devicesFor(std::span<const Document* const>(all)));
 }
 
 SiteInput readSite(const SceneRequest& request) {
@@ -102,7 +102,7 @@ std::shared_ptr<const Scene> SeenSite::scene(std::size_t room) const {
 }
 
 Scene SeenSite::fromOutside(std::size_t room) const {
-    Scene scene = *sceneOfBuilding(input_->building, room);
+    Scene scene = *sceneOfSite(input_->building, room);
     if (auto opened = coupling_->opened(room)) scene.environment = *std::move(opened);
     return scene;
 }
@@ -138,7 +138,7 @@ OtherSite readOtherLayout(const SiteInput& input, const std::string& operand,
         OtherLayout other = readOtherLayout(
             {input.environment(), input.only(), input.named, input.environment_operand}, operand,
             rules);
-        BuildingScene laid = input.building;
+        SiteScene laid = input.building;
         laid.scenes = {std::make_shared<const Scene>(std::move(other.scene))};
         return {std::move(laid), std::move(other.files), std::move(other.warnings)};
     }
@@ -176,6 +176,14 @@ std::string inOwnStorey(const SiteInput& input, const std::string& text) {
     const std::size_t slash = text.find('/');
     if (!input.isOneRoom() || input.storey.empty() || slash == std::string::npos) return text;
     return Glob(text.substr(0, slash)).matches(input.storey) ? text.substr(slash + 1) : text;
+}
+
+std::vector<std::string> inOwnStorey(const SiteInput& input,
+                                     const std::vector<std::string>& texts) {
+    std::vector<std::string> own;
+    own.reserve(texts.size());
+    for (const std::string& text : texts) own.push_back(inOwnStorey(input, text));
+    return own;
 }
 
 SiteWay wayIn(const SiteInput& input, std::string_view option, const WayChoice& way) {

@@ -11,16 +11,16 @@
 #include <string_view>
 #include <vector>
 
-#include "building/building_scene.h"
-#include "building/coupling.h"
-#include "cli/building_operands.h"
 #include "cli/operands.h"
+#include "cli/storey_operands.h"
 #include "env/zone.h"
 #include "geom/pose.h"
 #include "passage/least_seen_trip.h"
 #include "record/record.h"
 #include "scene/findings/findings.h"
 #include "scene/scene.h"
+#include "site/coupling.h"
+#include "site/site_scene.h"
 
 namespace ispace {
 
@@ -30,7 +30,7 @@ struct SiteInput {
     std::vector<std::string> named;  ///< as SceneInput::named
     std::vector<std::string> files;  ///< all that were read, for -MD
     std::optional<Document> layout;
-    BuildingScene building;                               ///< of one room: roomAlone()
+    SiteScene building;                                   ///< of one room: roomAlone()
     std::vector<Diagnostic> warnings = {}, choices = {};  ///< of importers
     std::string storey = {};                              ///< as SceneInput::storey
 
@@ -90,7 +90,7 @@ class SeenSite {
 
 /// The site with another layout.
 struct OtherSite {
-    BuildingScene building;
+    SiteScene building;
     std::vector<std::string> files;  ///< that it was read from, for -MD
     std::vector<Diagnostic> warnings;
 };
@@ -124,6 +124,7 @@ void forEachRoomOf(const SiteInput& input, std::string_view option, const std::s
 /// Returns a text about a room that is a storey without the storey before it: of `ground/entry` and
 /// of `g*/entry` `entry`. Other texts, and those about other rooms, stay.
 std::string inOwnStorey(const SiteInput& input, const std::string& text);
+std::vector<std::string> inOwnStorey(const SiteInput& input, const std::vector<std::string>& texts);
 
 /// The zones between which a way leads; of a room alone in its only storey.
 struct SiteWay {

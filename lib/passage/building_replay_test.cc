@@ -11,10 +11,10 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "building/storeys.h"
 #include "passage/building_run.h"
 #include "passage/lift_record.h"
 #include "sim/recorder.h"
+#include "site/storeys.h"
 #include "support/test_folder.h"
 #include "support/test_layout.h"
 
@@ -25,14 +25,14 @@ constexpr SimTime kStep = std::chrono::milliseconds(20);
 constexpr SimTime kEnd = std::chrono::seconds(130);
 const std::vector<std::string> kMovers = {"ground/r1", "upper/h1"};
 
-BuildingScene tower() {
+SiteScene tower() {
     StoreyedDocument document =
         readBuilding(readAll(testing::sourcePath("tests/data/tower.yaml")), "tower.yaml", {});
     const std::vector<Document> layouts = layoutsOf(
         testing::layoutDocument("robot id=ground/r1 at=6,4\nlaser id=ground/eye on=ground/r1 "
                                 "fov=10 step=5\nhuman id=upper/h1 at=8,6\n"),
         document);
-    return makeBuildingScene(std::move(document), layouts, testing::devices());
+    return makeSiteScene(std::move(document), layouts, testing::devices());
 }
 
 /// All that the record of a run has to repeat.
@@ -94,7 +94,7 @@ class BuildingReplayTest : public ::testing::Test {
                 }};
     }
 
-    BuildingScene building_ = tower();
+    SiteScene building_ = tower();
     testing::TestFolder folder_;
     std::vector<std::string> shown_;  ///< at the start and after each step
 };

@@ -31,7 +31,7 @@ std::optional<Outcome> endOf(const BuildingRun& run, const std::string& mover, i
 }
 
 TEST(BuildingPlace, PutsARobotOnItsStoreyAndOnAnother) {
-    const BuildingScene building =
+    const SiteScene building =
         buildingOf("robot id=ground/r1 at=6,4\nlaser id=ground/eye on=ground/r1 at=0,0,0.3\n");
     BuildingRun run(building, optionsOf());
     std::vector<std::pair<std::size_t, std::size_t>> moves;
@@ -59,7 +59,7 @@ TEST(BuildingPlace, PutsARobotOnItsStoreyAndOnAnother) {
 }
 
 TEST(BuildingPlace, EndsTripsAndCommandsAsStopped) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     const TripAnswer trip = run.travel("ground/r1", {{{1, {9, 6}}}});
     runUntil(run, 1);
@@ -78,8 +78,7 @@ TEST(BuildingPlace, EndsTripsAndCommandsAsStopped) {
 }
 
 TEST(BuildingPlace, RefusesOccupiedFloorLiftsAndStairs) {
-    const BuildingScene building =
-        buildingOf("robot id=ground/r1 at=6,4\nhuman id=upper/h at=9,6\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\nhuman id=upper/h at=9,6\n");
     BuildingRun run(building, optionsOf());
     EXPECT_EQ(run.place("ground/r1", RoomPoint{1, {9, 6.1}}, std::nullopt),
               "ground/r1 has no room at upper/9,6.1: upper/h stands there");
@@ -96,7 +95,7 @@ TEST(BuildingPlace, RefusesOccupiedFloorLiftsAndStairs) {
 }
 
 TEST(BuildingPlace, RefusesValuesOutOfRange) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     for (const std::size_t storey : {0U, 1U}) {
         EXPECT_NE(run.place("ground/r1", RoomPoint{storey, {2e6, 4}}, std::nullopt)
@@ -109,7 +108,7 @@ TEST(BuildingPlace, RefusesValuesOutOfRange) {
 }
 
 TEST(BuildingPlace, LeavesAllAsItIsIfRefused) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     for (const std::size_t storey : {0U, 1U}) {
         World& world = run.rooms()[storey].simulation->world();
@@ -162,12 +161,12 @@ TEST(BuildingRestart, RepeatsTheRunFromItsStart) {
         "human id=upper/h at=9,3 trip=\"ground/9,6\"\n";
     // At any moment: walking, waiting, in the lift, on stairs, leaving.
     for (const double moment : {0.5, 7.0, 13.0, 17.0, 24.0, 40.0}) {
-        const BuildingScene building = buildingOf(layout);
+        const SiteScene building = buildingOf(layout);
         BuildingRun run(building, optionsOf());
         ASSERT_EQ(run.travel("upper/r2", {{{0, {9, 6}}}}).refusal, "");
         runUntil(run, moment);
         run.restart();
-        const BuildingScene again = buildingOf(layout);
+        const SiteScene again = buildingOf(layout);
         BuildingRun fresh(again, optionsOf());
         EXPECT_EQ(stateText(run), stateText(fresh)) << moment;
         for (int i = 0; i < 3000; ++i) {
@@ -179,7 +178,7 @@ TEST(BuildingRestart, RepeatsTheRunFromItsStart) {
 }
 
 TEST(BuildingRestart, EndsCommandsAndCountsOn) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
     ASSERT_TRUE(await(run, "ground/r1", 120));

@@ -15,7 +15,7 @@
 
 namespace ispace {
 
-BuildingRun::Data::Data(const BuildingScene& the_building, const BuildingRunOptions& the_options)
+BuildingRun::Data::Data(const SiteScene& the_building, const BuildingRunOptions& the_options)
     : building(the_building),
       options(the_options),
       passages(passagesOf(building)),
@@ -255,12 +255,12 @@ std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose
     return "";
 }
 
-BuildingRun::BuildingRun(const BuildingScene& building, const BuildingRunOptions& options)
+BuildingRun::BuildingRun(const SiteScene& building, const BuildingRunOptions& options)
     : data_(std::make_unique<Data>(building, options)) {
     if (options.replay.empty()) data_->beginRecordedTrips().throwIfAny();
 }
 
-std::vector<Diagnostic> BuildingRun::tripFindings(const BuildingScene& building) {
+std::vector<Diagnostic> BuildingRun::tripFindings(const SiteScene& building) {
     const bool has_trips =
         std::any_of(building.scenes.begin(), building.scenes.end(), [](const auto& scene) {
             return std::any_of(scene->records.begin(), scene->records.end(), [](const Record& own) {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "building/building_scene.h"
 #include "passage/lift.h"
 #include "scene/run/run_changes.h"
 #include "scene/run/run_reader.h"
@@ -19,6 +18,7 @@
 #include "sim/replay.h"
 #include "sim/simulation.h"
 #include "sim/world.h"
+#include "site/site_scene.h"
 
 namespace ispace {
 
@@ -68,11 +68,11 @@ class BuildingRun final : public JoinedWorlds {
 
     /// \throws FormatError as World does, with the storey; for trips without a way; as Replay, for
     /// records of other steps, and if no mover is in any of them
-    BuildingRun(const BuildingScene& building, const BuildingRunOptions& options);
+    BuildingRun(const SiteScene& building, const BuildingRunOptions& options);
     ~BuildingRun() override;
     /// Returns the errors about trips of records that would keep a run from beginning: no way
     /// leads there, or no floor is there. Empty if movers overlap.
-    static std::vector<Diagnostic> tripFindings(const BuildingScene& building);
+    static std::vector<Diagnostic> tripFindings(const SiteScene& building);
     BuildingRun(const BuildingRun&) = delete;
     BuildingRun& operator=(const BuildingRun&) = delete;
 

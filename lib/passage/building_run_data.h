@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "building/building_sight.h"
 #include "geom/polygon.h"
 #include "passage/building_run.h"
 #include "passage/cabin.h"
@@ -20,6 +19,7 @@
 #include "passage/storey_ways.h"
 #include "scene/scene.h"
 #include "sim/collision.h"
+#include "site/site_sight.h"
 
 namespace ispace {
 
@@ -101,11 +101,11 @@ struct OpenFloor {
 };
 
 /// Returns the openings of each storey: shafts, straight stairs from below, and lifts.
-std::vector<std::vector<OpenFloor>> openingsByStorey(const BuildingScene& building,
+std::vector<std::vector<OpenFloor>> openingsByStorey(const SiteScene& building,
                                                      const std::vector<StoreyLink>& passages);
 
 struct BuildingRun::Data {
-    Data(const BuildingScene& the_building, const BuildingRunOptions& the_options);
+    Data(const SiteScene& the_building, const BuildingRunOptions& the_options);
 
     struct Room {
         std::string id;
@@ -242,7 +242,7 @@ struct BuildingRun::Data {
     std::string place(Traveller& who, std::size_t room, const Pose2& pose);
     void restart();
 
-    BuildingScene building;
+    SiteScene building;
     BuildingRunOptions options;
     std::vector<StoreyLink> passages;
     std::vector<std::vector<OpenFloor>> openings;  // by storey

@@ -23,7 +23,7 @@ using testing::poseOf;
 using testing::step;
 
 TEST(BuildingRun, HasAWorldForEachStoreyCabinAndFlight) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     const BuildingRun run(building, optionsOf());
     std::vector<std::string> ids;
     for (const JoinedRoom& room : run.rooms()) ids.push_back(room.id);
@@ -35,7 +35,7 @@ TEST(BuildingRun, HasAWorldForEachStoreyCabinAndFlight) {
 }
 
 TEST(BuildingRun, ARobotTakesTheLift) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     const TripAnswer answer = run.travel("ground/r1", {{{1, {9, 6}}}});
     ASSERT_EQ(answer.refusal, "");
@@ -53,7 +53,7 @@ TEST(BuildingRun, ARobotTakesTheLift) {
 }
 
 TEST(BuildingRun, ATripTellsItsWaysOnOtherStoreys) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     EXPECT_TRUE(run.plannedWays(1).empty());
     ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
@@ -81,7 +81,7 @@ TEST(BuildingRun, ATripTellsItsWaysOnOtherStoreys) {
 }
 
 TEST(BuildingRun, ATripEndsWithAHeading) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     TripPlan plan{.points = {{1, {9, 6}}}};
     plan.heading = Angle::degrees(-120);
@@ -136,7 +136,7 @@ TEST(Cabin, TheLastRiderInCanAlwaysLeave) {
 }
 
 TEST(BuildingRun, TripsOfRecordsBeginWithTheRun) {
-    const BuildingScene building = buildingOf(
+    const SiteScene building = buildingOf(
         "robot id=ground/r1 at=6,4 trip=\"8,4;upper/9,6\" pause=2\n"
         "human id=upper/h at=6,4 trip=\"ground/9,6;upper/6,5\" loop=yes\n");
     BuildingRun run(building, optionsOf());
@@ -160,7 +160,7 @@ TEST(BuildingRun, TripsOfRecordsBeginWithTheRun) {
 
 TEST(BuildingRun, TripsOfRecordsWithoutAWayAreErrors) {
     const auto error = [](const std::string& layout) -> std::string {
-        const BuildingScene building = buildingOf(layout);
+        const SiteScene building = buildingOf(layout);
         try {
             const BuildingRun run(building, optionsOf());
         } catch (const FormatError& failure) {
@@ -180,7 +180,7 @@ TEST(BuildingRun, ARobotClimbsOnlyIfItsRecordSaysSo) {
     const std::string stairs_only =
         std::string(kBuilding).substr(0, std::string(kBuilding).find("- lift")) +
         "- stairs: {id: s1, storeys: 'ground,upper', at: [4, 1], heading: 0, size: [1.6, 4]}\n";
-    const BuildingScene building = buildingOf(
+    const SiteScene building = buildingOf(
         "robot id=ground/r1 at=6,4\nrobot id=ground/r2 at=8,4 climbs=yes\n", stairs_only);
     BuildingRun run(building, optionsOf());
     EXPECT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal,
@@ -197,7 +197,7 @@ TEST(BuildingRun, ARobotClimbsOnlyIfItsRecordSaysSo) {
 /// The time that a person takes for the flight up or down, and the fastest pace on it.
 TEST(BuildingRun, PeopleTakeStairsAtTheirPace) {
     for (const bool is_up : {true, false}) {
-        const BuildingScene building =
+        const SiteScene building =
             buildingOf(is_up ? "human id=ground/h at=6,4\n" : "human id=upper/h at=6,4\n");
         BuildingRun run(building, optionsOf());
         const std::string id = is_up ? "ground/h" : "upper/h";
@@ -229,7 +229,7 @@ TEST(BuildingRun, TheCabinHoldsNoMoreThanItsCapacity) {
     for (int i = 0; i < 6; ++i)
         layout += "robot id=ground/r" + std::to_string(i) +
                   " mass=120 at=" + std::to_string(5 + i) + ",6\n";
-    const BuildingScene building = buildingOf(layout);
+    const SiteScene building = buildingOf(layout);
     BuildingRun run(building, optionsOf());
     for (int i = 0; i < 6; ++i)
         ASSERT_EQ(run.travel("ground/r" + std::to_string(i), {{{1, {5.0 + i, 6}}}}).refusal, "");
@@ -252,7 +252,7 @@ TEST(BuildingRun, TheCabinHoldsNoMoreThanItsCapacity) {
 }
 
 TEST(BuildingRun, GoesThroughPointsOfSeveralStoreys) {
-    const BuildingScene building = buildingOf("human id=ground/h at=6,4\n");
+    const SiteScene building = buildingOf("human id=ground/h at=6,4\n");
     BuildingRun run(building, optionsOf());
     const TripAnswer answer = run.travel("ground/h", {{{1, {9, 6}}, {0, {2.5, 7}}}, 1});
     EXPECT_EQ(answer.via, "s1,s1");
@@ -262,7 +262,7 @@ TEST(BuildingRun, GoesThroughPointsOfSeveralStoreys) {
 }
 
 TEST(BuildingRun, EndsATripForAnotherCommand) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     ASSERT_EQ(run.ride("ground/r1", "l1", "upper").refusal, "");
     step(run);
@@ -284,7 +284,7 @@ TEST(BuildingRun, EndsATripForAnotherCommand) {
 }
 
 TEST(BuildingRun, KeepsOdometryAndIdsAcrossRooms) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).id, 1);
     ASSERT_TRUE(await(run, "ground/r1", 120));
@@ -298,7 +298,7 @@ TEST(BuildingRun, KeepsOdometryAndIdsAcrossRooms) {
 
 TEST(BuildingRun, IsTheSameTwice) {
     const auto way = [] {
-        const BuildingScene building = buildingOf(
+        const SiteScene building = buildingOf(
             "robot id=ground/r1 at=6,4\nrobot id=upper/r1 at=6,4\nhuman id=upper/h "
             "at=8,6\nlaser id=upper/l on=upper/r1 at=0,0,0.2\n");
         BuildingRun run(building, optionsOf());
@@ -327,7 +327,7 @@ TEST(BuildingRun, IsTheSameTwice) {
 }
 
 TEST(BuildingRun, AnAbandonedTripEndsBehindTheLift) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
     while (run.roomOf("ground/r1") == 0U && seconds(run.world(0).time()) < 60) step(run);
@@ -347,7 +347,7 @@ TEST(BuildingRun, AnAbandonedTripEndsBehindTheLift) {
 }
 
 TEST(BuildingRun, ARiderWhoseLandingIsOccupiedTurnsBack) {
-    const BuildingScene building = buildingOf(
+    const SiteScene building = buildingOf(
         "robot id=ground/r1 at=6,4\nrobot id=ground/r2 at=8,4\n"
         "robot id=upper/parked at=2.6,4\nrobot id=upper/r3 at=8,4\n");
     BuildingRun run(building, optionsOf());
@@ -377,7 +377,7 @@ TEST(BuildingRun, ARiderWhoseLandingIsOccupiedTurnsBack) {
 
 TEST(BuildingRun, AMoverKeptFromTheLandingLeavesTheQueue) {
     for (const char* at : {"2.6,4", "2.9,4"}) {
-        const BuildingScene building = buildingOf(
+        const SiteScene building = buildingOf(
             std::string("robot id=ground/r1 at=6,4\nrobot id=ground/parked at=") + at + '\n');
         BuildingRun run(building, optionsOf());
         ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
@@ -392,7 +392,7 @@ TEST(BuildingRun, ThoseOnStairsWhoseLandingIsOccupiedTurnBack) {
     for (const char* const width : {"1", "1.6"}) {
         std::string text = kBuilding;
         text.replace(text.find("size: [1.6, 4]"), 14, "size: [" + std::string(width) + ", 4]");
-        const BuildingScene building = buildingOf(
+        const SiteScene building = buildingOf(
             "human id=ground/h1 at=6,4\nhuman id=ground/h2 at=7,4\n"
             "robot id=upper/parked at=8,1\n",
             text);
@@ -452,7 +452,7 @@ TEST(BuildingRun, PeopleReachStairsInACorner) {
         "[12, 9], [0, 9]], closed: yes}}]}\n"
         "- stairs: {id: s1, storeys: 'ground,upper', at: [8.07, 3.73], heading: -120, size: [1.28, "
         "1.7]}\n";
-    const BuildingScene building = buildingOf("human id=ground/h at=2,2\n", text);
+    const SiteScene building = buildingOf("human id=ground/h at=2,2\n", text);
     BuildingRun run(building, optionsOf(std::chrono::milliseconds(20)));
     for (const RoomPoint& to : {RoomPoint{1, {3, 5}}, {0, {9, 1}}, {1, {9, 6}}, {0, {2, 2}}}) {
         ASSERT_EQ(run.travel("ground/h", {{to}}).refusal, "");

@@ -19,7 +19,7 @@ std::string scriptFindings(const BuildingRun& run, const std::string& text) {
 }
 
 TEST(BuildingScript, FindsOrdersThatCannotBeCarriedOut) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     const BuildingRun run(building, optionsOf());
     const auto found = [&](const std::string& line) { return scriptFindings(run, line); };
     EXPECT_EQ(found("0 ground/r1 RIDE l1 upper\n1 ground/r1 GOTO upper/4,6\n"), "");
@@ -38,7 +38,7 @@ TEST(BuildingScript, FindsOrdersThatCannotBeCarriedOut) {
 }
 
 TEST(BuildingScript, MarksAnOrderThatIsRefusedInItsTime) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     Simulation& ground = *run.rooms()[0].simulation;
     ground.events().want(allEventKinds());
@@ -56,7 +56,7 @@ TEST(BuildingScript, MarksAnOrderThatIsRefusedInItsTime) {
 TEST(BuildingScript, ATripWithoutStairsIsToldAsUnreached) {
     std::string text = testing::kBuilding;
     text.erase(text.find("- lift"));
-    const BuildingScene building = buildingOf("human id=ground/h at=6,4\n", text);
+    const SiteScene building = buildingOf("human id=ground/h at=6,4\n", text);
     BuildingRun run(building, optionsOf());
     EventLog& events = run.rooms()[0].simulation->events();
     events.want({EventKind::Unreached});
@@ -69,7 +69,7 @@ TEST(BuildingScript, ATripWithoutStairsIsToldAsUnreached) {
     EXPECT_EQ(event.place, (Point2{6, 4}));
     EXPECT_EQ(event.text, "no way for ground/h to upper/6,4");
     // The trip of a record is an error of the run, and a finding.
-    const BuildingScene recorded = buildingOf("human id=ground/h at=6,4 trip=upper/6,4\n", text);
+    const SiteScene recorded = buildingOf("human id=ground/h at=6,4 trip=upper/6,4\n", text);
     const auto findings = BuildingRun::tripFindings(recorded);
     ASSERT_EQ(findings.size(), 1U);
     EXPECT_EQ(findings[0].message, "no way for ground/h to upper/6,4");

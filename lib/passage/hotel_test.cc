@@ -8,7 +8,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "building/storeys.h"
+#include "site/storeys.h"
 #include "support/test_building_run.h"
 
 namespace ispace {
@@ -19,7 +19,7 @@ using testing::poseOf;
 using testing::step;
 
 /// The hotel with two lifts that bear two of the four robots each.
-BuildingScene hotel() {
+SiteScene hotel() {
     StoreyedDocument document = readBuilding(
         readAll(testing::sourcePath("tests/data/hotel.building.yaml")), "hotel.building.yaml", {});
     for (StoreyPassage& passage : document.passages) passage.capacity = 130;
@@ -28,7 +28,7 @@ BuildingScene hotel() {
                                 "at=20,-4\nrobot id=l2/clean mass=60 at=11,-4\nrobot "
                                 "id=l3/deliver mass=60 at=2,-7\n"),
         document);
-    return makeBuildingScene(std::move(document), layouts, testing::devices());
+    return makeSiteScene(std::move(document), layouts, testing::devices());
 }
 
 /// What an hour in the hotel comes to.
@@ -40,7 +40,7 @@ struct HotelHour {
 
 /// Lets each robot go to one point after another for an hour of simulated time.
 HotelHour anHour(bool& is_sound) {
-    const BuildingScene building = hotel();
+    const SiteScene building = hotel();
     BuildingRun run(building, optionsOf(std::chrono::milliseconds(50)));
     const std::vector<std::string> robots = {"l1/tiny1", "l1/tiny2", "l2/clean", "l3/deliver"};
     const std::vector<Point2> points = {{2, -7.5}, {8, -7.5}, {14, -7.5}, {21, -7.5}, {11, -4}};

@@ -20,7 +20,7 @@ namespace {
 constexpr double kAtSteps = 0.02, kBesideLanding = 0.05;
 
 /// Returns the size of the widest mover that may climb: of a person at least.
-MoverSize widestClimber(const BuildingScene& building) {
+MoverSize widestClimber(const SiteScene& building) {
     const double height = PlacedPerson().height;
     MoverSize widest{humanRadius(height), height};
     const auto consider = [&](const MoverSize& size) { widest = std::max(widest, size); };
@@ -74,8 +74,8 @@ double depthOf(const Environment& room, const Pose2& end, double width, double r
 }
 
 /// Returns the finding of a landing, or "".
-std::string findingAt(const BuildingScene& building, const StoreyLink& stairs,
-                      const Landing& landing, double radius) {
+std::string findingAt(const SiteScene& building, const StoreyLink& stairs, const Landing& landing,
+                      double radius) {
     const double deep = StoreyWays::widthToWalk(radius);
     const Storey& storey = building.document.storeys[landing.storey];
     const bool is_top = landing.stop + 1 == stairs.storeys.size();
@@ -103,7 +103,7 @@ std::string findingAt(const BuildingScene& building, const StoreyLink& stairs,
 
 }  // namespace
 
-std::vector<Diagnostic> landingFindings(const BuildingScene& building) {
+std::vector<Diagnostic> landingFindings(const SiteScene& building) {
     const std::vector<StoreyLink> passages = passagesOf(building);
     const bool has_stairs = std::any_of(passages.begin(), passages.end(),
                                         [](const StoreyLink& one) { return !one.is_lift; });

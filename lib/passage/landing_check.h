@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "building/building_scene.h"
+#include "site/site_scene.h"
 
 namespace ispace {
 
@@ -12,6 +12,6 @@ namespace ispace {
 /// than one mover needs to walk freely, and those where all that wait stand in the way of those
 /// that come off. It judges the widest mover that climbs, a person at least, by the ways and the
 /// spots of BuildingRun. Computes the ways over all storeys.
-std::vector<Diagnostic> landingFindings(const BuildingScene& building);
+std::vector<Diagnostic> landingFindings(const SiteScene& building);
 
 }  // namespace ispace

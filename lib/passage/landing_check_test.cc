@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "building/building_scene.h"
-#include "building/storeys.h"
+#include "site/site_scene.h"
+#include "site/storeys.h"
 
 namespace ispace {
 namespace {
@@ -25,7 +25,7 @@ Messages landings(const std::string& path, const std::string& keys) {
         keys + "}\n";
     Messages messages;
     for (const Diagnostic& finding :
-         landingFindings(makeBuildingScene(readBuilding(text, "house.yaml", {}), {}, {})))
+         landingFindings(makeSiteScene(readBuilding(text, "house.yaml", {}), {}, {})))
         messages.push_back(finding.message);
     return messages;
 }
@@ -58,7 +58,7 @@ TEST(LandingCheck, FindsWallsAcrossTheEndOfAFlight) {
             "}, {wall: {from: [" + std::to_string(from) + ", " + std::to_string(y) + "], to: [" +
             std::to_string(to) + ", " + std::to_string(y) + "]}}]}\n" +
             "- stairs: {id: s, storeys: 'ground,upper', heading: 90, at: [4, 1], size: [1.2, 3]}\n";
-        return landingFindings(makeBuildingScene(readBuilding(text, "house.yaml", {}), {}, {}));
+        return landingFindings(makeSiteScene(readBuilding(text, "house.yaml", {}), {}, {}));
     };
     for (const double y : {3.9, 4.0, 4.01, 4.1}) EXPECT_EQ(across(y, 2, 6).size(), 1U) << y;
     EXPECT_TRUE(across(2, 2, 6).empty()) << "over the steps, where one walks below it";

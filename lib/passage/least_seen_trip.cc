@@ -37,7 +37,7 @@ std::string textOf(const Box2& box) {
 /// The ways on all storeys between stops, and the shortest of them end to end.
 class TripFinder {
   public:
-    TripFinder(const BuildingScene& building, const BuildingCoverage& coverage, const WayChoice& of,
+    TripFinder(const SiteScene& building, const SiteCoverage& coverage, const WayChoice& of,
                int times)
         : coverage_(coverage), times_(times) {
         for (const std::string* text : {&of.from, &of.to}) {
@@ -123,7 +123,7 @@ class TripFinder {
         return way;
     }
 
-    const BuildingCoverage& coverage_;
+    const SiteCoverage& coverage_;
     int times_;
     std::vector<Stop> stops_;  // the zones come first
     std::map<std::pair<std::size_t, std::size_t>, LeastSeenWay> ways_;
@@ -131,7 +131,7 @@ class TripFinder {
 
 }  // namespace
 
-StoreyZone zoneOfStorey(const BuildingScene& building, std::string_view option,
+StoreyZone zoneOfStorey(const SiteScene& building, std::string_view option,
                         const std::string& text) {
     const std::string head = std::string(option) + ": ";
     const StoreyText named = splitStoreys(building.document, option, text);
@@ -153,7 +153,7 @@ StoreyZone zoneOfStorey(const BuildingScene& building, std::string_view option,
     return {found.front(), named.text};
 }
 
-std::vector<SitePassage> sitePassages(const BuildingScene& building) {
+std::vector<SitePassage> sitePassages(const SiteScene& building) {
     const std::vector<StoreyLink> links = passagesOf(building);
     std::vector<SitePassage> passages;
     passages.reserve(links.size());
@@ -169,7 +169,7 @@ std::vector<SitePassage> sitePassages(const BuildingScene& building) {
     return passages;
 }
 
-LeastSeenTrip findLeastSeenTrip(const BuildingScene& building, const BuildingCoverage& coverage,
+LeastSeenTrip findLeastSeenTrip(const SiteScene& building, const SiteCoverage& coverage,
                                 const WayChoice& of, int times) {
     if (building.isRoomAlone()) {
         const LeastSeenWay way =
@@ -182,11 +182,10 @@ LeastSeenTrip findLeastSeenTrip(const BuildingScene& building, const BuildingCov
     return trip;
 }
 
-BuildingObjectives measureObjectives(const BuildingScene& building,
-                                     const BuildingCoverage& coverage,
-                                     std::span<const WayChoice> ways, int times,
-                                     std::optional<double> localise_to) {
-    BuildingObjectives figures;
+SiteObjectives measureObjectives(const SiteScene& building, const SiteCoverage& coverage,
+                                 std::span<const WayChoice> ways, int times,
+                                 std::optional<double> localise_to) {
+    SiteObjectives figures;
     figures.storeys.resize(coverage.storeys.size());
     for (const WayChoice& way : ways) {
         LeastSeenTrip trip = findLeastSeenTrip(building, coverage, way, times);

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "arrange/site.h"
-#include "building/building_coverage.h"
-#include "building/building_scene.h"
 #include "coverage/least_seen_way.h"
 #include "report/objective_report.h"
+#include "site/site_coverage.h"
+#include "site/site_scene.h"
 
 namespace ispace {
 
@@ -40,7 +40,7 @@ struct LeastSeenTrip {
 /// for each pair of landings of a storey. \param of `ground/entrance` or a zone that only one
 /// storey has \throws UsageError for a zone that no storey or more than one has, and as
 /// findLeastSeenWay()
-LeastSeenTrip findLeastSeenTrip(const BuildingScene& building, const BuildingCoverage& coverage,
+LeastSeenTrip findLeastSeenTrip(const SiteScene& building, const SiteCoverage& coverage,
                                 const WayChoice& of, int times = 1);
 
 /// A zone of a storey.
@@ -50,22 +50,21 @@ struct StoreyZone {
 };
 /// Finds the storey of a zone, as findLeastSeenTrip() does. \param option for messages
 /// \throws UsageError for a zone that no storey or more than one has
-StoreyZone zoneOfStorey(const BuildingScene& building, std::string_view option,
+StoreyZone zoneOfStorey(const SiteScene& building, std::string_view option,
                         const std::string& text);
 
 /// Returns the stairs and lifts between the landings of which such ways lead.
-std::vector<SitePassage> sitePassages(const BuildingScene& building);
+std::vector<SitePassage> sitePassages(const SiteScene& building);
 
 /// Figures of objectives on each storey, and of the building.
-struct BuildingObjectives {
+struct SiteObjectives {
     std::vector<ObjectiveFigures> storeys;
     ObjectiveFigures all;
 };
 /// Measures the least seen ways through the building, their parts on each storey, and positions on
 /// each storey and over all. \param localise_to limit of errors, metres; empty: no positions
-BuildingObjectives measureObjectives(const BuildingScene& building,
-                                     const BuildingCoverage& coverage,
-                                     std::span<const WayChoice> ways, int times,
-                                     std::optional<double> localise_to);
+SiteObjectives measureObjectives(const SiteScene& building, const SiteCoverage& coverage,
+                                 std::span<const WayChoice> ways, int times,
+                                 std::optional<double> localise_to);
 
 }  // namespace ispace

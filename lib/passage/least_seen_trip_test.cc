@@ -12,9 +12,9 @@
 
 #include "arrange/arrange.h"
 #include "base/error.h"
-#include "building/building_scene.h"
-#include "building/storeys.h"
 #include "scene/placement_schemas.h"
+#include "site/site_scene.h"
+#include "site/storeys.h"
 #include "support/test_arrange_building.h"
 
 namespace ispace {
@@ -22,11 +22,10 @@ namespace {
 
 /// Two storeys of 12 m by 8 m. The zone `a` lies in the west below, `b` in the west above.
 /// \param ground,upper further records of the storeys \param passages further records
-BuildingScene house(const std::string& ground, const std::string& upper,
-                    const std::string& passages) {
+SiteScene house(const std::string& ground, const std::string& upper, const std::string& passages) {
     const std::string room =
         "records: [{fence: {path: [[0, 0], [12, 0], [12, 8], [0, 8]], closed: yes}}, ";
-    return makeBuildingScene(
+    return makeSiteScene(
         readBuilding("- storey: {id: g, height: 3, " + room +
                          "{zone: {id: a, at: [1, 4], size: 1 x 1}}" + ground +
                          "]}\n- storey: {id: u, z: 3, height: 3, " + room +
@@ -43,12 +42,12 @@ constexpr const char* kNorth =
 constexpr const char* kWatched =
     ", {laser: {id: l, at: [3, 0.1, 0.15], heading: 22, fov: 44, range: 12}}";
 
-LeastSeenTrip tripIn(const BuildingScene& building, const WayChoice& of) {
-    return findLeastSeenTrip(building, measureBuilding(building, {}), of);
+LeastSeenTrip tripIn(const SiteScene& building, const WayChoice& of) {
+    return findLeastSeenTrip(building, measureSite(building, {}), of);
 }
 
 TEST(LeastSeenTrip, TakesTheStairsThatAreNotWatched) {
-    const BuildingScene building = house(kWatched, "", std::string(kSouth) + kNorth);
+    const SiteScene building = house(kWatched, "", std::string(kSouth) + kNorth);
     const LeastSeenTrip trip = tripIn(building, {"g/a", "u/b"});
     ASSERT_TRUE(trip.whole.exists);
     EXPECT_EQ(trip.whole.seen, 0);
@@ -62,7 +61,7 @@ TEST(LeastSeenTrip, TakesTheStairsThatAreNotWatched) {
 }
 
 TEST(LeastSeenTrip, IsSeenWhereTheOnlyStairsAreWatched) {
-    const BuildingScene building = house(kWatched, "", kSouth);
+    const SiteScene building = house(kWatched, "", kSouth);
     const LeastSeenTrip trip = tripIn(building, {"g/a", "u/b"});
     ASSERT_TRUE(trip.whole.exists);
     EXPECT_GT(trip.whole.seen.value(), 0.5);
@@ -77,9 +76,9 @@ TEST(LeastSeenTrip, IsSeenWhereTheOnlyStairsAreWatched) {
 }
 
 TEST(LeastSeenTrip, OfOneStoreyIsItsLeastSeenWay) {
-    const BuildingScene building =
+    const SiteScene building =
         house(", {zone: {id: c, at: [11, 1], size: 1 x 1}}" + std::string(kWatched), "", kNorth);
-    const BuildingCoverage coverage = measureBuilding(building, {});
+    const SiteCoverage coverage = measureSite(building, {});
     const LeastSeenTrip trip = findLeastSeenTrip(building, coverage, {"a", "c"});
     const LeastSeenWay way = findLeastSeenWay(*coverage.floors[0], coverage.storeys[0], {"a", "c"});
     EXPECT_EQ(trip.whole.of.from, "g/a");
@@ -109,13 +108,13 @@ TEST(LeastSeenTrip, MayLeadOverAnotherStorey) {
 
 TEST(LeastSeenTrip, NeedsAWay) {
     EXPECT_FALSE(tripIn(house("", "", ""), {"g/a", "u/b"}).whole.exists);
-    const BuildingScene building = house("", ", {zone: {id: a, at: [9, 4], size: 1 x 1}}", kSouth);
+    const SiteScene building = house("", ", {zone: {id: a, at: [9, 4], size: 1 x 1}}", kSouth);
     EXPECT_THROW(tripIn(building, {"a", "b"}), UsageError) << "two storeys have it";
     EXPECT_THROW(tripIn(building, {"g/b", "u/b"}), UsageError);
 }
 
 /// Goals and options of arrange --objective path.
-ArrangedBuilding guarded(const BuildingScene& building, int count, Optimizer optimizer, double fov,
+ArrangedBuilding guarded(const SiteScene& building, int count, Optimizer optimizer, double fov,
                          std::vector<RoomGoals> goals = std::vector<RoomGoals>(2)) {
     ArrangeOptions options;
     options.strategy = goals[0].places.empty() ? Strategy::All : Strategy::List;
@@ -133,12 +132,10 @@ ArrangedBuilding guarded(const BuildingScene& building, int count, Optimizer opt
                       sitePassages(building));
 }
 
-double seenOn(const BuildingScene& building) {
-    return *tripIn(building, {"g/a", "u/b"}).whole.seen;
-}
+double seenOn(const SiteScene& building) { return *tripIn(building, {"g/a", "u/b"}).whole.seen; }
 
 TEST(LeastSeenLayout, IsSeenForAsLongAsCoverageSays) {
-    const BuildingScene building = house("", "", std::string(kSouth) + kNorth);
+    const SiteScene building = house("", "", std::string(kSouth) + kNorth);
     for (const int count : {1, 3}) {
         const ArrangedBuilding result = guarded(building, count, Optimizer::Swap, 360);
         const double seen = seenOn(written(building, result));
@@ -152,7 +149,7 @@ TEST(LeastSeenLayout, IsSeenForAsLongAsCoverageSays) {
 }
 
 TEST(LeastSeenLayout, EqualsBruteForce) {
-    const BuildingScene building = house("", "", kSouth);
+    const SiteScene building = house("", "", kSouth);
     std::vector<RoomGoals> goals(2);
     goals[0].places = {{{1, 1.5}, {Angle()}}, {{5, 1.2}, {Angle::degrees(180)}}};
     goals[1].places = {{{1, 2}, {Angle(), Angle::degrees(90)}}};
@@ -167,7 +164,7 @@ TEST(LeastSeenLayout, EqualsBruteForce) {
         for (std::size_t i = 0; i < poses.size(); ++i)
             for (std::size_t k = count == 1 ? i : i + 1; k < (count == 1 ? i + 1 : poses.size());
                  ++k) {
-                BuildingScene placed = building;
+                SiteScene placed = building;
                 for (const std::size_t one : std::set<std::size_t>{i, k}) {
                     Scene scene = *placed.scenes[poses[one].first];
                     Sensor sensor{"s" + std::to_string(one), result.groups.front().model,

@@ -115,7 +115,7 @@ class RushHour {
 
     std::mt19937 random_;
     std::vector<Member> movers_;
-    BuildingScene building_;
+    SiteScene building_;
     std::size_t done_ = 0;
 };
 
@@ -148,7 +148,7 @@ double timeFor(double way, double speed, double accel) {
 
 /// From the lane before the door of a storey to that of another one: walking, doors and travel.
 TEST(BuildingRun, ARideAloneTakesTheTimeOfItsClosedForm) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,4\n");
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
     ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).via, "l1");
     const auto model = run.world(0).movers().front().model;

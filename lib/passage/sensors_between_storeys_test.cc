@@ -26,7 +26,7 @@ std::string eyeAt(const std::string& at) {
 }
 
 /// Replaces the sensors of the upper storey, as a client does.
-void replaceSensors(BuildingRun& run, const BuildingScene& building, const std::string& layout) {
+void replaceSensors(BuildingRun& run, const SiteScene& building, const std::string& layout) {
     World& world = run.rooms()[1].simulation->world();
     std::vector<Record> records;
     for (const Record& record : world.scene().records)
@@ -36,7 +36,7 @@ void replaceSensors(BuildingRun& run, const BuildingScene& building, const std::
 }
 
 TEST(SensorsBetweenStoreys, CountInEventsAsTheyStand) {
-    const BuildingScene building = buildingOf("human id=ground/h at=6,4\n" + eyeAt("6,4"), kAtrium);
+    const SiteScene building = buildingOf("human id=ground/h at=6,4\n" + eyeAt("6,4"), kAtrium);
     BuildingRun run(building, optionsOf());
     EventLog& events = run.rooms().front().simulation->events();
     events.want({EventKind::Seen, EventKind::Lost});

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/number.h"
-#include "building/building_sight.h"
 #include "env/environment.h"
 #include "geom/point.h"
 #include "geom/polygon.h"
@@ -15,10 +14,11 @@
 #include "passage/building_run_data.h"
 #include "passage/storey_ways.h"
 #include "sim/collision.h"
+#include "site/site_sight.h"
 
 namespace ispace {
 
-std::vector<std::vector<OpenFloor>> openingsByStorey(const BuildingScene& building,
+std::vector<std::vector<OpenFloor>> openingsByStorey(const SiteScene& building,
                                                      const std::vector<StoreyLink>& passages) {
     const std::vector<Storey>& storeys = building.document.storeys;
     std::vector<std::vector<OpenFloor>> openings(storeys.size());

@@ -31,8 +31,8 @@ constexpr const char* kOpenBuilding =
     "- shaft: {id: atrium, storeys: 'ground,upper', path: [[6, 4], [6, 6], [8, 6], [8, 4]]}\n";
 
 /// Replaces the records of a storey that have this id by others.
-void replace(BuildingRun& run, const BuildingScene& building, std::size_t storey,
-             const std::string& id, const std::string& layout) {
+void replace(BuildingRun& run, const SiteScene& building, std::size_t storey, const std::string& id,
+             const std::string& layout) {
     World& world = run.rooms()[storey].simulation->world();
     std::vector<Record> records;
     for (std::size_t i = 0; i < world.scene().records.size(); ++i)
@@ -46,7 +46,7 @@ std::string placed(BuildingRun& run, const std::string& mover, std::size_t store
 }
 
 TEST(StandingRoom, IsThatOfThePresentStorey) {
-    const BuildingScene building =
+    const SiteScene building =
         buildingOf("robot id=ground/r1 at=6,2\nhuman id=ground/h at=3,6\n", kOpenBuilding);
     BuildingRun run(building, optionsOf());
     for (const char* mover : {"ground/r1", "ground/h"})
@@ -69,7 +69,7 @@ TEST(StandingRoom, IsThatOfThePresentStorey) {
 }
 
 TEST(StandingRoom, ChangesWithBodiesThatTripsKnowFromTheStart) {
-    const BuildingScene building = buildingOf("robot id=ground/r1 at=6,2\n", kOpenBuilding);
+    const SiteScene building = buildingOf("robot id=ground/r1 at=6,2\n", kOpenBuilding);
     BuildingRun run(building, optionsOf());
     const auto go = [&](Point2 at) { return run.travel("ground/r1", {{{0, at}}}).refusal; };
     EXPECT_EQ(go({9, 6}), "ground/r1 has no room at ground/9,6: ground/box stands there");
@@ -81,7 +81,7 @@ TEST(StandingRoom, ChangesWithBodiesThatTripsKnowFromTheStart) {
 }
 
 TEST(StandingRoom, EndsAtOpenings) {
-    const BuildingScene building =
+    const SiteScene building =
         buildingOf("robot id=ground/r1 at=6,2\nhuman id=ground/h at=3,6\n", kOpenBuilding);
     BuildingRun run(building, optionsOf());
     const auto text = [](const std::string& at, const std::string& passage) {
@@ -101,7 +101,7 @@ TEST(StandingRoom, EndsAtOpenings) {
 }
 
 TEST(StandingRoom, IsKeptOnWaysAroundShafts) {
-    const BuildingScene building = buildingOf("robot id=upper/r1 at=5,2\n", kOpenBuilding);
+    const SiteScene building = buildingOf("robot id=upper/r1 at=5,2\n", kOpenBuilding);
     BuildingRun run(building, optionsOf());
     // The straight way leads over the atrium, of x from 4 to 6 and y from 4 to 6.
     ASSERT_EQ(run.travel("upper/r1", {{{1, {5, 8}}}}).refusal, "");
@@ -114,7 +114,7 @@ TEST(StandingRoom, IsKeptOnWaysAroundShafts) {
     }
     EXPECT_LT(distance(poseOf(run, "upper/r1").position, Point2{5, 8}), 0.05);
     // The ground has floor there.
-    const BuildingScene below = buildingOf("robot id=ground/r1 at=7,2\n", kOpenBuilding);
+    const SiteScene below = buildingOf("robot id=ground/r1 at=7,2\n", kOpenBuilding);
     BuildingRun straight(below, optionsOf());
     EXPECT_EQ(straight.travel("ground/r1", {{{0, {7, 5}}}}).refusal, "");
 }
@@ -123,7 +123,7 @@ TEST(StandingRoom, EndsAtAShaftAcrossTheStorey) {
     std::string text = kOpenBuilding;
     text.replace(text.find("[[6, 4], [6, 6], [8, 6], [8, 4]]"), 32,
                  "[[6, 0], [6, 8], [8, 8], [8, 0]]");
-    const BuildingScene building = buildingOf("robot id=upper/r1 at=5,2\n", text.c_str());
+    const SiteScene building = buildingOf("robot id=upper/r1 at=5,2\n", text.c_str());
     BuildingRun run(building, optionsOf());
     EXPECT_EQ(run.travel("upper/r1", {{{1, {5, 8}}}}).refusal.substr(0, 36),
               "no way for upper/r1 to upper/5,8; s1");
@@ -131,7 +131,7 @@ TEST(StandingRoom, EndsAtAShaftAcrossTheStorey) {
 }
 
 TEST(StandingRoom, EndsRecordedTripsAtOpenings) {
-    const BuildingScene building =
+    const SiteScene building =
         buildingOf("human id=ground/h at=3,6 trip=upper/5,5\n", kOpenBuilding);
     try {
         const BuildingRun run(building, optionsOf());
@@ -143,7 +143,7 @@ TEST(StandingRoom, EndsRecordedTripsAtOpenings) {
 }
 
 TEST(StandingRoom, IsNoMatterForATurnOnTheSpot) {
-    const BuildingScene building = buildingOf("human id=ground/h at=8.7,6\n", kOpenBuilding);
+    const SiteScene building = buildingOf("human id=ground/h at=8.7,6\n", kOpenBuilding);
     BuildingRun run(building, optionsOf());
     EXPECT_EQ(run.place("ground/h", std::nullopt, Angle::degrees(90)), "")
         << "it leans against the box";

@@ -8,9 +8,9 @@
 #include <tuple>
 #include <utility>
 
-#include "building/building_sight.h"
 #include "env/walls.h"
 #include "sim/collision.h"
+#include "site/site_sight.h"
 
 namespace ispace {
 
@@ -29,7 +29,7 @@ constexpr std::size_t kMaxWaysOut = 32;
 /// The floor before a door that waiting movers leave free, metres ahead.
 constexpr double kLeftFree = 2.5;
 
-StoreyLink passageOf(const BuildingScene& building, const StoreyPassage& from) {
+StoreyLink passageOf(const SiteScene& building, const StoreyPassage& from) {
     StoreyLink passage{.id = from.id, .storeys = from.storeys};
     const Record& record = from.record;
     const Tuple& size = record.tuple("size");
@@ -61,7 +61,7 @@ Pose2 inFrameOf(const Storey& storey, const Pose2& building_pose) {
 
 }  // namespace
 
-std::vector<StoreyLink> passagesOf(const BuildingScene& building) {
+std::vector<StoreyLink> passagesOf(const SiteScene& building) {
     std::vector<StoreyLink> passages;
     for (const StoreyPassage& one : building.document.passages)
         if (one.storeys.size() > 1 && one.record.keyword() != "shaft")
@@ -69,7 +69,7 @@ std::vector<StoreyLink> passagesOf(const BuildingScene& building) {
     return passages;
 }
 
-StoreyWays::StoreyWays(const BuildingScene& building, const std::vector<StoreyLink>& passages,
+StoreyWays::StoreyWays(const SiteScene& building, const std::vector<StoreyLink>& passages,
                        const MoverSize& size)
     : passages_(&passages), size_(size) {
     // Movers climb the steps in the openings of stairs.
@@ -95,7 +95,7 @@ StoreyWays::StoreyWays(const BuildingScene& building, const std::vector<StoreyLi
     for (Landing& landing : landings_) addSpots(landing);
 }
 
-void StoreyWays::addLift(const BuildingScene& building, std::size_t index) {
+void StoreyWays::addLift(const SiteScene& building, std::size_t index) {
     const StoreyLink& passage = (*passages_)[index];
     for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop) {
         const std::size_t storey = passage.storeys[stop];
@@ -118,7 +118,7 @@ void StoreyWays::addLift(const BuildingScene& building, std::size_t index) {
     }
 }
 
-void StoreyWays::addStairs(const BuildingScene& building, std::size_t index) {
+void StoreyWays::addStairs(const SiteScene& building, std::size_t index) {
     const StoreyLink& passage = (*passages_)[index];
     const auto add = [&](std::size_t stop, const Pose2& end) {
         const std::size_t storey = passage.storeys[stop];

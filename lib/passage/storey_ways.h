@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "building/building_scene.h"
 #include "passage/cabin.h"
 #include "passage/lift.h"
 #include "sim/way_finder.h"
+#include "site/site_scene.h"
 
 namespace ispace {
 
@@ -35,7 +35,7 @@ struct StoreyLink {
 constexpr double kSpeedUp = 0.6, kSpeedDown = 0.7;
 
 /// Reads the stairs and lifts of a building. Those of a single storey are left out.
-std::vector<StoreyLink> passagesOf(const BuildingScene& building);
+std::vector<StoreyLink> passagesOf(const SiteScene& building);
 
 /// The size of a mover; equal ones share their ways.
 struct MoverSize {
@@ -76,7 +76,7 @@ struct MoverAbility {
 /// The storeys of a building as movers of one size see them. Computes the ways from all landings.
 class StoreyWays {
   public:
-    StoreyWays(const BuildingScene& building, const std::vector<StoreyLink>& passages,
+    StoreyWays(const SiteScene& building, const std::vector<StoreyLink>& passages,
                const MoverSize& size);
 
     /// Returns the width in metres in which a mover walks freely, and that in which it passes one
@@ -103,8 +103,8 @@ class StoreyWays {
                                              std::optional<std::size_t> only = {}) const;
 
   private:
-    void addLift(const BuildingScene& building, std::size_t index);
-    void addStairs(const BuildingScene& building, std::size_t index);
+    void addLift(const SiteScene& building, std::size_t index);
+    void addStairs(const SiteScene& building, std::size_t index);
     void addSpots(Landing& landing) const;
     [[nodiscard]] std::vector<Segment2> waysOut(const Landing& landing) const;
     [[nodiscard]] Vec2 sizeOf(const Landing& landing) const;

@@ -17,7 +17,7 @@ using testing::poseOf;
 using testing::step;
 
 TEST(BuildingTrip, PausesAtPointsAndBeginsAgain) {
-    const BuildingScene building = buildingOf("human id=ground/h at=6,4\n");
+    const SiteScene building = buildingOf("human id=ground/h at=6,4\n");
     BuildingRun run(building, optionsOf());
     const std::vector<RoomPoint> points = {{1, {9, 6}}, {0, {9, 4}}};
     ASSERT_EQ(run.travel("ground/h", {.points = points, .pause = 3, .loop = true}).refusal, "");
@@ -48,7 +48,7 @@ TEST(BuildingTrip, PausesAtPointsAndBeginsAgain) {
 /// A mover that wanders comes to all storeys, the same way each time.
 TEST(Wanderers, WanderersGoToOtherStoreys) {
     const auto rooms = [](std::uint64_t seed) {
-        const BuildingScene building = buildingOf(
+        const SiteScene building = buildingOf(
             "human id=ground/h at=6,4 walk=wander\nrobot id=upper/r at=6,4 walk=wander\n");
         BuildingRunOptions options = optionsOf(std::chrono::milliseconds(50));
         options.run.seed = seed;
@@ -77,7 +77,7 @@ TEST(Wanderers, WanderersGoToOtherStoreys) {
 }
 
 TEST(Wanderers, ACommandEndsWandering) {
-    const BuildingScene building = buildingOf("robot id=ground/r at=6,4 walk=wander\n");
+    const SiteScene building = buildingOf("robot id=ground/r at=6,4 walk=wander\n");
     BuildingRun run(building, optionsOf(std::chrono::milliseconds(50)));
     while (seconds(run.world(0).time()) < 5) step(run);
     World& world = run.rooms()[0].simulation->world();

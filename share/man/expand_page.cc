@@ -5,11 +5,11 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "building/building_schemas.h"
 #include "cli/run_tool.h"
 #include "io/exporters.h"
 #include "record/schema.h"
 #include "scene/placement_schemas.h"
+#include "site/building_schemas.h"
 
 namespace {
 

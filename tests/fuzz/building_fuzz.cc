@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Buildings: records and YAML of storeys, and sites of Open-RMF.
-#include "building/building_scene.h"
-#include "building/storeys.h"
 #include "fuzz.h"
+#include "site/site_scene.h"
+#include "site/storeys.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     // It must not read files of the machine: paths out of the folder need one of these.
@@ -15,5 +15,5 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     const StoreyedDocument again = readBuilding(yaml, operand, options);
     require(again.digest() == building.digest(), "another digest as YAML");
     require(writeBuildingYaml(again) == yaml, "another text as YAML");
-    static_cast<void>(checkBuilding(makeBuildingScene(building, {}, {})));
+    static_cast<void>(checkBuilding(makeSiteScene(building, {}, {})));
 }

@@ -9,7 +9,6 @@
 #include <span>
 
 #include "base/number.h"
-#include "building/storeys.h"
 #include "fuzz.h"
 #include "passage/building_run.h"
 #include "record/text.h"
@@ -18,6 +17,7 @@
 #include "server/client_connection.h"
 #include "server/session.h"
 #include "sim/command.h"
+#include "site/storeys.h"
 
 namespace {
 
@@ -69,7 +69,7 @@ std::size_t answersIn(std::string_view text) {
     return answers;
 }
 
-BuildingScene tower() {
+SiteScene tower() {
     StoreyedDocument document = readBuilding(
         "- storey: {id: a, height: 3, records: &room [{fence: {id: f, path: [[0, 0], [6, 0], [6, "
         "4], "
@@ -83,7 +83,7 @@ BuildingScene tower() {
         "human id=b/h1 at=3,2\nlaser id=b/l2 at=5,3 fov=4 step=2\n",
         "tower.3dm", sceneSchemas());
     const std::vector<Document> layouts = layoutsOf(layout, document);
-    return makeBuildingScene(std::move(document), layouts, {});
+    return makeSiteScene(std::move(document), layouts, {});
 }
 
 /// A building with the clock `step`, as ServedRoom.

@@ -24,8 +24,8 @@ violations() {
         layer("env", "raster record"); layer("scene", "env"); layer("drawing", "scene")
         layer("io", "drawing"); layer("trace", "scene"); layer("sense", "trace drawing")
         layer("coverage", "sense"); layer("arrange", "coverage"); layer("report", "arrange io")
-        layer("building", "report"); layer("sim", "sense"); layer("server", "sim"); layer("client", "")
-        layer("passage", "building sim"); layer("cli", "server passage"); layer("extensions", "cli")
+        layer("site", "report"); layer("sim", "sense"); layer("server", "sim"); layer("client", "")
+        layer("passage", "site sim"); layer("cli", "server passage"); layer("extensions", "cli")
         heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
         quiet = "(^|[^A-Za-z0-9_])(std::(cout|cerr|clog|cin)|(printf|fprintf|puts|fputs|putchar|" \
                 "perror|exit|_exit|quick_exit|abort|terminate|getenv|secure_getenv|setenv)[ ]*[(]|" \
@@ -130,7 +130,7 @@ expect lib/arrange/poses/a.cc '#include "arrange/certificate_lines.h"' no
 expect lib/arrange/poses/a.cc '#include "arrange/refine.h"' yes
 expect lib/trace/a.cc '#include "trace/render/render.h"' yes
 expect lib/sim/a.cc '#include "server/server.h"' yes
-expect lib/building/a.cc '#include "passage/lift.h"' yes
+expect lib/site/a.cc '#include "passage/lift.h"' yes
 expect lib/sim/a.cc '#include "passage/lift.h"' yes
 expect lib/server/a.cc '#include "passage/lift.h"' yes
 expect lib/passage/a.cc '#include "sim/world.h"' no

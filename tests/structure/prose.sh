@@ -25,7 +25,7 @@ for text in "Computes what is returned" "Returns who reads" "Returns its place" 
 done
 # Each kind of file counts, code does not.
 for case in 'b.cc|int x; // what' 'b.sh|x # what' 'b.py|# what' 'b.1|.TP\nwhat' 'b.md|what' 'CMakeLists.txt|# what' \
-        'building/b.h|// what'; do
+        'site/b.h|// what'; do
     tree "Computes the area, returns the pose"
     mkdir -p tree/building
     printf "${case#*|}\n" >"tree/${case%%|*}"

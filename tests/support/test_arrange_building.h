@@ -7,13 +7,13 @@
 
 #include "arrange/arrange.h"
 #include "base/error.h"
-#include "building/building_scene.h"
-#include "building/building_site.h"
 #include "scene/sensor_spec.h"
+#include "site/arranged_site.h"
+#include "site/site_scene.h"
 
 namespace ispace {
 
-inline std::vector<SensorGroup> groupsOf(const BuildingScene& building,
+inline std::vector<SensorGroup> groupsOf(const SiteScene& building,
                                          std::span<const SensorSpec> sensors, bool open = false) {
     std::vector<const Scene*> scenes;
     for (const auto& scene : building.scenes) scenes.push_back(scene.get());
@@ -29,7 +29,7 @@ struct ArrangedBuilding {
     [[nodiscard]] double gap() const { return found.candidate_bound - found.candidate_value; }
 };
 
-inline ArrangedBuilding arrangedIn(const BuildingScene& building,
+inline ArrangedBuilding arrangedIn(const SiteScene& building,
                                    const std::vector<SensorSpec>& sensors,
                                    const ArrangeOptions& options, std::vector<RoomGoals> goals = {},
                                    std::vector<SitePassage> passages = {}) {
@@ -44,12 +44,11 @@ inline ArrangedBuilding arrangedIn(const BuildingScene& building,
 }
 
 /// Returns the building with the sensors of an arrangement, as read from its file.
-inline BuildingScene written(const BuildingScene& building, const ArrangedBuilding& arranged) {
+inline SiteScene written(const SiteScene& building, const ArrangedBuilding& arranged) {
     const Document layout =
         buildingLayout({{}, "house.yaml", building.document.digest(), "grid", "exact"}, building,
                        nullptr, arranged.groups, arranged.found);
-    return makeBuildingScene(building.document, layoutsOf(layout, building.document),
-                             building.devices);
+    return makeSiteScene(building.document, layoutsOf(layout, building.document), building.devices);
 }
 
 }  // namespace ispace

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "building/storeys.h"
 #include "passage/building_run.h"
+#include "site/storeys.h"
 #include "support/test_layout.h"
 
 namespace ispace::testing {
@@ -25,10 +25,10 @@ inline constexpr const char* kBuilding =
     "1.2, capacity: 300kg}\n"
     "- stairs: {id: s1, storeys: 'ground,upper', at: [4, 1], heading: 0, size: [1.6, 4]}\n";
 
-inline BuildingScene buildingOf(const std::string& layout, const std::string& text = kBuilding) {
+inline SiteScene buildingOf(const std::string& layout, const std::string& text = kBuilding) {
     StoreyedDocument document = readBuilding(text, "house.yaml", {});
     const std::vector<Document> layouts = layoutsOf(layoutDocument(layout), document);
-    return makeBuildingScene(std::move(document), layouts, devices());
+    return makeSiteScene(std::move(document), layouts, devices());
 }
 
 /// Steps on request.

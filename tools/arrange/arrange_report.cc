@@ -8,12 +8,12 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "building/building_page.h"
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
 #include "passage/least_seen_trip.h"
 #include "report/map/map.h"
 #include "report/page/coverage_page.h"
+#include "site/site_page.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -81,8 +81,8 @@ PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
 }
 
 /// Returns the building with sensors that were placed.
-BuildingScene placedBuilding(const ArrangeWork& work, const std::vector<Placement>& sensors) {
-    BuildingScene placed = work.input.building;
+SiteScene placedBuilding(const ArrangeWork& work, const std::vector<Placement>& sensors) {
+    SiteScene placed = work.input.building;
     for (std::size_t i = 0; i < placed.scenes.size(); ++i)
         placed.scenes[i] =
             std::make_shared<const Scene>(withPlaced(*placed.scenes[i], work.groups, sensors, i));
@@ -93,9 +93,9 @@ BuildingScene placedBuilding(const ArrangeWork& work, const std::vector<Placemen
 /// \param scale receives that of the colours
 void writeStoreyHeat(const ArrangeWork& work, const GainMap& gains,
                      const std::vector<std::string>& files, MapOptions map, std::uint32_t& scale) {
-    const BuildingCoverage coverage =
-        measureBuilding(placedBuilding(work, gains.before),
-                        {.plane = work.how.plane, .density = work.how.pixel_density});
+    const SiteCoverage coverage =
+        measureSite(placedBuilding(work, gains.before),
+                    {.plane = work.how.plane, .density = work.how.pixel_density});
     scale = std::max(scale, redundancyScale(coverage));
     map.redundancy_scale = scale;
     const std::string title = map.title;
@@ -159,7 +159,7 @@ void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
 namespace {
 
 /// Returns the building with the layout that was found.
-BuildingScene placedBuilding(const ArrangeWork& work, const Arrangement& arrangement) {
+SiteScene placedBuilding(const ArrangeWork& work, const Arrangement& arrangement) {
     return placedBuilding(work, arrangement.sensors);
 }
 
@@ -168,7 +168,7 @@ CoverageOptions measuredAs(const ArrangeOptions& how) {
 }
 
 /// Judges the faces in each storey.
-std::vector<FacingResult> facingOf(const ArrangeWork& work, const BuildingCoverage& coverage) {
+std::vector<FacingResult> facingOf(const ArrangeWork& work, const SiteCoverage& coverage) {
     std::vector<FacingResult> all;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
         for (FacingResult& result :
@@ -186,8 +186,8 @@ std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangem
     CameraRules rules{{}, arrangement.privacy};
     if (work.how.facing.empty()) return rules;
     if (!work.input.isOneRoom()) {
-        rules.facing = facingOf(
-            work, measureBuilding(placedBuilding(work, arrangement), measuredAs(work.how)));
+        rules.facing =
+            facingOf(work, measureSite(placedBuilding(work, arrangement), measuredAs(work.how)));
         return rules;
     }
     const Scene scene = withPlaced(work.input.only(), work.groups, arrangement.sensors);
@@ -200,9 +200,8 @@ std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangem
 namespace {
 
 /// Judges --objective path and localise in each storey and over all.
-std::optional<BuildingObjectives> objectivesIn(const ArrangeWork& work,
-                                               const BuildingScene& building,
-                                               const BuildingCoverage& coverage) {
+std::optional<SiteObjectives> objectivesIn(const ArrangeWork& work, const SiteScene& building,
+                                           const SiteCoverage& coverage) {
     const ObjectiveChoice& objective = work.how.objective;
     if (objective.isCoverage()) return std::nullopt;
     const bool is_path = objective.of == ObjectiveChoice::Of::Path;
@@ -232,8 +231,8 @@ std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
     CoverageOptions measured = measuredAs(work.how);
     measured.exact = work.how.objective.of == ObjectiveChoice::Of::Path && arrangement.is_complete;
     if (!work.input.isOneRoom()) {
-        const BuildingScene building = placedBuilding(work, arrangement);
-        return objectivesIn(work, building, measureBuilding(building, measured))->all;
+        const SiteScene building = placedBuilding(work, arrangement);
+        return objectivesIn(work, building, measureSite(building, measured))->all;
     }
     const Scene scene = withPlaced(work.input.only(), work.groups, arrangement.sensors);
     Worlds worlds(scene.environment);
@@ -263,21 +262,21 @@ std::string finished(const ArrangeToolOptions& options, const ReportPage& page) 
 
 std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork& work,
                            const Arrangement& arrangement, const std::string& command) {
-    const BuildingScene building = placedBuilding(work, arrangement);
-    const BuildingCoverage coverage = measureBuilding(building, measuredAs(work.how));
-    const std::optional<BuildingObjectives> objectives = objectivesIn(work, building, coverage);
+    const SiteScene building = placedBuilding(work, arrangement);
+    const SiteCoverage coverage = measureSite(building, measuredAs(work.how));
+    const std::optional<SiteObjectives> objectives = objectivesIn(work, building, coverage);
     if (suffixOf(options.report_file) == "json") {
-        BuildingParts parts;
+        SiteParts parts;
         if (objectives) {
             parts.storeys.resize(coverage.storeys.size());
             for (std::size_t i = 0; i < parts.storeys.size(); ++i)
                 parts.storeys[i].objectives = &objectives->storeys[i];
             parts.sum.objectives = &objectives->all;
         }
-        return buildingCoverageJson(building, coverage, parts);
+        return siteCoverageJson(building, coverage, parts);
     }
-    BuildingPageInput input{building, coverage, nameOf(work.input), command,
-                            targetOf(work, arrangement)};
+    SitePageInput input{building, coverage, nameOf(work.input), command,
+                        targetOf(work, arrangement)};
     PageSection result = resultOf(options, work, arrangement);
     const CameraRules rules{facingOf(work, coverage), arrangement.privacy};
     for (const JudgedRule& rule : judgedRules(rules))
@@ -289,7 +288,7 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
     input.prices = pricesOf(options.page);
     const auto progress = makeProgress("arrange", options.common.progress, options.common.quiet);
     input.progress = progress.get();
-    return finished(options, buildingPage(input));
+    return finished(options, sitePage(input));
 }
 
 }  // namespace

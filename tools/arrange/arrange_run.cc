@@ -14,8 +14,6 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "building/building_robustness.h"
-#include "building/building_site.h"
 #include "cli/outputs.h"
 #include "env/zone.h"
 #include "scene/findings/findings.h"
@@ -23,6 +21,8 @@
 #include "scene/scene.h"
 #include "scene/sensor/ultrasound.h"
 #include "scene/sensor_spec.h"
+#include "site/arranged_site.h"
+#include "site/site_robustness.h"
 
 namespace ispace {
 

@@ -17,18 +17,14 @@
 #include "base/number.h"
 #include "base/part_file.h"
 #include "base/run_files.h"
-#include "building/building_presence.h"
-#include "building/building_robustness.h"
-#include "building/building_suggestions.h"
-#include "building/coupling.h"
 #include "cli/batch.h"
-#include "cli/building_operands.h"
 #include "cli/common_options.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/presence_ways.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
+#include "cli/storey_operands.h"
 #include "coverage/crowd.h"
 #include "passage/least_seen_trip.h"
 #include "record/text.h"
@@ -39,6 +35,10 @@
 #include "scene/findings/findings.h"
 #include "scene/run/run_reader.h"
 #include "scene/sensor/ultrasound.h"
+#include "site/coupling.h"
+#include "site/site_presence.h"
+#include "site/site_robustness.h"
+#include "site/site_suggestions.h"
 
 namespace ispace {
 
@@ -56,8 +56,8 @@ const Storey& storeyOf(const SiteInput& input, std::size_t room) {
 
 }  // namespace
 
-BuildingParts SiteResults::parts() const {
-    BuildingParts parts;
+SiteParts SiteResults::parts() const {
+    SiteParts parts;
     if (run) parts = partsOf(*run);
     parts.storeys.resize(coverage.storeys.size());
     for (std::size_t i = 0; i < presence.size(); ++i) parts.storeys[i].presence = &presence[i];
@@ -79,7 +79,19 @@ std::vector<std::string> operandsOf(const CoverageToolOptions& options) {
     return scene.empty() ? std::vector<std::string>() : std::vector{scene};
 }
 
+void nameInRoom(CoverageToolOptions& options, const SiteInput& input) {
+    const auto take = [&input](std::string& zone) { zone = inOwnStorey(input, zone); };
+    for (Requirement& requirement : options.requirements) take(requirement.zone);
+    for (FacingRule& rule : options.facing) take(rule.zone);
+    for (PrivacyRule& rule : options.privacy) take(rule.zones);
+    for (WayChoice& way : options.paths) {
+        take(way.from);
+        take(way.to);
+    }
+}
+
 void fitOptions(CoverageToolOptions& options, const SiteInput& input) {
+    nameInRoom(options, input);
     const auto check_record = [&input](const char* option, const std::string& folder) {
         if (!folder.empty()) mustBeRecordOf(input, option, folder);
     };
@@ -119,7 +131,7 @@ std::optional<Diagnostic> receiverFinding(const Scene& scene) {
 
 /// Tells if the cells of a room are larger than usual by default.
 void tellLargeCells(const CoverageToolOptions& options, const SiteInput& input,
-                    const BuildingCoverage& coverage) {
+                    const SiteCoverage& coverage) {
     if (!std::holds_alternative<RoomCells>(options.measure.cells)) return;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         const Grid& grid = coverage.storeys[i].report.grid;
@@ -132,7 +144,7 @@ void tellLargeCells(const CoverageToolOptions& options, const SiteInput& input,
 }
 
 /// Returns the number of sensors that see floor.
-std::size_t countSeeing(const BuildingScene& building) {
+std::size_t countSeeing(const SiteScene& building) {
     std::size_t count = 0;
     for (const auto& scene : building.scenes)
         count += static_cast<std::size_t>(
@@ -161,13 +173,13 @@ void measure(const CoverageToolOptions& options, const SiteInput& input,
     how.keep_depths = how.keep_depths && !by_shades;
     const auto progress =
         makeProgress("coverage", options.common.progress, options.common.quiet, kQuick);
-    BuildingCoverage& coverage = results.coverage;
-    coverage = measureBuilding(input.building, how, progress.get());
+    SiteCoverage& coverage = results.coverage;
+    coverage = measureSite(input.building, how, progress.get());
     if (other) {
         for (std::size_t i = 0; i < input.rooms().size(); ++i)
             mustBeSameRoom(input.rooms()[i]->environment, other->building.scenes[i]->environment,
                            options.other);
-        results.other = measureBuilding(other->building, how, progress.get());
+        results.other = measureSite(other->building, how, progress.get());
         compareStoreys(coverage, *results.other,
                        options.other == "-" ? displayName("-") : baseName(options.other));
     }
@@ -234,7 +246,7 @@ void measurePresences(const CoverageToolOptions& options, const SiteInput& input
 void measureObjectives(const CoverageToolOptions& options, const SiteInput& input,
                        SiteResults& results) {
     if (options.paths.empty() && !options.localise_to) return;
-    BuildingObjectives measured =
+    SiteObjectives measured =
         measureObjectives(input.building, results.coverage, options.paths, 1, options.localise_to);
     results.objectives = std::move(measured.storeys);
     results.objectives_sum = std::move(measured.all);
@@ -249,9 +261,9 @@ void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
             files.push_back(RecordedFiles(recordOfStorey(options.run, storey)).robots);
         std::vector<std::string> warnings;
         results.run =
-            measureBuildingRun(input.building, options.run,
-                               {.plane = options.measure.plane, .density = options.measure.density},
-                               options.rules.max_work, warnings);
+            measureSiteRun(input.building, options.run,
+                           {.plane = options.measure.plane, .density = options.measure.density},
+                           options.rules.max_work, warnings);
         for (const std::string& warning : warnings) warn(options.common, "coverage", warning);
     }
     measureObjectives(options, input, results);
@@ -261,8 +273,8 @@ void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
 void measureRules(const CoverageToolOptions& options, const SiteInput& input,
                   SiteResults& results) {
     if (options.facing.empty() && options.privacy.empty()) return;
-    results.coverage.rules = measureBuildingRules(input.building, results.coverage, options.measure,
-                                                  options.facing, options.privacy);
+    results.coverage.rules = measureSiteRules(input.building, results.coverage, options.measure,
+                                              options.facing, options.privacy);
     if (!options.facing.empty() && options.measure.plane == 0)
         tell(options.common, "coverage", std::string(kFacesOnFloor));
 }
@@ -270,15 +282,15 @@ void measureRules(const CoverageToolOptions& options, const SiteInput& input,
 namespace {
 
 /// Returns the crowds of --crowd: by sample, then by room.
-std::vector<BuildingCrowd> crowdsOf(const CoverageToolOptions& options, const SiteInput& input,
-                                    const BuildingCoverage& coverage) {
+std::vector<SiteCrowd> crowdsOf(const CoverageToolOptions& options, const SiteInput& input,
+                                const SiteCoverage& coverage) {
     const std::size_t rooms = input.rooms().size();
-    std::vector<BuildingCrowd> crowds;
+    std::vector<SiteCrowd> crowds;
     switch (options.crowd->of) {
         case Robustness::CrowdOf::Random: {
             const std::vector<std::size_t> people =
                 spreadOverStoreys(coverage, static_cast<std::size_t>(options.crowd->people));
-            crowds.assign(kSamples, BuildingCrowd(rooms));
+            crowds.assign(kSamples, SiteCrowd(rooms));
             for (std::size_t i = 0; i < rooms; ++i) {
                 if (people[i] == 0) continue;
                 const CrowdFloor floor(*input.rooms()[i]);
@@ -298,7 +310,7 @@ std::vector<BuildingCrowd> crowdsOf(const CoverageToolOptions& options, const Si
                 const std::vector<Crowd> own = crowdsOfRun(
                     recordOfStorey(options.run, storeyOf(input, i)), *input.rooms()[i], kSamples);
                 crowds.resize(i == 0 ? own.size() : std::min(crowds.size(), own.size()),
-                              BuildingCrowd(rooms));
+                              SiteCrowd(rooms));
                 for (std::size_t k = 0; k < crowds.size(); ++k) crowds[k][i] = own[k];
             }
             break;
@@ -311,25 +323,24 @@ std::vector<BuildingCrowd> crowdsOf(const CoverageToolOptions& options, const Si
 void measureRobustness(const CoverageToolOptions& options, const SiteInput& input,
                        SiteResults& results) {
     if (!options.perturb && options.failures == 0 && !options.crowd) return;
-    const BuildingCoverage& coverage = results.coverage;
+    const SiteCoverage& coverage = results.coverage;
     Robustness& robustness = results.robustness.emplace(
         Robustness{.requirements = options.requirements, .failures = options.failures});
     if (options.failures > 0)
-        robustness.losses =
-            worstFailuresOfBuilding(coverage, options.failures, options.requirements);
+        robustness.losses = worstFailuresOfSite(coverage, options.failures, options.requirements);
     const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
     if (options.crowd) {
         robustness.crowd_of = options.crowd->of;
         robustness.people = options.crowd->people;
         robustness.crowd =
-            crowdBuilding(input.building, coverage, options.measure,
-                          crowdsOf(options, input, coverage), options.requirements, *progress);
+            crowdSite(input.building, coverage, options.measure, crowdsOf(options, input, coverage),
+                      options.requirements, *progress);
     }
     if (!options.perturb) return;
     robustness.tolerance = *options.perturb;
     robustness.mounting =
-        perturbBuilding(input.building, coverage, options.measure, *options.perturb, kSamples,
-                        options.common.seed, options.requirements, *progress);
+        perturbSite(input.building, coverage, options.measure, *options.perturb, kSamples,
+                    options.common.seed, options.requirements, *progress);
 }
 
 void suggest(const CoverageToolOptions& options, const SiteInput& input, SiteResults& results,
@@ -439,7 +450,7 @@ void writeProducts(const CoverageToolOptions& options, const SiteInput& input,
     }
 }
 
-std::vector<Diagnostic> sensorFindings(const BuildingScene& building) {
+std::vector<Diagnostic> sensorFindings(const SiteScene& building) {
     std::vector<Diagnostic> found =
         storeyWarnings(Coupling(building), {.checks = {"unplaced", "outside", "buried"}});
     for (std::size_t i = 0; i < building.scenes.size(); ++i)
@@ -460,9 +471,8 @@ JunitCase caseOf(std::string name, bool is_met, std::string message) {
 
 }  // namespace
 
-std::vector<JunitCase> judge(std::span<const Requirement> requirements,
-                             const BuildingScene& building, const BuildingCoverage& coverage,
-                             const std::string& name) {
+std::vector<JunitCase> judge(std::span<const Requirement> requirements, const SiteScene& building,
+                             const SiteCoverage& coverage, const std::string& name) {
     std::vector<JunitCase> verdicts;
     verdicts.reserve(requirements.size());
     for (const Requirement& requirement : requirements) {
@@ -473,7 +483,7 @@ std::vector<JunitCase> judge(std::span<const Requirement> requirements,
     return verdicts;
 }
 
-std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const BuildingScene& building,
+std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const SiteScene& building,
                                 const SiteResults& results) {
     std::vector<JunitCase> verdicts = judge(options.requirements, building, results.coverage);
     if (results.presence_sum)
@@ -482,7 +492,7 @@ std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const Buildi
             verdicts.push_back(
                 caseOf(requirementText(requirement), verdict.is_met, std::move(verdict.text)));
         }
-    for (const JudgedRule& rule : judgedInBuilding(building, results.coverage.rules))
+    for (const JudgedRule& rule : judgedInSite(building, results.coverage.rules))
         if (rule.is_required)
             verdicts.push_back(caseOf(rule.rule, rule.is_met, rule.rule + ": " + rule.finding));
     return verdicts;

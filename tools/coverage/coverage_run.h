@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "arrange/tried_pose.h"
-#include "building/building_coverage.h"
-#include "building/building_run_coverage.h"
 #include "cli/batch.h"
 #include "cli/site_operands.h"
 #include "coverage/coverage_options.h"
@@ -17,14 +15,16 @@
 #include "coverage/robustness.h"
 #include "report/objective_report.h"
 #include "report/suggestion_report.h"
+#include "site/site_coverage.h"
+#include "site/site_run_coverage.h"
 
 namespace ispace {
 
 /// What the tool finds out about a site: of each room, and of all floor.
 struct SiteResults {
-    BuildingCoverage coverage;
-    std::optional<BuildingCoverage> other;  ///< of --compare
-    std::optional<BuildingRunCoverage> run;
+    SiteCoverage coverage;
+    std::optional<SiteCoverage> other;  ///< of --compare
+    std::optional<SiteRunCoverage> run;
     std::vector<TriedPose> tried;  ///< of --trace
     std::vector<ObjectiveFigures> objectives;
     std::optional<ObjectiveFigures> objectives_sum;
@@ -34,14 +34,18 @@ struct SiteResults {
     std::optional<Advice> advice;
 
     /// Returns the parts of a report that were asked for. Keeps pointers into the results.
-    [[nodiscard]] BuildingParts parts() const;
+    [[nodiscard]] SiteParts parts() const;
 };
 
 /// Returns the operands, or what a record of --run holds: its scene, or its building.
 std::vector<std::string> operandsOf(const CoverageToolOptions& options);
 
-/// Checks that records, products and traces fit the site, and names the product of a room, for %s,
-/// as roomFile() does. \throws UsageError
+/// Takes the storey from the zones of requirements, rules and ways of a room that is one: of
+/// `ground/entry` the room has `entry`.
+void nameInRoom(CoverageToolOptions& options, const SiteInput& input);
+
+/// Checks that records, products and traces fit the site, and names zones as nameInRoom(), and the
+/// product of a room, for %s, as roomFile() does. \throws UsageError
 void fitOptions(CoverageToolOptions& options, const SiteInput& input);
 
 /// Warns of the sensors and the size of the cells, and measures, with the other layout of
@@ -77,15 +81,14 @@ void writeProducts(const CoverageToolOptions& options, const SiteInput& input,
                    const SiteResults& results);
 
 /// Returns the findings about the sensors, robots and people of a site.
-std::vector<Diagnostic> sensorFindings(const BuildingScene& building);
+std::vector<Diagnostic> sensorFindings(const SiteScene& building);
 
 /// Returns one verdict for each requirement, with the measured value as its message; `name`
 /// precedes the requirement's text. \pre mustHaveZone()
-std::vector<JunitCase> judge(std::span<const Requirement> requirements,
-                             const BuildingScene& building, const BuildingCoverage& coverage,
-                             const std::string& name = "");
+std::vector<JunitCase> judge(std::span<const Requirement> requirements, const SiteScene& building,
+                             const SiteCoverage& coverage, const std::string& name = "");
 /// Returns a verdict for each requirement of presence and each rule that requires something, too.
-std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const BuildingScene& building,
+std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const SiteScene& building,
                                 const SiteResults& results);
 
 /// Joins the messages of those that are unmet; "" if all are met.

@@ -11,7 +11,6 @@
 #include "base/memory.h"
 #include "base/message.h"
 #include "base/parallel.h"
-#include "building/building_page.h"
 #include "cli/job_server.h"
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
@@ -20,6 +19,7 @@
 #include "coverage/coverage_run.h"
 #include "report/coverage_formats.h"
 #include "scene/scene.h"
+#include "site/site_page.h"
 #include "tools.h"
 
 namespace {
@@ -33,7 +33,7 @@ SiteInput readInput(const CoverageToolOptions& options) {
     else
         keepFreedMemory(operands);
     SiteInput input = readSite({operands, options.rules, true});
-    addZones(options.zones, input.building);
+    addZones(inOwnStorey(input, options.zones), input.building);
     return input;
 }
 
@@ -48,7 +48,7 @@ void checkRequired(const CoverageToolOptions& options, const SiteInput& input,
 }
 
 /// Frees all but the reports, and the targets.
-void forgetViews(BuildingCoverage& coverage) {
+void forgetViews(SiteCoverage& coverage) {
     for (Coverage& room : coverage.storeys) {
         room.sensors = {};
         room.sets = {};
@@ -63,9 +63,9 @@ void forgetViews(BuildingCoverage& coverage) {
 std::string reportFile(const CoverageToolOptions& options, const SiteInput& input,
                        SiteResults& results) {
     const std::string suffix = suffixOf(options.report);
-    const BuildingCoverage& coverage = results.coverage;
-    if (suffix == "json") return buildingCoverageJson(input.building, coverage, results.parts());
-    BuildingPageInput page{input.building, coverage, "", options.history_line};
+    const SiteCoverage& coverage = results.coverage;
+    if (suffix == "json") return siteCoverageJson(input.building, coverage, results.parts());
+    SitePageInput page{input.building, coverage, "", options.history_line};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     const auto add = [&page](const std::string& phrase, const Verdict& verdict) {
         page.requirements.push_back({phrase, verdict.is_met, verdict.text, verdict.margin});
@@ -86,7 +86,7 @@ std::string reportFile(const CoverageToolOptions& options, const SiteInput& inpu
     page.prices = pricesOf(options.page);
     const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
     page.progress = progress.get();
-    const ReportPage pages = buildingPage(page);
+    const ReportPage pages = sitePage(page);
     forgetViews(results.coverage);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }
@@ -124,9 +124,9 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     const std::vector<JunitCase> verdicts = judgeAll(options, input.building, results);
     if (!options.report.empty()) writeAll(options.report, reportFile(options, input, results));
     writeMaterialOf(options, input);
-    const BuildingParts parts = results.parts();
-    writeAll("-", options.json ? buildingCoverageJson(input.building, results.coverage, parts)
-                               : buildingCoverageText(input.building, results.coverage, parts));
+    const SiteParts parts = results.parts();
+    writeAll("-", options.json ? siteCoverageJson(input.building, results.coverage, parts)
+                               : siteCoverageText(input.building, results.coverage, parts));
     if (signal != 0) endBySignal(signal);
     std::size_t sensors = 0, cells = 0;
     for (const Coverage& room : results.coverage.storeys) {
@@ -142,18 +142,19 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
 void coverJob(const BatchJob& job, const CoverageToolOptions& options, JobOutcome& outcome) {
     SiteInput input = readSite({job.operands, options.rules, false});
     outcome.files = input.files;
-    addZones(options.zones, input.building);
+    addZones(inOwnStorey(input, options.zones), input.building);
     if (!input.layout && std::all_of(input.rooms().begin(), input.rooms().end(),
                                      [](const auto& scene) { return scene->sensors.empty(); }))
         throw UsageError(input.environment_operand +
                          " holds no placed sensor: give a layout after it");
     warnOfImport(options.common, "coverage", input);
+    CoverageToolOptions own = options;
+    nameInRoom(own, input);
     SiteResults results;
     std::vector<std::string> files;  // of --compare, which batches do not have
-    measure(options, input, files, results);
-    outcome.line = buildingCoverageJson(input.building, results.coverage);
-    outcome.verdicts =
-        judge(options.requirements, input.building, results.coverage, job.name + ": ");
+    measure(own, input, files, results);
+    outcome.line = siteCoverageJson(input.building, results.coverage);
+    outcome.verdicts = judge(own.requirements, input.building, results.coverage, job.name + ": ");
 }
 
 /// --batch: a report for each scene of the list, see runBatch().

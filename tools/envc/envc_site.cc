@@ -13,17 +13,17 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/run_files.h"
-#include "building/building_edit.h"
-#include "building/building_scene.h"
-#include "building/chosen_storeys.h"
-#include "cli/building_operands.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 #include "cli/site_operands.h"
+#include "cli/storey_operands.h"
 #include "env/environment.h"
 #include "env/zone.h"
 #include "io/exporters.h"
 #include "scene/placement_schemas.h"
+#include "site/chosen_storeys.h"
+#include "site/site_edit.h"
+#include "site/site_scene.h"
 
 namespace ispace {
 
@@ -166,7 +166,7 @@ void applyEdits(const EnvcOptions& options, const std::string& operand, const Im
                 StoreyedDocument& building) {
     std::vector<std::shared_ptr<const Document>> before;
     for (const Storey& storey : building.storeys) before.push_back(storey.room);
-    editBuilding(building, options.edits);
+    editSite(building, options.edits);
     if (!import.load_files) return;
     for (Storey& storey : building.storeys) {
         if (std::find(before.begin(), before.end(), storey.room) != before.end()) continue;

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "building/storeys.h"
 #include "drawing/plan/found_rooms.h"
 #include "envc/envc_options.h"
 #include "io/importers.h"
+#include "site/storeys.h"
 
 namespace ispace {
 

@@ -13,13 +13,10 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
-#include "building/building_edit.h"
-#include "building/building_scene.h"
-#include "building/coupling.h"
-#include "cli/building_operands.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "cli/site_operands.h"
+#include "cli/storey_operands.h"
 #include "env/zone.h"
 #include "envc/envc_site.h"
 #include "passage/building_run.h"
@@ -29,6 +26,9 @@
 #include "scene/findings/findings.h"
 #include "scene/findings/remedies.h"
 #include "sim/course_check.h"
+#include "site/coupling.h"
+#include "site/site_edit.h"
+#include "site/site_scene.h"
 
 namespace ispace {
 
@@ -37,17 +37,17 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns the scenes of the rooms. \throws FormatError as makeScene()
-BuildingScene sceneOf(const StoreyedDocument& document) {
+SiteScene sceneOf(const StoreyedDocument& document) {
     std::vector<const Document*> rooms;
     for (const Storey& storey : document.storeys) rooms.push_back(storey.room.get());
-    return makeBuildingScene(document, {}, devicesFor(std::span<const Document* const>(rooms)));
+    return makeSiteScene(document, {}, devicesFor(std::span<const Document* const>(rooms)));
 }
 
 /// Returns moves that resolve findings of a storey, by the ids of the building.
-std::string movesIn(const EnvcOptions& options, const BuildingScene& building, std::size_t storey,
+std::string movesIn(const EnvcOptions& options, const SiteScene& building, std::size_t storey,
                     const FindingFilter& filter, int& left) {
     if (left == 0) return "";
-    const auto scene = sceneOfBuilding(building, storey);
+    const auto scene = sceneOfSite(building, storey);
     const std::vector<Finding> found = checkScene(*scene, filter);
     const std::size_t count = found.size() + checkCourses(*scene).size();
     if (count == 0) return "";
@@ -60,7 +60,7 @@ std::string movesIn(const EnvcOptions& options, const BuildingScene& building, s
 
 /// Adds the findings of all rooms, each once, and of what joins them.
 /// \returns moves that resolve some of them
-std::string addFindings(const EnvcOptions& options, const BuildingScene& building,
+std::string addFindings(const EnvcOptions& options, const SiteScene& building,
                         Diagnostics& findings) {
     FindingFilter mistakes;
     for (const SceneCheck& check : sceneChecks())
@@ -113,7 +113,7 @@ namespace {
 
 /// Returns the page of a building: of each storey that of its room, on sheets of its own.
 ReportPage pageOfBuilding(const EnvcOptions& options, const EnvcSite& site,
-                          const BuildingScene& building) {
+                          const SiteScene& building) {
     ReportPage page;
     const std::string& input = options.inputs.front();
     page.title = isStream(input) ? "Building" : baseName(input);
@@ -144,9 +144,9 @@ ReportPage pageOfRoom(const EnvcOptions& options, const EnvcSite& site, const Sc
     return roomPage(page);
 }
 
-void writeReport(const EnvcOptions& options, const EnvcSite& site, const BuildingScene& building) {
+void writeReport(const EnvcOptions& options, const EnvcSite& site, const SiteScene& building) {
     const std::string kind = suffixOf(options.report);
-    if (kind == "json") return writeAll(options.report, buildingInfoJson(building));
+    if (kind == "json") return writeAll(options.report, siteInfoJson(building));
     const ReportPage page = building.isRoomAlone()
                                 ? pageOfRoom(options, site, *building.scenes.front())
                                 : pageOfBuilding(options, site, building);
@@ -195,7 +195,7 @@ void convert(const EnvcOptions& options, const StoreyedDocument& document) {
 
 /// Returns for each storey those of the zones that it has. \throws as forEachRoomOf()
 std::vector<std::vector<std::string>> zonesByStorey(const EnvcOptions& options,
-                                                    const BuildingScene& building) {
+                                                    const SiteScene& building) {
     std::vector<std::vector<std::string>> zones(building.scenes.size());
     for (const std::string& text : options.zones)
         forEachRoomOf(building.document, "--zone", text,
@@ -206,8 +206,7 @@ std::vector<std::vector<std::string>> zonesByStorey(const EnvcOptions& options,
     return zones;
 }
 
-void writeProducts(const EnvcOptions& options, const EnvcSite& site,
-                   const BuildingScene& building) {
+void writeProducts(const EnvcOptions& options, const EnvcSite& site, const SiteScene& building) {
     const StoreyedDocument& document = building.document;
     if (document.isRoomAlone())
         return writeProduct(options, *building.scenes.front(), *document.storeys.front().room,
@@ -226,7 +225,7 @@ void writeProducts(const EnvcOptions& options, const EnvcSite& site,
     }
     if (options.format->name == "glb") {
         OutputFile file(output);
-        writeBuildingGlb(building, [&file](std::string_view bytes) { file.write(bytes); });
+        writeSiteGlb(building, [&file](std::string_view bytes) { file.write(bytes); });
         return file.commit();
     }
     const std::string& input = options.inputs.front();
@@ -234,8 +233,8 @@ void writeProducts(const EnvcOptions& options, const EnvcSite& site,
     const PictureFormat picture = format == "svg"   ? PictureFormat::Svg
                                   : format == "pdf" ? PictureFormat::Pdf
                                                     : PictureFormat::Png;
-    writeAll(output, drawBuilding(building, picture, options.width,
-                                  isStream(input) ? "" : baseName(input)));
+    writeAll(output,
+             drawSite(building, picture, options.width, isStream(input) ? "" : baseName(input)));
 }
 
 }  // namespace
@@ -246,12 +245,11 @@ void writeSite(const EnvcOptions& options, const EnvcSite& site) {
         return writeAll(output, options.json ? roomsJson(site.found) : roomsText(site.found));
     if (options.format != nullptr && options.format->write_records != nullptr)
         return convert(options, site.document);
-    const BuildingScene& building =
-        *leftToExit(std::make_unique<const BuildingScene>(sceneOf(site.document)));
+    const SiteScene& building =
+        *leftToExit(std::make_unique<const SiteScene>(sceneOf(site.document)));
     if (!options.report.empty()) writeReport(options, site, building);
     if (options.info)
-        return writeAll(output,
-                        options.json ? buildingInfoJson(building) : buildingInfoText(building));
+        return writeAll(output, options.json ? siteInfoJson(building) : siteInfoText(building));
     if (options.format == nullptr) return;
     writeProducts(options, site, building);
     std::size_t records = 0;

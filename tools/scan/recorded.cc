@@ -191,7 +191,7 @@ class RecordedMoments {
 };
 
 SiteSensors recordedLasers(const ScanToolOptions& options, const SiteInput& input) {
-    SiteSensors lasers = sensorsOf(input.rooms(), input.ids(), options.select);
+    SiteSensors lasers = sensorsOf(input.rooms(), input.ids(), inOwnStorey(input, options.select));
     std::vector<Sensor> kept;
     std::size_t next = 0;
     for (SensorRoom& room : lasers.rooms) {

@@ -84,7 +84,7 @@ SceneRequest requestOf(const ScanToolOptions& options) {
 namespace {
 
 SiteSensors placedSensors(const ScanToolOptions& options, const SiteInput& input) {
-    SiteSensors found = sensorsOf(input.rooms(), input.ids(), options.select);
+    SiteSensors found = sensorsOf(input.rooms(), input.ids(), inOwnStorey(input, options.select));
     if (!found.sensors.read.empty()) return found;
     if (!options.select.empty())
         throw UsageError(
@@ -198,7 +198,7 @@ MovedSensor sensorForPoses(const ScanToolOptions& options, const SiteInput& site
                         sensorModelOf(record, devices),
                         {}});
     } else {
-        const KnownSensor only = onlySensor(site, options.select);
+        const KnownSensor only = onlySensor(site, inOwnStorey(site, options.select));
         const Scene& scene = *site.rooms()[only.room];
         read.push_back({only.id, sensorModelOf(scene.records[only.record], devices), {}});
         if (const Sensor* placed = placedSensor(scene, scene.ids[only.record])) {

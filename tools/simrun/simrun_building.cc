@@ -13,8 +13,8 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_files.h"
-#include "cli/building_operands.h"
 #include "cli/outputs.h"
+#include "cli/storey_operands.h"
 #include "passage/building_run.h"
 #include "passage/building_script.h"
 #include "record/text.h"
@@ -27,8 +27,7 @@ namespace ispace {
 namespace {
 
 /// Writes the building with its layout. Storeys keep sharing rooms.
-void writeBuilding(const BuildingScene& building, const History& history,
-                   const std::string& folder) {
+void writeBuilding(const SiteScene& building, const History& history, const std::string& folder) {
     StoreyedDocument whole = building.document;
     whole.history = history;
     std::map<const Scene*, std::shared_ptr<const Document>> rooms;
@@ -45,7 +44,7 @@ void writeBuilding(const BuildingScene& building, const History& history,
     writeAll(folder + '/' + kRecordedBuilding, writeBuildingYaml(whole));
 }
 
-BuildingRun runOf(const SimrunOptions& options, const BuildingScene& building) {
+BuildingRun runOf(const SimrunOptions& options, const SiteScene& building) {
     std::optional<RunInfo> recorded;
     if (!options.replay.empty()) recorded = recordedInfo(options.replay, building.document);
     return BuildingRun(building, {.step = recorded ? recordedTime(recorded->every) : options.step,

@@ -13,44 +13,44 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "base/run_files.h"
-#include "building/building_coverage.h"
-#include "building/building_page.h"
-#include "building/building_suggestions.h"
-#include "cli/building_operands.h"
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
+#include "cli/storey_operands.h"
 #include "report/suggestion_report.h"
 #include "scene/run/run_reader.h"
+#include "site/site_coverage.h"
+#include "site/site_page.h"
+#include "site/site_suggestions.h"
 
 namespace ispace {
 
 namespace {
 
 /// Measures the sight of robots and people in the record; empty if that of a room has none.
-std::optional<BuildingRunCoverage> recordedRun(const SimrunOptions& options,
-                                               const BuildingScene& building) {
+std::optional<SiteRunCoverage> recordedRun(const SimrunOptions& options,
+                                           const SiteScene& building) {
     if (building.isRoomAlone() && !RunReader(options.record).next()) return std::nullopt;
     std::vector<std::string> repeated;  // warnings that the run itself gave
-    return measureBuildingRun(building, options.record, {}, options.rules.max_work, repeated);
+    return measureSiteRun(building, options.record, {}, options.rules.max_work, repeated);
 }
 
 }  // namespace
 
 std::string reportFile(const SimrunOptions& options, const SiteInput& input, const RunJudge& judge,
                        const std::string& command) {
-    const BuildingScene& building = input.building;
+    const SiteScene& building = input.building;
     const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
-    const BuildingCoverage coverage = measureBuilding(building, {}, progress.get());
-    const std::optional<BuildingRunCoverage> run = recordedRun(options, building);
-    const BuildingParts parts = run ? partsOf(*run) : BuildingParts();
+    const SiteCoverage coverage = measureSite(building, {}, progress.get());
+    const std::optional<SiteRunCoverage> run = recordedRun(options, building);
+    const SiteParts parts = run ? partsOf(*run) : SiteParts();
     const std::string suffix = suffixOf(options.report);
-    if (suffix == "json") return buildingCoverageJson(building, coverage, parts);
-    BuildingPageInput page{building, coverage, "", command, {}, parts};
+    if (suffix == "json") return siteCoverageJson(building, coverage, parts);
+    SitePageInput page{building, coverage, "", command, {}, parts};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     for (const RunVerdict& verdict : judge.verdicts())
         page.requirements.push_back({verdict.expectation, verdict.is_met, verdict.reason});
     page.progress = progress.get();
-    const ReportPage pages = buildingPage(page);
+    const ReportPage pages = sitePage(page);
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }
 
@@ -65,15 +65,15 @@ struct RunSuggestion {
 
 /// Returns the share of the time of all movers for which a sensor saw them; empty if none was
 /// there.
-std::optional<double> seenShare(const SimrunOptions& options, const BuildingScene& building) {
-    const std::optional<BuildingRunCoverage> run = recordedRun(options, building);
+std::optional<double> seenShare(const SimrunOptions& options, const SiteScene& building) {
+    const std::optional<SiteRunCoverage> run = recordedRun(options, building);
     if (!run || run->sum.all.time_shares.empty()) return std::nullopt;
     return 1 - run->sum.all.time_shares.front();
 }
 
 /// Returns the additions, turns and shifts of suggestForStorey() that raise the share.
-std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options,
-                                         const BuildingScene& building, double before) {
+std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options, const SiteScene& building,
+                                         double before) {
     const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
     const auto whole = wholeScenes(building);
     std::vector<RunSuggestion> found;
@@ -100,7 +100,7 @@ std::vector<RunSuggestion> suggestForRun(const SimrunOptions& options,
 }  // namespace
 
 std::string suggestionsText(const SimrunOptions& options, const SiteInput& input) {
-    BuildingScene building = input.building;
+    SiteScene building = input.building;
     building.devices = shippedDevices();
     const std::optional<double> before = seenShare(options, building);
     if (!before) return "the run has no robots or people to see\n";

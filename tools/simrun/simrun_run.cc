@@ -73,7 +73,7 @@ SiteInput readInput(const SimrunOptions& options) {
         throw UsageError("--replay: " + options.replay +
                          " is the record of one room: choose its storey with --storey (" +
                          input.building.document.storeyList() + ')');
-    addZones(options.zones, input.building);
+    addZones(inOwnStorey(input, options.zones), input.building);
     warnOfImport(options.common, kTool, input);
     warn(options.common, kTool,
          siteWarnings(input, {.checks = {"unplaced", "outside", "buried", "paths"}}));

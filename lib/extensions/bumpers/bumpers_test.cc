@@ -209,7 +209,7 @@ TEST(BumperService, IsForBumpers) {
 TEST(BumperService, GoesToOtherStoreys) {
     for (const char* const of : {"ground/r", "r"}) {
         static_cast<void>(sceneOf(""));
-        BuildingScene building = testing::buildingOf(
+        SiteScene building = testing::buildingOf(
             std::string("robot id=ground/r at=6,4 accel=100 max_speed=3 mass=25\n"
                         "bumper id=ground/b stiffness=10000 of=") +
             of + '\n');

@@ -1134,12 +1134,12 @@ class House {
     }
 
   private:
-    static BuildingScene buildingOf(const std::string& layout) {
+    static SiteScene buildingOf(const std::string& layout) {
         static_cast<void>(sceneOf(""));
         return testing::buildingOf(layout);
     }
 
-    BuildingScene building_;
+    SiteScene building_;
     BuildingRun run_;
     std::deque<ServerState> states_;
     ServedRooms served_;
@@ -1185,7 +1185,7 @@ TEST(Postures, ThingsOfStoreysAreInHands) {
     ASSERT_NE(text.find(last), std::string::npos);
     text.insert(text.find(last) + last.size(),
                 ", {cube: {id: cup, at: [7, 4], size: [0.1], carried: ann}}");
-    const BuildingScene building =
+    const SiteScene building =
         testing::buildingOf("human id=ground/ann at=6,4\nhuman id=upper/ann at=6,4\n", text);
     const BuildingRun run(building, testing::optionsOf());
     for (const std::size_t storey : {0U, 1U})

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "site/arranged_site.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "site/site_coverage.h"
+
+namespace ispace {
+
+namespace {
+
+/// Returns the height up to which candidates see floor: of the highest site, and of the plane.
+double highestSite(const SiteScene& building, const ArrangeOptions& options) {
+    double highest = options.plane;
+    for (const double height : options.mount.heights) highest = std::max(highest, height);
+    if (!options.mount.heights.empty()) return highest;
+    for (const auto& scene : building.scenes)
+        highest = std::max(highest, scene->environment.height());
+    return highest;
+}
+
+}  // namespace
+
+BuildingSite::BuildingSite(const SiteScene& building, const ArrangeOptions& options,
+                           std::vector<RoomGoals> goals, std::vector<SitePassage> passages)
+    : building_(building),
+      plane_(options.plane),
+      highest_(highestSite(building_, options)),
+      coupling_(building_),
+      sight_(coupling_, options.plane) {
+    goals.resize(building_.scenes.size());
+    const auto floors = coupling_.floors(highest_);
+    for (std::size_t i = 0; i < floors.size(); ++i) {
+        const Storey& storey = building_.document.storeys[i];
+        const Point2 at = storey.building_from_storey.position;
+        site_.rooms.push_back({storey.id,
+                               floors[i],
+                               std::move(goals[i]),
+                               {at.x, at.y, storey.floor},
+                               storey.building_from_storey.heading,
+                               hasFloor(*floors[i])});
+    }
+    site_.sight = this;
+    site_.passages = std::move(passages);
+}
+
+namespace {
+
+/// A building with people in it, and the sight between its storeys.
+struct Crowded {
+    Crowded(SiteScene scene, double plane)
+        : building(std::move(scene)), coupling(building), sight(coupling, plane) {}
+    Crowded(const Crowded&) = delete;
+    Crowded& operator=(const Crowded&) = delete;
+
+    SiteScene building;
+    Coupling coupling;
+    StoreySight sight;
+};
+
+}  // namespace
+
+SiteCase BuildingSite::crowded(std::span<const Crowd> crowds) const {
+    SiteScene changed = building_;
+    for (std::size_t i = 0; i < crowds.size(); ++i)
+        if (!crowds[i].empty())
+            changed.scenes[i] =
+                std::make_shared<const Scene>(withCrowd(*building_.scenes[i], crowds[i]));
+    const auto all = std::make_shared<Crowded>(std::move(changed), plane_);
+    return {all->coupling.floors(highest_), std::shared_ptr<const RoomSight>(all, &all->sight)};
+}
+
+SiteFigures BuildingSite::measure(std::span<const std::vector<Sensor>> added,
+                                  const CoverageOptions& options) const {
+    SiteScene placed = building_;
+    for (std::size_t i = 0; i < placed.scenes.size(); ++i) {
+        if (added[i].empty()) continue;  // equal storeys share a scene
+        Scene scene = *building_.scenes[i];
+        scene.sensors.insert(scene.sensors.end(), added[i].begin(), added[i].end());
+        placed.scenes[i] = std::make_shared<const Scene>(std::move(scene));
+    }
+    const SiteCoverage coverage = measureSite(placed, options);
+    SiteFigures figures{coverage.coverage,
+                        coverage.total_effective_area,
+                        coverage.indoor_area,
+                        coverage.free_area,
+                        {}};
+    for (const Coverage& storey : coverage.storeys) figures.rooms.push_back(storey.report.coverage);
+    return figures;
+}
+
+Document buildingLayout(LayoutParts parts, const SiteScene& building, const Document* before,
+                        const std::vector<SensorGroup>& groups, const Arrangement& arrangement) {
+    parts.whole = [&building](std::size_t storey, Record record, const std::string& id) {
+        return inBuilding(building.document.storeys[storey], std::move(record), id);
+    };
+    return layoutDocument(parts, before, groups, arrangement);
+}
+
+}  // namespace ispace

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "site/site_robustness.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "coverage/localisation.h"
+#include "site/coupling.h"
+#include "site/site_presence.h"
+
+namespace ispace {
+namespace {
+
+SiteScene sceneOf(const std::string& text) {
+    return makeSiteScene(readBuilding(text, "house.yaml", {}), {}, {});
+}
+
+const std::string kRoom =
+    "[{ispace: {size: 6 x 5}}, {zone: {id: z, path: '-2,-2;0,-2;0,0;-2,0'}}, "
+    "{laser: {id: a, at: [-2.5, -2, 1], range: 4}}, {laser: {id: b, at: [2, 2, 1], heading: -120, "
+    "range: 3}}]";
+
+/// Two storeys with a shaft, through which a camera above sees the floor below.
+SiteScene house() {
+    return sceneOf(
+        "- storey: {id: g, height: 3, records: " + kRoom +
+        "}\n- storey: {id: u, z: 3, records: [{ispace: {size: 6 x 5}}, {camera: {id: c, at: [-1, "
+        "-1.8, 2], tilt: -70, fov: 90}}, {laser: {id: d, at: [2.5, -2, 1], heading: 120, range: "
+        "4}}]}\n"
+        "- shaft: {id: s, storeys: 'g,u', path: '-1.5,-1;1,-1;1,1;-1.5,1'}\n");
+}
+
+/// The building without some of its sensors, by whole id.
+SiteScene without(const SiteScene& building, const std::vector<std::string>& failing) {
+    SiteScene left = building;
+    for (std::size_t i = 0; i < left.scenes.size(); ++i) {
+        Scene scene = *building.scenes[i];
+        std::erase_if(scene.sensors, [&](const Sensor& sensor) {
+            const std::string id = wholeId(building.document.storeys[i], sensor.id);
+            return std::find(failing.begin(), failing.end(), id) != failing.end();
+        });
+        left.scenes[i] = std::make_shared<const Scene>(std::move(scene));
+    }
+    return left;
+}
+
+TEST(BuildingRobustness, FailuresAreTheWorstOfAllSets) {
+    const SiteScene building = house();
+    const SiteCoverage coverage = measureSite(building, {});
+    const std::vector<std::string> ids = {"g/a", "g/b", "u/c", "u/d"};
+    for (const int count : {1, 2}) {
+        double least = 1, least_zone = 1;
+        for (std::size_t i = 0; i < ids.size(); ++i)
+            for (std::size_t j = i; j < ids.size(); ++j) {
+                if ((count == 1) != (i == j)) continue;
+                const CoverageReport left =
+                    sumOfStoreys(measureSite(without(building, {ids[i], ids[j]}), {}));
+                least = std::min(least, left.coverage.exact.value());
+                least_zone = std::min(least_zone, left.zones.at(0).coverage.exact.value());
+            }
+        const std::vector<FigureLoss> losses = worstFailuresOfSite(coverage, count, {});
+        ASSERT_EQ(losses.size(), 3U);
+        EXPECT_TRUE(losses[0].is_exact);
+        EXPECT_NEAR(losses[0].planned, coverage.coverage.exact.value(), 1e-9);
+        EXPECT_NEAR(losses[0].worst, least, 1e-6) << count;
+        EXPECT_NEAR(losses[2].worst, least_zone, 1e-6) << count;
+        EXPECT_EQ(losses[2].figure.zone, "g/z");
+        // By its own account, too.
+        const CoverageReport left =
+            sumOfStoreys(measureSite(without(building, losses[0].sensors), {}));
+        EXPECT_NEAR(left.coverage.exact.value(), losses[0].worst, 1e-6);
+    }
+}
+
+TEST(BuildingRobustness, TheOnlyStoreySuffersAsItsRoom) {
+    const SiteScene building = sceneOf("- storey: {id: g, height: 3, records: " + kRoom + "}\n");
+    const Scene& room = *Coupling(building).floors()[0];
+    const SiteCoverage planned = measureSite(building, {});
+    Worlds worlds(room.environment);
+    const Coverage alone = measureCoverage(room, worlds, {});
+    SilentProgress silent;
+    const MountingTolerance tolerance{0.1, Angle::degrees(5)};
+    const auto values = [](const SampledFigures& sampled) {
+        std::vector<std::vector<double>> all;
+        for (const FigureSpread& figure : sampled.figures) all.push_back(figure.values);
+        return all;
+    };
+    const auto expect_equal = [&](const SampledFigures& one, const SampledFigures& other) {
+        const auto a = values(one), b = values(other);
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            ASSERT_EQ(a[i].size(), b[i].size());
+            for (std::size_t k = 0; k < a[i].size(); ++k) EXPECT_NEAR(a[i][k], b[i][k], 1e-9);
+        }
+    };
+    expect_equal(perturbSite(building, planned, {}, tolerance, 5, 7, {}, silent),
+                 perturbMounting(room, alone.report, {}, tolerance, 5, 7, {}, silent));
+    const CrowdFloor floor(room);
+    std::vector<Crowd> crowds;
+    std::vector<SiteCrowd> building_crowds;
+    for (std::uint64_t k = 0; k < 4; ++k) {
+        crowds.push_back(floor.draw(5, {.seed = 7, .frame = k}));
+        building_crowds.push_back({crowds.back()});
+    }
+    expect_equal(crowdSite(building, planned, {}, building_crowds, {}, silent),
+                 measureCrowds(room, alone.report, {}, crowds, {}, silent));
+    EXPECT_EQ(seedOfStorey(7, 0), 7U);
+    EXPECT_NE(seedOfStorey(7, 1), 7U);
+}
+
+TEST(BuildingRobustness, PeopleAreSpreadByFreeFloor) {
+    SiteCoverage coverage;
+    coverage.storeys.resize(3);
+    coverage.storeys[0].report.free_area = 50;
+    coverage.storeys[1].report.free_area = 25;
+    coverage.storeys[2].report.free_area = 25;
+    coverage.free_area = 100;
+    EXPECT_EQ(spreadOverStoreys(coverage, 8), (std::vector<std::size_t>{4, 2, 2}));
+    // Equal rests: the lowest first.
+    EXPECT_EQ(spreadOverStoreys(coverage, 5), (std::vector<std::size_t>{3, 1, 1}));
+    EXPECT_EQ(spreadOverStoreys(coverage, 0), (std::vector<std::size_t>{0, 0, 0}));
+    const SiteScene building =
+        sceneOf("- storey: {id: g, height: 3, records: " + kRoom +
+                "}\n- storey: {id: u, z: 3, records: [{ispace: {size: 3 x 2}}, {cube: {at: [0.9, "
+                "0.3], size: 1}}]}\n"
+                "- shaft: {id: s, storeys: 'g,u', path: '-1,-0.5;0.5,-0.5;0.5,0.5;-1,0.5'}\n");
+    EXPECT_EQ(spreadOverStoreys(building, 0, 30), spreadOverStoreys(measureSite(building, {}), 30));
+}
+
+TEST(SiteCoverage, SumsHaveEachSensorOnce) {
+    const SiteCoverage coverage = measureSite(house(), {});
+    const CoverageReport sum = sumOfStoreys(coverage);
+    ASSERT_EQ(sum.sensors.size(), 4U);
+    const auto camera = std::find_if(sum.sensors.begin(), sum.sensors.end(),
+                                     [](const SensorMetrics& one) { return one.id == "u/c"; });
+    ASSERT_NE(camera, sum.sensors.end());
+    double area = 0, marginal = 0, weighted = 0, farthest = 0;
+    std::size_t rooms = 0;
+    for (const Coverage& storey : coverage.storeys)
+        for (const SensorMetrics& one : storey.report.sensors) {
+            if (one.id != "u/c") continue;
+            ++rooms;
+            area += one.area.exact.value();
+            marginal += one.marginal.exact.value();
+            weighted += one.picture.value().mean_density.exact.value() * one.area.exact.value();
+            farthest = std::max(farthest, one.picture->farthest.value());
+        }
+    EXPECT_EQ(rooms, 2U) << "it sees the floor below";
+    EXPECT_NEAR(camera->area.exact.value(), area, 1e-9);
+    EXPECT_NEAR(camera->marginal.exact.value(), marginal, 1e-9);
+    EXPECT_NEAR(camera->picture.value().mean_density.exact.value(), weighted / area, 1e-9);
+    EXPECT_NEAR(camera->picture->farthest.value(), farthest, 1e-9);
+    ASSERT_TRUE(sum.redundancy_exact);
+    double all = 0, seen = 0;
+    for (std::size_t k = 0; k < sum.redundancy_exact->size(); ++k) {
+        all += (*sum.redundancy_exact)[k];
+        seen += k > 0 ? (*sum.redundancy_exact)[k] : 0;
+    }
+    EXPECT_NEAR(all, 1, 1e-6);
+    EXPECT_NEAR(seen, sum.coverage.exact.value(), 1e-6);
+    for (std::size_t i = 1; i < sum.unseen.size(); ++i)
+        EXPECT_LE(sum.unseen[i].area, sum.unseen[i - 1].area);
+    EXPECT_TRUE(std::all_of(sum.unseen.begin(), sum.unseen.end(), [](const UncoveredSpot& spot) {
+        return spot.room == "g" || spot.room == "u";
+    }));
+}
+
+TEST(BuildingRobustness, SumsAreSharesOfAllFloor) {
+    const SiteScene building = house();
+    SiteCoverage coverage = measureSite(building, {});
+    const CoverageReport sum = sumOfStoreys(coverage);
+    // A camera stands above alone: none of the floor below has its pixels, but for those through
+    // the shaft.
+    ASSERT_FALSE(sum.densities.indoor.empty());
+    const CoverageReport &ground = coverage.storeys[0].report, &upper = coverage.storeys[1].report;
+    const auto share = [](const CoverageReport& report) {
+        return report.densities.indoor.empty() ? 0.0 : *report.densities.indoor[0].grid;
+    };
+    EXPECT_NEAR(*sum.densities.indoor[0].grid * sum.indoor_area,
+                share(ground) * ground.indoor_area + share(upper) * upper.indoor_area, 1e-9);
+    // Beside itself nothing is gained or lost; beside fewer sensors something is gained.
+    const SiteCoverage same = coverage;
+    compareStoreys(coverage, same, "same");
+    EXPECT_NEAR(*coverage.comparison->gained.exact, 0, 1e-9);
+    const SiteCoverage fewer = measureSite(without(building, {"g/a"}), {});
+    compareStoreys(coverage, fewer, "fewer");
+    EXPECT_NEAR(*coverage.comparison->gained.exact,
+                (*coverage.coverage.exact - *fewer.coverage.exact) * coverage.indoor_area, 1e-6);
+}
+
+TEST(BuildingPresence, SumsAreOfAllWays) {
+    std::vector<Presence> storeys(2);
+    storeys[0] = {{{"ann", 10, 0.5, 3}}, {"", 10, 0.5, 3}, {{"g/p", 0.5, 0.25}}};
+    storeys[1] = {{{"ann", 30, 1, 0}, {"bob", 10, 0, 10}}, {"", 40, 0.75, 10}, {{"u/q", 1, 1}}};
+    const Presence sum = sumOverStoreys(storeys);
+    ASSERT_EQ(sum.people.size(), 2U);
+    EXPECT_DOUBLE_EQ(sum.people[0].length, 40);
+    EXPECT_DOUBLE_EQ(sum.people[0].share, 35.0 / 40);
+    EXPECT_DOUBLE_EQ(sum.all.share, 35.0 / 50);
+    EXPECT_DOUBLE_EQ(sum.all.longest_gap, 10);
+    EXPECT_DOUBLE_EQ(sum.sensors[0].share, 0.5 * 10 / 50);
+    EXPECT_DOUBLE_EQ(sum.sensors[1].marginal, 40.0 / 50);
+}
+
+TEST(LocalisedOver, CountsCellsByTheirArea) {
+    const SiteScene building = house();
+    const SiteCoverage coverage = measureSite(building, {});
+    std::vector<Localisation> rooms;
+    for (std::size_t i = 0; i < 2; ++i)
+        rooms.push_back(localise(*coverage.floors[i], coverage.storeys[i], 0.5));
+    const Localisation all = localisedOver(rooms, coverage.storeys);
+    const auto area = [&](std::size_t i) {
+        const Target& target = coverage.storeys[i].target;
+        return static_cast<double>(target.indoor.count()) * target.grid.cellArea();
+    };
+    EXPECT_NEAR(*all.localised * (area(0) + area(1)),
+                *rooms[0].localised * area(0) + *rooms[1].localised * area(1), 1e-9);
+    EXPECT_NEAR(*all.mean * (area(0) + area(1)),
+                *rooms[0].mean * area(0) + *rooms[1].mean * area(1), 1e-9);
+    EXPECT_GE(*all.share_within, std::min(*rooms[0].share_within, *rooms[1].share_within));
+}
+
+}  // namespace
+}  // namespace ispace
