@@ -77,7 +77,7 @@ std::vector<std::string> filesOf(const SceneInput& input);
 ///         FormatError, std::system_error as the readers do, and for a digest that differs
 SceneInput readScene(const SceneRequest& request);
 
-/// A room whose layout is compared with another one. Keeps references.
+/// A room with a layout that is compared with another one. Keeps references.
 struct LaidRoom {
     const Document& environment;
     const Scene& scene;

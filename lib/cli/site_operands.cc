@@ -142,6 +142,9 @@ OtherSite readOtherLayout(const SiteInput& input, const std::string& operand,
         laid.scenes = {std::make_shared<const Scene>(std::move(other.scene))};
         return {std::move(laid), std::move(other.files), std::move(other.warnings)};
     }
+    std::vector<std::string> operands = input.named;
+    operands.push_back(operand);
+    mustReadStdinOnce(operands);
     auto other = readBuildingInput({{input.environment_operand, operand}, rules, true});
     if (!other) throw UsageError("--compare: " + operand + " is no layout of a building");
     return {std::move(other->building), std::move(other->files), std::move(other->warnings)};

@@ -443,6 +443,11 @@ std::string storeyFile(std::string pattern, const std::string& id) {
     return pattern;
 }
 
+void mustBeOneFile(const std::string& option, std::string_view file) {
+    if (isStoreyPattern(file))
+        throw UsageError(option + ": it is one file, also of a building: leave out %s");
+}
+
 void mustBeOneProduct(const CommonOptions& options) {
     if (options.dependencies.wanted && isStoreyPattern(options.output))
         throw UsageError("-MD writes a rule for one product, and %s makes a file for each storey");

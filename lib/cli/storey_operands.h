@@ -85,6 +85,9 @@ bool isStoreyPattern(std::string_view output);
 /// \throws UsageError for -MD, whose rule is for one product, and a pattern
 void mustBeOneProduct(const CommonOptions& options);
 
+/// \throws UsageError for a file of all storeys with a mark in its name \param option that names it
+void mustBeOneFile(const std::string& option, std::string_view file);
+
 /// Returns the name with the id for each mark.
 std::string storeyFile(std::string pattern, const std::string& id);
 

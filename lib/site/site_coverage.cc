@@ -248,8 +248,9 @@ void addPicture(PictureMetrics& picture, const Metric& area, const PictureMetric
 std::vector<SensorMetrics> sensorsOfAll(const SiteCoverage& coverage) {
     std::vector<SensorMetrics> all;
     std::map<std::string, std::size_t> known;
+    // Views from outside follow those of a storey's own sensors.
     const auto is_here = [&](std::size_t storey, std::size_t i) {
-        return coverage.storeys[storey].sensors[i].index < coverage.floors[storey]->sensors.size();
+        return i < coverage.sensors[storey];
     };
     for (const bool home : {true, false})
         for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {

@@ -59,7 +59,7 @@ struct StoreyedDocument {
     /// Returns the digest of the rooms' environments and of all that joins them, of a room alone
     /// that of its environment.
     [[nodiscard]] std::string digest() const;
-    /// Returns true for a room alone: a site of one room, whose id is empty.
+    /// Returns true for a room alone: a site of one room with an empty id.
     [[nodiscard]] bool isRoomAlone() const {
         return storeys.size() == 1 && storeys.front().id.empty();
     }

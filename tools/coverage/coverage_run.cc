@@ -427,8 +427,8 @@ void writePanels(const CoverageToolOptions& options, const SiteInput& input,
     for (std::size_t i = 0; i < results.coverage.storeys.size(); ++i) {
         MapOptions map = mapOf(options, input, results, i);
         map.format = *options.format->picture;
-        panels.push_back(
-            coverageMap(*results.coverage.floors[i], results.coverage.storeys[i], map));
+        panels.push_back(coverageMap(*results.coverage.floors[i], results.coverage.storeys[i], map,
+                                     results.other ? &results.other->storeys[i] : nullptr));
     }
     Picture page = panelsOf(panels);
     page.describe(baseName(input.environment_operand),

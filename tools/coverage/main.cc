@@ -15,6 +15,7 @@
 #include "cli/outputs.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
+#include "cli/storey_operands.h"
 #include "coverage/coverage_options.h"
 #include "coverage/coverage_run.h"
 #include "report/coverage_formats.h"
@@ -172,6 +173,9 @@ void measureList(const CoverageToolOptions& options) {
 
 void coverage(const CoverageToolOptions& options) {
     limitThreads(options.common.threads);
+    mustBeOneFile("--report", options.report);
+    mustBeOneFile("--material", options.page.material);
+    mustBeOneFile("--junit", options.junit);
     claimOutputs(options.common);
     claimOutput(options.report, "--report");
     claimOutput(options.page.material, "--material");

@@ -142,7 +142,7 @@ void readRoom(const EnvcOptions& options, const std::vector<RawInput>& raw,
 
 /// Adds the records of a layout to the rooms of their storeys.
 void addLayout(const Document& layout, StoreyedDocument& building) {
-    // That of an only storey is the layout of a room, whose ids are plain.
+    // That of an only storey is the layout of a room, with plain ids.
     std::vector<Document> layouts = building.storeys.size() == 1
                                         ? std::vector{layoutOfStorey(layout, building, "")}
                                         : layoutsOf(layout, building);
@@ -160,8 +160,8 @@ void addLayout(const Document& layout, StoreyedDocument& building) {
     building.history.insert(building.history.end(), layout.history.begin(), layout.history.end());
 }
 
-/// Applies the edits of the command. \param operand of the building, to whose folder names of files
-/// are relative
+/// Applies the edits of the command. \param operand of the building; names of files are relative to
+/// its folder
 void applyEdits(const EnvcOptions& options, const std::string& operand, const ImportOptions& import,
                 StoreyedDocument& building) {
     std::vector<std::shared_ptr<const Document>> before;
@@ -289,11 +289,19 @@ EnvcSite readEnvcSite(const EnvcOptions& options) {
     const InputRequest request =
         requestOf(options, wants_rooms ? &site.found : nullptr, site.report);
     const std::vector<RawInput> raw = readRawInputs(request);
-    if (!readBuilding(options, raw, request, site)) readRoom(options, raw, request, site);
+    if (!readBuilding(options, raw, request, site)) {
+        // What was read of an only storey is read again as a room.
+        site.found = FoundRooms();
+        site.found.all_storeys = options.list_rooms;
+        site.report = {};
+        readRoom(options, raw, request, site);
+    }
     if (options.list_rooms && !site.found.any_plan)
         throw UsageError(
-            "--rooms list is about plans, maps and buildings, and no input is one; a mesh becomes "
-            "a plan with --slice-walls");
+            site.document.isRoomAlone()
+                ? "--rooms list is about plans, maps and buildings, and no input is one; a mesh "
+                  "becomes a plan with --slice-walls"
+                : "--rooms list: no storey of the building is a plan or map");
     return site;
 }
 

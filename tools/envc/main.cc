@@ -25,6 +25,8 @@ void envc(const EnvcOptions& options) {
         refuseTerminal(options.common.output, std::string(format->binary));
     limitThreads(options.common.threads);
     if (options.task) return options.task();
+    mustBeOneFile("--report", options.report);
+    if (options.list_rooms || options.info) mustBeOneFile("--output", options.common.output);
     claimOutputs(options.common);
     if (format != nullptr) claimOutput(besideOf(options), std::string(format->beside_role));
     claimOutput(options.report, "--report");
