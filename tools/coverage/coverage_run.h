@@ -16,7 +16,6 @@
 #include "report/objective_report.h"
 #include "report/suggestion_report.h"
 #include "site/site_coverage.h"
-#include "site/site_run_coverage.h"
 
 namespace ispace {
 

@@ -21,7 +21,6 @@
 #include "envc/envc_site.h"
 #include "passage/building_run.h"
 #include "passage/landing_check.h"
-#include "report/page/page.h"
 #include "report/page/room_page.h"
 #include "scene/findings/findings.h"
 #include "scene/findings/remedies.h"

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "arrange/suggestion.h"
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
@@ -16,7 +15,6 @@
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
 #include "cli/storey_operands.h"
-#include "report/suggestion_report.h"
 #include "scene/run/run_reader.h"
 #include "site/site_coverage.h"
 #include "site/site_page.h"
