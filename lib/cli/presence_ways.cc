@@ -121,8 +121,12 @@ std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const SiteScene& b
 
 std::vector<RoomWays> waysIn(const SiteInput& site, const std::string& option,
                              const WaysChoice& choice, std::uint64_t seed, double plane) {
-    if (site.isOneRoom()) return {{choice, seed}};
     if (!choice.record.empty()) mustBeRecordOf(site, option, choice.record);
+    if (site.isOneRoom()) {
+        WaysChoice own = choice;
+        own.record = recordFor(site, choice.record);
+        return {{own, seed}};
+    }
     return waysOfStoreys(
         choice, site.building,
         spreadOverStoreys(site.building, plane, static_cast<std::size_t>(choice.people)), seed);

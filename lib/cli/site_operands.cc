@@ -152,14 +152,34 @@ OtherSite readOtherLayout(const SiteInput& input, const std::string& operand,
 
 void mustBeRecordOf(const SiteInput& input, const std::string& option, const std::string& folder) {
     if (input.isOneRoom()) {
-        if (holdsBuilding(folder))
+        if (holdsBuilding(folder) && input.storey.empty())
             throw UsageError(option + ": " + folder +
-                             " is the record of a building: leave out --storey and ENV");
+                             " is the record of a building: leave out ENV, or give that of a "
+                             "storey, such as " +
+                             folder + "/STOREY");
     } else if (recordedBuilding(folder).empty()) {
+        mustHoldRecord(option, folder);
         throw UsageError(option + ": " + folder +
                          " is the record of one room: choose it with --storey (" +
                          input.building.document.storeyList() + ')');
     }
+}
+
+std::string recordFor(const SiteInput& input, const std::string& folder) {
+    return input.isOneRoom() && !input.storey.empty() && holdsBuilding(folder)
+               ? folder + '/' + input.storey
+               : folder;
+}
+
+SiteScene sceneForRecord(const SiteInput& input, const std::string& folder) {
+    SiteScene named = input.building;
+    if (!input.isOneRoom() || input.storey.empty() ||
+        !recordNamesStorey(recordFor(input, folder), input.storey))
+        return named;
+    Storey home = named.document.storeys.front();
+    home.id = input.storey;
+    named.scenes.front() = sceneWithWholeIds(named.scenes.front(), home, named.devices);
+    return named;
 }
 
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SiteInput& input) {

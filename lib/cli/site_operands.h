@@ -99,9 +99,17 @@ struct OtherSite {
 OtherSite readOtherLayout(const SiteInput& input, const std::string& operand,
                           const SceneRules& rules);
 
-/// \throws UsageError unless the folder holds the record of a run of the site: of a room for one
-/// room, of a building for several; as recordedBuilding() \param option for messages
+/// \throws UsageError unless the folder holds the record of a run of the site: of a room or, for a
+/// storey read alone, of its building; of a building for several; as recordedBuilding() \param
+/// option for messages
 void mustBeRecordOf(const SiteInput& input, const std::string& option, const std::string& folder);
+
+/// Returns the folder of the site's record: of a storey that is read alone, its part of that of the
+/// building. \pre mustBeRecordOf()
+std::string recordFor(const SiteInput& input, const std::string& folder);
+/// Returns the site with the ids of its record: of a storey in that of its building, movers and the
+/// sensors on them have the storey before their ids. \throws as RunReader
+SiteScene sceneForRecord(const SiteInput& input, const std::string& folder);
 
 /// Prints the warnings and choices of importers, as warnOfImport() of a room.
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SiteInput& input);

@@ -97,6 +97,20 @@ std::string recordedBuilding(const std::string& folder) {
     return holdsBuilding(folder) ? fileOfRecord(folder, kRecordedBuilding) : "";
 }
 
+void mustHoldRecord(const std::string& option, const std::string& folder) {
+    checkRecordFolder(folder);
+    if (!holdsBuilding(folder) && !std::filesystem::exists(RecordedFiles(folder).robots))
+        throw UsageError(option + ": " + folder + " holds no record of a run");
+}
+
+bool recordNamesStorey(const std::string& folder, const std::string& storey) {
+    RunReader run(folder);
+    if (!run.next()) return false;
+    return std::any_of(
+        run.members().begin(), run.members().end(),
+        [prefix = storey + '/'](const RunMember& one) { return one.id.starts_with(prefix); });
+}
+
 std::string recordOfStorey(const std::string& folder, const Storey& storey) {
     return storey.id.empty() ? folder : folder + '/' + storey.id;
 }

@@ -56,6 +56,13 @@ bool holdsBuilding(const std::string& folder);
 /// \throws as checkRecordFolder() and fileOfRecord()
 std::string recordedBuilding(const std::string& folder);
 
+/// \throws UsageError unless the folder holds the record of a run; as checkRecordFolder() \param
+/// option for messages
+void mustHoldRecord(const std::string& option, const std::string& folder);
+/// Returns true for the record of a storey as part of that of a building: its first moment has
+/// movers with the storey before their ids. \throws as RunReader
+bool recordNamesStorey(const std::string& folder, const std::string& storey);
+
 /// Returns the folder of a storey's record; of a room alone that of the record.
 std::string recordOfStorey(const std::string& folder, const Storey& storey);
 

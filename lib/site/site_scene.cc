@@ -112,13 +112,18 @@ Record inBuilding(const Storey& storey, Record record, const std::string& id) {
 
 std::shared_ptr<const Scene> sceneWithWholeIds(const SiteScene& building, std::size_t storey) {
     const std::shared_ptr<const Scene>& scene = building.scenes[storey];
-    if (building.isRoomAlone() || (scene->robots.empty() && scene->people.empty())) return scene;
+    if (building.isRoomAlone()) return scene;
+    return sceneWithWholeIds(scene, building.document.storeys[storey], building.devices);
+}
+
+std::shared_ptr<const Scene> sceneWithWholeIds(const std::shared_ptr<const Scene>& scene,
+                                               const Storey& home, const DeviceCatalogue& devices) {
+    if (scene->robots.empty() && scene->people.empty()) return scene;
     std::set<std::string_view> movers;
     for (std::size_t i = 0; i < scene->records.size(); ++i)
         if (isMoverRecord(scene->records[i])) movers.insert(scene->ids[i]);
     std::vector<Record> records = scene->records;
     for (std::size_t i = 0; i < records.size(); ++i) {
-        const Storey& home = building.document.storeys[storey];
         const bool is_carried = records[i].schema().type == RecordType::Placement &&
                                 movers.contains(carrierOf(records[i]));
         if (isMoverRecord(records[i]) || is_carried)
@@ -127,7 +132,7 @@ std::shared_ptr<const Scene> sceneWithWholeIds(const SiteScene& building, std::s
         else if (const std::string person = personWith(records[i]); movers.contains(person))
             records[i].set(carriedKey(), wholeId(home, person));
     }
-    return std::make_shared<const Scene>(makeScene(std::move(records), *scene, building.devices));
+    return std::make_shared<const Scene>(makeScene(std::move(records), *scene, devices));
 }
 
 SiteScene makeSiteScene(StoreyedDocument document, const std::vector<Document>& layouts,

@@ -57,6 +57,9 @@ Record inBuilding(const Storey& storey, Record record, const std::string& id);
 /// Returns the scene of a storey with the ids of movers, and of the sensors on them, across the
 /// building, as in the run of a building.
 std::shared_ptr<const Scene> sceneWithWholeIds(const SiteScene& building, std::size_t storey);
+/// The same for the scene of a storey that is read alone.
+std::shared_ptr<const Scene> sceneWithWholeIds(const std::shared_ptr<const Scene>& scene,
+                                               const Storey& home, const DeviceCatalogue& devices);
 
 /// Builds the scenes. \param layouts by storey; empty: none \throws FormatError as makeScene()
 SiteScene makeSiteScene(StoreyedDocument document, const std::vector<Document>& layouts,

@@ -255,11 +255,12 @@ void measureObjectives(const CoverageToolOptions& options, const SiteInput& inpu
 void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
                    std::vector<std::string>& files, SiteResults& results) {
     if (!options.run.empty()) {
+        const std::string folder = recordFor(input, options.run);
         for (const Storey& storey : input.building.document.storeys)
-            files.push_back(RecordedFiles(recordOfStorey(options.run, storey)).robots);
+            files.push_back(RecordedFiles(recordOfStorey(folder, storey)).robots);
         std::vector<std::string> warnings;
         results.run =
-            measureSiteRun(input.building, options.run,
+            measureSiteRun(sceneForRecord(input, folder), folder,
                            {.plane = options.measure.plane, .density = options.measure.density},
                            options.rules.max_work, warnings);
         for (const std::string& warning : warnings) warn(options.common, "coverage", warning);
@@ -305,8 +306,9 @@ std::vector<SiteCrowd> crowdsOf(const CoverageToolOptions& options, const SiteIn
         case Robustness::CrowdOf::Run:
             // The storeys of a record have the same moments.
             for (std::size_t i = 0; i < rooms; ++i) {
-                const std::vector<Crowd> own = crowdsOfRun(
-                    recordOfStorey(options.run, storeyOf(input, i)), *input.rooms()[i], kSamples);
+                const std::vector<Crowd> own =
+                    crowdsOfRun(recordOfStorey(recordFor(input, options.run), storeyOf(input, i)),
+                                *input.rooms()[i], kSamples);
                 crowds.resize(i == 0 ? own.size() : std::min(crowds.size(), own.size()),
                               SiteCrowd(rooms));
                 for (std::size_t k = 0; k < crowds.size(); ++k) crowds[k][i] = own[k];

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +14,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/glob.h"
+#include "base/message.h"
 #include "base/number.h"
 #include "base/zstd_text.h"
 #include "cli/outputs.h"
@@ -28,7 +32,10 @@ namespace {
 /// sorted by their last beams.
 class RecordedOdometry {
   public:
-    RecordedOdometry(const std::string& folder, const Sensors& lasers) : run_(folder) {
+    /// \param id_of returns the id across the site of a mover in the record
+    RecordedOdometry(const std::string& folder, const Sensors& lasers,
+                     std::function<std::string(const std::string&)> id_of)
+        : run_(folder), id_of_(std::move(id_of)) {
         if (const auto info = recordedInfo(folder); info && info->every > info->step)
             thinned_ = info->every;
         has_next_ = run_.next();
@@ -43,7 +50,7 @@ class RecordedOdometry {
         bool is_true = true;  ///< in the room; false: by odometry
     };
     /// Returns the pose by odometry, or the true one if that was not recorded; nullopt before the
-    /// record begins. \param robot its id in the record \throws FormatError if the record is
+    /// record begins. \param robot its id across the site \throws FormatError if the record is
     /// thinned and lacks this time
     std::optional<Pose> poseOf(const std::string& robot, double time) {
         constexpr double kRounding = 1e-9;
@@ -51,9 +58,9 @@ class RecordedOdometry {
             Moment& moment = latest_.emplace_back();
             moment.time = run_.time();
             for (const RunState& state : run_.states()) {
-                const std::string& id = run_.members()[state.member].id;
-                moment.poses.emplace_back(id, state.odometry ? Pose{state.odometry->pose, false}
-                                                             : Pose{state.pose, true});
+                moment.poses.emplace_back(
+                    id_of_(run_.members()[state.member].id),
+                    state.odometry ? Pose{state.odometry->pose, false} : Pose{state.pose, true});
             }
             while (latest_.size() > 1 && latest_[1].time <= moment.time - kept_)
                 latest_.pop_front();
@@ -81,6 +88,7 @@ class RecordedOdometry {
     };
 
     RunReader run_;
+    std::function<std::string(const std::string&)> id_of_;
     std::deque<Moment> latest_;
     double kept_ = 0;                // seconds before the newest
     std::optional<double> thinned_;  // seconds between moments, if that is more than a step
@@ -92,6 +100,7 @@ class RecordedSite {
   public:
     RecordedSite(const std::string& folder, const SiteInput& input)
         : folder_(folder), input_(&input), is_whole_(holdsBuilding(folder)) {
+        mustHoldRecord("--run", folder);
         if (!is_whole_ && !input.isOneRoom())
             throw UsageError("--run: " + folder +
                              " is the record of one room: choose its storey with --storey (" +
@@ -102,23 +111,44 @@ class RecordedSite {
         return folder_ + '/' +
                (input_->isOneRoom() ? input_->storey : input_->building.document.storeys[room].id);
     }
-    /// Returns the id across the site of a thing in the record of a room. In that of a building
-    /// movers, and sensors on them, have the storey of their start before their ids.
+    /// Returns the id across the site of a thing in the record of a room. In that of a building,
+    /// and in its part, movers and sensors on them have the storey of their start before their ids.
     [[nodiscard]] std::string siteId(std::size_t room, const std::string& recorded) const {
-        if (!is_whole_) return recorded;
-        if (!input_->isOneRoom())
-            return recorded.find('/') == std::string::npos ? input_->idOf(room, recorded)
-                                                           : recorded;
-        const std::string prefix = input_->storey + '/';
-        return recorded.starts_with(prefix) ? recorded.substr(prefix.size()) : recorded;
+        if (input_->isOneRoom()) {
+            const std::string prefix = input_->storey + '/';
+            return recorded.starts_with(prefix) ? recorded.substr(prefix.size()) : recorded;
+        }
+        return recorded.find('/') == std::string::npos ? input_->idOf(room, recorded) : recorded;
     }
-    /// Returns the id of a mover of a room in the records of all rooms.
-    [[nodiscard]] std::string recordedId(std::size_t room, const std::string& mover) const {
-        if (!is_whole_) return mover;
-        return input_->isOneRoom() ? input_->storey + '/' + mover : input_->idOf(room, mover);
+    /// Checks the movers at the start. \throws FormatError for one that the site does not have
+    void checkStart() const {
+        for (std::size_t room = 0; room < input_->rooms().size(); ++room) {
+            RunReader run(folder(room));
+            if (!run.next()) continue;
+            for (const RunState& state : run.states()) {
+                const std::string& id = run.members()[state.member].id;
+                if (!isOfSite(siteId(room, id)))
+                    throw FormatError({run.name(), 0, 0,
+                                       "the scene has no robot or person " + excerpt(id) +
+                                           ": it is not that of the record"});
+            }
+        }
     }
 
   private:
+    [[nodiscard]] bool isOfSite(const std::string& mover) const {
+        // A guest from another storey.
+        if (is_whole_ && input_->isOneRoom() && mover.find('/') != std::string::npos) return true;
+        for (std::size_t room = 0; room < input_->rooms().size(); ++room) {
+            const auto is_it = [&](const auto& one) { return input_->idOf(room, one.id) == mover; };
+            const Scene& scene = *input_->rooms()[room];
+            if (std::any_of(scene.robots.begin(), scene.robots.end(), is_it) ||
+                std::any_of(scene.people.begin(), scene.people.end(), is_it))
+                return true;
+        }
+        return false;
+    }
+
     std::string folder_;
     const SiteInput* input_;
     bool is_whole_;  // of a building
@@ -140,7 +170,7 @@ std::vector<RunMember> membersOf(const RecordedSite& record, const SiteInput& in
     for (std::size_t room = 0; room < input.rooms().size(); ++room)
         for (const PlacedRobot& robot : input.rooms()[room]->robots)
             for (RunMember& member : members)
-                if (member.id == record.recordedId(room, robot.id))
+                if (record.siteId(room, member.id) == input.idOf(room, robot.id))
                     member.alphas = alphasOf(robot.model.noise);
     return members;
 }
@@ -208,17 +238,6 @@ SiteSensors recordedLasers(const ScanToolOptions& options, const SiteInput& inpu
     return lasers;
 }
 
-/// A record holds its own site.
-SiteInput siteOf(const ScanToolOptions& options) {
-    std::vector<std::string> operands = options.operands;
-    if (operands.empty()) {
-        const std::string building = recordedBuilding(options.view.run);
-        operands.push_back(building.empty() ? fileOfRecord(options.view.run, "scene.env")
-                                            : building);
-    }
-    return readSite({operands, options.rules, false, {}});
-}
-
 /// Reads the recorded scans of a site, and writes them.
 class RecordedReadings {
   public:
@@ -241,16 +260,21 @@ class RecordedReadings {
         const std::string folder = record_.folder(room), name = RecordedFiles(folder).scans;
         const auto file = std::make_shared<TextFile>(name, InputKind::Regular);
         RecordedScans scans([file](std::string& bytes) { return file->read(bytes); }, name);
-        RecordedOdometry odometry(folder, lasers_);
+        RecordedOdometry odometry(folder, lasers_, [this, room](const std::string& id) {
+            return record_.siteId(room, id);
+        });
         std::optional<RecordedMoments> moments;
         if (!members_.empty())
             moments.emplace(folder, room, members_, format_, stream_, moment_count_);
         std::int64_t count = 0;
         while (const auto found = scans.next()) {
+            const std::string id = record_.siteId(room, found->sensor);
             const auto laser = std::find_if(lasers_.read.begin(), lasers_.read.end(),
-                                            [id = record_.siteId(room, found->sensor)](
-                                                const Sensor& sensor) { return sensor.id == id; });
-            if (laser == lasers_.read.end()) continue;
+                                            [&](const Sensor& sensor) { return sensor.id == id; });
+            if (laser == lasers_.read.end()) {
+                if (isWanted(id)) ++unknown_[{name, found->sensor}];
+                continue;
+            }
             if (found->ranges.size() != static_cast<std::size_t>(laser->as<Laser>().beams))
                 throw FormatError({name, 0, 0,
                                    "a scan of " + laser->id + " with " +
@@ -266,7 +290,7 @@ class RecordedReadings {
                       .ranges = found->ranges};
             if (options_.format == "carmen" && laser->mount) {
                 const std::string& robot = input_.rooms()[home]->robots[laser->mount->robot].id;
-                if (const auto at = odometry.poseOf(record_.recordedId(home, robot), scan.time)) {
+                if (const auto at = odometry.poseOf(input_.idOf(home, robot), scan.time)) {
                     scan.pose = mountedPose(at->pose, laser->mount->robot_from_sensor);
                     if (at->is_true) scan.pose = inRoom(room, home, scan.pose);
                 }
@@ -281,7 +305,35 @@ class RecordedReadings {
         return count;
     }
 
+    /// Returns a warning of the scans left out, for each sensor that the site does not have.
+    /// \param written scans \throws FormatError if these are all
+    [[nodiscard]] std::vector<Diagnostic> leftOut(std::int64_t written) const {
+        std::vector<Diagnostic> found;
+        found.reserve(unknown_.size());
+        if (const auto first = unknown_.begin(); written == 0 && first != unknown_.end())
+            throw FormatError({first->first.first, 0, 0,
+                               "the scene has no laser " + excerpt(first->first.second) +
+                                   ": it is not that of the record"});
+        for (const auto& [sensor, count] : unknown_)
+            found.push_back({.file = sensor.first,
+                             .message = std::to_string(count) + " scans of " +
+                                        excerpt(sensor.second) +
+                                        " are left out: the scene has no such laser",
+                             .severity = Severity::Warning});
+        return found;
+    }
+
   private:
+    /// Returns true for a sensor that the site does not have, unless --select leaves it out.
+    [[nodiscard]] bool isWanted(const std::string& sensor) const {
+        for (std::size_t room = 0; room < input_.rooms().size(); ++room)
+            for (const Sensor& known : input_.rooms()[room]->sensors)
+                if (input_.idOf(room, known.id) == sensor) return false;
+        const std::vector<std::string> globs = inOwnStorey(input_, options_.select);
+        return globs.empty() || std::any_of(globs.begin(), globs.end(), [&](const auto& glob) {
+                   return Glob(glob).matches(sensor);
+               });
+    }
     /// Converts a pose of a room to the frame of another, where the sensor was at the start.
     [[nodiscard]] Pose3 inRoom(std::size_t from, std::size_t to, const Pose3& pose) const {
         if (from == to) return pose;
@@ -298,9 +350,21 @@ class RecordedReadings {
     std::span<const RunMember> members_;
     ReadingStream& stream_;
     std::uint32_t moment_count_ = 0;
+    std::map<std::pair<std::string, std::string>, std::int64_t> unknown_;  // scans, by file and id
 };
 
 }  // namespace
+
+SiteInput siteOf(const ScanToolOptions& options) {
+    std::vector<std::string> operands = options.operands;
+    if (operands.empty() && !options.view.run.empty()) {
+        mustHoldRecord("--run", options.view.run);
+        const std::string building = recordedBuilding(options.view.run);
+        operands.push_back(building.empty() ? fileOfRecord(options.view.run, "scene.env")
+                                            : building);
+    }
+    return readSite({operands, options.rules, false, {}});
+}
 
 void writeRecorded(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
@@ -308,6 +372,7 @@ void writeRecorded(const ScanCommand& command) {
     const SiteInput input = siteOf(options);
     warnOfImport(options.common, "scan", input);
     const RecordedSite record(options.view.run, input);
+    record.checkStart();
     SiteSensors lasers = recordedLasers(options, input);
     shareFrame(options, SeenSite(input), lasers.rooms);
     FormatOptions how = formatOptions(command, input, lasers.rooms);
@@ -334,6 +399,7 @@ void writeRecorded(const ScanCommand& command) {
         files.push_back(RecordedFiles(record.folder(room)).scans);
         if (wants_moments) files.push_back(RecordedFiles(record.folder(room)).robots);
     }
+    warn(options.common, "scan", readings.leftOut(count));
     stream->finish();
     output.commit();
     writeDependencies(options.common, files);

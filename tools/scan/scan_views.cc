@@ -123,6 +123,16 @@ struct RecordedMoment {
     std::vector<std::vector<Point2>> ways = {};
 };
 
+/// Reads a view; errors begin with its room. \param prefix as SiteInput::prefix()
+template <class Read>
+auto ofRoom(const std::string& prefix, const Read& read) {
+    try {
+        return read();
+    } catch (const UsageError& error) {
+        throw UsageError(prefix + error.what());
+    }
+}
+
 /// Draws the views of a site.
 class SiteViews {
   public:
@@ -146,7 +156,9 @@ class SiteViews {
         std::vector<std::string> found;
         for (const RoomView& one : views_) {
             if (!one.room) continue;
-            const std::string phrase = standpointWarning(one.view, *input_.rooms()[*one.room]);
+            const std::string phrase = ofRoom(input_.prefix(*one.room), [&] {
+                return standpointWarning(one.view, *input_.rooms()[*one.room]);
+            });
             if (!phrase.empty()) found.push_back(input_.prefix(*one.room) + phrase);
         }
         return found;
@@ -159,16 +171,18 @@ class SiteViews {
         for (const RoomView& one : views_) {
             const Scene& scene =
                 one.room ? roomFor(*one.room, isWithinRoom(one.view)) : *input_.rooms()[0];
-            jobs.push_back({one.view.name, labelFor(one),
-                            pictureSizeOf(one.view, scene, options_.picture_size),
-                            [&, this](PictureSize size, const auto& on_progress) {
-                                if (!one.room) return drawWhole(one.view, size, on_progress);
-                                ViewOptions own = drawingOf(*one.room);
-                                own.swings = moment.swings;
-                                own.ways = moment.ways;
-                                own.on_progress = on_progress;
-                                return viewPicture(scene, one.view, size, own);
-                            }});
+            jobs.push_back(
+                {one.view.name, labelFor(one),
+                 ofRoom(one.room ? input_.prefix(*one.room) : "",
+                        [&] { return pictureSizeOf(one.view, scene, options_.picture_size); }),
+                 [&, this](PictureSize size, const auto& on_progress) {
+                     if (!one.room) return drawWhole(one.view, size, on_progress);
+                     ViewOptions own = drawingOf(*one.room);
+                     own.swings = moment.swings;
+                     own.ways = moment.ways;
+                     own.on_progress = on_progress;
+                     return viewPicture(scene, one.view, size, own);
+                 }});
         }
         return jobs;
     }
@@ -377,9 +391,10 @@ void mustHaveHighlighted(const ScanToolOptions& options, const SiteInput& input)
 /// The record of --run, and its room at a time.
 class RecordedRoom {
   public:
-    RecordedRoom(const ScanToolOptions& options, const Scene& start)
-        : record_(RunReader(options.view.run)),
-          changes_(changesOfRun(options.view.run, start, options.rules.max_work)),
+    RecordedRoom(const std::string& folder, const Scene& start,
+                 std::optional<std::uint64_t> max_work)
+        : record_(RunReader(folder)),
+          changes_(changesOfRun(folder, start, max_work)),
           scene_(start) {
         record_.checkStart(start);
     }
@@ -402,19 +417,39 @@ class RecordedRoom {
     Scene scene_;
 };
 
+/// Gives a storey, and what is named in it, the ids of the record of its building.
+void nameAsRecorded(ScanToolOptions& options, SiteInput& input) {
+    input.building = sceneForRecord(input, options.view.run);
+    if (input.storey.empty()) return;
+    const std::vector<std::string>& ids = input.only().ids;
+    const auto rename = [&](std::string& id) {
+        const std::string whole = input.storey + '/' + id;
+        if (std::find(ids.begin(), ids.end(), whole) != ids.end()) id = whole;
+    };
+    for (ViewSpec& view : options.view.views) rename(view.id);
+    for (std::string& id : options.view.drawing.highlight) rename(id);
+}
+
 }  // namespace
 
 void takeViews(const ScanCommand& command) {
-    const ScanToolOptions& options = command.options();
-    SiteInput input = readSite({options.operands, options.rules, false, {}});
-    if (!options.view.run.empty()) mustBeOneRoom(input, "--run");
+    ScanToolOptions options = command.options();
+    SiteInput input = siteOf(options);
+    const bool is_recorded = !options.view.run.empty();
+    if (is_recorded) {
+        mustBeOneRoom(input, "--run");
+        mustHoldRecord("--run", options.view.run);
+        mustBeRecordOf(input, "--run", options.view.run);
+        nameAsRecorded(options, input);
+    }
     warnOfImport(options.common, "scan", input);
     mustHaveHighlighted(options, input);
     std::vector<std::string> files = input.files;
     std::optional<RecordedRoom> run;
-    if (!options.view.run.empty()) {
-        run.emplace(options, input.only());
-        files.push_back(RecordedFiles(options.view.run).robots);
+    if (is_recorded) {
+        const std::string folder = recordFor(input, options.view.run);
+        run.emplace(folder, input.only(), options.rules.max_work);
+        files.push_back(RecordedFiles(folder).robots);
     }
     const int frames = options.frames.value_or(1);
     auto views = std::make_unique<SiteViews>(options, input);

@@ -78,9 +78,7 @@ class BuildingRunSite final : public RunSite {
         forward(run_, options.from);
         claimRecords();
         if (options.script.empty()) return;
-        const bool is_stdin = options.script == "-";
-        script_.emplace(is_stdin ? readStdin() : readAll(options.script),
-                        is_stdin ? displayName("-") : options.script, run_);
+        script_.emplace(scriptText(options, input), displayName(options.script), run_);
         run_.simulation().beforeStep([this] { script_->give(run_); });
     }
 

@@ -69,6 +69,7 @@ SiteInput readInput(const SimrunOptions& options) {
     }
     SiteInput input = readSite({operands, options.rules, false});
     if (!building.empty() && input.isOneRoom()) refuseWholeRecord(options.replay);
+    if (!options.replay.empty()) mustHoldRecord("--replay", options.replay);
     if (!options.replay.empty() && building.empty() && !input.isOneRoom())
         throw UsageError("--replay: " + options.replay +
                          " is the record of one room: choose its storey with --storey (" +
@@ -112,11 +113,7 @@ struct Script {
 };
 Script scriptOf(const SimrunOptions& options, const SiteInput& input, const World& world) {
     if (options.script.empty()) return {};
-    const bool is_stdin = options.script == "-";
-    if (is_stdin && (input.environment_operand == "-" || input.layout_operand == "-"))
-        throw UsageError("stdin cannot be read twice: give the script or the scene as a file");
-    const std::string text = is_stdin ? readStdin() : readAll(options.script);
-    const std::string file = displayName(options.script);
+    const std::string text = scriptText(options, input), file = displayName(options.script);
     return {readScript(text, file, world), readDayPlan(text, file, world)};
 }
 
@@ -174,6 +171,13 @@ class RoomRunSite final : public RunSite {
 };
 
 }  // namespace
+
+std::string scriptText(const SimrunOptions& options, const SiteInput& input) {
+    if (options.script != "-") return readAll(options.script);
+    if (input.environment_operand == "-" || input.layout_operand == "-")
+        throw UsageError("stdin cannot be read twice: give the script or the scene as a file");
+    return readStdin();
+}
 
 RunSite::RunSite(const SimrunCommand& command, SiteInput the_input)
     : options(command.options()), title(titleOf(options, the_input)), input(std::move(the_input)) {

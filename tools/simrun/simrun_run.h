@@ -44,6 +44,9 @@ inline std::string folderOf(const std::string& record, const JoinedRoom& room) {
     return room.id.empty() ? record : record + '/' + room.id;
 }
 
+/// Reads the file of --script. \throws UsageError if that is stdin and the scene was read from it
+std::string scriptText(const SimrunOptions& options, const SiteInput& input);
+
 /// Reads a site, or its record, and warns of it. \throws as the readers do
 std::unique_ptr<RunSite> openSite(const SimrunCommand& command);
 
