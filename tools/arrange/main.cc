@@ -21,6 +21,7 @@
 #include "record/text.h"
 #include "report/curve_chart.h"
 #include "report/trace_file.h"
+#include "site/arranged_site.h"
 #include "tools.h"
 
 namespace {

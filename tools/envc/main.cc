@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/message.h"
 #include "base/parallel.h"
+#include "base/run_files.h"
 #include "cli/job_server.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
