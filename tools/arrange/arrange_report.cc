@@ -80,8 +80,8 @@ PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
     return section;
 }
 
-/// Returns the building with sensors that were placed.
-SiteScene placedBuilding(const ArrangeWork& work, const std::vector<Placement>& sensors) {
+/// Returns the room or building with sensors that were placed.
+SiteScene placedSite(const ArrangeWork& work, const std::vector<Placement>& sensors) {
     SiteScene placed = work.input.building;
     for (std::size_t i = 0; i < placed.scenes.size(); ++i)
         placed.scenes[i] =
@@ -94,7 +94,7 @@ SiteScene placedBuilding(const ArrangeWork& work, const std::vector<Placement>& 
 void writeStoreyHeat(const ArrangeWork& work, const GainMap& gains,
                      const std::vector<std::string>& files, MapOptions map, std::uint32_t& scale) {
     const SiteCoverage coverage =
-        measureSite(placedBuilding(work, gains.before),
+        measureSite(placedSite(work, gains.before),
                     {.plane = work.how.plane, .density = work.how.pixel_density});
     scale = std::max(scale, redundancyScale(coverage));
     map.redundancy_scale = scale;
@@ -158,25 +158,27 @@ void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
 
 namespace {
 
-/// Returns the building with the layout that was found.
-SiteScene placedBuilding(const ArrangeWork& work, const Arrangement& arrangement) {
-    return placedBuilding(work, arrangement.sensors);
-}
-
 CoverageOptions measuredAs(const ArrangeOptions& how) {
     return {.plane = how.plane, .density = how.pixel_density};
 }
 
-/// Judges the faces in each storey.
-std::vector<FacingResult> facingOf(const ArrangeWork& work, const SiteCoverage& coverage) {
-    std::vector<FacingResult> all;
-    for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
-        for (FacingResult& result :
-             measureFacing(*coverage.floors[i], coverage.storeys[i], work.goals[i].facing)) {
-            result.rule.zone.insert(0, work.input.building.document.storeys[i].id + '/');
-            all.push_back(std::move(result));
+/// Returns the results of --facing and --privacy by storey, as measureSiteRules(); empty without
+/// these.
+std::vector<CameraRules> rulesByStorey(const ArrangeWork& work, const Arrangement& arrangement,
+                                       const SiteCoverage& coverage) {
+    if (work.how.facing.empty() && work.how.privacy.empty()) return {};
+    std::vector<CameraRules> rules(coverage.storeys.size());
+    for (std::size_t i = 0; i < rules.size(); ++i) {
+        rules[i].facing =
+            measureFacing(*coverage.floors[i], coverage.storeys[i], work.goals[i].facing);
+        const std::string before = wholeId(work.input.building.document.storeys[i], "");
+        for (PrivacyResult result : arrangement.privacy) {
+            if (!result.zone.starts_with(before)) continue;
+            result.zone.erase(0, before.size());
+            rules[i].privacy.push_back(std::move(result));
         }
-    return all;
+    }
+    return rules;
 }
 
 }  // namespace
@@ -185,40 +187,28 @@ std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangem
     if (work.how.facing.empty() && work.how.privacy.empty()) return std::nullopt;
     CameraRules rules{{}, arrangement.privacy};
     if (work.how.facing.empty()) return rules;
-    if (!work.input.isOneRoom()) {
-        rules.facing =
-            facingOf(work, measureSite(placedBuilding(work, arrangement), measuredAs(work.how)));
-        return rules;
-    }
-    const Scene scene = withPlaced(work.input.only(), work.groups, arrangement.sensors);
-    Worlds worlds(scene.environment);
-    const Coverage coverage = measureCoverage(scene, worlds, measuredAs(work.how));
-    rules.facing = measureFacing(scene, coverage, work.how.facing);
+    const SiteCoverage coverage =
+        measureSite(placedSite(work, arrangement.sensors), measuredAs(work.how));
+    const std::vector<CameraRules> storeys = rulesByStorey(work, arrangement, coverage);
+    for (std::size_t i = 0; i < storeys.size(); ++i)
+        for (FacingResult result : storeys[i].facing) {
+            result.rule.zone = work.input.idOf(i, result.rule.zone);
+            rules.facing.push_back(std::move(result));
+        }
     return rules;
 }
 
 namespace {
 
 /// Judges --objective path and localise in each storey and over all.
-std::optional<SiteObjectives> objectivesIn(const ArrangeWork& work, const SiteScene& building,
+std::optional<SiteObjectives> objectivesIn(const ArrangeWork& work, const SiteScene& site,
                                            const SiteCoverage& coverage) {
     const ObjectiveChoice& objective = work.how.objective;
     if (objective.isCoverage()) return std::nullopt;
     const bool is_path = objective.of == ObjectiveChoice::Of::Path;
-    return measureObjectives(building, coverage, {&objective.way, is_path ? 1U : 0U},
+    return measureObjectives(site, coverage, {&objective.way, is_path ? 1U : 0U},
                              work.how.redundancy,
                              is_path ? std::nullopt : std::optional(objective.within));
-}
-
-std::optional<ObjectiveFigures> objectivesOf(const ObjectiveChoice& objective, int times,
-                                             const Scene& scene, const Coverage& coverage) {
-    ObjectiveFigures figures;
-    if (objective.isCoverage()) return std::nullopt;
-    if (objective.of == ObjectiveChoice::Of::Path)
-        figures.ways.push_back(findLeastSeenWay(scene, coverage, objective.way, times));
-    else
-        figures.localisation = localise(scene, coverage, objective.within);
-    return figures;
 }
 
 }  // namespace
@@ -230,14 +220,8 @@ std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
     // allows.
     CoverageOptions measured = measuredAs(work.how);
     measured.exact = work.how.objective.of == ObjectiveChoice::Of::Path && arrangement.is_complete;
-    if (!work.input.isOneRoom()) {
-        const SiteScene building = placedBuilding(work, arrangement);
-        return objectivesIn(work, building, measureSite(building, measured))->all;
-    }
-    const Scene scene = withPlaced(work.input.only(), work.groups, arrangement.sensors);
-    Worlds worlds(scene.environment);
-    const Coverage coverage = measureCoverage(scene, worlds, measured);
-    return objectivesOf(work.how.objective, work.how.redundancy, scene, coverage);
+    const SiteScene site = placedSite(work, arrangement.sensors);
+    return objectivesIn(work, site, measureSite(site, measured))->all;
 }
 
 namespace {
@@ -255,40 +239,13 @@ std::vector<JudgedRequirement> targetOf(const ArrangeWork& work, const Arrangeme
              arrangement.value.value_or(arrangement.coverage) - *work.how.target}};
 }
 
-/// Returns the bytes of a page by the suffix of its file.
-std::string finished(const ArrangeToolOptions& options, const ReportPage& page) {
-    return suffixOf(options.report_file) == "pdf" ? pdfOf(page) : htmlOf(page);
-}
-
-std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork& work,
-                           const Arrangement& arrangement, const std::string& command) {
-    const SiteScene building = placedBuilding(work, arrangement);
-    const SiteCoverage coverage = measureSite(building, measuredAs(work.how));
-    const std::optional<SiteObjectives> objectives = objectivesIn(work, building, coverage);
-    if (suffixOf(options.report_file) == "json") {
-        SiteParts parts;
-        if (objectives) {
-            parts.storeys.resize(coverage.storeys.size());
-            for (std::size_t i = 0; i < parts.storeys.size(); ++i)
-                parts.storeys[i].objectives = &objectives->storeys[i];
-            parts.sum.objectives = &objectives->all;
-        }
-        return siteCoverageJson(building, coverage, parts);
-    }
-    SitePageInput input{building, coverage, nameOf(work.input), command,
-                        targetOf(work, arrangement)};
-    PageSection result = resultOf(options, work, arrangement);
-    const CameraRules rules{facingOf(work, coverage), arrangement.privacy};
-    for (const JudgedRule& rule : judgedRules(rules))
-        result.blocks.push_back(PageText{rule.rule + ": " + rule.finding});
-    input.more.push_back(std::move(result));
-    if (objectives) input.parts.sum.objectives = &objectives->all;
-    input.cover = coverOf(options.page);
-    input.paper = paperOf(options.page);
-    input.prices = pricesOf(options.page);
-    const auto progress = makeProgress("arrange", options.common.progress, options.common.quiet);
-    input.progress = progress.get();
-    return finished(options, sitePage(input));
+/// Returns the site with the layout as it was written: of a room alone with its records.
+SiteScene laidOut(const ArrangeWork& work, const Arrangement& arrangement, const Document& layout) {
+    if (!work.input.isOneRoom()) return placedSite(work, arrangement.sensors);
+    SiteScene site = work.input.building;
+    site.scenes = {std::make_shared<const Scene>(
+        makeScene(work.input.environment(), &layout, shippedDevices()))};
+    return site;
 }
 
 }  // namespace
@@ -296,41 +253,35 @@ std::string buildingReport(const ArrangeToolOptions& options, const ArrangeWork&
 std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& work,
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command) {
-    if (!work.input.isOneRoom()) return buildingReport(options, work, arrangement, command);
-    const Scene scene = makeScene(work.input.environment(), &layout, shippedDevices());
-    Worlds worlds(scene.environment);
-    const Coverage coverage = measureCoverage(scene, worlds, measuredAs(work.how));
-    const CameraRules rules{measureFacing(scene, coverage, work.how.facing), arrangement.privacy};
-    ReportParts parts;
-    if (!rules.facing.empty() || !rules.privacy.empty()) parts.rules = &rules;
-    const auto objectives = objectivesOf(work.how.objective, work.how.redundancy, scene, coverage);
-    if (objectives) parts.objectives = &*objectives;
-    if (suffixOf(options.report_file) == "json") return coverageJson(coverage.report, parts);
-    CoveragePageInput page{scene, coverage, nameOf(work.input), command};
-    page.parts = parts;
+    const SiteScene site = laidOut(work, arrangement, layout);
+    SiteCoverage coverage = measureSite(site, measuredAs(work.how));
+    coverage.rules = rulesByStorey(work, arrangement, coverage);
+    const std::optional<SiteObjectives> objectives = objectivesIn(work, site, coverage);
+    SiteParts parts;
+    if (objectives) {
+        parts.storeys.resize(coverage.storeys.size());
+        for (std::size_t i = 0; i < parts.storeys.size(); ++i)
+            parts.storeys[i].objectives = &objectives->storeys[i];
+        parts.sum.objectives = &objectives->all;
+    }
+    const std::string suffix = suffixOf(options.report_file);
+    if (suffix == "json") return siteCoverageJson(site, coverage, parts);
+    SitePageInput page{site, coverage, nameOf(work.input), command, targetOf(work, arrangement)};
+    page.parts = std::move(parts);
     page.more.push_back(resultOf(options, work, arrangement));
-    if (work.how.target)
-        page.requirements.push_back({formatPercent(*work.how.target), arrangement.is_reached,
-                                     "the sensors cover " + percentText(arrangement.coverage),
-                                     arrangement.coverage - *work.how.target});
     page.cover = coverOf(options.page);
     page.paper = paperOf(options.page);
     page.prices = pricesOf(options.page);
     const auto progress = makeProgress("arrange", options.common.progress, options.common.quiet);
     page.progress = progress.get();
-    return finished(options, coveragePage(page));
+    return suffix == "pdf" ? pdfOf(sitePage(page)) : htmlOf(sitePage(page));
 }
 
 void writeMaterialOf(const ArrangeToolOptions& options, const ArrangeWork& work,
                      const Arrangement& arrangement, const Document& layout) {
     if (options.page.material.empty() && options.page.prices.empty()) return;
-    std::vector<std::shared_ptr<const Scene>> scenes;
-    if (!work.input.isOneRoom())
-        scenes = placedBuilding(work, arrangement).scenes;
-    else
-        scenes.push_back(std::make_shared<const Scene>(
-            makeScene(work.input.environment(), &layout, shippedDevices())));
-    if (const std::string text = writeMaterialOf(options.page, scenes); !text.empty())
+    const SiteScene site = laidOut(work, arrangement, layout);
+    if (const std::string text = writeMaterialOf(options.page, site.scenes); !text.empty())
         warn(options.common, "arrange", text);
 }
 
