@@ -189,10 +189,15 @@ class OperandReader {
         const Document* const layout = layout_ ? &*layout_ : nullptr;
         Scene scene = makeScene(*environment_, layout, devicesFor({&*environment_, layout}),
                                 kept_ == nullptr ? nullptr : &kept_->scene);
-        return {std::move(scene),           std::move(*environment_),
-                std::move(layout_),         std::move(environment_operand_),
-                std::move(layout_operand_), std::move(named_),
-                std::move(report_.choices), storeyId()};
+        return {std::move(scene),
+                std::move(*environment_),
+                std::move(layout_),
+                std::move(environment_operand_),
+                std::move(layout_operand_),
+                std::move(named_),
+                std::move(report_.choices),
+                storeyId(),
+                storeyName()};
     }
 
   private:
@@ -200,6 +205,15 @@ class OperandReader {
         std::string called = request_.rules.storeys.one();
         if (!building_) return called;
         return called.empty() ? building_->storeys.front().id : building_->storey(called).id;
+    }
+
+    /// Returns the name of the storey; "" without one, or if it calls another.
+    [[nodiscard]] std::string storeyName() const {
+        if (!building_) return "";
+        const Storey& own = building_->storey(storeyId());
+        if (!own.record.has("name")) return "";
+        std::string name = own.record.text("name");
+        return !name.empty() && &building_->storey(name) == &own ? name : "";
     }
 
     Document readOperand(const std::string& operand) {

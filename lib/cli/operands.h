@@ -61,6 +61,7 @@ struct SceneInput {
     std::vector<std::string> named;
     std::vector<Diagnostic> choices;  ///< of importers, see ImportReport
     std::string storey = {};          ///< id of the storey that it is; "" for a room that is none
+    std::string storey_name = {};     ///< its name; "" without one, or if it calls another
 };
 
 /// Prints the warnings and choices of importers on stderr unless -q is given.

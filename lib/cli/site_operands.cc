@@ -11,6 +11,7 @@
 #include "cli/common_options.h"
 #include "env/point_location.h"
 #include "site/site_edit.h"
+#include "site/storeys.h"
 
 namespace ispace {
 
@@ -83,6 +84,7 @@ SiteInput readSite(const SceneRequest& request) {
     site.warnings = room.environment.warnings;
     site.choices = std::move(room.choices);
     site.storey = std::move(room.storey);
+    site.storey_name = std::move(room.storey_name);
     const DeviceCatalogue& devices =
         devicesFor({&room.environment, site.layout ? &*site.layout : nullptr});
     site.building = roomAlone(std::move(room.environment),
@@ -198,7 +200,10 @@ void mustBeOneRoom(const SiteInput& input, const std::string& option) {
 std::string inOwnStorey(const SiteInput& input, const std::string& text) {
     const std::size_t slash = text.find('/');
     if (!input.isOneRoom() || input.storey.empty() || slash == std::string::npos) return text;
-    return Glob(text.substr(0, slash)).matches(input.storey) ? text.substr(slash + 1) : text;
+    const std::string called = text.substr(0, slash);
+    const bool is_own =
+        Glob(called).matches(input.storey) || callsStorey(called, input.storey, input.storey_name);
+    return is_own ? text.substr(slash + 1) : text;
 }
 
 std::vector<std::string> inOwnStorey(const SiteInput& input,

@@ -33,6 +33,7 @@ struct SiteInput {
     SiteScene building;                                   ///< of one room: roomAlone()
     std::vector<Diagnostic> warnings = {}, choices = {};  ///< of importers
     std::string storey = {};                              ///< as SceneInput::storey
+    std::string storey_name = {};                         ///< as SceneInput::storey_name
 
     [[nodiscard]] bool isOneRoom() const { return building.isRoomAlone(); }
     /// Returns the scenes; equal storeys share one.
@@ -130,7 +131,8 @@ void forEachRoomOf(const SiteInput& input, std::string_view option, const std::s
                    const std::function<void(std::size_t room, const std::string& text)>& read);
 
 /// Returns a text about a room that is a storey without the storey before it: of `ground/entry` and
-/// of `g*/entry` `entry`. Other texts, and those about other rooms, stay.
+/// of `g*/entry` `entry`, and so with the name of the storey. Other texts, and those about other
+/// rooms, stay.
 std::string inOwnStorey(const SiteInput& input, const std::string& text);
 std::vector<std::string> inOwnStorey(const SiteInput& input, const std::vector<std::string>& texts);
 

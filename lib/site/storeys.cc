@@ -287,15 +287,19 @@ std::string StoreyedDocument::storeyList() const {
     return list;
 }
 
+bool callsStorey(const std::string& word, const std::string& id, const std::string& name) {
+    const std::string folded = lowerCased(word);
+    return lowerCased(id) == folded || (!name.empty() && lowerCased(name) == folded);
+}
+
 const Storey& StoreyedDocument::storey(const std::string& called) const {
     for (const Storey& storey : storeys)
         if (storey.id == called) return storey;
     for (const Storey& storey : storeys)
         if (storey.record.has("name") && storey.record.text("name") == called) return storey;
-    const std::string folded = lowerCased(called);
     for (const Storey& storey : storeys)
-        if (lowerCased(storey.id) == folded ||
-            (storey.record.has("name") && lowerCased(storey.record.text("name")) == folded))
+        if (callsStorey(called, storey.id,
+                        storey.record.has("name") ? storey.record.text("name") : ""))
             return storey;
     if (called.starts_with("door:"))
         throw UsageError("the building has no storey " + excerpt(called) +

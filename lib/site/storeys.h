@@ -70,6 +70,9 @@ struct StoreyedDocument {
     [[nodiscard]] const Storey& storey(const std::string& called) const;
 };
 
+/// Returns true if a word is the id of a storey or its name, in any case. \param name "": none
+bool callsStorey(const std::string& word, const std::string& id, const std::string& name);
+
 /// Returns the storeys with this id or name, or with ids of this glob, by index. \throws UsageError
 /// if there is none
 std::vector<std::size_t> storeysNamed(const StoreyedDocument& building, const std::string& name);

@@ -213,6 +213,7 @@ void takeWay(ArrangeWork& work) {
     work.goals[way.from.storey].way_from = way.from.zone;
     work.goals[way.to.storey].way_to = way.to.zone;
     work.passages = way.passages;
+    if (work.input.isOneRoom()) work.how.objective.way = {way.from.zone, way.to.zone};
 }
 
 }  // namespace
@@ -226,6 +227,17 @@ void noteWholeFloor(const ArrangeToolOptions& options) {
          "--target is of all floor: faces count in the zones of --facing, plain sight elsewhere; "
          "to count those zones alone, add --zone '" +
              printable(options.how.facing.front().zone) + '\'');
+}
+
+/// \throws UsageError for a sensor whose id names a storey, in a building or a storey of one
+void mustHavePlainIds(const SiteInput& input, const std::vector<SensorGroup>& groups) {
+    if (input.isOneRoom() && input.storey.empty()) return;
+    for (const SensorGroup& group : groups)
+        if (group.id.find('/') != std::string::npos)
+            throw UsageError("--sensor id=" + group.id + ": " +
+                             (input.isOneRoom() ? "ids in a storey alone have no storey before them"
+                                                : "the storey comes before it by itself") +
+                             "; leave it out");
 }
 
 }  // namespace
@@ -264,14 +276,10 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
             "nothing to place: give --sensor MODEL[:COUNT], such as dome-2.8-1080p:4, or a LAYOUT "
             "with a sensor without `at`");
     work.files = input.files;
-    if (!input.isOneRoom()) {
-        for (const SensorGroup& group : work.groups)
-            if (group.id.find('/') != std::string::npos)
-                throw UsageError("--sensor id=" + group.id +
-                                 ": the storey comes before it by itself; leave it out");
-        // Devices of --sensor are not among those of the records.
-        if (input.building.devices.devices().empty()) input.building.devices = devices;
-    }
+    mustHavePlainIds(input, work.groups);
+    // Devices of --sensor are not among those of the records.
+    if (!input.isOneRoom() && input.building.devices.devices().empty())
+        input.building.devices = devices;
     takeGoals(options, work);
     takePlaces(options, work);
     takeRooms(options, work);
