@@ -177,7 +177,16 @@ std::shared_ptr<const ArrangeSite> ownSite(const SiteInput& input, const Arrange
 void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
     if (options.robust_rooms.empty()) return;
     RobustChoice& robust = work.how.robust;
-    robust.name = baseName(work.input.environment_operand);
+    std::vector<std::string> files = options.robust_rooms;
+    files.push_back(work.input.environment_operand);
+    // Files of several folders may have one name.
+    const auto name_of = [&files](const std::string& file) {
+        const auto count = std::count_if(files.begin(), files.end(), [&](const std::string& one) {
+            return baseName(one) == baseName(file);
+        });
+        return count > 1 ? file : baseName(file);
+    };
+    robust.name = name_of(work.input.environment_operand);
     for (const std::string& file : options.robust_rooms) {
         if (isStream(file)) throw UsageError("--robust rooms: stdin is not read: give files");
         SceneRequest request{{file}, options.rules, false};
@@ -202,7 +211,7 @@ void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
         if (!fixed.empty() && other.layout) other.setLayout(withoutPlaces(*other.layout, fixed));
         warnOfImport(options.common, "arrange", other);
         work.files.insert(work.files.end(), other.files.begin(), other.files.end());
-        robust.rooms.push_back({baseName(file), ownSite(other, work.how, {})});
+        robust.rooms.push_back({name_of(file), ownSite(other, work.how, {})});
     }
 }
 
