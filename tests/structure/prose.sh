@@ -27,7 +27,7 @@ done
 for case in 'b.cc|int x; // what' 'b.sh|x # what' 'b.py|# what' 'b.1|.TP\nwhat' 'b.md|what' 'CMakeLists.txt|# what' \
         'site/b.h|// what'; do
     tree "Computes the area, returns the pose"
-    mkdir -p tree/building
+    mkdir -p tree/site
     printf "${case#*|}\n" >"tree/${case%%|*}"
     fails "$case"
 done
