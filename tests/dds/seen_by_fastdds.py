@@ -50,7 +50,8 @@ def check_frames(client):
     check(static["l2"]["frame"] == "map" and (x, y) == (1, 1), "l2 in the room")
     check(abs(math.degrees(2 * math.atan2(z, w)) + 120) < 1e-9, "heading of l2")
     moving = {one["child"]: one for one in client.newest("rt/tf")["transforms"]}
-    check(set(moving) == {"r1", "r1_odom"} and moving["r1"]["frame"] == "r1_odom", "frames of r1")
+    parents = {"r1_odom": "map", "r1": "r1_odom", "r1_left_wheel": "r1", "r1_right_wheel": "r1"}
+    check({child: one["frame"] for child, one in moving.items()} == parents, f"frames of r1: {moving}")
     check(moving["r1_odom"]["pose"][:2] == [-1.2, -0.5], "start of r1")
 
 
