@@ -81,32 +81,17 @@ Paper paperOf(const ReportWords& words) {
     return words.paper == "letter" ? Paper::Letter : Paper::A4;
 }
 
-void writeMaterial(const ReportWords& words, const Scene& scene) {
-    if (words.material.empty()) return;
-    const CabledRoom room{scene, cablesOf(scene)};
-    writeMaterial(words, {&room, 1});
-}
-
-void writeMaterial(const ReportWords& words, std::span<const CabledRoom> rooms) {
-    if (words.material.empty()) return;
-    const PriceList prices = pricesOf(words);
-    writeAll(words.material, materialCsv(materialOf(rooms, prices), prices.currency));
-}
-
-std::string priceWarning(const ReportWords& words, std::span<const CabledRoom> rooms) {
-    if (words.prices.empty()) return "";
-    const PriceList prices = pricesOf(words);
-    const std::string text = unusedPrices(prices, materialOf(rooms, prices));
-    return text.empty() ? "" : words.prices + ": " + text;
-}
-
 std::string writeMaterialOf(const ReportWords& words,
                             std::span<const std::shared_ptr<const Scene>> scenes) {
+    if (words.material.empty() && words.prices.empty()) return "";
     std::vector<CabledRoom> rooms;
     rooms.reserve(scenes.size());
     for (const auto& scene : scenes) rooms.push_back({*scene, cablesOf(*scene)});
-    writeMaterial(words, rooms);
-    return priceWarning(words, rooms);
+    const PriceList prices = pricesOf(words);
+    const std::vector<MaterialItem> material = materialOf(rooms, prices);
+    if (!words.material.empty()) writeAll(words.material, materialCsv(material, prices.currency));
+    const std::string unused = unusedPrices(prices, material);
+    return unused.empty() ? "" : words.prices + ": " + unused;
 }
 
 }  // namespace ispace

@@ -30,16 +30,8 @@ PageCover coverOf(const ReportWords& words);
 PriceList pricesOf(const ReportWords& words);
 Paper paperOf(const ReportWords& words);
 
-/// Writes the file of --material, if asked for.
-void writeMaterial(const ReportWords& words, const Scene& scene);
-/// The same for the storeys of a building.
-void writeMaterial(const ReportWords& words, std::span<const CabledRoom> rooms);
-
-/// Returns a warning about prices that no item of the material has; "" if there are none.
-std::string priceWarning(const ReportWords& words, std::span<const CabledRoom> rooms);
-
-/// Writes the file of --material, if asked for, of all these scenes.
-/// \returns priceWarning()
+/// Writes the file of --material, if asked for, of all these scenes. \returns a warning about
+/// prices that no item of the material has; "" if there are none
 std::string writeMaterialOf(const ReportWords& words,
                             std::span<const std::shared_ptr<const Scene>> scenes);
 

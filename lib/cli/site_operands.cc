@@ -42,10 +42,6 @@ std::string SiteInput::idOf(std::size_t room, const std::string& id) const {
     return wholeId(building.document.storeys[room], id);
 }
 
-std::string SiteInput::prefix(std::size_t room) const {
-    return building.document.storeys[room].prefix();
-}
-
 void SiteInput::setLayout(Document changed) {
     layout = std::move(changed);
     if (isOneRoom()) {
@@ -161,10 +157,15 @@ void mustBeRecordOf(const SiteInput& input, const std::string& option, const std
                              folder + "/STOREY");
     } else if (recordedBuilding(folder).empty()) {
         mustHoldRecord(option, folder);
-        throw UsageError(option + ": " + folder +
-                         " is the record of one room: choose it with --storey (" +
-                         input.building.document.storeyList() + ')');
+        refuseRecordOfRoom(input, option, folder);
     }
+}
+
+void refuseRecordOfRoom(const SiteInput& building, const std::string& option,
+                        const std::string& folder) {
+    throw UsageError(option + ": " + folder +
+                     " is the record of one room: choose it with --storey (" +
+                     building.building.document.storeyList() + ')');
 }
 
 std::string recordFor(const SiteInput& input, const std::string& folder) {
@@ -194,7 +195,9 @@ std::vector<Diagnostic> siteWarnings(const SiteInput& input, const FindingFilter
 }
 
 void mustBeOneRoom(const SiteInput& input, const std::string& option) {
-    if (!input.isOneRoom() && !option.empty()) refuseSeveralRooms(option, input.building.document);
+    if (input.isOneRoom() || option.empty()) return;
+    throw UsageError(option + " needs one room: choose one with --storey (" +
+                     input.building.document.storeyList() + ')');
 }
 
 std::string inOwnStorey(const SiteInput& input, const std::string& text) {

@@ -53,8 +53,10 @@ struct SiteInput {
     [[nodiscard]] std::vector<Record> environmentRecords() const;
     /// Returns the id of a thing across the site: "ground/l1".
     [[nodiscard]] std::string idOf(std::size_t room, const std::string& id) const;
-    /// Returns "ID: ", the beginning of a message about a room; "" for one alone.
-    [[nodiscard]] std::string prefix(std::size_t room) const;
+    /// Returns Storey::prefix() of a room.
+    [[nodiscard]] std::string prefix(std::size_t room) const {
+        return building.document.storeys[room].prefix();
+    }
 
     /// Replaces the layout, and the scenes by those with it. \throws as makeScene(), layoutsOf()
     void setLayout(Document changed);
@@ -104,6 +106,10 @@ OtherSite readOtherLayout(const SiteInput& input, const std::string& operand,
 /// storey read alone, of its building; of a building for several; as recordedBuilding() \param
 /// option for messages
 void mustBeRecordOf(const SiteInput& input, const std::string& option, const std::string& folder);
+
+/// \throws UsageError for the record of a room, which is to be one of a building's run
+[[noreturn]] void refuseRecordOfRoom(const SiteInput& building, const std::string& option,
+                                     const std::string& folder);
 
 /// Returns the folder of the site's record: of a storey that is read alone, its part of that of the
 /// building. \pre mustBeRecordOf()

@@ -370,12 +370,6 @@ std::optional<BuildingInput> readBuildingInput(const SceneRequest& request) {
     return input;
 }
 
-void warnOfImport(const CommonOptions& options, const std::string& tool,
-                  const BuildingInput& input) {
-    warn(options, tool, input.choices);
-    warn(options, tool, input.warnings);
-}
-
 namespace {
 
 /// Returns those of these storeys which have the doors of a text. \throws UsageError with the doors
@@ -479,11 +473,6 @@ void mustNameStoreys(std::string_view output, std::string_view format, std::stri
     throw UsageError(std::string(format) +
                      " holds one storey: name the files with %s for its id (-o 'map-%s." +
                      std::string(suffix) + "'), or choose one with --storey");
-}
-
-void refuseSeveralRooms(const std::string& option, const StoreyedDocument& building) {
-    throw UsageError(option + " needs one room: choose one with --storey (" +
-                     building.storeyList() + ')');
 }
 
 }  // namespace ispace

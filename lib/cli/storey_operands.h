@@ -77,10 +77,6 @@ SiteRunCoverage measureSiteRun(const SiteScene& building, const std::string& fol
 /// \throws UsageError without a storey, for an unknown one, and as readZones()
 void addZones(std::span<const std::string> zones, SiteScene& building);
 
-/// Prints the choices and warnings of importers, as of a room.
-void warnOfImport(const CommonOptions& options, const std::string& tool,
-                  const BuildingInput& input);
-
 /// Reads ENV and LAYOUT if ENV is a building, or the storeys of it that are chosen. std::nullopt
 /// for others, for one storey that is chosen and for a building of one: they are rooms, which
 /// readScene() reads. \throws as readScene() and readBuilding()
@@ -106,8 +102,5 @@ std::string roomFile(const std::string& output, const std::string& storey,
 /// \throws UsageError unless the output is a pattern, for a format of which a file holds one storey
 /// \param suffix of the format's files
 void mustNameStoreys(std::string_view output, std::string_view format, std::string_view suffix);
-
-/// \throws UsageError: the option is about one room, of which the building has several
-[[noreturn]] void refuseSeveralRooms(const std::string& option, const StoreyedDocument& building);
 
 }  // namespace ispace

@@ -418,7 +418,7 @@ void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work) {
         warn(options.common, "arrange", hint);
     for (std::size_t i = 0; i < work.input.rooms().size(); ++i)
         warnOfHeights(options, work.how.mount, work.input.rooms()[i]->environment,
-                      work.input.building.document.storeys[i].prefix());
+                      work.input.prefix(i));
 }
 
 void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,

@@ -11,6 +11,7 @@
 #include "arrange/search/search_share.h"
 #include "base/error.h"
 #include "cli/outputs.h"
+#include "cli/storey_operands.h"
 #include "coverage/camera_rules.h"
 #include "report/curve_chart.h"
 
@@ -304,14 +305,9 @@ void ArrangeCommand::settleFiles() const {
     for (const auto& [name, file] : sideFiles(options_))
         if (isStdout(*file))
             throw UsageError(std::string(name) + ": stdout is for the layout; give it a file");
-    const auto must_be_one = [](const char* name, const std::string& file) {
-        if (isStoreyPattern(file))
-            throw UsageError(std::string(name) +
-                             ": it is one file, also of a building: leave out %s");
-    };
-    if (options_.batch.list.empty()) must_be_one("--output", options_.common.output);
+    if (options_.batch.list.empty()) mustBeOneFile("--output", options_.common.output);
     for (const auto& [name, file] : sideFiles(options_))
-        if (std::string_view(name) != "--heat") must_be_one(name, *file);
+        if (std::string_view(name) != "--heat") mustBeOneFile(name, *file);
     if (!options_.curve_file.empty()) (void)outputFormat({}, options_.curve_file, curveFormats());
     if (!options_.report_file.empty())
         (void)outputFormat({}, options_.report_file, {"json", "html", "pdf"});

@@ -93,15 +93,6 @@ std::string reportFile(const CoverageToolOptions& options, const SiteInput& inpu
     return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
 }
 
-/// Writes --material, and warns of prices that no item has.
-void writeMaterialOf(const CoverageToolOptions& options, const SiteInput& input) {
-    std::vector<CabledRoom> rooms;
-    for (const auto& scene : input.rooms()) rooms.push_back({*scene, cablesOf(*scene)});
-    writeMaterial(options.page, rooms);
-    if (const std::string text = priceWarning(options.page, rooms); !text.empty())
-        warn(options.common, "coverage", text);
-}
-
 void coverSite(CoverageToolOptions options, JunitFile& junit) {
     const SiteInput& input = leftToExit(readInput(options));
     fitOptions(options, input);
@@ -125,7 +116,8 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     suggest(options, input, results, signal);
     const std::vector<JunitCase> verdicts = judgeAll(options, input.building, results);
     if (!options.report.empty()) writeAll(options.report, reportFile(options, input, results));
-    writeMaterialOf(options, input);
+    if (const std::string text = writeMaterialOf(options.page, input.rooms()); !text.empty())
+        warn(options.common, "coverage", text);
     const SiteParts parts = results.parts();
     writeAll("-", options.json ? siteCoverageJson(input.building, results.coverage, parts)
                                : siteCoverageText(input.building, results.coverage, parts));

@@ -101,15 +101,10 @@ class RecordedSite {
     RecordedSite(const std::string& folder, const SiteInput& input)
         : folder_(folder), input_(&input), is_whole_(holdsBuilding(folder)) {
         mustHoldRecord("--run", folder);
-        if (!is_whole_ && !input.isOneRoom())
-            throw UsageError("--run: " + folder +
-                             " is the record of one room: choose its storey with --storey (" +
-                             input.building.document.storeyList() + ')');
+        if (!is_whole_ && !input.isOneRoom()) refuseRecordOfRoom(input, "--run", folder);
     }
     [[nodiscard]] std::string folder(std::size_t room) const {
-        if (!is_whole_) return folder_;
-        return folder_ + '/' +
-               (input_->isOneRoom() ? input_->storey : input_->building.document.storeys[room].id);
+        return recordOfStorey(recordFor(*input_, folder_), input_->building.document.storeys[room]);
     }
     /// Returns the id across the site of a thing in the record of a room. In that of a building,
     /// and in its part, movers and sensors on them have the storey of their start before their ids.

@@ -123,7 +123,7 @@ struct RecordedMoment {
     std::vector<std::vector<Point2>> ways = {};
 };
 
-/// Reads a view; errors begin with its room. \param prefix as SiteInput::prefix()
+/// Reads a view; errors begin with its room. \param prefix as Storey::prefix()
 template <class Read>
 auto ofRoom(const std::string& prefix, const Read& read) {
     try {

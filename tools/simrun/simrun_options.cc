@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "cli/common_options.h"
 #include "cli/outputs.h"
+#include "cli/storey_operands.h"
 #include "extensions.h"
 #include "report/view/film.h"
 #include "simrun/simrun_record.h"
@@ -414,10 +415,8 @@ void SimrunCommand::takeServer() {
             "--wait-for-readers requires --clock fast or step: real time does not wait");
     if (o.mcap == "-")
         throw UsageError("--mcap writes to a file: standard output has the addresses of the run");
-    for (const auto& [option, file] : {std::pair("--report", &o.report), {"--mcap", &o.mcap}})
-        if (file->find("%s") != std::string::npos)
-            throw UsageError(std::string(option) +
-                             " writes one file of all storeys: leave %s out of its name");
+    mustBeOneFile("--report", o.report);
+    mustBeOneFile("--mcap", o.mcap);
     o.devices.take(line_, o.ros_domain.has_value(), o.limits);
     for (const auto& [option, endpoint] :
          {std::pair("--foxglove", o.foxglove), {"--rosbridge", o.rosbridge}})

@@ -71,9 +71,7 @@ SiteInput readInput(const SimrunOptions& options) {
     if (!building.empty() && input.isOneRoom()) refuseWholeRecord(options.replay);
     if (!options.replay.empty()) mustHoldRecord("--replay", options.replay);
     if (!options.replay.empty() && building.empty() && !input.isOneRoom())
-        throw UsageError("--replay: " + options.replay +
-                         " is the record of one room: choose its storey with --storey (" +
-                         input.building.document.storeyList() + ')');
+        refuseRecordOfRoom(input, "--replay", options.replay);
     addZones(inOwnStorey(input, options.zones), input.building);
     warnOfImport(options.common, kTool, input);
     warn(options.common, kTool,
