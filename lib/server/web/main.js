@@ -751,7 +751,10 @@ for (const fold of document.querySelectorAll('aside details')) {
   const kept = `ispace-fold-${fold.parentNode.getAttribute('aria-labelledby')}`;
   try {
     if (localStorage.getItem(kept) === 'folded') fold.open = false;
-    fold.addEventListener('toggle', () => localStorage.setItem(kept, fold.open ? 'open' : 'folded'));
+    // A click comes before it folds, and is kept at once: the event "toggle" comes later, and not if the page is left.
+    fold.querySelector('summary').addEventListener('click', () => {
+      localStorage.setItem(kept, fold.open ? 'folded' : 'open');
+    });
   } catch { /* a browser may keep none */ }
 }
 
