@@ -616,11 +616,11 @@ class Complete(unittest.TestCase):
             entry = getattr(ispace, name)
             if not inspect.isclass(entry):
                 continue
-            for key, value in vars(entry).items():
+            for key in (key for key in dir(entry) if not key.startswith("_")):
+                value = inspect.getattr_static(entry, key)  # also of base classes that have no public name
                 value = getattr(value, "__func__", value)
-                if not key.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):
-                    if not inspect.getdoc(value):
-                        silent.append(f"{name}.{key}")
+                if (inspect.isfunction(value) or isinstance(value, property)) and not inspect.getdoc(value):
+                    silent.append(f"{name}.{key}")
         self.assertEqual(silent, [])
 
     def test_help_tells_what_a_program_gets(self):
@@ -633,6 +633,7 @@ class Complete(unittest.TestCase):
         self.assertIn("unreached", inspect.getdoc(ispace.Robot.goto))
         for told in ("another client holds", "no way"):
             self.assertIn(told, inspect.getdoc(ispace.Refused))
+        self.assertIn("Threads may share a connection", inspect.getdoc(ispace))
 
     def test_records_are_those_of_the_world(self):
         with ispace.simrun(DATA / "square.env", DATA / "session.3dm", clock="step") as run:

@@ -75,6 +75,8 @@ run --script "$home/week.txt" --until 48h --record two_days --no-record-readings
 "$home/read_week.py" two_days >said || fail "the example: $(cat said)"
 share=$(sed -n 's/.* \([0-9]*\) % of 45 actions recognised$/\1/p' said)
 ((${share:-0} >= 75)) || fail "the example prints $(cat said)"
+if "$home/read_week.py" 2>err; then fail "a recogniser without a record"; fi
+grep -q '^usage: read_week.py' err || fail "no usage: $(cat err)"
 
 # Mistakes in a plan.
 bad() {

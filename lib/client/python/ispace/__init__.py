@@ -17,7 +17,9 @@ Robot and Person drive, LaserSensor, Camera and their kin read, World controls t
 a computer of a sensor network, Memory holds contents at places, Floor feels weights, Meter
 reads plugs; each is a separate connection to a running simrun, by its address
 ``"127.0.0.1:7001"``. Units are those of the protocol: metres, degrees, simulated seconds; frames are right-handed and
-headings counter-clockwise. Failures raise an Error with the server's text. The standard library is enough; arrays are numpy's if it is installed.
+headings counter-clockwise. Failures raise an Error with the server's text. Threads may share a connection: one waits
+for a motion while another reads the odometry, and each gets its own answers; processes open one each. The standard
+library is enough; arrays are numpy's if it is installed.
 
 VectorEnv and Env are worlds for learners, which require numpy; check_vector_env checks such environments of any make.
 """

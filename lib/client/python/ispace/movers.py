@@ -105,6 +105,7 @@ class Mover(Client):
 
     @property
     def limits(self) -> Limits:
+        """Its speeds and accelerations, as the server told them when the role was taken."""
         return Limits(*(self.info.number(field.name) for field in dataclasses.fields(Limits)))
 
     def forward(self, metres: float) -> Motion:
@@ -112,6 +113,7 @@ class Mover(Client):
         return self._begin(f"FORWARD {text_of(metres)}")
 
     def backward(self, metres: float) -> Motion:
+        """So far, without turning, at the model's own speed; not negative."""
         return self._begin(f"BACKWARD {text_of(metres)}")
 
     def left(self, degrees: float) -> Motion:
@@ -119,6 +121,7 @@ class Mover(Client):
         return self._begin(f"LEFT {text_of(degrees)}")
 
     def right(self, degrees: float) -> Motion:
+        """On the spot, clockwise; not negative."""
         return self._begin(f"RIGHT {text_of(degrees)}")
 
     def path(
@@ -182,6 +185,7 @@ class Mover(Client):
         self._ask("STOP")
 
     def status(self) -> Status:
+        """Its true pose, speeds and accelerations, and whether it has run into something."""
         fields = self._ask("STATUS").fields
         return Status(
             fields.number("t"),
