@@ -78,7 +78,7 @@ namespace ispace {
 
 namespace {
 
-/// What an extension would bring that this build lacks: an option of a tool, or a record.
+/// What an extension would bring that this build lacks: an option of a tool, a record or a format.
 struct MissingOffer {
     std::string_view extension, owner, name;
 };
@@ -135,8 +135,10 @@ bool addFormats() {
     addSceneSchemas(radioSchemas());
     addRadios();
 #endif
-    for (const auto& [extension, owner, name] : missingOffers())
+    for (const auto& [extension, owner, name] : missingOffers()) {
         if (owner == "record") addMissingKeyword(name, extension);
+        if (owner == "format") addMissingFormat(name, extension);
+    }
     return true;
 }
 
@@ -169,7 +171,8 @@ std::span<const ToolExtension> toolExtensions() {
 #endif
         };
         for (const auto& [extension, owner, name] : missingOffers())
-            if (owner != "record") rows.push_back({extension, owner, nullptr, name});
+            if (owner != "record" && owner != "format")
+                rows.push_back({extension, owner, nullptr, name});
         return rows;
     }();
     return extensions;

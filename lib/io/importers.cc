@@ -24,9 +24,6 @@ namespace ispace {
 
 namespace {
 
-constexpr const char* kWanted =
-    "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, a picture, HouseExpo JSON, an ARIA or "
-    "MovingAI map, an art gallery, DXF, SVG, SDF, IFC, a mesh or a point cloud";
 constexpr std::string_view kBlanks = " \t\r\n";
 
 /// UTF-8 without control characters other than those of plain text.
@@ -152,39 +149,12 @@ std::string foreignJson(std::string_view bytes) {
     return "";
 }
 
-/// An input and the options for reading it.
-struct Source {
-    std::string_view bytes;  ///< without a byte order mark
-    const std::string& operand;
-    const ImportOptions& options;
-    const Schemas& schemas;
-};
-
-/// A format that is read.
-struct InputFormat {
-    bool is_plan;  ///< rooms are chosen from it, see isPlan()
-    bool (*holds)(const Source&);
-    Document (*read)(const Source&);
-    bool is_confined = false;  ///< read by a program that bounds its own work
-};
-
 /// Bytes of a confined format that are a unit of the Budget of the building around it.
 constexpr std::size_t kConfinedBytesPerUnit = 8;
 
-template <bool (*kTest)(std::string_view)>
-bool holdsBytes(const Source& source) {
-    return kTest(source.bytes);
-}
-
-template <Document (*kReader)(std::string_view, const std::string&, const ImportOptions&,
-                              const Schemas&)>
-Document importPlan(const Source& source) {
-    return kReader(source.bytes, source.operand, source.options, source.schemas);
-}
-
 /// Reads a mesh, with the upward axis that OBJ leaves open.
 template <Document (*kReader)(const std::string&, const ImportOptions&, const Schemas&)>
-Document readUpright(const Source& source) {
+Document readUpright(const ImportSource& source) {
     ImportOptions options = source.options;
     if (options.up != "auto" || meshFormatOf(source.bytes) != MeshFormat::Obj)
         return kReader(source.operand, options, source.schemas);
@@ -202,93 +172,143 @@ Document readUpright(const Source& source) {
 }
 constexpr auto* kReadMesh = readUpright<meshDocument>;
 constexpr auto* kReadWalls = readUpright<readMeshWalls>;
-bool isGlbMesh(const Source& source) { return isGlb(source.bytes) && !glbHasRecords(source.bytes); }
+bool isGlbMesh(const ImportSource& source) {
+    return isGlb(source.bytes) && !glbHasRecords(source.bytes);
+}
 /// Returns true for a mesh that is cut into walls, which is a plan; a model of ours never is.
-bool isCutMesh(const Source& source) {
+bool isCutMesh(const ImportSource& source) {
     if (!source.options.slice_walls || isPointCloud(source.bytes)) return false;
     const bool is_mesh =
         isGlbMesh(source) || isMeshFile(source.bytes) || hasMeshSuffix(source.operand);
     return is_mesh && !isRecordText(source.bytes);
 }
-Document readRecordsOfGlb(const Source& source) {
+Document readRecordsOfGlb(const ImportSource& source) {
     return readGlb(source.bytes, source.operand, source.schemas);
 }
-Document readRecords(const Source& source) {
+Document readRecords(const ImportSource& source) {
     return readRecordText(source.bytes, source.operand, source.schemas);
 }
-Document readYamlRecords(const Source& source) {
+Document readYamlRecords(const ImportSource& source) {
     return readYaml(source.bytes, source.operand, source.schemas, {}, source.options.max_work,
                     source.options.includes);
 }
-bool isHouseExpo(const Source& source) {
+bool isHouseExpo(const ImportSource& source) {
     return isJson(source.bytes) && source.bytes.find("\"verts\"") != std::string_view::npos;
 }
+
+/// The formats in which records are written.
+constexpr Importer kRecordText{
+    "`#3dm 1`, `#env 1`", false,
+    [](const ImportSource& source) { return isRecordText(source.bytes); }, readRecords};
+
+/// Formats recognised by their first bytes.
+constexpr Importer kFormatsByMagic[] = {
+    {"", true, isCutMesh, kReadWalls, true},
+    {"", false, isGlbMesh, kReadMesh, true},
+    {"GLB", false, [](const ImportSource& source) { return isGlb(source.bytes); },
+     readRecordsOfGlb},
+    kRecordText,
+    importer<isAriaMap, readAriaMap>("an ARIA map"),
+    importer<isDxf, readDxf>("DXF"),
+    importer<isGridMap, readGridMap>("a MovingAI map"),
+    importer<isGalleryFile, readGalleryFile>("an art gallery", false),
+    importer<isSvg, readSvg>("SVG"),
+    importer<isSdf, readSdf>("SDF"),
+    {"IFC", true, [](const ImportSource& source) { return isIfc(source.bytes); },
+     [](const ImportSource& source) {
+         return readIfc(source.bytes, source.operand, source.options, source.schemas);
+     },
+     true},
+    importer<isPicture, readBarePicture>("a picture"),
+    importer<isPointCloud, readPointCloud>("a point cloud"),
+    {"a mesh", false, [](const ImportSource& source) { return isMeshFile(source.bytes); },
+     kReadMesh, true},
+};
+
+/// Formats recognised within plain text; the last accepts any text.
+constexpr Importer kFormatsOfText[] = {
+    {"HouseExpo JSON", true, isHouseExpo,
+     [](const ImportSource& source) {
+         return readHouseExpo(source.bytes, source.operand, source.options, source.schemas);
+     }},
+    importer<isRosMap, readRosMap>("a ROS map"),
+    {"YAML", false, [](const ImportSource&) { return true; }, readYamlRecords},
+};
+
+constexpr Importer kMeshBySuffix{
+    "", false, [](const ImportSource& source) { return hasMeshSuffix(source.operand); }, kReadMesh,
+    true};
 
 std::vector<Importer>& addedImporters() {
     static std::vector<Importer> importers;
     return importers;
 }
 
-/// Returns the importer of an extension that reads the source; null without one.
-const Importer* addedImporter(const Source& source) {
-    for (const Importer& importer : addedImporters())
-        if (importer.recognises(source.bytes)) return &importer;
-    return nullptr;
+/// A format of an extension that is not in this build.
+struct MissingFormat {
+    std::string_view sign, extension;
+};
+
+std::vector<MissingFormat>& missingFormats() {
+    static std::vector<MissingFormat> formats;
+    return formats;
 }
 
-/// Formats recognised by their first bytes.
-constexpr InputFormat kFormatsByMagic[] = {
-    {true, isCutMesh, kReadWalls, true},
-    {false, isGlbMesh, kReadMesh, true},
-    {false, holdsBytes<isGlb>, readRecordsOfGlb},
-    {false, holdsBytes<isRecordText>, readRecords},
-    {true, holdsBytes<isAriaMap>, importPlan<readAriaMap>},
-    {true, holdsBytes<isDxf>, importPlan<readDxf>},
-    {true, holdsBytes<isGridMap>, importPlan<readGridMap>},
-    {false, holdsBytes<isGalleryFile>, importPlan<readGalleryFile>},
-    {true, holdsBytes<isSvg>, importPlan<readSvg>},
-    {true, holdsBytes<isSdf>, importPlan<readSdf>},
-    {true, holdsBytes<isIfc>, importPlan<readIfc>, true},
-    {true, holdsBytes<isPicture>, importPlan<readBarePicture>},
-    {true, holdsBytes<isPointCloud>, importPlan<readPointCloud>},
-    {false, holdsBytes<isMeshFile>, kReadMesh, true},
-    {true, [](const Source& source) { return addedImporter(source) != nullptr; },
-     [](const Source& source) {
-         return addedImporter(source)->read(source.bytes, source.operand, source.options,
-                                            source.schemas);
-     }},
-};
+/// Returns the extension that would read the source; "" for others.
+std::string_view extensionFor(const ImportSource& source) {
+    for (const auto& [sign, extension] : missingFormats()) {
+        const bool is_its = sign.front() == '.'   ? meshSuffix(source.operand) == sign
+                            : sign.front() == '<' ? xmlRootName(source.bytes) == sign.substr(1)
+                                                  : source.bytes.starts_with(sign);
+        if (is_its) return extension;
+    }
+    return "";
+}
 
-/// Formats recognised within plain text; the last accepts any text.
-constexpr InputFormat kFormatsOfText[] = {
-    {true, isHouseExpo, importPlan<readHouseExpo>},
-    {true, holdsBytes<isRosMap>, importPlan<readRosMap>},
-    {false, [](const Source&) { return true; }, readYamlRecords},
-};
+/// Lists the formats, in the order of their names: "wanted DXF, GLB or SVG".
+std::string wanted() {
+    std::vector<std::string_view> names;
+    const auto add = [&names](std::span<const Importer> rows) {
+        for (const Importer& row : rows)
+            if (!row.name.empty()) names.push_back(row.name);
+    };
+    add(kFormatsByMagic);
+    add(kFormatsOfText);
+    add(addedImporters());
+    std::sort(names.begin(), names.end());
+    std::string text = "wanted ";
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (i > 0) text += i + 1 < names.size() ? ", " : " or ";
+        text += names[i];
+    }
+    return text;
+}
 
-constexpr InputFormat kMeshBySuffix = {
-    false, [](const Source& source) { return hasMeshSuffix(source.operand); }, kReadMesh, true};
-
-const InputFormat* findFormat(std::span<const InputFormat> formats, const Source& source) {
-    const auto found = std::find_if(formats.begin(), formats.end(),
-                                    [&source](const auto& format) { return format.holds(source); });
+const Importer* findFormat(std::span<const Importer> formats, const ImportSource& source) {
+    const auto found = std::find_if(formats.begin(), formats.end(), [&source](const auto& format) {
+        return format.recognises(source);
+    });
     return found == formats.end() ? nullptr : &*found;
 }
 
 /// Returns the format of the source; calls `refuse(line, message)` if there is none.
 template <typename Refuse>
-const InputFormat* formatOf(const Source& source, Refuse refuse) {
+const Importer* formatOf(const ImportSource& source, Refuse refuse) {
     const std::string_view bytes = source.bytes;
     if (bytes.find_first_not_of(kBlanks) == std::string_view::npos)
-        return refuse(0, std::string("empty input: ") + kWanted), nullptr;
-    if (const InputFormat* format = findFormat(kFormatsByMagic, source)) return format;
+        return refuse(0, "empty input: " + wanted()), nullptr;
+    if (const Importer* format = findFormat(kFormatsByMagic, source)) return format;
+    if (const Importer* format = findFormat(addedImporters(), source)) return format;
+    if (const std::string_view extension = extensionFor(source); !extension.empty())
+        return refuse(0, "this build lacks the extension " + std::string(extension) +
+                             ", which reads such files"),
+               nullptr;
     if (const std::string what = foreignFile(bytes); !what.empty())
         return refuse(0, "not an environment or layout but " + what), nullptr;
     if (const std::string what = foreignMesh(source.operand); !what.empty())
         return refuse(0, "not an environment or layout but " + what), nullptr;
-    if (kMeshBySuffix.holds(source)) return &kMeshBySuffix;
-    if (!isPlainText(bytes))
-        return refuse(0, std::string("not an environment or layout: ") + kWanted), nullptr;
+    if (kMeshBySuffix.recognises(source)) return &kMeshBySuffix;
+    if (!isPlainText(bytes)) return refuse(0, "not an environment or layout: " + wanted()), nullptr;
     if (isJson(bytes) && !isHouseExpo(source))
         if (const std::string what = foreignJson(bytes); !what.empty())
             return refuse(0, "not an environment or layout but " + what), nullptr;
@@ -314,17 +334,21 @@ void addImporters(std::span<const Importer> importers) {
     addedImporters().insert(addedImporters().end(), importers.begin(), importers.end());
 }
 
+void addMissingFormat(std::string_view sign, std::string_view extension) {
+    missingFormats().push_back({sign, extension});
+}
+
 bool isPlan(std::string_view bytes, const std::string& operand, const ImportOptions& options,
             const Schemas& schemas) {
-    const InputFormat* format = formatOf({withoutBom(bytes), operand, options, schemas},
-                                         [](int /*line*/, const std::string& /*message*/) {});
+    const Importer* format = formatOf({withoutBom(bytes), operand, options, schemas},
+                                      [](int /*line*/, const std::string& /*message*/) {});
     return format != nullptr && format->is_plan;
 }
 
 Document parseDocument(std::string_view bytes, const std::string& operand,
                        const ImportOptions& options, const Schemas& schemas) {
-    const Source source{withoutBom(bytes), operand, options, schemas};
-    const InputFormat* format = formatOf(
+    const ImportSource source{withoutBom(bytes), operand, options, schemas};
+    const Importer* format = formatOf(
         source, [&](int line, const std::string& message) { failFile(operand, message, line); });
     Budget* building = options.max_work.whole;
     if (format->is_confined && building != nullptr &&

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/io: rooms in and out. One importer per foreign format: how it is recognised, and the records
-// that it becomes; importers.cc holds their table. The writers are in exporters.h.
+// lib/io: rooms in and out. One importer per foreign format, a row: how it is recognised, and the
+// records that it becomes. importers.cc holds the rows of the core, addImporters() adds those of
+// extensions. The writers are in exporters.h.
 #pragma once
 
 #include <cstddef>
@@ -81,24 +82,52 @@ struct ImportOptions {
     MeshFiles* meshes = nullptr;     ///< those that other rooms have read; may be null
 };
 
-/// Reads any environment or layout, recognised by content: GLB, `#env`, `#3dm`, YAML, ROS map YAML,
-/// pictures, HouseExpo JSON, ARIA and MovingAI maps, art galleries, ASCII DXF, SVG, IFC, and
-/// meshes, also GLB without our records, which become a `mesh` record. Content that fits no format
-/// is a mesh if its suffix says so. `operand` is a file name or "-". Loads the files that records
-/// name unless ImportOptions::load_files is false. \throws FormatError (also: empty input, or an
-/// unknown format, with a hint), std::system_error
+/// Reads any environment or layout, recognised by content, in the format of the first row that
+/// recognises it; meshes without our records become a `mesh` record. Content that fits no format is
+/// a mesh if its suffix says so. `operand` is a file name or "-". Loads the files that records name
+/// unless ImportOptions::load_files is false. \throws FormatError (also: empty input, or an unknown
+/// format, with a hint), std::system_error
 Document readDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 
-/// A format that an extension reads: a plan, recognised by its bytes after the magic words of the
-/// formats of this folder.
-struct Importer {
-    bool (*recognises)(std::string_view bytes) = nullptr;
-    Document (*read)(std::string_view bytes, const std::string& name, const ImportOptions& options,
-                     const Schemas& schemas) = nullptr;
+/// An input, and the options for reading it.
+struct ImportSource {
+    std::string_view bytes;  ///< without a byte order mark
+    const std::string& operand;
+    const ImportOptions& options;
+    const Schemas& schemas;
 };
-/// Adds formats to those of all functions here; the program does so before it reads a file.
+
+/// A format that is read: one row, the only mention of it in messages and in the choice of a
+/// reader.
+struct Importer {
+    /// As messages list the formats: "DXF", "a mesh"; "": not listed.
+    std::string_view name;
+    bool is_plan = true;  ///< rooms are chosen from it, see isPlan()
+    bool (*recognises)(const ImportSource& source) = nullptr;
+    Document (*read)(const ImportSource& source) = nullptr;
+    bool is_confined = false;  ///< read by a program that bounds its own work
+};
+
+/// Returns the row of a format that its bytes alone tell:
+/// `importer<isSdf, readSdf>("SDF")`.
+template <bool (*kRecognises)(std::string_view),
+          Document (*kRead)(std::string_view, const std::string&, const ImportOptions&,
+                            const Schemas&)>
+constexpr Importer importer(std::string_view name, bool is_plan = true) {
+    return {name, is_plan, [](const ImportSource& source) { return kRecognises(source.bytes); },
+            [](const ImportSource& source) {
+                return kRead(source.bytes, source.operand, source.options, source.schemas);
+            }};
+}
+
+/// Adds formats, which are tried after those of the core; a program does so before it reads a file.
 void addImporters(std::span<const Importer> importers);
+
+/// States a format that an extension would read, which this program was built without: the error
+/// about such a file names the extension. \param sign a suffix (".dxf"), the root of XML ("<sdf"),
+/// or the first bytes; a literal, as the extension's name
+void addMissingFormat(std::string_view sign, std::string_view extension);
 
 /// Returns true if the bytes are a plan, map or drawing. Its importer chooses rooms, so it requires
 /// the walls and inside points of other inputs and edits beforehand (ImportOptions).

@@ -39,8 +39,8 @@ TEST(Input, ToldApartByContent) {
 
 TEST(Input, SaysWhatItWanted) {
     const std::string wanted =
-        "wanted GLB, `#env 1`, `#3dm 1`, YAML, a ROS map, a picture, HouseExpo JSON, an ARIA or "
-        "MovingAI map, an art gallery, DXF, SVG, SDF, IFC, a mesh or a point cloud";
+        "wanted DXF, GLB, HouseExpo JSON, IFC, SDF, SVG, YAML, `#3dm 1`, `#env 1`, a MovingAI map, "
+        "a ROS map, a mesh, a picture, a point cloud, an ARIA map or an art gallery";
     EXPECT_EQ(errorOf(""), "room: error: empty input: " + wanted);
     EXPECT_EQ(errorOf(" \n\r\n"), "room: error: empty input: " + wanted);
     for (const std::string& junk :
@@ -71,6 +71,27 @@ TEST(Input, ImportsToldApartByContent) {
             .records.front()
             .text("file"),
         "chair.gltf");
+}
+
+TEST(Input, NamesTheExtensionThatWouldReadIt) {
+    addMissingFormat(".plan9", "sketches");
+    addMissingFormat("<plan9", "sketches");
+    addMissingFormat("#PLAN9", "sketches");
+    const ImportOptions options;
+    const auto errorOfFile = [&](const std::string& bytes, const std::string& operand) {
+        try {
+            parseDocument(bytes, operand, options, sceneSchemas());
+        } catch (const FormatError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    const std::string lacks =
+        ": error: this build lacks the extension sketches, which reads such files";
+    EXPECT_EQ(errorOfFile("walls\n", "a.PLAN9"), "a.PLAN9" + lacks);
+    EXPECT_EQ(errorOfFile("<?xml version='1.0'?><plan9/>", "room"), "room" + lacks);
+    EXPECT_EQ(errorOfFile("#PLAN9 1\n", "room"), "room" + lacks);
+    EXPECT_EQ(errorOfFile("#env 1\ndesk at=1,2\n", "a.plan9"), "no error");
 }
 
 TEST(Input, OtherFormatsGetAHint) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""offers.py SOURCES TOOLS: fails if an extension's offers.txt does not list the options of its groups and its records.
+"""offers.py SOURCES TOOLS: fails if an extension's offers.txt does not list the options of its groups, its records and its formats.
 
 Builds without the extension name it to those who ask for one of them.
 """
@@ -32,6 +32,10 @@ for name, rows in offers.items():
             about = said("envc", "--check", "-", text=f"#env 1\n{keyword}{f' {key}=1' if key else ''}\n")
             if f"unknown key{'' if key else 'word'} " in about and f"the extension {name} reads" not in about:
                 faults.append(f"{name} has no record {offer}: {about}")
+        elif owner == "format":
+            read = any(f'importer<' in source.read_text() for source in (extensions / name).glob("*.cc"))
+            if not read:
+                faults.append(f"{name} reads no format, so not {offer}")
         elif offer not in known[owner] and f"the extension {name}, which" not in said(owner, offer):
             faults.append(f"{name}: {owner} has no {offer}")
 

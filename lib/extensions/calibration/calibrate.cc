@@ -710,7 +710,7 @@ class Calibration final : public OptionGroup {
 std::unique_ptr<OptionGroup> makeCalibration() { return std::make_unique<Calibration>(); }
 
 std::span<const Importer> calibrationImporters() {
-    static constexpr Importer kRows[] = {{isLog, readLogRoom}};
+    static constexpr Importer kRows[] = {importer<isLog, readLogRoom>("")};
     return kRows;
 }
 
