@@ -46,12 +46,19 @@ for tool in $programs; do
     fi
 done
 
-# No name of an option breaks at the end of a line.
+# No name of an option breaks at the end of a line, and no word is hyphenated: names of topics and requests are words.
 if command -v man >/dev/null; then
+    # All three in UTF-8: elsewhere col drops the sign of hyphenation.
+    broken() (
+        export MANWIDTH=80 LC_ALL=C.UTF-8
+        man -l "$1" 2>/dev/null | col -b | grep -nE -- '(^|[ [(])--?[a-z][a-z0-9-]*-$|‐$' || true
+    )
     for page in "$binary_dir"/share/man/man*/*; do
-        broken=$(MANWIDTH=80 LC_ALL=C.UTF-8 man -l "$page" 2>/dev/null | col -b | grep -nE -- '(^|[ [(])--?[a-z][a-z0-9-]*[-‐]$' || true)
-        [ -z "$broken" ] || fail "${page##*/}: $broken"
+        found=$(broken "$page")
+        [ -z "$found" ] || fail "${page##*/}: $found"
     done
+    grep -vE '^\.nh|^\.nr HY' "$pages/simrun.1" >hyphens.1
+    [ -n "$(broken "$PWD/hyphens.1")" ] || fail "self-test: hyphens pass"
 fi
 
 # A build for `make demo` has both sections, too.
