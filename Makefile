@@ -13,7 +13,7 @@ configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev
 build = cmake --build $(1) -j $(JOBS)
 
 .NOTPARALLEL:
-.PHONY: all help deps demo experiments check sanitized races bench fuzz torture format lint install package package-check clean
+.PHONY: all help deps demo experiments check sanitized races bench fuzz torture format lint install package source-package package-check clean
 
 all: $(BUILD)/configured
 	$(call build,$(BUILD))
@@ -33,6 +33,8 @@ help:
 	@echo "make lint        rates of words in comments and pages; clang-tidy on changed sources (all with BASE=)"
 	@echo "make install     install under prefix=$(prefix), honours DESTDIR"
 	@echo "make package     deps, build, Debian packages in $(BUILD)/package, judged by lintian"
+	@echo "make source-package"
+	@echo "                 the commit as a Debian source package, in $(BUILD)/source-package"
 	@echo "make package-check"
 	@echo "                 the same, and install and use them on a bare Debian (root rights, debootstrap)"
 	@echo "make clean       remove $(BUILD), $(SANITIZED), $(RACES) and build-fuzz"
@@ -106,6 +108,10 @@ package:
 	@$(MAKE) --no-print-directory $(BUILD)/configured
 	$(call build,$(BUILD)) --target tools manual completions
 	@.ci/package $(BUILD)
+
+source-package:
+	@.ci/deps package
+	@.ci/package --source $(BUILD)/source-package
 
 package-check: package
 	@.ci/deps check

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The Debian packages of the build: lintian reports no findings, a second run gives the same bytes, no package takes a
-# name of another one, and the unpacked tools work. `make package-check` installs them for real.
+# name of another one, and the unpacked tools work; and the source package. `make package-check` installs them for real.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 for program in dpkg-buildpackage dh dh_python3 lintian; do
@@ -46,6 +46,32 @@ if [ -e "$binary_dir/lib/ispace/dds.so" ]; then
 fi
 dpkg-deb -f one/ispace_*.deb Depends | has 'libcairo2' || fail "Cairo, which a module links, is not needed"
 if dpkg-deb -f one/ispace_*.deb Depends | grep imgcodecs; then fail "OpenCV's pictures are needed"; fi
+# Each static library that the linker is given is named, by its source package and in the copyright.
+{ grep -ohE '/usr/[^ ]*/lib[a-z0-9]*\.a' "$binary_dir/build.ninja" "$binary_dir"/*/CMakeFiles/*/link.txt 2>/dev/null || true; } |
+    sort -u | { grep -vE 'gtest|benchmark' || true; } >archives
+[ "$(wc -l <archives)" -gt 4 ] || fail "no static libraries: $(cat archives)"
+dpkg-deb -f one/ispace_*.deb Built-Using >built_using
+while read -r archive; do
+    library=$(dpkg-query -S "$archive" | sed 's/[:,].*//')
+    grep -qF "$(dpkg-query -W -f '${source:Package} (= ${source:Version})' "$library")" built_using ||
+        fail "Built-Using lacks $library: $(cat built_using)"
+    grep -qw -- "$library" root/usr/share/doc/ispace/copyright || fail "the copyright lacks $library"
+done <archives
+
+# The source package holds what git does, and needs what packages.txt lists.
+if git -C "$source_dir" rev-parse --git-dir >/dev/null 2>&1; then
+    XZ_OPT=-0 LINTIAN="" "$source_dir/.ci/package" --source "$scratch/source" >log 2>&1 || fail "$(cat log)"
+    dpkg-source --no-check -x source/*.dsc unpacked >log 2>&1 || fail "$(cat log)"
+    (cd unpacked && find . \( -path ./debian -o -path ./.pc \) -prune -o \( -type f -o -type l \) -printf '%P\n') | LC_ALL=C sort >packed
+    git -C "$source_dir" -c core.quotePath=off ls-tree -r --name-only HEAD | LC_ALL=C sort | diff - packed ||
+        fail "the source package holds other files than the commit"
+    for library in libembree-dev libglpk-dev cmake ninja-build; do
+        grep -qx " $library,\?" unpacked/debian/control || fail "$library is no Build-Depends: $(cat unpacked/debian/control)"
+    done
+    [ -x unpacked/debian/tests/tools ] || fail "no test of the installed package"
+else
+    echo "no git here: no source package"
+fi
 
 export PATH=$scratch/root/usr/bin:/usr/bin:/bin
 ispace envc root/usr/share/ispace/scenes/crowded.env -o room.glb
