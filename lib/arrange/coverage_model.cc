@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -139,6 +140,7 @@ void CoverageModel::addRooms() {
                 weights[rooms_[i].copies.front().first + k] *= areas[i];
         setAreas(std::move(weights));
     }
+    if (options_.demand) setNeeds();
     total_ = problem_.totalWeight();
     if (total_ == 0)
         throw UnmetError(options_.demand ? options_.demand->nothingText() : nothingText());
@@ -148,6 +150,24 @@ void CoverageModel::addRooms() {
             room.model->standing().forEach(
                 [&](std::size_t cell) { problem_.standing.set(room.copies.front().first + cell); });
     if (joinsRooms()) countStandingBeyond();
+}
+
+void CoverageModel::setNeeds() {
+    std::vector<std::uint16_t> needs;  // of all elements
+    for (std::size_t i = 0; i < rooms_.size(); ++i) {
+        if (rooms_[i].model == nullptr) continue;
+        const std::vector<std::uint16_t> own = site_.rooms[i].goals.demand->needs();
+        assert(own.empty() || own.size() == rooms_[i].cells);
+        needs.insert(needs.end(), own.begin(), own.end());
+        if (own.empty()) needs.resize(needs.size() + rooms_[i].cells, 1);
+    }
+    // The problem requires the same of all: those that need fewer have the difference already.
+    const int most = needs.empty() ? 1 : *std::ranges::max_element(needs);
+    const int once = problem_.required;
+    problem_.required = once * most;
+    for (std::size_t i = 0; i < needs.size(); ++i)
+        problem_.achieved[i] = static_cast<std::uint16_t>(
+            std::min(problem_.achieved[i] + (most - needs[i]) * once, 0xffff));
 }
 
 void CoverageModel::setAreas(std::vector<double> areas) {

@@ -188,6 +188,8 @@ class CoverageModel {
     void mustBeAffordable() const;
     void setUnits();
     void addRooms();
+    /// Lets each element of a demand need as many sensors as it says.
+    void setNeeds();
     void setAreas(std::vector<double> areas);
     void countStandingBeyond();
     [[nodiscard]] std::string nothingText() const;

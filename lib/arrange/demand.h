@@ -25,7 +25,7 @@ struct ServedDemand {
 /// The demand of a covering problem in place of the floor of a room: weighted elements, each with a
 /// rule by which a sensor serves it (demand points, Church and ReVelle 1974).
 ///
-/// arrange() maximises the weight of the elements that as many sensors serve as are required, and
+/// arrange() maximises the weight of the elements that as many sensors serve as they need, and
 /// proves its bound over the candidates, whatever the rule: it must depend on one sensor at a time.
 /// Each room of a site has its own, of one class and with one unit of weight; weights of all rooms
 /// add up. Sensors serve elements of their own room.
@@ -46,6 +46,10 @@ class Demand {
     [[nodiscard]] virtual std::string_view many() const = 0;
     /// Returns the weights of the elements, finite and not negative.
     [[nodiscard]] virtual const std::vector<double>& weights() const = 0;
+    /// Returns how many sensors each element needs, at least 1, with --redundancy times as many;
+    /// empty: one each. A place may have an element for its first sensor, one for its second, and
+    /// so on.
+    [[nodiscard]] virtual std::vector<std::uint16_t> needs() const { return {}; }
     /// Says why all weights are 0, if they are.
     [[nodiscard]] virtual std::string nothingText() const = 0;
     /// Returns all that views depend on besides room and sensors, as text, for stored results.

@@ -17,6 +17,7 @@ namespace ispace {
 
 class Demand;
 struct ArrangeOptions;
+struct RoomGoals;
 
 /// An objective of arrange and its options: an object is made for each command line.
 class ObjectiveGroup {
@@ -28,11 +29,19 @@ class ObjectiveGroup {
     [[nodiscard]] virtual std::string_view help() const = 0;
     /// Declares the options, bound to members; as OptionGroup::declare().
     virtual void declare(CommandLine& line) = 0;
+    /// Returns what counts, for refusals of options about the floor, and those of them that hold
+    /// for it, too.
+    struct Counted {
+        std::string_view what = "ways of people instead of floor";
+        std::span<const std::string_view> options = {};  ///< of --zone, --weight, ...
+    };
+    [[nodiscard]] virtual Counted counted() const { return {}; }
     /// Makes the demand in each room of a site, all of one class.
-    /// \param files receives those that were read \throws UsageError, UnmetError, FormatError
+    /// \param goals of the rooms \param files receives those that were read \throws UsageError,
+    /// UnmetError, FormatError
     [[nodiscard]] virtual std::vector<std::shared_ptr<const Demand>> demandsIn(
-        const SiteInput& site, const ArrangeOptions& how, const CommonOptions& common,
-        std::vector<std::string>& files) const = 0;
+        const SiteInput& site, std::span<const RoomGoals> goals, const ArrangeOptions& how,
+        const CommonOptions& common, std::vector<std::string>& files) const = 0;
 };
 
 /// A row of tools/extensions.cc.

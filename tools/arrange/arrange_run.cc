@@ -135,7 +135,8 @@ void takeDemand(const ArrangeToolOptions& options, ArrangeWork& work) {
         demands = demandsOfPresence(*options.presence, work.input, options.common.seed,
                                     work.how.plane, work.files);
     if (options.objective)
-        demands = options.objective->demandsIn(work.input, work.how, options.common, work.files);
+        demands = options.objective->demandsIn(work.input, work.goals, work.how, options.common,
+                                               work.files);
     if (demands.empty()) return;
     work.how.demand = demands.front();
     for (std::size_t i = 0; i < work.goals.size(); ++i) {

@@ -235,9 +235,13 @@ void ArrangeCommand::settleDemand() const {
     constexpr const char* kOfFloor[] = {"--zone",  "--weight",   "--facing", "--robust",
                                         "--crowd", "--refine",   "--proof",  "--judge",
                                         "--reso",  "--connected"};
+    const ObjectiveGroup::Counted counted =
+        options_.objective ? options_.objective->counted() : ObjectiveGroup::Counted();
     for (const char* option : kOfFloor)
-        if (line_.given(option))
-            throw UsageError(name + " counts ways of people instead of floor: leave out " + option);
+        if (line_.given(option) &&
+            std::ranges::find(counted.options, std::string_view(option)) == counted.options.end())
+            throw UsageError(name + " counts " + std::string(counted.what) + ": leave out " +
+                             option);
 }
 
 void ArrangeCommand::checkStrategyOption(const StrategyRow& row,

@@ -34,8 +34,8 @@ class TrackObjective : public ObjectiveGroup {
                       Enters::History);
     }
     [[nodiscard]] std::vector<std::shared_ptr<const Demand>> demandsIn(
-        const SiteInput& site, const ArrangeOptions& how, const CommonOptions& common,
-        std::vector<std::string>& files) const override {
+        const SiteInput& site, std::span<const RoomGoals> /*goals*/, const ArrangeOptions& how,
+        const CommonOptions& common, std::vector<std::string>& files) const override {
         LossRule loss = loss_;
         loss.plane = how.plane;
         const std::vector<RoomWays> ways = waysIn(site, "--ways", ways_, common.seed, how.plane);
