@@ -24,6 +24,9 @@
 #ifdef ISPACE_HAS_CURTAINS
 #include "extensions/curtains/curtain.h"
 #endif
+#ifdef ISPACE_HAS_EVENNESS
+#include "extensions/evenness/even_objective.h"
+#endif
 #ifdef ISPACE_HAS_EXPECT
 #include "extensions/expect/expectations.h"
 #endif
@@ -180,6 +183,9 @@ std::span<const ToolExtension> toolExtensions() {
 
 std::span<const MakeObjective> arrangeObjectives() {
     static const std::vector<MakeObjective> objectives = {
+#ifdef ISPACE_HAS_EVENNESS
+        makeEvenObjective,
+#endif
 #ifdef ISPACE_HAS_TRACKING
         makeTrackObjective,
 #endif

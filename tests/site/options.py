@@ -251,6 +251,8 @@ OPTIONS = {
         "--cell": f"!room.env --cell 0.5 --candidates 1,1,4 {LASERS}",
         "--reso": f"--reso 2 {LASERS}",
         "--judge": f"!room.env --cell 0.4 --strategy grid --judge no {LASERS}",
+        "--depth": "--objective even --depth 2 --sensor laser:2",
+        "--further": "--objective even --further 25% --sensor laser:2",
         "--ways": "--objective track --ways wander:2,1min --sensor laser:1",
         "--coast": "--objective track --coast 2s --ways wander:2,1min --sensor laser:1",
         "--crossing": "--objective track --crossing 1s --ways wander:2,1min --sensor laser:1",
