@@ -11,11 +11,8 @@
 #include <system_error>
 #include <utility>
 
-#include "base/error.h"
-#include "server/ros/ros_site.h"
 #include "server/server_data.h"
 #include "server/session.h"
-#include "server/web/web_page.h"
 
 namespace ispace {
 
@@ -29,38 +26,11 @@ std::string Server::address() const { return data_->acceptor.address(); }
 
 std::uint16_t Server::port() const { return data_->acceptor.port(); }
 
-std::string Server::serveWeb(const Endpoint& endpoint, const std::string& title,
-                             const WebPageOptions& options) {
-    Data& data = *data_;
-    const WebServer& web = data.webs.emplace_back(
-        data.io, endpoint, data.limits, std::make_unique<WebPage>(data.state, title, options));
-    return "http://" + web.address() + "/";
+BridgeHost Server::host() {
+    return {data_->io, data_->limits, data_->state, [&io = data_->io] { asio::post(io, [] {}); }};
 }
 
-std::string Server::serveRos(RosLanguage language, const Endpoint& endpoint,
-                             const std::string& title, RosScenery scenery) {
-    Data& data = *data_;
-    auto site = std::make_unique<RosSite>(data.state, data.feedOf(std::move(scenery)), language,
-                                          title, endpoint.is_loopback);
-    return "ws://" +
-           data.webs.emplace_back(data.io, endpoint, data.limits, std::move(site)).address();
-}
-
-void Server::serveDds(std::uint32_t domain, RosScenery scenery) {
-    Data& data = *data_;
-    data.node.emplace(data.state, data.feedOf(std::move(scenery)),
-                      DdsSettings{.domain = domain,
-                                  .allowed = data.limits.allowed,
-                                  .wake = [&io = data.io] { asio::post(io, [] {}); }});
-}
-
-void Server::logTopics(ByteSink write, RosScenery scenery) {
-    data_->log.emplace(data_->feedOf(std::move(scenery)), std::move(write));
-}
-
-std::size_t Server::topicsLeftOut() const { return data_->log ? data_->log->leftOut() : 0; }
-
-std::size_t Server::nodeTopicsLeftOut() const { return data_->node ? data_->node->leftOut() : 0; }
+void Server::keep(std::unique_ptr<Bridge> bridge) { data_->bridges.push_back(std::move(bridge)); }
 
 ReaderLosses Server::readerLosses() const {
     ReaderLosses all;
@@ -69,35 +39,6 @@ ReaderLosses Server::readerLosses() const {
         all.messages += each->losses().messages;
     }
     return all;
-}
-
-std::string Server::bagMetadata(const std::string& file) const {
-    return data_->log.value().metadata(file);
-}
-
-std::string Server::serveDevice(const WireProtocol& protocol, const std::string& id,
-                                const Endpoint& endpoint) {
-    Data& data = *data_;
-    const auto [state, name, is_known] = data.state.find(id);
-    if (!is_known) {
-        std::vector<std::string> known;
-        for (const auto& [room, world] : data.state.worlds())
-            for (const auto& ids : {idsOf(world->robots()), idsOf(world->sensors())})
-                for (const std::string& one : ids) known.push_back(nameAcross(room, one));
-        throw UsageError(unknownThing("robot or sensor", id, known));
-    }
-    const std::string refusal = protocol.refusal(state->simulation().world(), name);
-    if (!refusal.empty()) throw UsageError(refusal);
-    DeviceHost& host = data.hosts.emplace_back(*state, std::string(name), data.pictures);
-    return data.devices
-        .emplace_back(data.io, host, data.limits, protocol, std::string(name), endpoint)
-        .address();
-}
-
-void Server::serveMqtt(const MqttOptions& options) {
-    Data& data = *data_;
-    auto client = connectMqtt(options, [&io = data.io] { asio::post(io, [] {}); });
-    data.mqtt.emplace(data.state, std::move(client), options.prefix);
 }
 
 std::vector<std::string> Server::serveRoles(std::span<const MakeRoleService> services) {
@@ -155,7 +96,7 @@ void Server::run() {
     }
     data.serveClients();
     data.finishRecord();
-    data.finishLog();
+    data.finishBridges();
     data.end();
 }
 

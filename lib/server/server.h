@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/server: the server of the Simulator TCP Protocol, the ports of devices and topics, and the
-// web page. Uses sim and below; Asio and Beast inside.
+// lib/server: the server of the Simulator TCP Protocol, and the seam for other protocols
+// (bridge.h). Uses sim and below; Asio inside.
 #pragma once
 
 #include <chrono>
@@ -10,14 +10,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/file.h"
-#include "scene/run/run_marks.h"
-#include "sense/formats/ros_messages.h"
 #include "server/client_role.h"
-#include "server/device/wire_session.h"
-#include "server/mqtt/mqtt_client.h"
 #include "server/network.h"
 #include "sim/joined_worlds.h"
 #include "sim/simulation.h"
@@ -73,37 +70,8 @@ struct ReaderLosses {
     std::int64_t messages = 0;  ///< of topics, over Foxglove and rosbridge
 };
 
-/// Protocols that carry topics of ROS over WebSockets.
-enum class RosLanguage { Foxglove, Rosbridge };
-
-class RosSource;
-
-/// Data about the room for clients of ROS topics, computed in background threads.
-struct RosScenery {
-    std::function<RosGrid(const Scene& scene)> map = {};       ///< null: there is no map
-    std::function<std::string(const Scene& scene)> room = {};  ///< a mesh as GLB; null: none
-    /// Describes a robot and the sensors on it in URDF; null: none does. \param frame of the
-    /// robot \param wheels frames of its left and right one, "" without \param sensors frames of
-    /// all sensors, "" without
-    std::function<std::string(const Scene& scene, std::size_t robot, const std::string& frame,
-                              std::span<const std::string> wheels,
-                              std::span<const std::string> sensors)>
-        robot_model = {};
-    /// Id of the robot whose topics have names without a prefix, too; "": the only one.
-    std::string robot = {};
-    std::vector<std::shared_ptr<RosSource>> sources = {};  ///< of further topics
-};
-
-/// Returns the topics by which Open-RMF runs lifts, doors and fleets, see ispace-ros(7).
-std::shared_ptr<RosSource> rmfTopics();
-
-/// Parts of the page that depend on the options of the run.
-struct WebPageOptions {
-    bool edits = false;               ///< the page offers to change the room
-    std::vector<RunMark> marks = {};  ///< on the slider of a replay
-    /// Writes the mesh of a room as GLB, in the background; null: the page has no view in 3-D.
-    std::function<std::string(const Scene& scene)> mesh = {};
-};
+class Bridge;
+struct BridgeHost;
 
 /// Runs a simulation and serves it to many clients. One thread does both in turn, so the world does
 /// not change while a request is answered; sensors are computed on all cores.
@@ -124,42 +92,18 @@ class Server {
     /// "127.0.0.1:40123"
     [[nodiscard]] std::string address() const;
     [[nodiscard]] std::uint16_t port() const;
-    /// Serves the running world to browsers at a separate endpoint. Call at most once, before
-    /// run(). \param title of the page \returns "http://127.0.0.1:40124/"
-    /// \throws std::system_error naming the endpoint
-    std::string serveWeb(const Endpoint& endpoint, const std::string& title,
-                         const WebPageOptions& options = {});
-    /// Serves the running world as topics of ROS 2 at a separate endpoint. Call before run(). An
-    /// endpoint for other machines requires ServerLimits::token.
-    /// \param title of the run \param scenery of the first call serves all
-    /// \returns "ws://127.0.0.1:8765" \throws std::system_error naming the endpoint, UsageError if
-    /// the world has no such robot
-    std::string serveRos(RosLanguage language, const Endpoint& endpoint, const std::string& title,
-                         RosScenery scenery = {});
-    /// Takes part in a domain of DDS as a node of ROS 2, for this machine and
-    /// ServerLimits::allowed. Call at most once, before run(). \param scenery as for serveRos()
-    /// \throws FormatError if the module is missing, std::runtime_error
-    void serveDds(std::uint32_t domain, RosScenery scenery = {});
-    /// Writes the topics of the running world to an MCAP file, complete when run() returns. Call at
-    /// most once, before run(). \param scenery as for serveRos()
-    void logTopics(ByteSink write, RosScenery scenery = {});
-    /// Returns the number of topics that the MCAP file has no channel for.
-    [[nodiscard]] std::size_t topicsLeftOut() const;
-    /// Returns the number of topics that nodes of ROS 2 do not see, as there are too many.
-    [[nodiscard]] std::size_t nodeTopicsLeftOut() const;
-    /// Returns the text of `metadata.yaml` for that file, by its name in a folder. \pre logTopics()
-    [[nodiscard]] std::string bagMetadata(const std::string& file) const;
+    /// Returns what bridges are made with, see server/bridge.h.
+    [[nodiscard]] BridgeHost host();
+    /// Adds a further way into the run and out of it. Call before run(). \returns the bridge
+    template <class B>
+    B& add(std::unique_ptr<B> bridge) {
+        B& added = *bridge;
+        keep(std::move(bridge));
+        return added;
+    }
     /// Returns the number of readings and messages that slow readers have lost so far, by the kind
     /// of their port.
     [[nodiscard]] ReaderLosses readerLosses() const;
-    /// Serves a robot or sensor through the protocol of a real device at a separate endpoint. Call
-    /// before run(). \returns "127.0.0.1:10940"
-    /// \throws UsageError if the world has no such device, std::system_error naming the endpoint
-    std::string serveDevice(const WireProtocol& protocol, const std::string& id,
-                            const Endpoint& endpoint);
-    /// Publishes the states of the room on a broker of MQTT, and carries out commands from there.
-    /// Call before run(). \throws FormatError as connectMqtt()
-    void serveMqtt(const MqttOptions& options);
     /// Adds roles of extensions to the protocol, as far as the scenes ask for them. Call at most
     /// once, before run(). \returns notes on clients that the world waits for
     /// \throws FormatError as MakeRoleService
@@ -184,6 +128,8 @@ class Server {
     void stopOn(int descriptor);
 
   private:
+    void keep(std::unique_ptr<Bridge> bridge);
+
     struct Data;
     std::unique_ptr<Data> data_;
 };

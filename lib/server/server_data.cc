@@ -91,20 +91,6 @@ bool Server::Data::makeRoom() {
     return false;
 }
 
-/// Returns the feed that all clients of topics share. \param scenery of the first call
-RosFeed& Server::Data::feedOf(RosScenery scenery) {
-    if (feed) return *feed;
-    if (const std::string& robot = scenery.robot; !robot.empty()) {
-        std::vector<std::string> known;
-        for (const auto& [room, world] : state.worlds())
-            for (const std::string& id : idsOf(world->robots())) known.push_back(id);
-        if (std::find(known.begin(), known.end(), robot) == known.end())
-            throw UsageError(unknownThing("robot", robot, known));
-    }
-    feed.emplace(state, std::move(scenery));
-    return *feed;
-}
-
 void Server::Data::stepped() {
     // Writing to a thousand clients takes longer than the next step may be late. Only a clock that
     // waits leaves each client a turn before the next scan. A few are always served: load from
@@ -116,11 +102,7 @@ void Server::Data::stepped() {
     const WallTime end = steady_clock::now() + kTurn / 4;
     for (const auto& connection : connections)
         connection->stepped(may_be_late || steady_clock::now() < end);
-    for (DevicePort& device : devices) device.stepped();
-    if (mqtt) mqtt->stepped();
-    for (WebServer& web : webs) web.stepped();
-    if (node) node->stepped();
-    if (log) log->stepped();
+    for (const auto& bridge : bridges) bridge->stepped();
     static_cast<void>(hasUpdates());
     has_news = false;
     next_news = steady_clock::now() + kNewsEvery;
@@ -145,7 +127,7 @@ std::optional<WallTime> Server::Data::awaitedReader() const {
     };
     for (const auto& connection : connections)
         if (connection->owes()) wait(connection->waitingSince());
-    for (const WebServer& web : webs) wait(web.awaitedSince(earliest));
+    for (const auto& bridge : bridges) wait(bridge->awaitedSince(earliest));
     return latest ? std::optional(*latest + most) : std::nullopt;
 }
 
@@ -160,13 +142,10 @@ WallTime Server::Data::nextTurn() const {
         if (limits.watchdog.count() > 0 && connection->watched())
             next = std::min(next, connection->heard() + limits.watchdog);
     }
-    for (const DevicePort& device : devices) may_change = may_change || device.waitsToChange();
-    for (const WebServer& web : webs) may_change = may_change || web.waitsToChange();
-    if (node) {
-        may_change = may_change || node->waitsToChange();
-        next = std::min(next, node->nextSend().value_or(next));
+    for (const auto& bridge : bridges) {
+        may_change = may_change || bridge->waitsToChange();
+        next = std::min(next, bridge->nextTurn().value_or(next));
     }
-    may_change = may_change || (mqtt && mqtt->waitsToChange());
     if (!may_change) return next;
     auto change = state.nextChange();
     for (const ServerState& other : others) change = std::max(change, other.nextChange());
@@ -179,8 +158,10 @@ std::chrono::nanoseconds Server::Data::turn() const {
                           simulation.paused();
     if (may_hold && !roles.empty() && serving > 0) return std::chrono::nanoseconds(0);
     if (may_hold && limits.waits_for_readers) return std::chrono::nanoseconds(0);
-    if (!may_hold || (serving == 0 && webs.empty() && devices.empty() && !node && !log))
-        return kTurn;
+    const bool takes_frames =
+        serving > 0 || std::any_of(bridges.begin(), bridges.end(),
+                                   [](const auto& bridge) { return bridge->takesFrames(); });
+    if (!may_hold || !takes_frames) return kTurn;
     const bool has_heavy = std::any_of(states().begin(), states().end(), [](ServerState* each) {
         const auto sensors = each->simulation().world().sensors();
         return std::any_of(sensors.begin(), sensors.end(), isHeavy);
@@ -197,20 +178,7 @@ void Server::Data::serveClients() {
     const bool has_made = collect();
     for (const auto& connection : connections)
         if (has_made || connection->waiting()) connection->proceed();
-    for (WebServer& web : webs) {
-        if (has_made) web.stepped();
-        web.serve();
-    }
-    if (node) {
-        if (has_made) node->stepped();
-        node->serve();
-    }
-    if (log && has_made) log->stepped();
-    for (DevicePort& device : devices) {
-        device.serve(steady_clock::now());
-        if (has_made) device.stepped();
-    }
-    if (mqtt) mqtt->serve();
+    for (const auto& bridge : bridges) bridge->serve(has_made);
     has_news = hasUpdates() || has_news;
     if (has_news && steady_clock::now() >= next_news) stepped();
     if (limits.watchdog.count() > 0) {
@@ -283,29 +251,29 @@ void Server::Data::finishRecord() {
     while (!simulation.finishRecord(WallTime::max()) && await()) continue;
 }
 
-/// Writes the last step likewise.
-void Server::Data::finishLog() {
-    if (!log) return;
-    log->stepped();
+/// Lets bridges keep the last step likewise.
+void Server::Data::finishBridges() {
+    std::vector<Bridge*> keepers;
+    for (const auto& bridge : bridges)
+        if (bridge->keepsLastStep()) keepers.push_back(bridge.get());
+    if (keepers.empty()) return;
     const auto is_making = [](const ServerState* each) { return each->isMaking(); };
     const std::vector<ServerState*> all = states();
-    while (std::any_of(all.begin(), all.end(), is_making) && await()) log->stepped();
-    log->finish();
+    for (Bridge* const keeper : keepers) keeper->lastStepped();
+    while (std::any_of(all.begin(), all.end(), is_making) && await())
+        for (Bridge* const keeper : keepers) keeper->lastStepped();
+    for (Bridge* const keeper : keepers) keeper->finish();
 }
 
 void Server::Data::end() {
     acceptor.close();
     for (const auto& connection : connections) connection->end();
-    for (WebServer& web : webs) web.end();
-    for (DevicePort& device : devices) device.end();
-    if (node) node->end();
-    if (mqtt) mqtt->end();
+    for (const auto& bridge : bridges) bridge->end();
     sweep();
     const auto busy = [this] {
         return !connections.empty() ||
-               std::any_of(webs.begin(), webs.end(), [](WebServer& web) { return web.busy(); }) ||
-               std::any_of(devices.begin(), devices.end(),
-                           [](DevicePort& device) { return device.busy(); });
+               std::any_of(bridges.begin(), bridges.end(),
+                           [](const auto& bridge) { return bridge->busy(); });
     };
     const WallTime deadline = steady_clock::now() + kLastFlush;
     while (busy() && steady_clock::now() < deadline) {
@@ -317,8 +285,7 @@ void Server::Data::end() {
 
 void Server::Data::closeAll() {
     for (const auto& connection : connections) connection->close();
-    for (WebServer& web : webs) web.closeAll();
-    for (DevicePort& device : devices) device.closeAll();
+    for (const auto& bridge : bridges) bridge->closeAll();
     sweep();
 }
 

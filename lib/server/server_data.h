@@ -17,14 +17,11 @@
 #include <utility>
 #include <vector>
 
+#include "server/acceptor.h"
+#include "server/bridge.h"
 #include "server/client_connection.h"
-#include "server/device/device_port.h"
-#include "server/mqtt/mqtt_bridge.h"
-#include "server/ros/ros_feed.h"
-#include "server/ros/ros_log.h"
-#include "server/ros/ros_node.h"
 #include "server/server.h"
-#include "server/web_server.h"
+#include "server/server_state.h"
 
 namespace ispace {
 
@@ -54,7 +51,6 @@ struct Server::Data {
 
     void welcome(asio::ip::tcp::socket socket);
     bool makeRoom();
-    [[nodiscard]] RosFeed& feedOf(RosScenery scenery);
     void stepped();
     [[nodiscard]] bool rolesHoldWorld() const;
     [[nodiscard]] std::optional<WallTime> awaitedReader() const;
@@ -67,7 +63,7 @@ struct Server::Data {
     [[nodiscard]] bool isStopped();
     bool await();
     void finishRecord();
-    void finishLog();
+    void finishBridges();
     void end();
     void closeAll();
 
@@ -86,14 +82,7 @@ struct Server::Data {
     std::optional<WallTime> alarm_time;
     std::vector<std::shared_ptr<ClientConnection>> connections;  // in order of arrival
     std::atomic<std::size_t> serving = 0;
-    std::optional<RosFeed> feed;
-    std::optional<RosNode> node;
-    std::optional<RosLog> log;
-    std::list<WebServer> webs;
-    PictureFiles pictures;
-    std::list<DeviceHost> hosts;
-    std::list<DevicePort> devices;
-    std::optional<MqttBridge> mqtt;
+    std::vector<std::unique_ptr<Bridge>> bridges;
 };
 
 }  // namespace ispace

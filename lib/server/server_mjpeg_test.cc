@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/device/device_bridge.h"
 #include "server/device/mjpeg_session.h"
 #include "support/test_client.h"
 
@@ -21,7 +22,8 @@ class Filming {
     Filming(Clock::Kind clock, const std::string& camera)
         : room_({clock, 1}, {}, "", camera),
           server_(room_.simulation, parseEndpoint("127.0.0.1:0")),
-          address_(server_.serveDevice(kMjpeg, "c1", parseEndpoint("127.0.0.1:0"))),
+          address_(server_.add(std::make_unique<DeviceBridge>(server_.host()))
+                       .open(kMjpeg, "c1", parseEndpoint("127.0.0.1:0"))),
           thread_([this] { server_.run(); }) {}
     ~Filming() {
         server_.stop();

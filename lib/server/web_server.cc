@@ -49,7 +49,8 @@ void WebServer::stepped() {
     for (const auto& connection : connections_) connection->stepped();
 }
 
-void WebServer::serve() {
+void WebServer::serve(bool has_made) {
+    if (has_made) stepped();
     const auto now = steady_clock::now();
     bool wanted = false;
     for (const auto& connection : connections_) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "server/acceptor.h"
+#include "server/bridge.h"
 #include "server/server.h"
 #include "server/web/web_connection.h"
 #include "server/web/web_dialogue.h"
@@ -18,7 +19,7 @@ namespace ispace {
 
 /// Serves a site to browsers and other clients of WebSockets. Belongs to a Server and runs in its
 /// thread and event loop.
-class WebServer {
+class WebServer final : public Bridge {
   public:
     /// Starts listening. \throws std::system_error naming the endpoint
     WebServer(boost::asio::io_context& io, const Endpoint& endpoint, const ServerLimits& limits,
@@ -26,19 +27,15 @@ class WebServer {
 
     /// "127.0.0.1:40123"
     [[nodiscard]] std::string address() const { return acceptor_.address(); }
-    /// Call after each step of the world.
-    void stepped();
-    /// Call between steps: answers finished STEPs and sends frames.
-    void serve();
-    /// Returns the time since which the latest reader is awaited, among those since `earliest`.
-    [[nodiscard]] std::optional<WallTime> awaitedSince(WallTime earliest) const;
-    /// True if a client awaits its turn to change the world.
-    [[nodiscard]] bool waitsToChange() const;
+    void stepped() override;
+    /// Answers finished STEPs and sends frames.
+    void serve(bool has_made) override;
+    [[nodiscard]] std::optional<WallTime> awaitedSince(WallTime earliest) const override;
+    [[nodiscard]] bool waitsToChange() const override;
     /// Sends a closing message to all browsers.
-    void end();
-    void closeAll();
-    /// True while connections remain.
-    bool busy();
+    void end() override;
+    void closeAll() override;
+    [[nodiscard]] bool busy() override;
 
   private:
     void welcome(boost::asio::ip::tcp::socket socket);

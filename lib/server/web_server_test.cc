@@ -73,7 +73,7 @@ TEST(WebServer, NamesThePortThatIsTaken) {
     const WebRunning server;
     testing::TestWorld room;
     Server second(room.simulation, parseEndpoint("127.0.0.1:0"));
-    EXPECT_THROW(second.serveWeb(parseEndpoint(server.host()), ""), std::system_error);
+    EXPECT_THROW(serveWeb(second, parseEndpoint(server.host()), ""), std::system_error);
 }
 
 TEST(WebSocket, AnswersTheProtocol) {

@@ -38,7 +38,7 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
                                        std::string(line.substr(std::min(blank + 1, line.size()))),
                                        false});
         }
-        bridge.serve();
+        bridge.serve(false);
     }
     bridge.end();
     require(broker.is_closed, "the bridge does not disconnect");

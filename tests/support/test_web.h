@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "server/server.h"
+#include "server/web/web_page.h"
 #include "support/test_world.h"
 
 namespace ispace::testing {
@@ -30,7 +31,7 @@ class WebRunning {
                         const std::string& more = "")
         : room_(clock, {}, "", more),
           server_(room_.simulation, parseEndpoint("127.0.0.1:0"), limits),
-          url_(server_.serveWeb(parseEndpoint("127.0.0.1:0"), "room.env")),
+          url_(serveWeb(server_, parseEndpoint("127.0.0.1:0"), "room.env")),
           thread_([this] { server_.run(); }) {}
     ~WebRunning() { stop(); }
     WebRunning(const WebRunning&) = delete;

@@ -13,6 +13,7 @@
 #include "cli/extension.h"
 #include "cli/run_judge.h"
 #include "server/device/wire_session.h"
+#include "server/mqtt/mqtt_client.h"
 #include "server/server.h"
 #include "sim/record_form.h"
 #include "sim/simulation.h"

@@ -16,6 +16,10 @@
 #include "io/exporters.h"
 #include "io/glb/glb_write.h"
 #include "sense/formats/mcap_writer.h"
+#include "server/device/device_bridge.h"
+#include "server/mqtt/mqtt_bridge.h"
+#include "server/ros/ros_bridge.h"
+#include "server/web/web_page.h"
 #include "simrun/simrun_run.h"
 
 namespace ispace {
@@ -92,10 +96,12 @@ std::size_t DevicePortOptions::connections() const {
 
 DeviceAddresses serveDevices(Server& server, const DevicePortOptions& options) {
     DeviceAddresses out;
+    if (options.ports().empty()) return out;
+    DeviceBridge& devices = server.add(std::make_unique<DeviceBridge>(server.host()));
     for (const auto& [protocol, id, endpoint] : options.ports())
         out[protocol][id] =
             ofOption(optionOf(*protocol), [&, where = &endpoint, which = protocol, whose = &id] {
-                return server.serveDevice(*which, *whose, *where);
+                return devices.open(*which, *whose, *where);
             });
     return out;
 }
@@ -138,14 +144,15 @@ std::string meshOf(const Scene& scene) {
     return writeGlb(room, Document());
 }
 
-}  // namespace
-
+/// Returns writers of the room's map, mesh and robots for clients of topics, and further topics.
 RosScenery rosScenery(const SimrunOptions& options) {
     RosScenery scenery{
         .map = mapOf, .room = meshOf, .robot_model = writeRobotUrdf, .robot = options.ros_robot};
     if (options.rmf) scenery.sources.push_back(rmfTopics());
     return scenery;
 }
+
+}  // namespace
 
 void tellLosses(const Server& server, const SimrunOptions& options) {
     const ReaderLosses losses = server.readerLosses();
@@ -167,27 +174,23 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
         tell(options.common, "simrun", note);
     ServedAddresses out;
     if (options.web)
-        out.web = server.serveWeb(
-            *options.web, title,
+        out.web = serveWeb(
+            server, *options.web, title,
             {.edits = options.web_edits, .marks = recordedMarks(replayed), .mesh = meshOf});
-    const RosScenery scenery = rosScenery(options);
-    const auto serve = [&](RosLanguage language, const std::optional<Endpoint>& endpoint) {
-        return endpoint ? ofOption("--ros-robot",
-                                   [&] {
-                                       return server.serveRos(language, *endpoint,
-                                                              "simrun " + title, scenery);
-                                   })
-                        : std::string();
-    };
-    out.foxglove = serve(RosLanguage::Foxglove, options.foxglove);
-    out.rosbridge = serve(RosLanguage::Rosbridge, options.rosbridge);
-    if (options.ros_domain) {
-        ofOption("--ros-robot", [&] {
-            server.serveDds(static_cast<std::uint32_t>(*options.ros_domain), scenery);
-            return true;
+    if (options.foxglove || options.rosbridge || options.ros_domain || !options.mcap.empty()) {
+        out.ros = ofOption("--ros-robot", [&] {
+            return &server.add(std::make_unique<RosBridge>(server.host(), rosScenery(options)));
         });
+        const auto open = [&](RosLanguage language, const std::optional<Endpoint>& endpoint) {
+            return endpoint ? out.ros->open(language, *endpoint, "simrun " + title) : std::string();
+        };
+        out.foxglove = open(RosLanguage::Foxglove, options.foxglove);
+        out.rosbridge = open(RosLanguage::Rosbridge, options.rosbridge);
+    }
+    if (options.ros_domain) {
+        out.ros->join(static_cast<std::uint32_t>(*options.ros_domain));
         out.ros_domain = options.ros_domain;
-        if (const std::size_t left_out = server.nodeTopicsLeftOut(); left_out > 0)
+        if (const std::size_t left_out = out.ros->nodeTopicsLeftOut(); left_out > 0)
             warn(options.common, "simrun",
                  "--ros2: nodes do not see " + std::to_string(left_out) +
                      " topics, as there are too many; Foxglove and rosbridge have all");
@@ -195,7 +198,7 @@ ServedAddresses servePorts(Server& server, const SimrunOptions& options, const s
     if (options.mqtt) {
         MqttOptions mqtt = *options.mqtt;
         if (!options.mqtt_login.empty()) readLogin(options.mqtt_login, mqtt);
-        server.serveMqtt(mqtt);
+        serveMqtt(server, mqtt);
     }
     out.devices = serveDevices(server, options.devices);
     return out;
@@ -221,14 +224,12 @@ std::string preparedMcap(const SimrunOptions& options) {
 
 }  // namespace
 
-TopicLog::TopicLog(Server& server, Simulation& simulation, const SimrunOptions& options)
-    : server_(&server), options_(&options), name_(preparedMcap(options)), file_(name_) {
-    server.logTopics(
-        [this](std::string_view bytes) {
-            file_.write(bytes);
-            bytes_ += bytes.size();
-        },
-        rosScenery(options));
+TopicLog::TopicLog(RosBridge& ros, Simulation& simulation, const SimrunOptions& options)
+    : ros_(&ros), options_(&options), name_(preparedMcap(options)), file_(name_) {
+    ros.log([this](std::string_view bytes) {
+        file_.write(bytes);
+        bytes_ += bytes.size();
+    });
     simulation.onStep([this, &simulation] {
         if (bytes_ <= options_->max_recorded || end_ < kMaxTime) return;
         end_ = simulation.world().time();
@@ -239,8 +240,8 @@ TopicLog::TopicLog(Server& server, Simulation& simulation, const SimrunOptions& 
 void TopicLog::commit() {
     file_.commit();
     if (const std::string metadata = bagMetadataFile(*options_); !metadata.empty())
-        writeAll(metadata, server_->bagMetadata(fs::path(name_).filename().string()));
-    if (const std::size_t left_out = server_->topicsLeftOut(); left_out > 0)
+        writeAll(metadata, ros_->bagMetadata(fs::path(name_).filename().string()));
+    if (const std::size_t left_out = ros_->topicsLeftOut(); left_out > 0)
         warn(options_->common, "simrun",
              name_ + ": " + std::to_string(left_out) +
                  " topics are left out, as an MCAP file has at most " +

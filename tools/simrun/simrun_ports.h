@@ -13,11 +13,14 @@
 
 namespace ispace {
 
+class RosBridge;
+
 /// Addresses of the ports besides that of the protocol; "" without.
 struct ServedAddresses {
     std::string web, foxglove, rosbridge;
     std::optional<int> ros_domain;  ///< of DDS
     DeviceAddresses devices;
+    RosBridge* ros = nullptr;  ///< null without topics of ROS
 };
 /// Opens the ports that options ask for, and adds the roles of extensions to the protocol. \param
 /// title of the room or the record \param replayed folders of the records that are replayed \throws
@@ -35,7 +38,7 @@ std::string bagMetadataFile(const SimrunOptions& options);
 class TopicLog {
   public:
     /// Call before the run. \throws std::system_error
-    TopicLog(Server& server, Simulation& simulation, const SimrunOptions& options);
+    TopicLog(RosBridge& ros, Simulation& simulation, const SimrunOptions& options);
     TopicLog(const TopicLog&) = delete;
     TopicLog& operator=(const TopicLog&) = delete;
     ~TopicLog() = default;
@@ -44,7 +47,7 @@ class TopicLog {
     void commit();
 
   private:
-    const Server* server_;
+    const RosBridge* ros_;
     const SimrunOptions* options_;
     std::string name_;
     OutputFile file_;
@@ -54,9 +57,6 @@ class TopicLog {
 
 /// Writes the first line of output: clients can connect now.
 void announce(const Server& server, const ServedAddresses& addresses);
-
-/// Returns writers of the room's map, mesh and robots for clients of topics, and further topics.
-RosScenery rosScenery(const SimrunOptions& options);
 
 /// Says after the run how much slow readers have lost, if any.
 void tellLosses(const Server& server, const SimrunOptions& options);

@@ -606,7 +606,7 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
     Server server(simulation, options.listen, limitsOf(options, site.input), &worlds);
     const ServedAddresses addresses = servePorts(server, options, site.title, replayed);
     std::optional<TopicLog> log;
-    if (!options.mcap.empty()) log.emplace(server, simulation, options);
+    if (!options.mcap.empty()) log.emplace(*addresses.ros, simulation, options);
     const StopSignals signals;
     server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;

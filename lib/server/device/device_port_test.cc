@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "server/device/device_bridge.h"
 #include "server/device/wire_session.h"
+#include "server/server.h"
 #include "support/test_client.h"
 
 namespace ispace::testing {
@@ -106,7 +108,8 @@ class EchoServer {
                         const WireProtocol& protocol = kEcho)
         : room_(clock),
           server_(room_.simulation, parseEndpoint("127.0.0.1:0"), limits),
-          address_(server_.serveDevice(protocol, "r1", parseEndpoint("127.0.0.1:0"))),
+          address_(server_.add(std::make_unique<DeviceBridge>(server_.host()))
+                       .open(protocol, "r1", parseEndpoint("127.0.0.1:0"))),
           thread_([this] { server_.run(); }) {}
     ~EchoServer() {
         server_.stop();
@@ -151,7 +154,8 @@ TEST(DevicePort, NeedsSuchADevice) {
     TestWorld room;
     Server server(room.simulation, parseEndpoint("127.0.0.1:0"));
     try {
-        static_cast<void>(server.serveDevice(kEcho, "r3", parseEndpoint("127.0.0.1:0")));
+        static_cast<void>(
+            DeviceBridge(server.host()).open(kEcho, "r3", parseEndpoint("127.0.0.1:0")));
         FAIL();
     } catch (const UsageError& error) {
         EXPECT_STREQ(error.what(), "no robot `r3`, did you mean `r1`?");

@@ -2,6 +2,7 @@
 #include "server/mqtt/mqtt_bridge.h"
 
 #include <algorithm>
+#include <memory>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -70,6 +71,12 @@ constexpr std::size_t kMaxPayload = 256;
 
 }  // namespace
 
+void serveMqtt(Server& server, const MqttOptions& options) {
+    const BridgeHost host = server.host();
+    server.add(
+        std::make_unique<MqttBridge>(host.state, connectMqtt(options, host.wake), options.prefix));
+}
+
 MqttBridge::MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, std::string prefix)
     : state_(&state),
       client_(std::move(client)),
@@ -83,7 +90,7 @@ MqttBridge::MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, s
     session_.request("WORLD");
     session_.request("EVENTS state");
     session_.take();
-    serve();
+    MqttBridge::serve(false);
 }
 
 std::string MqttBridge::topicOf(std::string_view id, std::string_view key) const {
@@ -154,7 +161,7 @@ void MqttBridge::publish(const RoomState& state) {
     client_->publish({topic, payloadOf(state.key, state.value, is_actuator, spec), true});
 }
 
-void MqttBridge::serve() {
+void MqttBridge::serve(bool /*has_made*/) {
     if (const int now = client_->connections(); std::exchange(connections_, now) != now) {
         introduce(true);
         publishAll();

@@ -12,12 +12,18 @@
 #include <vector>
 
 #include "scene/room_state.h"
+#include "server/bridge.h"
 #include "server/mqtt/mqtt_client.h"
 #include "server/mqtt/mqtt_movers.h"
 #include "server/mqtt/mqtt_survey.h"
+#include "server/server.h"
 #include "server/session.h"
 
 namespace ispace {
+
+/// Publishes the states of the room on a broker of MQTT, and carries out commands from there. Call
+/// before Server::run(). \throws FormatError as connectMqtt()
+void serveMqtt(Server& server, const MqttOptions& options);
 
 /// Publishes the states of all worlds of the run, and carries out commands to its actuators: a
 /// client of the protocol's role WORLD whose transport is a broker.
@@ -26,18 +32,21 @@ namespace ispace {
 /// numbers up to 255, or the value as in events. A message to PREFIX/ID/KEY/set, in the same form,
 /// is a command to an actuator; robots, people and cameras are those of MqttMovers; PREFIX/error
 /// reports refused ones. The topics of Home Assistant's discovery describe all of them.
-class MqttBridge {
+class MqttBridge final : public Bridge {
   public:
     /// \throws FormatError if another run serves the prefix
     MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, std::string prefix);
 
-    /// Carries out commands that have arrived. Call it in turn with the world.
-    void serve();
+    /// Carries out commands that have arrived.
+    void serve(bool has_made) override;
     /// Publishes the states that a step or a change of the world has changed.
-    void stepped();
-    [[nodiscard]] bool waitsToChange() const { return session_.waitsToChange(); }
+    void stepped() override;
+    [[nodiscard]] bool waitsToChange() const override { return session_.waitsToChange(); }
+    [[nodiscard]] bool takesFrames() const override { return false; }
     /// Publishes that the run has ended, and disconnects.
-    void end();
+    void end() override;
+    [[nodiscard]] bool busy() override { return false; }
+    void closeAll() override {}
 
   private:
     struct Topic {

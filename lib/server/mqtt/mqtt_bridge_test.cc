@@ -322,15 +322,15 @@ class BridgeTest : public ::testing::Test {
     void step() {
         talk.step(1);
         bridge->stepped();
-        bridge->serve();
+        bridge->serve(false);
     }
     void tell(const std::string& topic, const std::string& payload, bool retained = false) {
         broker.incoming.push_back({topic, payload, retained});
-        bridge->serve();
+        bridge->serve(false);
         // A change has half of the time; the next waits for its turn.
         for (int i = 0; i < 200; ++i) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            bridge->serve();
+            bridge->serve(false);
         }
         step();
     }
@@ -441,17 +441,17 @@ TEST(MqttSurvey, ARunThatAnswersKeepsItsPrefix) {
 TEST_F(BridgeTest, AnswersOtherRuns) {
     broker.published.clear();
     broker.incoming.push_back({"home/run", "ask another", false});
-    bridge->serve();
+    bridge->serve(false);
     EXPECT_TRUE(broker.last("home/run").starts_with("here "));
 }
 
 TEST_F(BridgeTest, TellsAllAgainAfterAReconnection) {
     tell("home/lp/on/set", "ON");
     broker.published.clear();
-    bridge->serve();
+    bridge->serve(false);
     EXPECT_TRUE(broker.published.empty());
     ++broker.connections;
-    bridge->serve();
+    bridge->serve(false);
     EXPECT_EQ(broker.last("home/lp/on"), "ON");
     EXPECT_EQ(broker.published.back(), (MqttMessage{"home/status", "online", true}));
 }

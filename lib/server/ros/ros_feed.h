@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/ros/ros_scenery.h"
 #include "server/ros/ros_source.h"
 #include "server/ros/ros_topics.h"
 #include "server/server_state.h"

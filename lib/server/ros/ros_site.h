@@ -13,6 +13,9 @@
 
 namespace ispace {
 
+/// Protocols that carry topics of ROS over WebSockets.
+enum class RosLanguage { Foxglove, Rosbridge };
+
 /// True for programs that are no browsers, and for pages of this machine: those of a server on it,
 /// or of a file, as the desktop viewers have.
 bool isLocalOrigin(std::string_view origin);

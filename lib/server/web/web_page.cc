@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "scene/placement_schemas.h"
 #include "server/session.h"
+#include "server/web_server.h"
 
 namespace ispace {
 
@@ -174,6 +175,14 @@ std::vector<std::string> additions(const DeviceCatalogue& devices) {
 }
 
 }  // namespace
+
+std::string serveWeb(Server& server, const Endpoint& endpoint, const std::string& title,
+                     const WebPageOptions& options) {
+    const BridgeHost host = server.host();
+    const WebServer& web = server.add(std::make_unique<WebServer>(
+        host.io, endpoint, host.limits, std::make_unique<WebPage>(host.state, title, options)));
+    return "http://" + web.address() + "/";
+}
 
 WebPage::WebPage(ServerState& state, const std::string& title, const WebPageOptions& options) {
     WebSceneFacts facts{.title = title, .marks = options.marks, .mesh = options.mesh};

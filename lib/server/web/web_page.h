@@ -2,17 +2,34 @@
 // lib/server/web: the page that shows and drives a running world. Private to lib/server.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "scene/run/run_marks.h"
+#include "server/server.h"
 #include "server/server_state.h"
 #include "server/web/web_dialogue.h"
 #include "server/web/web_files.h"
 #include "server/web/web_frames.h"
 
 namespace ispace {
+
+/// Parts of the page that depend on the options of the run.
+struct WebPageOptions {
+    bool edits = false;               ///< the page offers to change the room
+    std::vector<RunMark> marks = {};  ///< on the slider of a replay
+    /// Writes the mesh of a room as GLB, in the background; null: the page has no view in 3-D.
+    std::function<std::string(const Scene& scene)> mesh = {};
+};
+
+/// Serves the running world to browsers at a separate endpoint. Call before Server::run().
+/// \param title of the page \returns "http://127.0.0.1:40124/"
+/// \throws std::system_error naming the endpoint
+std::string serveWeb(Server& server, const Endpoint& endpoint, const std::string& title,
+                     const WebPageOptions& options = {});
 
 /// The page that shows a running world: its files, and the dialogues of its WebSockets.
 ///
