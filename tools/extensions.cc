@@ -50,6 +50,9 @@
 #ifdef ISPACE_HAS_MEMORY
 #include "extensions/memory/memory.h"
 #endif
+#ifdef ISPACE_HAS_MQTT
+#include "extensions/mqtt/mqtt_options.h"
+#endif
 #ifdef ISPACE_HAS_NAVIGATION
 #include "extensions/navigation/navigation.h"
 #endif
@@ -73,8 +76,17 @@
 #ifdef ISPACE_HAS_REALITY
 #include "extensions/reality/reality.h"
 #endif
+#ifdef ISPACE_HAS_ROS
+#include "extensions/ros/ros_options.h"
+#endif
 #ifdef ISPACE_HAS_TRACKING
 #include "extensions/tracking/track_objective.h"
+#endif
+#ifdef ISPACE_HAS_WEB
+#include "extensions/web/web_options.h"
+#endif
+#ifdef ISPACE_HAS_WIRE
+#include "extensions/wire/wire_options.h"
 #endif
 
 namespace ispace {
@@ -200,6 +212,24 @@ std::span<const MakeJudge> runJudges() {
 #endif
     };
     return judges;
+}
+
+std::span<const MakeBridge> runBridges() {
+    static const std::vector<MakeBridge> bridges = {
+#ifdef ISPACE_HAS_WIRE
+        makeWireOptions,
+#endif
+#ifdef ISPACE_HAS_WEB
+        makeWebOptions,
+#endif
+#ifdef ISPACE_HAS_ROS
+        makeRosOptions,
+#endif
+#ifdef ISPACE_HAS_MQTT
+        makeMqttOptions,
+#endif
+    };
+    return bridges;
 }
 
 std::span<const MakeRoleService> roleServices() {

@@ -6,6 +6,7 @@
 
 #include "cli/extension.h"
 #include "cli/objective_extension.h"
+#include "cli/run_bridge.h"
 #include "cli/run_judge.h"
 #include "server/client_role.h"
 
@@ -20,6 +21,9 @@ std::span<const MakeObjective> arrangeObjectives();
 
 /// Returns the judges of runs that extensions add to simrun.
 std::span<const MakeJudge> runJudges();
+
+/// Returns the bridges that extensions add to runs of simrun.
+std::span<const MakeBridge> runBridges();
 
 /// Returns the roles that extensions add to the protocol of simrun.
 std::span<const MakeRoleService> roleServices();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One thread that runs slow jobs beside the server's. Private to lib/server.
+// One thread that runs slow jobs beside the server's. For lib/server and its bridges.
 #pragma once
 
 #include <chrono>

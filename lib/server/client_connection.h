@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/server, since it includes Asio.
+// For lib/server and its bridges, since it includes Asio.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>

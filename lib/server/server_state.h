@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// State shared by the sessions of a server. Private to lib/server.
+// State shared by the sessions of a server. For lib/server and its bridges.
 #pragma once
 
 #include <cstddef>

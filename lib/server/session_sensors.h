@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Formats readings for the protocol, see ispace-protocol(7). Private to lib/server.
+// Formats readings for the protocol, see ispace-protocol(7). For lib/server and its bridges.
 #pragma once
 
 #include <span>

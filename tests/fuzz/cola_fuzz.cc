@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A laser's CoLa: whatever comes, in whatever pieces, is answered by the same telegrams.
+#include "extensions/wire/cola.h"
 #include "fuzz.h"
-#include "server/device/cola.h"
 #include "wire_host.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {

@@ -3,7 +3,7 @@
 // messages.
 #include <nlohmann/json.hpp>
 
-#include "server/ros/foxglove_dialogue.h"
+#include "extensions/ros/foxglove_dialogue.h"
 #include "topic_client.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {

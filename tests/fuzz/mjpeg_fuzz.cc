@@ -2,8 +2,8 @@
 // A 3-D ranger read over HTTP: whatever is asked, in whatever pieces, has one answer.
 #include <string>
 
+#include "extensions/wire/mjpeg_session.h"
 #include "fuzz.h"
-#include "server/device/mjpeg_session.h"
 #include "wire_host.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {

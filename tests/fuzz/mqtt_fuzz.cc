@@ -6,9 +6,9 @@
 #include <memory>
 #include <string_view>
 
+#include "extensions/mqtt/mqtt_bridge.h"
 #include "fuzz.h"
 #include "served_room.h"
-#include "server/mqtt/mqtt_bridge.h"
 #include "server/session.h"
 #include "support/memory_broker.h"
 

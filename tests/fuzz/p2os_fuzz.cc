@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A Pioneer's packets: whatever comes, in whatever pieces, is answered by whole packets.
+#include "extensions/wire/p2os_session.h"
 #include "fuzz.h"
-#include "server/device/p2os_session.h"
 #include "wire_host.h"
 
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "../support/fake_participant.h"
+#include "extensions/ros/ros_node.h"
 #include "fuzz.h"
 #include "served_room.h"
-#include "server/ros/ros_node.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ServedRoom room;

@@ -2,7 +2,7 @@
 // The rosbridge protocol: whatever comes is answered by JSON objects and, where asked for, CBOR.
 #include <nlohmann/json.hpp>
 
-#include "server/ros/rosbridge_dialogue.h"
+#include "extensions/ros/rosbridge_dialogue.h"
 #include "topic_client.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {

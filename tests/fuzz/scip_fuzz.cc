@@ -2,8 +2,8 @@
 // A laser's SCIP 2.0: whatever comes, in whatever pieces, is answered by whole packets.
 #include <algorithm>
 
+#include "extensions/wire/scip.h"
 #include "fuzz.h"
-#include "server/device/scip.h"
 #include "wire_host.h"
 
 namespace {

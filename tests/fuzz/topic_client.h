@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
+#include "extensions/ros/ros_dialogue.h"
 #include "fuzz.h"
 #include "served_room.h"
-#include "server/ros/ros_dialogue.h"
 
 namespace ispace::fuzz {
 

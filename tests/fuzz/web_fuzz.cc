@@ -10,10 +10,10 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 
+#include "extensions/web/web_connection.h"
+#include "extensions/web/web_page.h"
 #include "fuzz.h"
 #include "served_room.h"
-#include "server/web/web_connection.h"
-#include "server/web/web_page.h"
 
 namespace {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
+#include "extensions/wire/wire_session.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
-#include "server/device/wire_session.h"
 
 namespace ispace::fuzz {
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # kind_files.sh [ROOT]: a kind of sensor or actuator is named by its own files, by those of other kinds, which may read
-# it, and by at most eight further ones, which the table of docs/architecture.md lists. It first shows on a made-up tree
+# it, and by at most eight further ones, which the table of docs/internals.md lists. It first shows on a made-up tree
 # that it can fail.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}
@@ -31,12 +31,12 @@ def found(cell):
     for name in re.findall(r"`([^`]+)`", cell):
         matches = [path for path in files if path == name or path.endswith("/" + name)]
         if len(matches) != 1:
-            print(f"docs/architecture.md: {name} is {len(matches)} files")
+            print(f"docs/internals.md: {name} is {len(matches)} files")
         listed.update(matches)
     return listed
 
 rows = {}
-page = (root / "docs/architecture.md").read_text(encoding="utf-8")
+page = (root / "docs/internals.md").read_text(encoding="utf-8")
 for line in page.partition("| kind | its own files |")[2].splitlines():
     row = re.fullmatch(r"\| `(\w+)` \| (.*) \| (.*) \|", line)
     if row:
@@ -56,13 +56,13 @@ for kind, (own, others) in rows.items():
              if any(word.split("/")[-1] in text for word in words)
              and re.search("|".join(patterns), text) and (kind, path) not in unrelated}
     for path in sorted(named - owned - others):
-        print(f"{path}: names {kind}, whose row of docs/architecture.md lacks it")
+        print(f"{path}: names {kind}, whose row of docs/internals.md lacks it")
     for path in sorted(others - (named - owned)):
-        print(f"docs/architecture.md: {path} does not name {kind}, or belongs to a kind")
+        print(f"docs/internals.md: {path} does not name {kind}, or belongs to a kind")
     if len(others) > most:
-        print(f"docs/architecture.md: {len(others)} files besides its own name {kind}, more than {most}")
+        print(f"docs/internals.md: {len(others)} files besides its own name {kind}, more than {most}")
 if not rows:
-    print("docs/architecture.md: no table of kinds")
+    print("docs/internals.md: no table of kinds")
 END_OF_PROGRAM
 }
 
@@ -72,7 +72,7 @@ mkdir -p "$scratch"/lib/scene "$scratch"/docs
 # page OTHERS: writes a table with one row.
 page() {
     printf '%s\n' '| kind | its own files | others that name it |' '|---|---|---|' \
-        "| \`pir\` | \`pir.h\` | $* |" >"$scratch/docs/architecture.md"
+        "| \`pir\` | \`pir.h\` | $* |" >"$scratch/docs/internals.md"
 }
 page "\`kinds.h\`"
 printf 'struct Pir;\n' >"$scratch/lib/scene/pir.h"

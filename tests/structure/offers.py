@@ -19,7 +19,7 @@ def said(tool, *words, text=""):
 
 
 def options_of(text):
-    return re.findall(r"^  (?:-\w, )?(--[a-z-]+)", text, re.MULTILINE)
+    return re.findall(r"^  (?:-\w, )?(--[a-z0-9-]+)", text, re.MULTILINE)
 
 
 offers = {one.name: [tuple(line.split()) for line in (one / "offers.txt").read_text().splitlines()]

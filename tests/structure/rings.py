@@ -3,6 +3,9 @@
 """rings.py [--update] [ROOT]: the fence of the house. The kernel includes neither engine nor extensions, the engine no
 extension, and tools name extensions in tools/extensions.cc alone.
 
+An extension includes those alone that its CMakeLists.txt names in needed_extensions, and docs/architecture.md has a row
+for each, with the first sentence of that file.
+
 Today's arrows against the rings (rings.txt) are in rings_allowed.txt, which may only shrink: a new arrow fails, and so
 does a line that no include needs any longer; --update removes such lines, and never adds one.
 """
@@ -36,6 +39,32 @@ def arrows(texts, rings):
     return found
 
 
+def undeclared(texts, recipes):
+    """Returns the includes of an extension that its recipe does not name. recipes: CMakeLists.txt by extension."""
+    found = []
+    for path, text in texts.items():
+        own = re.match(r"lib/extensions/(\w+)/", path)
+        for name in INCLUDE.findall(text) if own else []:
+            other = re.match(r"extensions/(\w+)/", name)
+            needed = re.findall(r"needed_extensions ([\w ]+)", recipes.get(own[1], ""))
+            if other and other[1] != own[1] and other[1] not in " ".join(needed).split():
+                found.append(f"{path} -> {name}: lib/extensions/{own[1]}/CMakeLists.txt does not name {other[1]}")
+    return found
+
+
+def row_of(name, recipe):
+    """Returns the row of an extension in the table: the first sentence of its recipe."""
+    comments = [line[1:].strip() for line in recipe.splitlines()[1:] if line.startswith("#")]
+    return f"| `{name}` | {re.split(r'[.](?: |$)', ' '.join(comments))[0]} |"
+
+
+def wrong_rows(recipes, page):
+    table = page.partition("| folder | what it adds |\n|---|---|\n")[2].partition("\n\n")[0].splitlines()
+    wanted = [row_of(name, recipe) for name, recipe in sorted(recipes.items())]
+    return [f"docs/architecture.md: wanted {row}" for row in wanted if row not in table] + \
+           [f"docs/architecture.md: no extension has the row {row}" for row in table if row not in wanted]
+
+
 def sources(root):
     return {
         str(path.relative_to(root)): path.read_text(errors="replace")
@@ -60,6 +89,13 @@ def must_be_able_to_fail(rings):
         "lib/arrange/b.cc -> passage/trip.h",
         "tools/scan/main.cc -> passage/trip.h",
     }
+    locks = {"lib/extensions/locks/lock.cc": '#include "extensions/mqtt/topics.h"\n'}
+    if not undeclared(locks, {"locks": ""}) or undeclared(locks, {"locks": "list(APPEND needed_extensions mqtt)"}):
+        sys.exit("rings: the check does not see undeclared extensions")
+    recipe = {"locks": "# SPDX\n# Locks of\n# doors. More.\nispace_library(locks)"}
+    page = "| folder | what it adds |\n|---|---|\n| `locks` | Locks of doors |\n\n"
+    if wrong_rows(recipe, page) or not wrong_rows(recipe, ""):
+        sys.exit("rings: the check does not see missing rows")
     if arrows(tree, rings) != wanted:
         sys.exit(f"rings: the check does not see {wanted ^ arrows(tree, rings)}")
 
@@ -70,7 +106,12 @@ def main(words):
     root = pathlib.Path(roots[0]) if roots else HERE.parent.parent
     rings = rules((HERE / "rings.txt").read_text())
     must_be_able_to_fail(rings)
-    found = arrows(sources(root), rings)
+    texts = sources(root)
+    found = arrows(texts, rings)
+    recipes = {file.parent.name: file.read_text() for file in (root / "lib/extensions").glob("*/CMakeLists.txt")}
+    faults = undeclared(texts, recipes) + wrong_rows(recipes, (root / "docs/architecture.md").read_text())
+    for fault in faults:
+        print(f"rings: {fault}")
     file = HERE / "rings_allowed.txt"
     lines = [line for line in file.read_text().splitlines() if line and not line.startswith("#")]
     head = [line for line in file.read_text().splitlines() if line.startswith("#")]
@@ -83,7 +124,7 @@ def main(words):
         for arrow in sorted(gone):
             print(f"rings: no longer needed in rings_allowed.txt (--update removes it): {arrow}")
     print(f"rings: {len(found)} arrows against the rings, {len(new)} of them new")
-    return 1 if new or (gone and not update) else 0
+    return 1 if new or faults or (gone and not update) else 0
 
 
 sys.exit(main(sys.argv[1:]))

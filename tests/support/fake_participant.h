@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/ros/module/dds_participant.h"
+#include "extensions/ros/module/dds_participant.h"
 
 namespace ispace::testing {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests and fuzzers of lib/server/mqtt: a broker in memory.
+// For tests and fuzzers of lib/extensions/mqtt: a broker in memory.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/mqtt/mqtt_client.h"
+#include "extensions/mqtt/mqtt_client.h"
 
 namespace ispace::testing {
 

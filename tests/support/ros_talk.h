@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "server/ros/ros_dialogue.h"
+#include "extensions/ros/ros_dialogue.h"
 #include "server/server_state.h"
 #include "support/test_source.h"
 #include "support/test_world.h"

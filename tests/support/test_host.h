@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "extensions/wire/wire_session.h"
 #include "record/edit.h"
-#include "server/device/wire_session.h"
 #include "sim/simulation.h"
 #include "sim/world_editor.h"
 #include "support/test_source.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/device/wire_session.h"
+#include "extensions/wire/wire_session.h"
 #include "support/test_layout.h"
 
 namespace ispace::testing {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/device/p2os_session.h"
+#include "extensions/wire/p2os_session.h"
 #include "support/test_host.h"
 
 namespace ispace::testing {

@@ -18,8 +18,8 @@
 #include <string>
 #include <thread>
 
+#include "extensions/web/web_page.h"
 #include "server/server.h"
-#include "server/web/web_page.h"
 #include "support/test_world.h"
 
 namespace ispace::testing {

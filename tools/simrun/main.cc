@@ -24,8 +24,7 @@ void claimFiles(const SimrunOptions& options) {
     claimOutput(options.junit, "--junit");
     options.judges->claim();
     claimOutput(options.report, "--report");
-    claimOutput(mcapFile(options), "--mcap");
-    claimOutput(bagMetadataFile(options), "the metadata of --mcap");
+    options.bridges->claim();
     if (options.record.empty()) return;
     for (const std::string& file : Recorder::filesIn(options.record))
         claimOutput(file, "a file of --record");

@@ -65,10 +65,9 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
         line_, options_.common,
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "
         ".pdf) or a film (.y4m, .gif; a folder or a pattern with %d for pictures)");
-    line_.essential({"--version",  "--clock",    "--dt",        "--until",   "--noise",  "--script",
-                     "--record",   "--report",   "--suggest",   "--replay",  "--listen", "--web",
-                     "--web-edit", "--foxglove", "--rosbridge", "--ros2",    "--mcap",   "--mqtt",
-                     "--storey",   "--output",   "--quiet",     "--threads", "--seed"});
+    line_.essential({"--version", "--clock", "--dt", "--until", "--noise", "--script", "--record",
+                     "--report", "--suggest", "--replay", "--listen", "--storey", "--output",
+                     "--quiet", "--threads", "--seed"});
     line_.parse(argc, argv);
     options_.task = extensions.task(line_, {options_.common, options_.rules, options_.operands});
     if (options_.task) return;
@@ -244,13 +243,9 @@ void SimrunCommand::takeDrawing() {
         throw UsageError(
             "-o is a picture or a film of a record: give --replay DIR (a run writes to --record "
             "DIR)");
-    std::vector<std::string> of_runs{"--record", "--clock",    "--hold",      "--listen",
-                                     "--web",    "--foxglove", "--rosbridge", "--ros2",
-                                     "--mcap",   "--mqtt",     "--port-file"};
-    const std::vector<std::string>& of_judges = options_.judges->options();
-    of_runs.insert(of_runs.end(), of_judges.begin(), of_judges.end());
-    for (const WireProtocol* const protocol : wireProtocols())
-        of_runs.push_back("--" + std::string(protocol->name));
+    std::vector<std::string> of_runs{"--record", "--clock", "--hold", "--listen", "--port-file"};
+    for (const auto& of_extensions : {o.bridges->options(), o.judges->options()})
+        of_runs.insert(of_runs.end(), of_extensions.begin(), of_extensions.end());
     for (const std::string& option : of_runs)
         if (line_.given(option))
             throw UsageError(option + " does not go with -o, which serves nobody");
@@ -279,22 +274,8 @@ void SimrunCommand::declareServer() {
     line_.parsed(
         "--listen", "ADDR:PORT", [&o](const std::string& text) { o.listen = parseEndpoint(text); },
         "where clients connect; port 0 takes any free one (default 127.0.0.1:0)", Enters::Nothing);
-    line_.parsed(
-        "--web", "ADDR:PORT",
-        [&o](const std::string& text) {
-            o.web = parseEndpoint(text);
-            if (!o.web->is_loopback)
-                throw UsageError(excerpt(text) +
-                                 ": the page is for browsers of this machine; use 127.0.0.1");
-        },
-        "show the running world to browsers there; port 0 takes any free one", Enters::Nothing);
-    line_.flag("--web-edit", o.web_edits,
-               "let that page add, move, turn and delete things, sensors and people, and save the "
-               "room",
-               Enters::Nothing);
-    declareRos();
-    declareMqtt();
-    o.devices.declare(line_);
+    o.bridges = std::make_shared<BridgeExtensions>(runBridges());
+    o.bridges->declare(line_);
     line_.file("--port-file", "FILE", o.port_file,
                "write the port number there when clients can connect", Enters::Nothing);
     line_.parsed(
@@ -332,98 +313,17 @@ void SimrunCommand::declareServer() {
                      Enters::Nothing);
 }
 
-void SimrunCommand::declareRos() {
-    SimrunOptions& o = options_;
-    line_.parsed(
-        "--foxglove", "[ADDR:]PORT",
-        [&o](const std::string& text) { o.foxglove = parsePort(text); },
-        "serve topics of ROS 2 to Foxglove and Lichtblick there (by custom 8765); port 0 takes any "
-        "free one",
-        Enters::Nothing);
-    line_.parsed(
-        "--rosbridge", "[ADDR:]PORT",
-        [&o](const std::string& text) { o.rosbridge = parsePort(text); },
-        "serve topics of ROS 2 to clients of rosbridge there (by custom 9090)", Enters::Nothing);
-    constexpr int kLastDomain = 232;
-    line_.countOr("--ros2", o.ros_domain, 0, 0, kLastDomain,
-                  "be a node of ROS 2 in this domain, over DDS, for programs of this machine",
-                  Enters::Nothing);
-    line_.text("--ros-robot", "ROBOT", o.ros_robot,
-               "give topics of ROS 2 of this robot names without its own, too, such as /odom and "
-               "/scan (default: the only robot)",
-               Enters::Nothing);
-    line_.flag("--rmf", o.rmf,
-               "add the topics by which Open-RMF runs lifts, doors and fleets: lift_states, "
-               "lift_requests, door_states, door_requests, fleet_states",
-               Enters::Nothing);
-    line_.file(
-        "--mcap", "FILE", o.mcap,
-        "write all topics of ROS 2 to an MCAP file, or as a bag to a folder (DIR/), for Foxglove "
-        "and ros2 bag",
-        Enters::Nothing);
-}
-
-void SimrunCommand::declareMqtt() {
-    SimrunOptions& o = options_;
-    line_.parsed(
-        "--mqtt", "HOST:PORT", [&o](const std::string& text) { o.mqtt = parseBroker(text); },
-        "publish the states of sensors, lamps, doors and switches on a broker of MQTT, and carry "
-        "out its commands (by custom port 1883)",
-        Enters::Nothing);
-    line_.file("--mqtt-login", "FILE", o.mqtt_login,
-               "log in there with the USER:PASSWORD in this file", Enters::Nothing);
-    line_.parsed(
-        "--mqtt-prefix", "TOPIC", [this](const std::string& text) { mqtt_prefix_ = text; },
-        "begin the topics with this (default ispace)", Enters::Nothing);
-}
-
-void SimrunCommand::takeMqtt() {
-    SimrunOptions& o = options_;
-    for (const char* option : {"--mqtt-login", "--mqtt-prefix"})
-        if (line_.given(option) && !o.mqtt)
-            throw UsageError(std::string(option) + " requires --mqtt HOST:PORT");
-    if (!line_.given("--mqtt-prefix")) return;
-    constexpr const char* kLetters =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    if (mqtt_prefix_.empty() || mqtt_prefix_.find_first_not_of(kLetters) != std::string::npos)
-        throw UsageError("--mqtt-prefix: " + excerpt(mqtt_prefix_) +
-                         " is no single level of a topic, wanted letters, digits, _ and -, like "
-                         "ispace");
-    o.mqtt->prefix = mqtt_prefix_;
-}
-
 void SimrunCommand::takeServer() {
     SimrunOptions& o = options_;
-    takeMqtt();
     o.limits.shutdown = o.shutdown.value_or(true);
     o.limits.changes = o.changes.value_or(true);
     o.limits.token_first = !o.listen.is_loopback;
-    if (o.web_edits && !o.web) throw UsageError("--web-edit requires --web ADDR:PORT");
-    if (o.web_edits && (!o.limits.changes || !o.replay.empty()))
-        throw UsageError(std::string("--web-edit changes the room of a run, which ") +
-                         (o.replay.empty() ? "--no-changes" : "--replay") + " does not allow");
-    if (line_.given("--ros-robot") && !o.foxglove && !o.rosbridge && !o.ros_domain)
-        throw UsageError(
-            "--ros-robot is about topics of ROS 2: give --ros2, --rosbridge PORT or --foxglove "
-            "PORT");
-    if (o.rmf && !o.foxglove && !o.rosbridge && !o.ros_domain && o.mcap.empty())
-        throw UsageError(
-            "--rmf is about topics of ROS 2: give --ros2, --rosbridge PORT, --foxglove PORT or "
-            "--mcap FILE");
     if (o.limits.waits_for_readers && o.clock.kind == Clock::Kind::Real)
         throw UsageError(
             "--wait-for-readers requires --clock fast or step: real time does not wait");
-    if (o.mcap == "-")
-        throw UsageError("--mcap writes to a file: standard output has the addresses of the run");
     mustBeOneFile("--report", o.report);
-    mustBeOneFile("--mcap", o.mcap);
-    o.devices.take(line_, o.ros_domain.has_value(), o.limits);
-    for (const auto& [option, endpoint] :
-         {std::pair("--foxglove", o.foxglove), {"--rosbridge", o.rosbridge}})
-        if (endpoint && !endpoint->is_loopback && o.token_file.empty())
-            throw UsageError(std::string(option) + ": `" + endpoint->address +
-                             "`: other machines are served only with --token-file; or use "
-                             "127.0.0.1");
+    BridgeRules rules{line_, o.limits, !o.replay.empty(), !o.token_file.empty()};
+    o.bridges->take(rules);
     if (!o.listen.is_loopback && o.token_file.empty())
         throw UsageError("--listen: `" + o.listen.address +
                          "`: other machines are served only with --token-file; or listen on "

@@ -354,10 +354,7 @@ ServerLimits withinFileLimit(ServerLimits limits, std::size_t others) {
 /// Returns the limits of the server, and the files that clients may read. Raises the limit of open
 /// files of this process, as every client takes one.
 ServerLimits limitsOf(const SimrunOptions& options, const SiteInput& input) {
-    constexpr std::size_t kOfPort = 64;  // connections of a port for topics
-    std::size_t others = options.devices.connections();
-    for (const auto& port : {options.foxglove, options.rosbridge}) others += port ? kOfPort : 0;
-    ServerLimits limits = withinFileLimit(options.limits, others);
+    ServerLimits limits = withinFileLimit(options.limits, options.bridges->connections());
     if (!options.token_file.empty()) {
         limits.token = readToken(options.token_file);
         if (isOpenToOthers(options.token_file))
@@ -604,9 +601,7 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
         if (!options.replay.empty()) replayed.push_back(folderOf(options.replay, room));
     }
     Server server(simulation, options.listen, limitsOf(options, site.input), &worlds);
-    const ServedAddresses addresses = servePorts(server, options, site.title, replayed);
-    std::optional<TopicLog> log;
-    if (!options.mcap.empty()) log.emplace(*addresses.ros, simulation, options);
+    servePorts(server, simulation, options, site.title, std::move(replayed));
     const StopSignals signals;
     server.stopOn(signals.descriptor());
     std::optional<OutputFile> port_file;
@@ -616,14 +611,14 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
     }
     const auto records = recordsOf(options, site, server);
     const auto progress = progressOf(simulation, options);
-    announce(server, addresses);
+    announce(server, options);
     if (port_file) port_file->commit();
     const auto serve_and_conclude = [&] {
         server.run();
         progress->end();
         for (std::size_t i = 0; i < records.size(); ++i)
             records[i]->recorder.end(rooms[i].simulation->world());
-        if (log) log->commit();
+        options.bridges->commit(options.common);
         tellLosses(server, options);
         report(simulation, options);
         for (std::size_t i = 0; i < rooms.size(); ++i)

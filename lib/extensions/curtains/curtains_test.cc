@@ -13,7 +13,6 @@
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "scene/room_state.h"
-#include "server/mqtt/mqtt_topics.h"
 #include "sim/activity.h"
 #include "sim/goal_ways.h"
 #include "sim/simulation.h"
@@ -92,20 +91,6 @@ TEST(Curtain, LetsPeoplePass) {
     EXPECT_GT(world.status(0).pose.position.x, 0.5);
     EXPECT_EQ(changes, (std::vector<std::string>{"SET c.drawn=1", "SET c.drawn=0"}));
     EXPECT_EQ(roomStates(world.scene()), (std::vector<RoomState>{{"c", "drawn", "0"}}));
-}
-
-TEST(Curtain, IsACoverOfHomeAssistant) {
-    sceneOf(kAcross + '\n');  // adds them
-    const Schema& schema = *sceneSchemas().find("curtain");
-    const MqttThing thing{"c", "curtain", {{"drawn", "i/c/drawn", schema.find("drawn")}}};
-    const std::vector<MqttMessage> messages = discoveryOf(thing, "i");
-    ASSERT_EQ(messages.size(), 1U);
-    EXPECT_TRUE(messages[0].topic.starts_with("homeassistant/cover/")) << messages[0].topic;
-    for (const char* part : {R"("device_class":"curtain")", R"("position_topic":"i/c/drawn")",
-                             R"("set_position_topic":"i/c/drawn/set")", R"("payload_open":"0")",
-                             R"("payload_close":"1")"})
-        EXPECT_NE(messages[0].payload.find(part), std::string::npos) << messages[0].payload;
-    EXPECT_EQ(messages[0].payload.find("state_topic"), std::string::npos);
 }
 
 }  // namespace

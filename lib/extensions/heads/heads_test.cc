@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 #include <string>
@@ -19,7 +18,6 @@
 #include "scene/placement_schemas.h"
 #include "scene/room_state.h"
 #include "scene/scene.h"
-#include "server/ros/ros_feed.h"
 #include "server/server_state.h"
 #include "server/session.h"
 #include "sim/simulation.h"
@@ -252,23 +250,6 @@ TEST_F(HeadRole, StopsAndRefuses) {
     ask(session, "TURN h -10 0");
     run(400);
     EXPECT_NE(ask(session, "READ h").find("pan=-10 tilt=0 moving=0"), std::string::npos);
-}
-
-TEST(Head, IsTwoJointsOfItsRobot) {
-    const Scene scene =
-        sceneOf("robot id=r\nhead id=h-1 on=r pan=90 tilt=-30\nlaser id=l on=h-1\nhead id=f\n");
-    World world(scene, milliseconds(5));
-    Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
-    ServerState state(simulation);
-    RosFeed feed(state, {});
-    const std::uint32_t number = feed.numbersOf("/joint_states").front();
-    feed.want(number);
-    const auto joints = nlohmann::json::parse(*feed.entries().at(number).newest->json());
-    EXPECT_EQ(joints["name"],
-              nlohmann::json({"r_left_wheel_joint", "r_right_wheel_joint", "h_1_pan", "h_1_tilt"}));
-    EXPECT_NEAR(joints["position"][2].get<double>(), std::numbers::pi / 2, 1e-12);
-    EXPECT_NEAR(joints["position"][3].get<double>(), -std::numbers::pi / 6, 1e-12);
-    EXPECT_TRUE(joints["velocity"][2].is_null()) << "unknown";
 }
 
 TEST(HeadService, IsForHeads) {

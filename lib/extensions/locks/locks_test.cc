@@ -20,7 +20,6 @@
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "scene/room_state.h"
-#include "server/mqtt/mqtt_topics.h"
 #include "server/session.h"
 #include "sim/activity.h"
 #include "sim/simulation.h"
@@ -624,26 +623,6 @@ TEST(LockService, IsForDoorsWithLocks) {
     Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
     const RunRoom room{"", &simulation};
     EXPECT_EQ(makeLocks({&room, 1}, 1), nullptr);
-}
-
-TEST(LockChecks, AreLocksOfHomeAssistant) {
-    const Scene scene = sceneOf(flat("locked=yes"), kPeople);
-    const Schema& door = recordOf(scene, "d").schema();
-    MqttThing thing{"d", "door", {}};
-    for (const char* key : {"open", "locked", "forced"})
-        thing.keys.push_back({key, std::string("i/d/") + key, door.find(key)});
-    const std::vector<MqttMessage> messages = discoveryOf(thing, "i");
-    ASSERT_EQ(messages.size(), 3U);
-    EXPECT_TRUE(messages[0].topic.starts_with("homeassistant/cover/")) << messages[0].topic;
-    EXPECT_TRUE(messages[1].topic.starts_with("homeassistant/lock/")) << messages[1].topic;
-    for (const char* part :
-         {R"("command_topic":"i/d/locked/set")", R"("payload_lock":"ON")", R"("state_locked":"ON")",
-          R"("payload_unlock":"OFF")", R"("state_unlocked":"OFF")"})
-        EXPECT_NE(messages[1].payload.find(part), std::string::npos) << messages[1].payload;
-    EXPECT_TRUE(messages[2].topic.starts_with("homeassistant/binary_sensor/"));
-    EXPECT_NE(messages[2].payload.find(R"("device_class":"tamper")"), std::string::npos);
-    EXPECT_EQ(messages[2].payload.find("command_topic"), std::string::npos);
-    EXPECT_EQ(payloadOf("locked", "1", true, door.find("locked")), "ON");
 }
 
 }  // namespace

@@ -29,8 +29,6 @@
 #include "scene/room_state.h"
 #include "sense/selection.h"
 #include "sense/uwb_ranges.h"
-#include "server/mqtt/mqtt_topics.h"
-#include "server/ros/ros_feed.h"
 #include "server/server_state.h"
 #include "server/session.h"
 #include "sim/activity.h"
@@ -375,47 +373,6 @@ TEST(Postures, TagsOfThingsAreInTheHand) {
         << "the person alone is in the field";
 }
 
-TEST(Postures, AreMarkersOfRos) {
-    const auto marker = [](const std::string& keys) {
-        const Scene scene = sceneOf("human id=ann at=1,2 heading=90 " + keys + "\n",
-                                    std::string(kRoom) +
-                                        "cylinder id=cup at=3,3 size=0.1,0.1 "
-                                        "height=0.2 carried=ann\n");
-        World world(scene, milliseconds(100));
-        Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
-        ServerState state(simulation);
-        RosFeed feed(state, {});
-        const std::uint32_t number = feed.numbersOf("/people").front();
-        feed.want(number);
-        simulation.allow(1);
-        simulation.run({}, std::chrono::nanoseconds(0));
-        feed.stepped();
-        const auto& message = feed.entries().at(number).newest;
-        return message ? nlohmann::json::parse(*message->json())["markers"][1] : nlohmann::json();
-    };
-    const auto expect = [&](const std::string& keys, int type, Point3 at, Vec3 size) {
-        const nlohmann::json body = marker(keys);
-        EXPECT_EQ(body["type"], type) << keys;
-        const auto number = [&](const char* of, const char* axis) -> double {
-            return std::string_view(of) == "scale" ? body["scale"][axis]
-                                                   : body["pose"]["position"][axis];
-        };
-        EXPECT_NEAR(number("position", "x"), at.x, 1e-9) << keys;
-        EXPECT_NEAR(number("position", "y"), at.y, 1e-9) << keys;
-        EXPECT_NEAR(number("position", "z"), at.z, 1e-9) << keys;
-        EXPECT_NEAR(number("scale", "x"), size.x, 1e-9) << keys;
-        EXPECT_NEAR(number("scale", "y"), size.y, 1e-9) << keys;
-        EXPECT_NEAR(number("scale", "z"), size.z, 1e-9) << keys;
-    };
-    constexpr int kCube = 1, kCylinder = 3;
-    const double h = kHeight;
-    expect("", kCylinder, {1, 2, h / 2}, {0.3 * h, 0.3 * h, h});
-    // From the feet to the top of the head, or to the hand beside it.
-    expect("posture=lie support=0.5", kCube, {1, 2 - 0.175 * h, 0.5 + 0.065 * h},
-           {h, 0.3 * h, 0.13 * h});
-    expect("posture=fallen", kCube, {1, 2 - 0.025 * h, 0.065 * h}, {1.3 * h, 0.3 * h, 0.13 * h});
-}
-
 TEST(Postures, CarriedThingsKeepTheirShapes) {
     const auto load = [](const std::string& thing) {
         const Scene scene =
@@ -529,20 +486,6 @@ TEST(Postures, AreRejectedWithHints) {
          checkScene(sceneOf("human id=ann at=0,0 posture=sit support=0.5\n",
                             std::string(kRoom) + "cube at=0,0 size=1,1,0.5\n")))
         ADD_FAILURE() << each.text();
-}
-
-TEST(Postures, AreSensorsOfHomeAssistant) {
-    const Scene scene = sceneOf("human id=ann at=0,0 posture=sit\n");
-    const Schema& human = scene.records.back().schema();
-    MqttThing thing{"ann", "human", {}};
-    for (const char* key : {"posture", "left_arm"})
-        thing.keys.push_back({key, std::string("i/ann/") + key, human.find(key)});
-    const std::vector<MqttMessage> messages = discoveryOf(thing, "i");
-    ASSERT_EQ(messages.size(), 2U);
-    EXPECT_TRUE(messages[0].topic.starts_with("homeassistant/sensor/")) << messages[0].topic;
-    EXPECT_NE(messages[0].payload.find(R"("state_topic":"i/ann/posture")"), std::string::npos);
-    EXPECT_EQ(messages[0].payload.find("command_topic"), std::string::npos);
-    EXPECT_EQ(payloadOf("posture", "fallen", true, human.find("posture")), "fallen");
 }
 
 /// A run in which changes are made as the server does.

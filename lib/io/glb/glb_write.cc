@@ -315,6 +315,15 @@ std::string writeGlb(const Scene& scene, const Document& document, const FloorPi
     return out;
 }
 
+std::string writeRoomGlb(const Scene& scene) {
+    Scene room = scene;
+    room.sensors.clear();
+    room.robots.clear();
+    room.people.clear();
+    room.placed.clear();
+    return writeGlb(room, Document());
+}
+
 void writeGlb(const Scene& scene, const Document& document, const ByteSink& sink,
               const FloorPicture* picture) {
     const Point3 origin = meshOrigin(scene.environment.limits());

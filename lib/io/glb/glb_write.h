@@ -73,6 +73,9 @@ std::string writeGlb(const Scene& scene, const Document& document,
 /// Writes the same file piece by piece, without holding it in memory.
 void writeGlb(const Scene& scene, const Document& document, const ByteSink& sink,
               const FloorPicture* picture = nullptr);
+/// Writes a scene without what moves or reads: sensors, robots, people and placed things, which
+/// viewers of a run draw by themselves.
+std::string writeRoomGlb(const Scene& scene);
 
 /// One of several scenes in a file.
 struct GlbPart {

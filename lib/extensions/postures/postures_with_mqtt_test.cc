@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "extensions/mqtt/mqtt_topics.h"
+#include "extensions/postures/posture.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace {
+namespace {
+
+TEST(Postures, AreSensorsOfHomeAssistant) {
+    if (sceneSchemas().find("human")->find("posture") == nullptr) addPostures();
+    const Schema& human = *sceneSchemas().find("human");
+    MqttThing thing{"ann", "human", {}};
+    for (const char* key : {"posture", "left_arm"})
+        thing.keys.push_back({key, std::string("i/ann/") + key, human.find(key)});
+    const std::vector<MqttMessage> messages = discoveryOf(thing, "i");
+    ASSERT_EQ(messages.size(), 2U);
+    EXPECT_TRUE(messages[0].topic.starts_with("homeassistant/sensor/")) << messages[0].topic;
+    EXPECT_NE(messages[0].payload.find(R"("state_topic":"i/ann/posture")"), std::string::npos);
+    EXPECT_EQ(messages[0].payload.find("command_topic"), std::string::npos);
+    EXPECT_EQ(payloadOf("posture", "fallen", true, human.find("posture")), "fallen");
+}
+
+}  // namespace
+}  // namespace ispace

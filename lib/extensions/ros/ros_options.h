@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "cli/run_bridge.h"
+
+namespace ispace {
+
+/// Returns the options of simrun about topics of ROS: --foxglove, --rosbridge, --ros2, --mcap.
+std::unique_ptr<BridgeGroup> makeRosOptions();
+
+}  // namespace ispace

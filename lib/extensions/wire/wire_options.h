@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "cli/run_bridge.h"
+
+namespace ispace {
+
+/// Returns an option of simrun for each protocol of a real device, and their clock.
+std::unique_ptr<BridgeGroup> makeWireOptions();
+
+}  // namespace ispace
