@@ -31,7 +31,7 @@ help:
 	@echo "make torture     deps, build, attack the tools for TORTURE_MINUTES=$(TORTURE_MINUTES) (TORTURE_OPTIONS: see run.py)"
 	@echo "make format      reformat the sources"
 	@echo "make lint        rates of words in comments and pages; clang-tidy on changed sources (all with BASE=)"
-	@echo "make install     install under prefix=$(prefix), honours DESTDIR"
+	@echo "make install     build the tools and install them under prefix=$(prefix), honours DESTDIR"
 	@echo "make package     deps, build, Debian packages in $(BUILD)/package, judged by lintian"
 	@echo "make source-package"
 	@echo "                 the commit as a Debian source package, in $(BUILD)/source-package"
@@ -100,7 +100,9 @@ lint:
 	@.ci/prose
 	@.ci/lint $(BUILD)/lint $(JOBS) $(BASE)
 
-install: all
+install:
+	@$(MAKE) --no-print-directory $(BUILD)/configured
+	$(call build,$(BUILD)) --target tools manual completions
 	DESTDIR="$(DESTDIR)" cmake --install $(BUILD) --prefix "$(prefix)"
 
 package:
